@@ -1,0 +1,99 @@
+"""Arrays at the door: shape and finiteness checks, read-only copies, canonical digests."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robomill.errors import RobomillError
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+
+def as_floats(
+    value: ArrayLike,
+    name: str,
+    shape: tuple[int | None, ...],
+    *,
+    error: type[RobomillError] = RobomillError,
+    finite: bool = True,
+) -> FloatArray:
+    """``value`` as float64 whose *trailing* axes match ``shape`` (None: any length).
+
+    Leading axes are free. Raises ``error`` with what was found and what was expected.
+    """
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as exc:
+        raise error(f"{name}: expected numbers, found {value!r:.60}.") from exc
+    trailing = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
+    if trailing is None or any(w is not None and w != h for w, h in zip(shape, trailing, strict=True)):
+        want = ", ".join("any" if s is None else str(s) for s in shape)
+        raise error(f"{name}: expected shape (..., {want}), found {array.shape}.")
+    if finite and not np.isfinite(array).all():
+        raise error(f"{name}: expected finite numbers, found NaN or infinity.")
+    return array
+
+
+def frozen(array: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
+    """A read-only, C-contiguous copy, for fields of frozen dataclasses."""
+    copy = np.array(array, dtype=dtype, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
+def digest(value: Any) -> str:
+    """SHA-256 over canonical bytes of dataclasses, mappings, sequences, arrays and scalars.
+
+    Equal values give equal digests on every machine; every byte of an array counts.
+    """
+    state = hashlib.sha256()
+    _feed(state, value)
+    return state.hexdigest()
+
+
+def _feed(state: Any, value: Any) -> None:
+    if isinstance(value, np.ndarray):
+        array = np.ascontiguousarray(value)
+        little = array.astype(array.dtype.newbyteorder("<"), copy=False)
+        state.update(f"a{little.dtype.str}{little.shape}".encode())
+        state.update(little.tobytes())
+    elif is_dataclass(value) and not isinstance(value, type):
+        state.update(f"d{type(value).__name__}(".encode())
+        for field in fields(value):
+            if field.compare:
+                state.update(field.name.encode() + b"=")
+                _feed(state, getattr(value, field.name))
+        state.update(b")")
+    elif isinstance(value, Mapping):
+        state.update(b"m(")
+        for key in sorted(value, key=repr):
+            _feed(state, key)
+            _feed(state, value[key])
+        state.update(b")")
+    elif isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        state.update(f"s{len(value)}(".encode())
+        for item in value:
+            _feed(state, item)
+        state.update(b")")
+    elif isinstance(value, bool | np.bool_):
+        state.update(b"b1" if value else b"b0")
+    elif isinstance(value, int | np.integer):
+        state.update(f"i{int(value)}".encode())
+    elif isinstance(value, float | np.floating):
+        state.update(f"f{float(value).hex()}".encode())
+    elif isinstance(value, str):
+        state.update(f"t{len(value)}:{value}".encode())
+    elif isinstance(value, bytes):
+        state.update(f"y{len(value)}:".encode() + value)
+    elif value is None:
+        state.update(b"n")
+    else:
+        raise TypeError(f"digest: no canonical bytes for {type(value).__name__}")

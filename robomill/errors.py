@@ -1,0 +1,65 @@
+"""Refusals. Each says where, what was found, what was expected and what to do, in one sentence.
+
+Pages and the command line catch ``RobomillError`` only; anything else is a bug and must be seen.
+"""
+
+from __future__ import annotations
+
+
+class RobomillError(ValueError):
+    """Input that robomill refuses. ``str(error)`` is the sentence a person reads.
+
+    ``where`` names the place (file, line, cell, joint, field) as data, for whoever wants to jump there.
+    """
+
+    def __init__(self, message: str, *, where: str | None = None) -> None:
+        super().__init__(message)
+        self.where = where
+
+
+class RobotError(RobomillError):
+    """A robot that cannot be: its table, limits, frames or compliances."""
+
+
+class KinematicsError(RobomillError):
+    """A configuration or pose that cannot be evaluated (shape, NaN, wrong number of joints)."""
+
+
+class ToolpathError(RobomillError):
+    """A path that cannot be followed: no points, no motion, not finite."""
+
+
+class GCodeError(ToolpathError):
+    """A program refused at a line. ``line`` is the 1-based source line, 0 for the whole file."""
+
+    def __init__(self, message: str, *, line: int = 0) -> None:
+        super().__init__(message, where=f"line {line}" if line else None)
+        self.line = line
+
+
+class CuttingError(RobomillError):
+    """A cutter, material, force or engagement that makes no sense."""
+
+
+class SurfaceError(RobomillError):
+    """A stock, cell size or cut that cannot be computed."""
+
+
+class SetupError(RobomillError):
+    """A simulation set-up that cannot be run."""
+
+
+class LoadTestError(RobomillError):
+    """Measurements that cannot be read or identified from."""
+
+
+class WorkspaceError(RobomillError):
+    """A grid or map that cannot be computed."""
+
+
+class ProjectError(RobomillError):
+    """A project file that cannot be opened."""
+
+
+class RenderError(RobomillError):
+    """A picture that cannot be drawn on this machine; the sentence names the command that mends it."""

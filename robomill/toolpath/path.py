@@ -1,0 +1,139 @@
+"""The toolpath: what the tool is told to do, in the part frame {W}. Units, arcs and modes are gone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, digest, frozen
+from robomill.errors import ToolpathError
+from robomill.units import format_si
+
+Level = Literal["error", "warning", "suspicious", "ignored", "info"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What the reader noticed: ``line`` is the 1-based source line (0: the whole file), ``count`` how often."""
+
+    level: Level
+    line: int
+    message: str
+    count: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Toolpath:
+    """Tool tip positions in {W}; entry i describes the move from point i - 1 to point i, entry 0 the start.
+
+    p        (m, 3) m        tool tip
+    k        (m, 3)          unit tool axis z_T, out of the part towards the spindle
+    v_f      (m,) m/s        feed rate of the move (0 on rapids)
+    cutting  (m,) bool       True on feed moves, False on rapids and at the start
+    block    (m,) int        1-based source line of the move (row of the table for a table of lines)
+    n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated
+    tool     (m,) int        tool number, 0 where not stated
+    """
+
+    p: FloatArray
+    k: FloatArray
+    v_f: FloatArray
+    cutting: BoolArray
+    block: IntArray
+    n_s: FloatArray
+    tool: IntArray
+    findings: tuple[Finding, ...] = field(default=(), compare=False)
+    units: str = "mm"
+
+    def __post_init__(self) -> None:
+        p = as_floats(self.p, "toolpath points", (None, 3), error=ToolpathError)
+        m = len(p)
+        if m == 0:
+            raise ToolpathError("Toolpath: found no points; a path needs at least one.")
+        k = as_floats(np.broadcast_to(self.k, (m, 3)), "tool axis", (m, 3), error=ToolpathError)
+        length = np.linalg.norm(k, axis=1, keepdims=True)
+        if (np.abs(length - 1.0) > 1e-6).any():
+            raise ToolpathError("Tool axis: expected unit vectors, found a length that is not 1.")
+        values: dict[str, Any] = {"p": frozen(p), "k": frozen(k / length)}
+        for name, dtype in (("v_f", float), ("cutting", bool), ("block", int), ("n_s", float), ("tool", int)):
+            values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)
+        if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():
+            raise ToolpathError("Toolpath: a feed rate is negative or not a number; feeds must be 0 or more.")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def __len__(self) -> int:
+        return len(self.p)
+
+    @cached_property
+    def step_length(self) -> FloatArray:
+        """(m,) m: length of the move that ends at each point; 0 at the start."""
+        return frozen(np.concatenate([[0.0], np.linalg.norm(np.diff(self.p, axis=0), axis=1)]))
+
+    @cached_property
+    def s(self) -> FloatArray:
+        """(m,) m: length travelled at feed (rapids do not count)."""
+        return frozen(np.cumsum(np.where(self.cutting, self.step_length, 0.0)))
+
+    @cached_property
+    def t(self) -> FloatArray:
+        """(m,) s: time spent at feed."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            dt = np.where(self.cutting & (self.v_f > 0), self.step_length / self.v_f, 0.0)
+        return frozen(np.cumsum(dt))
+
+    @property
+    def extents(self) -> tuple[FloatArray, FloatArray]:
+        """Smallest and largest corner (3,) m over all points of feed moves (of all points without any)."""
+        ends = self.p[self.cutting | np.append(self.cutting[1:], False)]
+        ends = ends if len(ends) else self.p
+        return ends.min(axis=0), ends.max(axis=0)
+
+    def digest(self) -> str:
+        """SHA-256 of the motion (findings do not count)."""
+        return digest((self.p, self.k, self.v_f, self.cutting, self.block, self.n_s, self.tool))
+
+
+def toolpath_from_lines(
+    start: ArrayLike,
+    end: ArrayLike,
+    v_f: ArrayLike,
+    n_s: ArrayLike = 0.0,
+    *,
+    k: ArrayLike = (0.0, 0.0, 1.0),
+) -> Toolpath:
+    """A path from straight cuts: start, end (r, 3) m in {W}, v_f (r,) m/s; rapids join lines that do not touch.
+
+    ``block`` is the 1-based row. Raises ToolpathError naming the row that has no length or no feed.
+    """
+    a = as_floats(np.atleast_2d(np.asarray(start, dtype=float)), "line starts", (None, 3), error=ToolpathError)
+    b = as_floats(np.atleast_2d(np.asarray(end, dtype=float)), "line ends", (len(a), 3), error=ToolpathError)
+    feed = np.broadcast_to(np.asarray(v_f, dtype=float), (len(a),))
+    speed = np.broadcast_to(np.asarray(n_s, dtype=float), (len(a),))
+    if len(a) == 0:
+        raise ToolpathError("Table of lines: found no rows; add at least one line.")
+    points: list[FloatArray] = [a[0]]
+    rows, cutting, v, n = [1], [False], [0.0], [float(speed[0])]
+    for i in range(len(a)):
+        if not feed[i] > 0:
+            found = format_si(feed[i], "mm/min")
+            raise ToolpathError(f"Row {i + 1}: feed is {found}; a cut needs more than 0.", where=f"row {i + 1}")
+        if np.linalg.norm(b[i] - a[i]) < 1e-9:
+            raise ToolpathError(
+                f"Row {i + 1}: start and end are the same point; give the line a length.", where=f"row {i + 1}"
+            )
+        jump = np.linalg.norm(points[-1] - a[i]) > 1e-9
+        for point, is_cut in ((a[i], False), (b[i], True)) if jump else ((b[i], True),):
+            points.append(point)
+            rows.append(i + 1)
+            cutting.append(is_cut)
+            v.append(float(feed[i]) if is_cut else 0.0)
+            n.append(float(speed[i]))
+    return Toolpath(
+        p=np.array(points), k=np.asarray(k, dtype=float), v_f=np.array(v), cutting=np.array(cutting),
+        block=np.array(rows), n_s=np.array(n), tool=np.zeros(len(points), dtype=np.int64),
+    )  # fmt: skip
