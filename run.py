@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Set up robomill and start it, with nothing but Python 3.11+ and pip.
+
+    python3 run.py            set up what is missing, then open the app
+    python3 run.py test       set up what is missing, then run the whole test suite
+
+Further words go on to the app's server or to pytest: ``python3 run.py test -m benchmark``.
+Everything lives in ``.venv`` beside this file; delete that folder to start afresh.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+MARKER = VENV / ".robomill-ready"
+PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+APT_PACKAGES = ["libegl1", "libgl1-mesa-dri"]
+
+
+def main() -> int:
+    if sys.version_info < (3, 11):
+        print(f"robomill needs Python 3.11 or newer; this is {sys.version.split()[0]}.", file=sys.stderr)
+        return 2
+    words = sys.argv[1:]
+    testing = words[:1] == ["test"]
+    set_up(extra="test" if testing else "")
+    offer_graphics()
+    if testing:
+        workers = [] if any(w.startswith(("-n", "-m", "-k", "--pdb")) for w in words[1:]) else ["-n", "2"]
+        return subprocess.call([str(PYTHON), "-m", "pytest", *workers, *words[1:]], cwd=ROOT)
+    return subprocess.call([str(PYTHON), "-m", "robomill", *words])
+
+
+def set_up(extra: str) -> None:
+    """Make .venv and install robomill into it, unless a marker says that it stands."""
+    wanted = fingerprint()
+    done = MARKER.read_text().split() if MARKER.is_file() else []
+    if done[:1] == [wanted] and (not extra or extra in done[1:]) and PYTHON.exists():
+        return
+    began = time.monotonic()
+    print("Setting up robomill in .venv (about a minute, once) ...", flush=True)
+    installer = [sys.executable, "-m", "pip", "--python", str(PYTHON)]
+    if not PYTHON.exists():
+        # Debian's bare python3 has no ensurepip, so pip stays outside and is told where to install.
+        run([sys.executable, "-m", "venv", "--without-pip", str(VENV)])
+    if subprocess.run([*installer, "--version"], capture_output=True).returncode:
+        run([sys.executable, "-m", "venv", str(VENV)])
+        installer = [str(PYTHON), "-m", "pip"]
+    extras = sorted({extra, *done[1:]} - {""})
+    target = f"{ROOT}[{','.join(extras)}]" if extras else str(ROOT)
+    quiet = ["install", "--quiet", "--disable-pip-version-check", "--no-warn-script-location"]
+    run([*installer, *quiet, "-c", str(ROOT / "constraints.txt"), "-e", target])
+    MARKER.write_text(" ".join([wanted, *extras]) + "\n")
+    print(f"Set up in {time.monotonic() - began:.0f} s.", flush=True)
+
+
+def fingerprint() -> str:
+    state = hashlib.sha256(sys.version.encode())
+    for name in ("pyproject.toml", "constraints.txt"):
+        state.update((ROOT / name).read_bytes())
+    return state.hexdigest()[:16]
+
+
+def run(command: list[str]) -> None:
+    """Run one set-up step; what it prints is shown if it fails."""
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if result.returncode:
+        print(result.stdout, file=sys.stderr)
+        raise SystemExit(f"Set-up stopped at: {' '.join(command)}")
+
+
+def offer_graphics() -> None:
+    """VTK draws off screen through EGL or OSMesa, which pip does not carry; Debian does."""
+    if sys.platform != "linux" or loads("libEGL.so.1") or loads("libOSMesa.so.8"):
+        return
+    command = ["apt-get", "install", "-y", "--no-install-recommends", *APT_PACKAGES]
+    root = hasattr(os, "geteuid") and os.geteuid() == 0
+    if root and shutil.which("apt-get"):
+        print("Installing the off-screen graphics libraries: " + " ".join(APT_PACKAGES), flush=True)
+        for step in (["apt-get", "update"], command):
+            if subprocess.run(step, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
+                break
+        else:
+            return
+    print(
+        "Rendered pictures need off-screen graphics libraries that are missing here; everything else works.\n"
+        f"To get them: sudo {' '.join(command)}",
+        file=sys.stderr,
+    )
+
+
+def loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    try:
+        raise SystemExit(main())
+    except KeyboardInterrupt:
+        raise SystemExit(130) from None

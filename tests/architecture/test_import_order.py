@@ -1,0 +1,79 @@
+"""Imports point down only: the order of the rooms, read off the source."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "robomill"
+
+# Rooms from the ground up; those on one line may not import each other.
+STOREYS = [
+    {"units", "arrays", "errors"},
+    {"robot"},
+    {"kinematics", "cutting", "toolpath"},
+    {"compliance", "surface"},
+    {"workspace", "identification"},
+    {"simulation"},
+    {"improve"},
+    {"report", "viz", "io"},
+    {"ui"},
+    {"cli", "__main__"},
+]
+LEVEL = {room: level for level, rooms in enumerate(STOREYS) for room in rooms}
+SCREEN = {"streamlit", "plotly", "pyvista", "pandas", "vtk", "matplotlib"}
+MAY_DRAW = {"report", "viz", "io", "ui", "cli", "__main__"}
+MODULES = sorted(p for p in PACKAGE.rglob("*.py") if p.parent != PACKAGE or p.stem != "__init__")
+
+
+def room_of(path: Path) -> str:
+    first = path.relative_to(PACKAGE).parts[0]
+    return first.removesuffix(".py")
+
+
+def imported(path: Path) -> set[str]:
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.update(f"{node.module}.{alias.name}" for alias in node.names)
+            names.add(node.module)
+    return names
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_a_room_imports_only_rooms_below(path: Path) -> None:
+    room = room_of(path)
+    for name in imported(path):
+        parts = name.split(".")
+        if parts[0] == "robomill" and len(parts) > 1 and parts[1] in LEVEL and parts[1] != room:
+            lower = LEVEL[parts[1]] < LEVEL[room]
+            ground = LEVEL[room] == 0 and LEVEL[parts[1]] == 0
+            assert lower or ground, f"{path.relative_to(ROOT)} ({room}) imports {name}: imports point down only"
+        if parts[0] in SCREEN:
+            assert room in MAY_DRAW, f"{path.relative_to(ROOT)}: the core imports {parts[0]}"
+
+
+@pytest.mark.parametrize("path", sorted([*ROOT.glob("pages/*.py"), ROOT / "app.py"]), ids=lambda p: p.name)
+def test_pages_are_thin(path: Path) -> None:
+    lines = path.read_text().count("\n")
+    assert lines <= 120, f"{path.name} has {lines} lines; a page has at most 120"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_modules_can_be_read_at_a_sitting(path: Path) -> None:
+    lines = path.read_text().count("\n")
+    assert lines <= 400, f"{path.relative_to(ROOT)} has {lines} lines; 400 is too many"
+
+
+def test_import_robomill_loads_no_screen_and_no_compiler() -> None:
+    heavy = sorted({*SCREEN, "numba", "trimesh", "scipy"})
+    code = f"import sys, robomill; print([m for m in {heavy!r} if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert found.strip() == "[]", f"import robomill also imports {found}"
