@@ -1,0 +1,104 @@
+"""Cutters: shape against closed forms, and one sentence for each cutter that cannot be."""
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import CuttingError
+from robomill.units import to_si
+
+FLAT = Cutter("flat", 8e-3, flutes=3)
+BALL = Cutter("ball", 8e-3)
+BULL = Cutter("bull", 8e-3, corner_radius=1e-3)
+CHAMFER = Cutter("chamfer", 8e-3, tip_angle=math.pi / 2, tip_diameter=2e-3)
+ALL = [FLAT, BALL, BULL, CHAMFER]
+
+
+def test_profiles_at_known_radii():
+    r = np.array([0.0, 1e-3, 3e-3, 4e-3])
+    np.testing.assert_array_equal(FLAT.profile(r), 0.0)
+    np.testing.assert_allclose(BALL.profile(r), 4e-3 - np.sqrt(16e-6 - r**2), atol=1e-18)
+    np.testing.assert_allclose(BULL.profile(r), [0.0, 0.0, 0.0, 1e-3], atol=1e-18)
+    np.testing.assert_allclose(CHAMFER.profile(r), [0.0, 0.0, 2e-3, 3e-3], atol=1e-18)
+
+
+@pytest.mark.parametrize("cutter", ALL, ids=lambda c: c.kind)
+def test_profile_is_infinite_outside_and_keeps_the_shape(cutter):
+    r = np.array([[-1e-6, 0.0], [4e-3, 4.0001e-3]])
+    height = cutter.profile(r)
+    assert height.shape == r.shape
+    np.testing.assert_array_equal(np.isinf(height), [[True, False], [False, True]])
+    assert height[1, 0] == pytest.approx(cutter.nose_height, abs=1e-18)
+    assert np.ndim(cutter.profile(1e-3)) == 0
+
+
+@pytest.mark.parametrize("cutter", [BALL, BULL, CHAMFER], ids=lambda c: c.kind)
+def test_radius_at_inverts_the_profile(cutter):
+    r = np.linspace(cutter.flat_radius, cutter.radius, 40)
+    np.testing.assert_allclose(cutter.radius_at(cutter.profile(r)), r, atol=1e-15)
+    assert cutter.radius_at(1.0) == cutter.radius
+    assert np.isnan(cutter.radius_at(-1e-9))
+
+
+def test_a_bull_nose_between_flat_and_ball():
+    r = np.linspace(0, 4e-3, 30)
+    np.testing.assert_allclose(Cutter("bull", 8e-3, corner_radius=4e-3).profile(r), BALL.profile(r), atol=1e-18)
+    assert np.all(BULL.profile(r) <= BALL.profile(r) + 1e-18)
+
+
+def test_pull_depends_on_helix_against_hand():
+    assert FLAT.pull == 1
+    assert FLAT.replace(helix="left").pull == -1
+    assert FLAT.replace(helix="left", hand="left").pull == 1
+    assert FLAT.replace(helix_angle=0.0).pull == 0
+
+
+def test_ball_is_settled_and_can_be_replaced():
+    assert BALL.corner_radius == 4e-3
+    assert BALL.replace(diameter=6e-3).corner_radius == 3e-3
+    assert BALL.replace(flutes=4) == Cutter("ball", 8e-3, corner_radius=4e-3, flutes=4)
+
+
+def test_title():
+    assert FLAT.title == "8.00 mm flat end mill, 3 flutes"
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"kind": "drill"}, "use flat, ball, bull or chamfer"),
+        ({"flutes": 0}, "0 flutes: it needs at least one"),
+        ({"flutes": 2.5}, "whole number, found 2.5"),
+        ({"flutes": "three"}, "whole number, found 'three'"),
+        ({"flutes": math.inf}, "whole number, found inf"),
+        ({"diameter": 0.0}, "diameter 0.000 mm: it must be greater than 0"),
+        ({"diameter": -8e-3}, "diameter −8.000 mm"),
+        ({"diameter": math.nan}, "finite number, found nan"),
+        ({"diameter": "8 mm"}, "expected a number, found '8 mm'"),
+        ({"diameter": None}, "expected a number, found None"),
+        ({"corner_radius": 1e-3}, "A flat end mill has no corner radius"),
+        ({"kind": "bull", "corner_radius": 5e-3}, "larger than the cutter's radius 4.000 mm"),
+        ({"kind": "bull"}, "needs a corner radius"),
+        ({"kind": "bull", "corner_radius": -1e-3}, "cannot be negative"),
+        ({"kind": "ball", "corner_radius": 1e-3}, "leave it out or choose a bull-nose mill"),
+        ({"flute_length": -1e-3}, "flute length −1.000 mm: it must be greater than 0"),
+        ({"stick_out": 0.0}, "stick out 0.000 mm"),
+        ({"flute_length": 30e-3, "stick_out": 20e-3}, "longer than the stick-out"),
+        ({"helix_angle": to_si(95.0, "deg")}, "expected 0° to 85°"),
+        ({"helix_angle": -0.5}, "hand of the helix"),
+        ({"helix": "up"}, "expected 'right' or 'left'"),
+        ({"hand": 1}, "expected 'right' or 'left'"),
+        ({"kind": "chamfer"}, "needs a tip angle"),
+        ({"kind": "chamfer", "tip_angle": math.pi}, "found 180.00°"),
+        ({"kind": "chamfer", "tip_angle": 1.0, "tip_diameter": 8e-3}, "less than the cutter's diameter"),
+        ({"tip_angle": 1.0}, "has no tip angle"),
+    ],
+)
+def test_refusals(fields, sentence):
+    with pytest.raises(CuttingError) as refusal:
+        Cutter(**{"kind": "flat", "diameter": 8e-3, **fields})
+    assert sentence in str(refusal.value)
+    assert refusal.value.where is not None
+    assert str(refusal.value).count("\n") == 0
