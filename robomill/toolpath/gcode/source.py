@@ -1,0 +1,91 @@
+"""Program text from a path, a string or bytes: encodings, line ends, and what is no program at all."""
+
+from __future__ import annotations
+
+import codecs
+import os
+from pathlib import Path
+
+from robomill.errors import GCodeError
+
+Source = str | bytes | bytearray | Path
+SUFFIXES = frozenset({".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"})
+MAX_BYTES = 200_000_000
+MAX_LINE = 1_000_000
+
+
+def read_source(source: Source) -> tuple[bytes, str]:
+    """Bytes of the program (ASCII-compatible, "\\n" line ends not yet made) and a name for messages.
+
+    A ``Path`` is a file, bytes are content. A string is a file if it has one line and either names an existing
+    file or ends like a program's name; otherwise it is the program itself. Raises GCodeError for what cannot
+    be read, is empty, too large or binary.
+    """
+    if isinstance(source, Path):
+        return _read_file(source), source.name
+    if isinstance(source, bytes | bytearray):
+        return as_plain_bytes(bytes(source)), "program"
+    if not isinstance(source, str):
+        raise GCodeError(f"Program: expected text, bytes or a path, found {type(source).__name__}.")
+    if _is_path(source):
+        return _read_file(Path(source)), os.path.basename(source)
+    return as_plain_bytes(source.encode("utf-8", "surrogateescape")), "program"
+
+
+def _is_path(text: str) -> bool:
+    if "\n" in text or "\r" in text or "\0" in text or not 0 < len(text) < 4096:
+        return False
+    try:
+        return os.path.splitext(text)[1].lower() in SUFFIXES or os.path.isfile(text)
+    except ValueError:
+        return False
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise GCodeError(
+                f"{path.name}: {size / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB can be read, "
+                "so split the program into parts."
+            )
+        return as_plain_bytes(path.read_bytes(), path.name)
+    except OSError as exc:
+        reason = exc.strerror or type(exc).__name__
+        raise GCodeError(f"{path}: cannot be read ({reason}); expected a program file.") from exc
+
+
+def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
+    """``data`` without byte-order mark, UTF-16 and UTF-32 recoded to UTF-8, "\\r" line ends made "\\n".
+
+    Raises GCodeError for an empty or binary file.
+    """
+    if len(data) > MAX_BYTES:
+        raise GCodeError(f"{name}: {len(data) / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB can be read.")
+    for mark, encoding in (
+        (codecs.BOM_UTF8, ""), (codecs.BOM_UTF32_LE, "utf-32"), (codecs.BOM_UTF16_LE, "utf-16"),
+        (codecs.BOM_UTF16_BE, "utf-16"),
+    ):  # fmt: skip
+        if data.startswith(mark):
+            data = data[len(mark) :] if not encoding else _recode(data, encoding, name)
+            break
+    if not data.strip():
+        raise GCodeError(f"{name}: found an empty file; expected a program.")
+    nul = data.find(b"\0")
+    if nul >= 0:
+        line = data.count(b"\n", 0, nul) + 1
+        raise GCodeError(f"Line {line}: found a NUL byte; this is a binary file, expected program text.", line=line)
+    head = data[:65536]
+    control = sum(head.count(bytes([c])) for c in range(32) if c not in (9, 10, 12, 13, 27))
+    if control * 100 > len(head):
+        raise GCodeError(f"{name}: found a binary file; expected program text.")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return data
+
+
+def _recode(data: bytes, encoding: str, name: str) -> bytes:
+    try:
+        return data.decode(encoding).encode("utf-8")
+    except UnicodeError as exc:
+        raise GCodeError(f"{name}: starts like {encoding.upper()} text but is not; save it as plain text.") from exc
