@@ -7,39 +7,43 @@ import math
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import Toolpath
+from robomill.units import from_si
 
 MAX_SAMPLES = 5_000_000
+CORNER = math.radians(10.0)
 
 
 def resample(path: Toolpath, step: float) -> Toolpath:
     """``path`` with every feed move cut into equal pieces no longer than ``step`` (m); corners are kept.
 
-    Rapids stay whole: no force acts on them. The tool axis is interpolated on the great circle.
-    Raises ToolpathError if the step is not positive or would give more than ``MAX_SAMPLES`` points.
+    A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
+    no length): there the force already has the new direction. Rapids stay whole: no force acts on them.
+    The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
+    would give more than ``MAX_SAMPLES`` points.
     """
     if not (math.isfinite(step) and step > 0):
         raise ToolpathError(f"Step along the path: found {step}; expected a length above 0.")
-    pieces = np.where(path.cutting, np.ceil(path.step_length / step - 1e-9), 1).astype(np.int64)
-    pieces = np.maximum(pieces, 1)
-    pieces[0] = 1
-    total = int(pieces.sum())
+    pieces = np.where(path.cutting, np.ceil(path.step_length / step - 1e-9), 1.0)
+    starts = _begins(path)
+    total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
     if total > MAX_SAMPLES:
-        fits = float(path.step_length[path.cutting].sum()) / (MAX_SAMPLES - len(path))
+        fits = float(path.step_length[path.cutting].sum()) / max(MAX_SAMPLES - 2 * len(path), 1)
         raise ToolpathError(
-            f"Step along the path: {step * 1e3:.3g} mm would need {total} points; "
-            f"at most {MAX_SAMPLES} fit, so use {fits * 1e3:.3g} mm or more."
+            f"Step along the path: {from_si(step, 'mm'):.3g} mm would need {total:.3g} points; "
+            f"at most {MAX_SAMPLES} fit, so use {from_si(fits, 'mm'):.3g} mm or more."
         )
-    if total == len(path):
-        return path
-    owner = np.repeat(np.arange(len(path)), pieces)
-    first = np.repeat(np.cumsum(pieces) - pieces, pieces)
-    fraction = (np.arange(total) - first + 1) / pieces[owner]
+    counts = np.maximum(pieces, 1.0).astype(np.int64)
+    samples = counts + starts
+    owner = np.repeat(np.arange(len(path)), samples)
+    first = np.repeat(np.cumsum(samples) - samples, samples)
+    index = np.arange(len(owner)) - first + 1 - starts[owner]
+    fraction = index / counts[owner]
     before = np.maximum(owner - 1, 0)
     p = path.p[before] + fraction[:, None] * (path.p[owner] - path.p[before])
-    last = fraction == 1.0
+    last = index == counts[owner]
     p[last] = path.p[owner[last]]
     return dataclasses.replace(
         path, p=p, k=_slerp(path.k[before], path.k[owner], fraction), v_f=path.v_f[owner],
@@ -47,7 +51,22 @@ def resample(path: Toolpath, step: float) -> Toolpath:
     )  # fmt: skip
 
 
+def _begins(path: Toolpath) -> BoolArray:
+    """(m,) feed moves that begin a cut or turn sharply."""
+    move = np.diff(path.p, axis=0, prepend=path.p[:1])
+    moved = path.step_length > 0
+    angle = np.zeros(len(path))
+    cross = np.linalg.norm(np.cross(move[:-1], move[1:]), axis=1)
+    angle[1:] = np.arctan2(cross, np.einsum("ij,ij->i", move[:-1], move[1:]))
+    resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
+    begins = path.cutting & moved & (resumed | (angle > CORNER))
+    begins[0] = False
+    return np.asarray(begins)
+
+
 def _slerp(k_a: FloatArray, k_b: FloatArray, fraction: FloatArray) -> FloatArray:
+    if np.array_equal(k_a, k_b):
+        return k_b
     angle = np.arctan2(np.linalg.norm(np.cross(k_a, k_b), axis=1), np.einsum("ij,ij->i", k_a, k_b))
     sine = np.sin(angle)
     turning = sine > 1e-12

@@ -41,7 +41,8 @@ def test_resampling_keeps_corners_length_and_blocks(step: float) -> None:
 def test_the_tool_axis_turns_on_the_great_circle() -> None:
     path = toolpath_from_lines([[0, 0, 0]], [[0.1, 0, 0]], 0.03, k=[[0, 0, 1.0], [0, 1.0, 0]])
     fine = resample(path, 0.05)
-    assert fine.k[1] == pytest.approx([0, np.sqrt(0.5), np.sqrt(0.5)])
+    middle = np.argmin(np.abs(fine.s - 0.05))
+    assert fine.k[middle] == pytest.approx([0, np.sqrt(0.5), np.sqrt(0.5)])
 
 
 @pytest.mark.parametrize(
@@ -67,3 +68,10 @@ def test_a_step_must_be_a_length(step: float) -> None:
 def test_too_fine_a_step_is_refused_with_one_that_fits() -> None:
     with pytest.raises(ToolpathError, match="use .* mm or more"):
         resample(two_lines(), 1e-12)
+
+
+def test_a_cut_and_a_corner_also_have_a_sample_at_their_start() -> None:
+    path = toolpath_from_lines([[0, 0, 0], [0.01, 0, 0]], [[0.01, 0, 0], [0.01, 0.01, 0]], 0.03)
+    fine = resample(path, 0.005)
+    assert fine.step_length[1:] == pytest.approx([0, 0.005, 0.005, 0, 0.005, 0.005])
+    assert fine.block.tolist() == [1, 1, 1, 1, 2, 2, 2]

@@ -1,0 +1,230 @@
+"""The command line: the same job without a screen, with the same numbers.
+
+Exit codes: 0 success, 1 red verdict, 2 refused input (the sentence is on stderr).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from robomill import __version__
+from robomill.errors import RobomillError
+
+# Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
+SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one verb; without one, open the app."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if not words or (words[0].startswith("--") and words[0] not in ("--help", "--version")):
+        return start_app(words)
+    arguments = parser().parse_args(_joined(words))
+    try:
+        code: int = arguments.run(arguments)
+    except RobomillError as exc:
+        print(f"robomill: {exc}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return code
+
+
+def _joined(words: list[str]) -> list[str]:
+    out: list[str] = []
+    for word in words:
+        if out and out[-1] in SIGNED:
+            out[-1] += "=" + word
+        else:
+            out.append(word)
+    return out
+
+
+def parser() -> argparse.ArgumentParser:
+    """The verbs and their options."""
+    top = argparse.ArgumentParser(
+        prog="robomill", description="Path deviation of a milling robot. Without a verb: the app."
+    )
+    top.add_argument("--version", action="version", version=f"robomill {__version__}")
+    verbs = top.add_subparsers(dest="verb", required=True)
+
+    def verb(name: str, run: Callable[[Any], int], text: str) -> argparse.ArgumentParser:
+        sub = verbs.add_parser(name, help=text, description=text)
+        sub.add_argument("--json", action="store_true", help="one JSON object on stdout")
+        sub.set_defaults(run=run)
+        return sub
+
+    verb("robots", run_robots, "List the robots that come with robomill.")
+
+    pose = verb("pose", run_pose, "Pose, Jacobian and compliance at a configuration.")
+    pose.add_argument("robot", help="name of a robot or a .toml file")
+    pose.add_argument("--theta-deg", required=True, help="joint coordinates, comma separated (mm for sliding joints)")
+    pose.add_argument("--compliance-set", help="one of the robot's compliance sets")
+
+    ik = verb("ik", run_ik, "Joint coordinates for a pose.")
+    ik.add_argument("robot", help="name of a robot or a .toml file")
+    ik.add_argument("--pose", required=True, help='"X,Y,Z,A,B" in mm and degrees')
+
+    gcode = verb("gcode", run_gcode, "Read a program: moves, lengths, extents, findings.")
+    gcode.add_argument("file")
+    gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, or CSV tool,diameter_mm,length_mm")
+    gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
+    gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
+
+    run = verb("simulate", run_simulate, "Run a set-up: deviation, groove, verdict.")
+    run.add_argument("setup", help="a set-up (.toml) or a sample's folder")
+    run.add_argument("--program", help="another program than the set-up's")
+    run.add_argument("--tol", type=float, metavar="MM", help="another tolerance, mm")
+    run.add_argument("--compliance-set", help="another of the robot's compliance sets")
+    run.add_argument(
+        "--out", metavar="DIR", help="write deviation.csv, sections.csv, result.json and machined.stl there"
+    )
+    return top
+
+
+def say(arguments: Any, record: dict[str, Any], lines: Sequence[str]) -> None:
+    """The record as JSON, or its lines for a person."""
+    from robomill.report.records import jsonable
+
+    if arguments.json:
+        print(json.dumps(jsonable(record), indent=1, ensure_ascii=False, allow_nan=False))
+    else:
+        print("\n".join(lines))
+
+
+def start_app(words: Sequence[str] = ()) -> int:
+    """Serve the app on this machine only and open it; further words go to Streamlit."""
+    from robomill.io.samples import app_dir
+
+    folder = app_dir()
+    command = [sys.executable, "-m", "streamlit", "run", str(folder / "app.py")]
+    if not any(word.startswith("--server.address") for word in words):
+        command += ["--server.address=127.0.0.1"]
+    try:
+        return subprocess.call([*command, "--browser.gatherUsageStats=false", *words])
+    except KeyboardInterrupt:
+        return 130
+
+
+def run_robots(arguments: Any) -> int:
+    from robomill.io.robots import load_robot, robot_names
+
+    robots = [load_robot(name) for name in robot_names()]
+    record = {
+        "robots": [
+            {
+                "name": r.name, "title": r.title, "joints": r.n,
+                "compliance_sets": sorted(r.compliance_sets), "compliance_set": r.compliance_set,
+            }
+            for r in robots
+        ]
+    }  # fmt: skip
+    say(arguments, record, [f"{r.name:18} {r.n} joints  {r.title}" for r in robots])
+    return 0
+
+
+def run_pose(arguments: Any) -> int:
+    from robomill.io.robots import load_robot
+    from robomill.report.plain import pose_lines
+    from robomill.report.records import pose_record
+
+    robot = _with_set(load_robot(arguments.robot), arguments.compliance_set)
+    record = pose_record(robot, _theta(robot, arguments.theta_deg))
+    say(arguments, record, pose_lines(record))
+    return 0
+
+
+def run_ik(arguments: Any) -> int:
+    import numpy as np
+
+    from robomill.io.robots import load_robot
+    from robomill.kinematics.inverse import inverse_kinematics
+    from robomill.kinematics.transforms import pose_from_world
+    from robomill.report.plain import ik_lines
+    from robomill.report.records import ik_record
+    from robomill.units import to_si
+
+    robot = load_robot(arguments.robot)
+    values = np.array(_numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
+    x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
+    record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
+    say(arguments, record, ik_lines(record))
+    return 0
+
+
+def run_gcode(arguments: Any) -> int:
+    from robomill.io.projects import read_program
+    from robomill.io.programs import program_record, read_tools, write_moves
+    from robomill.report.plain import gcode_lines
+
+    source = read_program(arguments.file, arguments.dialect)
+    tools = read_tools(arguments.tools) if arguments.tools else None
+    record, program = program_record(source, tools)
+    if arguments.moves:
+        write_moves(program, Path(arguments.moves))
+    say(arguments, record, gcode_lines(record))
+    return 0
+
+
+def run_simulate(arguments: Any) -> int:
+    from robomill.io.projects import load_setup, read_program
+    from robomill.io.meshes import zmap_to_stl
+    from robomill.io.results import json_text, write_files
+    from robomill.report.plain import simulation_lines
+    from robomill.report.records import jsonable, simulation_record
+    from robomill.report.tables import csv_text, deviation_columns, section_columns
+    from robomill.simulation.run import simulate
+    from robomill.units import to_si
+
+    setup = load_setup(arguments.setup)
+    if arguments.program:
+        setup = setup.replace(source=read_program(arguments.program))
+    if arguments.tol is not None:
+        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"))
+    setup = setup.replace(robot=_with_set(setup.robot, arguments.compliance_set))
+    result = simulate(setup)
+    record = simulation_record(result)
+    if arguments.out:
+        files = {
+            "result.json": json_text(jsonable(record)),
+            "deviation.csv": csv_text(deviation_columns(result)),
+            "sections.csv": csv_text(section_columns(result)),
+            "machined.stl": zmap_to_stl(result.machined),
+        }
+        write_files(Path(arguments.out), files)
+    say(arguments, record, simulation_lines(record))
+    return 1 if result.verdict.red else 0
+
+
+def _with_set(robot: Any, name: str | None) -> Any:
+    return robot.with_compliance_set(name) if name else robot
+
+
+def _theta(robot: Any, text: str) -> Any:
+    import numpy as np
+
+    from robomill.units import to_si
+
+    what = f"the {robot.n} joint coordinates of {robot.name}"
+    values = np.array(_numbers(text, "--theta-deg", robot.n, what))
+    return np.where(robot.prismatic[robot.free], to_si(values, "mm"), to_si(values, "deg"))
+
+
+def _numbers(text: str, option: str, count: int, what: str) -> list[float]:
+    import math
+
+    try:
+        values = [float(word) for word in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != count or not all(map(math.isfinite, values)):
+        raise RobomillError(f"{option}: expected {count} numbers separated by commas ({what}), found {text!r}.")
+    return values

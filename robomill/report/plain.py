@@ -1,0 +1,74 @@
+"""Records as lines of text, for a person at a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from robomill.units import format_value
+
+AXES = "XYZ"
+
+
+def matrix_lines(rows: Sequence[Sequence[float]], digits: int = 4, indent: str = "  ") -> list[str]:
+    """A matrix with aligned columns."""
+    return [indent + " ".join(f"{v:{digits + 6}.{digits}f}" for v in row) for row in rows]
+
+
+def pose_lines(record: dict[str, Any]) -> list[str]:
+    det = record["det_J"]
+    lines = [f"{record['robot']}, compliance {record['compliance_set']}", "T_MT (m)", *matrix_lines(record["T_MT"])]
+    lines += ["J (m, rad)", *matrix_lines(record["J"])]
+    if det is not None:
+        lines.append("det(J)  " + format_value(det, "m3", 4))
+    lines += ["C (um/N)", *matrix_lines(record["C_um_per_N"])]
+    for i, share in enumerate(record["joint_share_um_per_N"]):
+        lines += [f"of joint {i + 1}", *matrix_lines(share)]
+    return lines
+
+
+def ik_lines(record: dict[str, Any]) -> list[str]:
+    if not record["reached"]:
+        return [f"not reached: {record['reason']}"]
+    angles = ", ".join(f"{v:.4f}" for v in record["theta_deg"])
+    return [f"theta (deg)  {angles}", f"residual     {record['residual_m']:.1e} m"]
+
+
+def gcode_lines(record: dict[str, Any]) -> list[str]:
+    moves, length, extents = record["moves"], record["length_mm"], record["extents_mm"]
+    lines = [f"units    {record['units']}"]
+    lines += [f"{kind:8} {moves[kind]:8d} moves  {format_value(length.get(kind, 0.0), 'mm')}" for kind in moves]
+    if extents:
+        for axis, low, high in zip(AXES, *extents, strict=True):
+            lines.append(f"{axis}        {format_value(low, 'mm')} to {format_value(high, 'mm')}")
+    for f in record["findings"]:
+        times = f" ({f['count']} times)" if f.get("count", 1) > 1 else ""
+        where = f"line {f['line']}: " if f["line"] else ""
+        lines.append(f"{f['level']:10} {where}{f['message']}{times}")
+    return lines
+
+
+def simulation_lines(record: dict[str, Any]) -> list[str]:
+    def vector(values: Sequence[float | None], unit: str) -> str:
+        return "  ".join(
+            f"{a} {format_value(float('nan') if v is None else v, unit, sign=True)}" for a, v in zip(AXES, values)
+        )
+
+    lines = [
+        record["name"],
+        record["verdict_sentence"],
+        f"max       {format_value(record['max_deviation_mm'], 'mm')}   rms {format_value(record['rms_deviation_mm'], 'mm')}",
+        f"there     {vector(record['deviation_mm'], 'mm')}",
+        f"force     {vector(record['force_N'], 'N')}",
+    ]
+    lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
+    lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
+    lines.append(f"reached   {record['reached']['count']} of {record['reached']['of']} points")
+    lines.append("groove    station    width    depth   centre off   floor off   (mm)")
+    for g in record["groove"]:
+        lines.append(
+            f"          {g['station_mm']:7.2f}  {g['width_mm']:7.3f}  {g['depth_mm']:7.3f}"
+            f"  {g['centre_offset_mm']:+11.4f}  {g['floor_error_mm']:+10.4f}"
+        )
+    lines += [f"note      {note}" for note in record["notes"]]
+    return lines

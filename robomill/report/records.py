@@ -1,0 +1,126 @@
+"""Results as JSON-ready records in display units: what the command line prints and files carry."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import joint_contributions
+from robomill.kinematics.dexterity import determinant
+from robomill.kinematics.forward import tool_pose
+from robomill.kinematics.inverse import IKResult
+from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.robot.model import Robot
+from robomill.simulation.result import SimulationResult
+from robomill.surface.groove import GrooveSection
+from robomill.units import from_si
+
+
+def jsonable(value: Any) -> Any:
+    """Arrays as lists, NaN and infinity as null: JSON has no word for them."""
+    if isinstance(value, dict):
+        return {str(k): jsonable(v) for k, v in value.items()}
+    if isinstance(value, np.ndarray):
+        return jsonable(value.tolist())
+    if isinstance(value, list | tuple):
+        return [jsonable(v) for v in value]
+    if isinstance(value, np.generic):
+        return jsonable(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def shown(value: ArrayLike, unit: str) -> Any:
+    """SI array in ``unit``, as plain floats."""
+    return np.asarray(from_si(np.asarray(value, dtype=float), unit)).tolist()
+
+
+def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:
+    """(..., n) joint coordinates in degrees, millimetres for prismatic joints."""
+    prismatic = robot.prismatic[robot.free]
+    return np.where(prismatic, from_si(theta, "mm"), from_si(theta, "deg"))
+
+
+def pose_record(robot: Robot, theta: FloatArray) -> dict[str, Any]:
+    """One configuration: pose, Jacobian, det(J), compliance and its joint shares. T_MT and J in SI."""
+    J = geometric_jacobian(robot, theta)
+    C_joint = joint_contributions(J[:3], robot.C_theta)
+    return {
+        "robot": robot.name,
+        "compliance_set": robot.compliance_set,
+        "theta_deg": shown_theta(robot, theta).tolist(),
+        "T_MT": tool_pose(robot, theta).tolist(),
+        "J": J.tolist(),
+        "det_J": float(determinant(robot, theta)) if robot.n == 5 else None,
+        "C_um_per_N": shown(C_joint.sum(axis=0), "um/N"),
+        "joint_share_um_per_N": shown(C_joint, "um/N"),
+    }
+
+
+def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
+    """The answer for one pose."""
+    return {
+        "robot": robot.name,
+        "theta_deg": shown_theta(robot, ik.theta).tolist(),
+        "reached": bool(ik.reached),
+        "residual_m": float(ik.residual),
+        "reason": ik.reason(),
+    }
+
+
+def groove_record(section: GrooveSection) -> dict[str, Any]:
+    return {
+        "station_mm": float(from_si(section.station, "mm")),
+        "width_mm": float(from_si(section.width, "mm")),
+        "depth_mm": float(from_si(section.depth, "mm")),
+        "centre_offset_mm": float(from_si(section.centre_offset, "mm")),
+        "floor_error_mm": float(from_si(section.floor_error, "mm")),
+    }
+
+
+def simulation_record(result: SimulationResult) -> dict[str, Any]:
+    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}."""
+    i, nan3 = result.worst, np.full(3, np.nan)
+    n = result.setup.robot.n
+    verdict = result.verdict
+    missed = sorted(set(result.path.block[~result.reached].tolist()))
+    return {
+        "name": result.setup.name,
+        "robot": result.setup.robot.name,
+        "compliance_set": result.setup.robot.compliance_set,
+        "max_deviation_mm": float(from_si(result.max_deviation, "mm")),
+        "rms_deviation_mm": float(from_si(result.rms_deviation, "mm")),
+        "deviation_mm": shown(result.delta[i] if i >= 0 else nan3, "mm"),
+        "joint_share_mm": shown(result.delta_joint[i] if i >= 0 else np.full((n, 3), np.nan), "mm"),
+        "spring_share_mm": {name: shown(d[i] if i >= 0 else nan3, "mm") for name, d in result.delta_spring.items()},
+        "force_N": shown(result.F[i] if i >= 0 else nan3, "N"),
+        "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
+        "worst_block": result.worst_block,
+        "reached": {
+            "count": int(result.reached.sum()),
+            "of": len(result.reached),
+            "unreached_blocks": missed,
+            "reason": _first_reason(result),
+        },
+        "groove": [groove_record(section) for section in result.sections],
+        "verdict": verdict.level,
+        "verdict_sentence": verdict.sentence,
+        "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
+        "notes": list(result.notes),
+        "findings": [finding_record(f) for f in result.setup.toolpath.findings],
+        "digest": result.setup.digest(),
+    }
+
+
+def finding_record(finding: Any) -> dict[str, Any]:
+    return {"line": finding.line, "level": finding.level, "message": finding.message, "count": finding.count}
+
+
+def _first_reason(result: SimulationResult) -> str:
+    missed = np.flatnonzero(~result.reached)
+    return result.ik.reason(int(missed[0])) if len(missed) else ""

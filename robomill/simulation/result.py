@@ -1,0 +1,173 @@
+"""What one run says: deflection and its shares, force, both surfaces, groove sections, the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.cutting.conditions import CutConditions
+from robomill.kinematics.inverse import IKResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.surface.groove import GrooveSection, groove_section
+from robomill.surface.zmap import ZMap, cut
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_si
+
+TIGHT_FROM = 0.8
+Level = Literal["ok", "tight", "out", "unreached"]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``level`` ok | tight | out | unreached; ``share`` of the tolerance used; one sentence for a foreman."""
+
+    level: Level
+    share: float
+    sentence: str
+
+    @property
+    def red(self) -> bool:
+        return self.level in ("out", "unreached")
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationResult:
+    """Arrays over the m samples of the path, SI, in {M} unless said otherwise; NaN where not reached.
+
+    path           the sampled Toolpath, in {W}
+    theta          (m, n) rad          C_joint      (m, n, 3, 3) m/N, joint shares of the compliance
+    reached        (m,) bool           C_spring     name -> (m, 3, 3), springs beside the joints
+    F              (m, 3) N, force on the tool
+    delta          (m, 3) m            delta_joint  (m, n, 3), joint shares; delta_spring name -> (m, 3)
+    conditions     feed, speed, engagement at each sample
+    notes          what a reader of the numbers must know (assumptions met on the way)
+    """
+
+    setup: SimulationSetup
+    path: Toolpath
+    ik: IKResult
+    C_joint: FloatArray
+    C_spring: Mapping[str, FloatArray]
+    conditions: CutConditions
+    F: FloatArray
+    delta_joint: FloatArray
+    delta_spring: Mapping[str, FloatArray]
+    delta: FloatArray
+    notes: tuple[str, ...] = ()
+
+    @property
+    def theta(self) -> FloatArray:
+        return self.ik.theta
+
+    @property
+    def reached(self) -> BoolArray:
+        return self.ik.reached
+
+    @cached_property
+    def judged(self) -> BoolArray:
+        """(m,) samples that count for the verdict: at feed and reached."""
+        return np.asarray(self.path.cutting & self.reached & np.isfinite(self.delta).all(axis=1))
+
+    @cached_property
+    def deviation(self) -> FloatArray:
+        """(m,) m: size of the path deviation, deflected minus commanded; NaN where not reached."""
+        return np.asarray(np.linalg.norm(self.delta, axis=1))
+
+    @cached_property
+    def worst(self) -> int:
+        """Index of the largest deviation at feed; -1 where nothing was reached."""
+        if not self.judged.any():
+            return -1
+        return int(np.argmax(np.where(self.judged, self.deviation, -np.inf)))
+
+    @property
+    def max_deviation(self) -> float:
+        return float(self.deviation[self.worst]) if self.worst >= 0 else float("nan")
+
+    @cached_property
+    def rms_deviation(self) -> float:
+        """m: root mean square over the length cut."""
+        if not self.judged.any():
+            return float("nan")
+        weight = np.where(self.judged, self.path.step_length, 0.0)
+        if weight.sum() == 0:
+            return self.max_deviation
+        squares = np.where(self.judged, np.nan_to_num(self.deviation) ** 2, 0.0)
+        return float(np.sqrt((weight * squares).sum() / weight.sum()))
+
+    @property
+    def worst_block(self) -> int:
+        """Source line of the largest deviation, 0 where nothing was reached."""
+        return int(self.path.block[self.worst]) if self.worst >= 0 else 0
+
+    @cached_property
+    def p_machined(self) -> FloatArray:
+        """(m, 3) m in {W}: where the tip really goes. A rapid arrives where the cut that follows it begins."""
+        moved = np.where(self.reached[:, None], self.delta, 0.0)
+        arrives = ~self.path.cutting & np.append(self.path.cutting[1:], False)
+        moved[arrives] = moved[np.flatnonzero(arrives) + 1]
+        return np.asarray(self.path.p + np.nan_to_num(moved) @ self.setup.T_MW[:3, :3])
+
+    @cached_property
+    def removes(self) -> BoolArray:
+        """(m,) steps that cut: at feed, with both ends reached."""
+        return np.asarray(self.path.cutting & self.reached & np.append(False, self.reached[:-1]))
+
+    @cached_property
+    def ideal(self) -> ZMap:
+        """The surface a rigid robot would leave."""
+        return self._cut(self.path.p)
+
+    @cached_property
+    def machined(self) -> ZMap:
+        """The surface the deflected robot leaves."""
+        return self._cut(self.p_machined)
+
+    def _cut(self, p: FloatArray) -> ZMap:
+        setup = self.setup
+        return cut(setup.stock_block, setup.cell, setup.cutter, p, self.path.k, self.removes)
+
+    def groove(self, station: float) -> GrooveSection:
+        """The groove's section at ``station`` (m, length travelled at feed)."""
+        return groove_section(
+            self.setup.stock_block, self.setup.cutter, self.path.p, self.p_machined, self.removes, station,
+            k=self.path.k,
+        )  # fmt: skip
+
+    @cached_property
+    def stations(self) -> FloatArray:
+        """(9,) m: stations shown by default, from 10 % to 90 % of the length cut."""
+        return np.linspace(0.1, 0.9, 9) * float(self.path.s[-1])
+
+    @cached_property
+    def sections(self) -> tuple[GrooveSection, ...]:
+        return tuple(self.groove(float(s)) for s in self.stations)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        tolerance = self.setup.tolerance
+        missed = int((~self.reached).sum())
+        if self.worst < 0:
+            return Verdict("unreached", float("nan"), "No point of the cut can be reached: move the part zero.")
+        share = self.max_deviation / tolerance
+        sentence = (
+            f"Max {format_si(self.max_deviation, 'mm', 2)} at line {self.worst_block}, "
+            f"{share:.0%} of the {format_si(tolerance, 'mm', 2)} allowed"
+        )
+        if missed:
+            lines = sorted(set(self.path.block[~self.reached].tolist()))
+            named = ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")
+            return Verdict(
+                "unreached", share,
+                f"{missed} of {len(self.path)} points cannot be reached (line {named}); of the rest: {sentence}.",
+            )  # fmt: skip
+        if share > 1.0:
+            return Verdict("out", share, f"{sentence}: out of tolerance.")
+        if share >= TIGHT_FROM:
+            return Verdict("tight", share, f"{sentence}: within tolerance, tight.")
+        return Verdict("ok", share, f"{sentence}: within tolerance.")

@@ -1,0 +1,94 @@
+"""One simulation as a value: robot, path, part zero, cutter, force, stock, tolerance, numerics."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.cutting.force import ForceModel
+from robomill.cutting.tool import Cutter
+from robomill.errors import SetupError
+from robomill.robot.model import Provenance, Robot
+from robomill.surface.stock import Stock
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import PathSource
+from robomill.units import format_si
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationSetup:
+    """Everything ``simulate`` needs, SI units.
+
+    robot       the machine; its C_theta is the one in force
+    source      the program or table the path is read from
+    T_MW        (4, 4) where the part zero {W} lies in {M}
+    cutter, force, stock   stock None: the path's bounds with a margin
+    tolerance   m, largest accepted path deviation
+    step        m, longest piece of path between two evaluations
+    cell        m, cell size of the surfaces
+    engagement  True: the force follows the arc of engagement found from the stock as it stands
+    coupling    True: deflection changes the cut, iterated to a fixed point (needs engagement)
+    springs     extra compliances beside the joints', each with its own line in the result
+    provenance  block name -> where its numbers come from
+    """
+
+    name: str
+    robot: Robot
+    source: PathSource
+    T_MW: FloatArray
+    cutter: Cutter
+    force: ForceModel
+    stock: Stock | None = None
+    tolerance: float = 0.3e-3
+    step: float = 1e-3
+    cell: float = 1e-4
+    engagement: bool = False
+    coupling: bool = False
+    springs: tuple[Any, ...] = ()
+    description: str = field(default="", compare=False)
+    provenance: Mapping[str, Provenance] = field(default_factory=dict, compare=False)
+
+    def __post_init__(self) -> None:
+        T_MW = as_floats(self.T_MW, "part zero T_MW", (4, 4), error=SetupError)
+        R = T_MW[:3, :3]
+        if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:
+            raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
+        object.__setattr__(self, "T_MW", frozen(T_MW))
+        for name, label, unit in (("tolerance", "Tolerance", "mm"), ("step", "Step", "mm"), ("cell", "Cell", "mm")):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0):
+                found = format_si(value, unit) if math.isfinite(value) else str(value)
+                raise SetupError(f"{label}: found {found}; expected more than 0 mm.", where=name)
+        if self.coupling and not self.engagement:
+            raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
+
+    @cached_property
+    def toolpath(self) -> Toolpath:
+        """The path read from its source, in {W}."""
+        return self.source.read()
+
+    @cached_property
+    def stock_block(self) -> Stock:
+        """The stock as given, or the path's bounds with a margin."""
+        if self.stock is not None:
+            return self.stock
+        return Stock.from_path(self.toolpath.p, self.cutter)
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest(self)
+
+    def digest(self) -> str:
+        """SHA-256 over every number that the result depends on."""
+        return self._digest
+
+    def replace(self, **changes: Any) -> SimulationSetup:
+        """A changed copy, checked again."""
+        return dataclasses.replace(self, **changes)

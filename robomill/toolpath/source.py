@@ -1,0 +1,47 @@
+"""Where a toolpath comes from: a program's text or a table of lines. Sources are values; ``read`` gives the path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.errors import ToolpathError
+from robomill.toolpath.path import Toolpath, toolpath_from_lines
+
+
+@dataclass(frozen=True)
+class GCodeSource:
+    """A program as written: its text, the file's name and the dialect ("auto": guessed and said)."""
+
+    text: str
+    name: str = "program.nc"
+    dialect: str = "auto"
+
+    def read(self) -> Toolpath:
+        """The path; raises GCodeError naming the line that cannot be read."""
+        from robomill.toolpath.gcode import read_gcode  # the interpreter loads only where a program is read
+
+        return read_gcode(self.text.encode(), dialect=self.dialect)
+
+
+@dataclass(frozen=True, eq=False)
+class LinesSource:
+    """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table."""
+
+    start: FloatArray
+    end: FloatArray
+    v_f: FloatArray
+    n_s: float = 0.0
+    name: str = field(default="table of lines", compare=False)
+
+    def __post_init__(self) -> None:
+        for name, shape in (("start", (None, 3)), ("end", (None, 3)), ("v_f", (None,))):
+            value = as_floats(getattr(self, name), f"lines, {name}", shape, error=ToolpathError)
+            object.__setattr__(self, name, frozen(value))
+
+    def read(self) -> Toolpath:
+        """The path; raises ToolpathError naming the row that cannot be cut."""
+        return toolpath_from_lines(self.start, self.end, self.v_f, self.n_s)
+
+
+PathSource = GCodeSource | LinesSource
