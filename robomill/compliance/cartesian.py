@@ -1,0 +1,38 @@
+"""Cartesian compliance of the tool tip and each joint's share of it, eqs. (11)-(14)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats
+from robomill.errors import KinematicsError
+from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.robot.model import Robot
+
+
+def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
+    """C_joint (..., n, 3, 3) m/N: what each joint gives, C_theta,i J_i J_i^T. Eqs. (13), (14).
+
+    J_v (..., 3, n) m/rad, the linear rows of the Jacobian; C_theta (..., n) rad/(N m). Their sum over the joint axis is
+    the translational compliance C.
+    """
+    J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
+    C_theta = as_floats(C_theta, "C_theta", (J_v.shape[-1],), error=KinematicsError)
+    columns = np.swapaxes(J_v, -1, -2)
+    return (C_theta[..., None] * columns)[..., :, None] * columns[..., None, :]
+
+
+def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """C (..., 3, 3) m/N of the tip in {M} at theta (..., n): the translational block of J C_theta J^T. Eqs. (11), (12)."""
+    J_v = geometric_jacobian(robot, theta)[..., :3, :]
+    return (J_v * robot.C_theta) @ np.swapaxes(J_v, -1, -2)
+
+
+def full_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """C_X (..., 6, 6) = J C_theta J^T in {M}: m/N, rad/N and 1/N, rad/(N m) in its four blocks. Eq. (11).
+
+    It maps the wrench (force on the tool, moment about the tip) to (tip displacement, small rotation).
+    """
+    J = geometric_jacobian(robot, theta)
+    return (J * robot.C_theta) @ np.swapaxes(J, -1, -2)

@@ -1,0 +1,35 @@
+"""Tip displacement under a force on the tool, joint by joint, eqs. (15), (16)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats
+from robomill.errors import KinematicsError
+
+
+def deflection(C_joint: ArrayLike, F: ArrayLike) -> FloatArray:
+    """delta_joint (..., n, 3) m in {M}: each joint's share of the tip displacement; their sum is delta = C F.
+
+    C_joint (..., n, 3, 3) m/N, F (..., 3) N the force ON the tool in {M}; leading axes broadcast.
+    """
+    C_joint = as_floats(C_joint, "C_joint", (None, 3, 3), error=KinematicsError, finite=False)
+    F = as_floats(F, "F", (3,), error=KinematicsError, finite=False)
+    return np.einsum("...nij,...j->...ni", C_joint, F)
+
+
+def joint_torques(J_v: ArrayLike, F: ArrayLike) -> FloatArray:
+    """tau (..., n) N m: the joint torques J_v^T F that a force on the tool causes. J_v (..., 3, n), F (..., 3)."""
+    J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
+    return np.einsum("...in,...i->...n", J_v, as_floats(F, "F", (3,), error=KinematicsError, finite=False))
+
+
+def soft_direction(C: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """(values (..., 3) m/N ascending, axes (..., 3, 3) as columns): the principal compliances of C (..., 3, 3).
+
+    The last column is the direction in which a force moves the tip most.
+    """
+    C = as_floats(C, "C", (3, 3), error=KinematicsError)
+    values, axes = np.linalg.eigh(0.5 * (C + np.swapaxes(C, -1, -2)))
+    return values, axes

@@ -1,0 +1,103 @@
+"""How well conditioned a configuration is: determinant, manipulability, condition, distance to the joint limits."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.kinematics.forward import joint_angles
+from robomill.kinematics.jacobian import pose_and_jacobian, task_rows
+from robomill.robot.model import Robot
+
+ROWS = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
+FIVE_AXIS_ROWS = ("v_x", "v_y", "v_z", "omega_x'", "omega_y'")
+
+
+def square_rows(robot: Robot) -> tuple[str, ...]:
+    """Names of the Jacobian rows that ``task_matrix`` keeps, so that a determinant can say what it is of.
+
+    Five axes: the milling task (tip and tool axis). Six or more: all six rows. Fewer: the rows in which the arm can
+    move, v first; a planar arm of two joints has v_x, v_y, one of three also omega_z.
+    """
+    if robot.n == 5:
+        return FIVE_AXIS_ROWS
+    return tuple(ROWS[i] for i in _row_indices(robot))
+
+
+def _row_indices(robot: Robot) -> list[int]:
+    """The first n rows of J (v before omega) that are independent of each other over random configurations."""
+    if robot.n >= 6:
+        return list(range(6))
+    rng = np.random.default_rng(0)
+    low, high = robot.limits[:, 0], robot.limits[:, 1]
+    theta = rng.uniform(low, high, (24, robot.n))
+    rows = pose_and_jacobian(robot, theta)[1].transpose(1, 0, 2).reshape(6, -1)
+    kept: list[int] = []
+    for i in range(6):
+        trial = rows[[*kept, i]]
+        if len(kept) < robot.n and np.linalg.matrix_rank(trial, tol=1e-9) == len(trial):
+            kept.append(i)
+    return kept
+
+
+def task_matrix(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """The Jacobian (..., r, n) of the arm's own task, rows as named by ``square_rows``; square unless n is 7."""
+    T_MT, J = pose_and_jacobian(robot, theta)
+    if robot.n == 5:
+        return task_rows(T_MT, J)
+    return J[..., _row_indices(robot), :]
+
+
+def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """det(J) (...,) of the arm's task: for five axes of the 5 x 5 task Jacobian, in m^3 (Fig. 4). theta (..., n).
+
+    Six axes: of the 6 x 6 Jacobian, m^3. Planar arms: m^2. Seven axes have no determinant; its size, the
+    manipulability, is given instead.
+    """
+    J = task_matrix(robot, theta)
+    if J.shape[-1] != J.shape[-2]:
+        return manipulability(robot, theta)
+    return np.linalg.det(J)
+
+
+def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """sqrt(det(J J^T)) (...,), Yoshikawa's measure, of the arm's task Jacobian; |det(J)| where that is square."""
+    J = task_matrix(robot, theta)
+    return np.sqrt(np.maximum(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0))
+
+
+def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """Singular values (..., r), falling, of the task Jacobian; rows in m/rad and rad/rad as they stand."""
+    J = task_matrix(robot, theta)
+    finite = np.isfinite(J).all(axis=(-1, -2))
+    values = np.linalg.svd(np.where(finite[..., None, None], J, 0.0), compute_uv=False)
+    return np.where(finite[..., None], values, np.nan)
+
+
+def smallest_singular_value(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """(...,) zero at a singular configuration."""
+    return singular_values(robot, theta)[..., -1]
+
+
+def inverse_condition(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """(...,) smallest over largest singular value: 1 is equally able in every direction, 0 is singular."""
+    values = singular_values(robot, theta)
+    return values[..., -1] / values[..., 0]
+
+
+def condition_number(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """(...,) largest over smallest singular value; infinite at a singular configuration."""
+    with np.errstate(divide="ignore"):
+        return 1.0 / inverse_condition(robot, theta)
+
+
+def limit_distance(robot: Robot, theta: ArrayLike) -> FloatArray:
+    """(...,) distance of the nearest joint to its limit as a share of its half range: 1 mid-range, 0 at a limit.
+
+    Negative outside the limits.
+    """
+    theta = joint_angles(robot, theta)
+    low, high = robot.limits[:, 0], robot.limits[:, 1]
+    half = 0.5 * (high - low)
+    return (np.minimum(theta - low, high - theta) / half).min(axis=-1)

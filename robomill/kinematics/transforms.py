@@ -1,0 +1,91 @@
+"""Rigid transforms (..., 4, 4) and the world coordinates x_M = (X, Y, Z, A, B) of a tool pose.
+
+R = R_x(A) R_y(B), so the tool axis is k_T = (sin B, -sin A cos B, cos A cos B); it points out of the part, towards the
+spindle. The paper's eq. (3) leaves A and B undefined; this is robomill's reading.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats
+from robomill.errors import KinematicsError
+
+
+def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
+    angle = np.asarray(angle, dtype=np.float64)
+    R = np.zeros((*angle.shape, 3, 3))
+    c, s = np.cos(angle), np.sin(angle)
+    k = 3 - i - j
+    R[..., k, k] = 1.0
+    R[..., i, i] = R[..., j, j] = c
+    R[..., i, j] = -s
+    R[..., j, i] = s
+    return R
+
+
+def rotation_x(angle: ArrayLike) -> FloatArray:
+    """Rotation about x by ``angle`` (...,) rad, (..., 3, 3)."""
+    return _rotation(angle, 1, 2)
+
+
+def rotation_y(angle: ArrayLike) -> FloatArray:
+    """Rotation about y by ``angle`` (...,) rad, (..., 3, 3)."""
+    return _rotation(angle, 2, 0)
+
+
+def rotation_z(angle: ArrayLike) -> FloatArray:
+    """Rotation about z by ``angle`` (...,) rad, (..., 3, 3)."""
+    return _rotation(angle, 0, 1)
+
+
+def transform(R: ArrayLike, p: ArrayLike) -> FloatArray:
+    """(..., 4, 4) from rotations R (..., 3, 3) and points p (..., 3) in m; leading axes broadcast."""
+    R, p = as_floats(R, "R", (3, 3), error=KinematicsError), as_floats(p, "p", (3,), error=KinematicsError)
+    T = np.zeros((*np.broadcast_shapes(R.shape[:-2], p.shape[:-1]), 4, 4))
+    T[..., :3, :3] = R
+    T[..., :3, 3] = p
+    T[..., 3, 3] = 1.0
+    return T
+
+
+def translation(p: ArrayLike) -> FloatArray:
+    """(..., 4, 4) shift by p (..., 3) m."""
+    return transform(np.eye(3), p)
+
+
+def invert(T: ArrayLike) -> FloatArray:
+    """Inverse of rigid transforms (..., 4, 4)."""
+    T = as_floats(T, "T", (4, 4), error=KinematicsError)
+    R = np.swapaxes(T[..., :3, :3], -1, -2)
+    return transform(R, -np.einsum("...ij,...j->...i", R, T[..., :3, 3]))
+
+
+def pose_from_world(x_M: ArrayLike) -> FloatArray:
+    """T_MT (..., 4, 4) of world coordinates X, Y, Z (m), A, B (rad), shape (..., 5)."""
+    x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
+    return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
+
+
+def world_from_pose(T_MT: ArrayLike) -> FloatArray:
+    """World coordinates (..., 5) m, rad of poses; the spin about the tool axis is not part of them.
+
+    B is in [-pi/2, pi/2]; where the tool axis lies along X_M (B = +-pi/2) any A will do and A = 0 is given.
+    """
+    T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
+    return np.concatenate([T_MT[..., :3, 3], tilt_from_axis(T_MT[..., :3, 2])], axis=-1)
+
+
+def tilt_from_axis(k: ArrayLike) -> FloatArray:
+    """(A, B) rad, (..., 2), of unit tool axes k (..., 3)."""
+    k = as_floats(k, "k", (3,), error=KinematicsError)
+    across = np.hypot(k[..., 1], k[..., 2])
+    A = np.where(across > 1e-12, np.arctan2(-k[..., 1], k[..., 2]), 0.0)
+    return np.stack([A, np.arctan2(k[..., 0], across)], axis=-1)
+
+
+def axis_from_tilt(A: ArrayLike, B: ArrayLike) -> FloatArray:
+    """Unit tool axes k_T (..., 3) of the tilts A, B (rad)."""
+    A, B = np.broadcast_arrays(np.asarray(A, dtype=np.float64), np.asarray(B, dtype=np.float64))
+    return np.stack([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)], axis=-1)

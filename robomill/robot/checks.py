@@ -1,0 +1,85 @@
+"""What a robot's numbers must satisfy; each refusal says which joint, what was found and what was expected."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobotError
+from robomill.units import from_si
+
+MIN_JOINTS, MAX_JOINTS = 2, 7
+
+
+def column(value: Any, name: str, rows: int | None, where: str) -> FloatArray:
+    """A table column (rows,) of finite numbers."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RobotError(f"{where}: {name}: expected numbers, found {_first_non_number(value)}.") from None
+    if array.ndim != 1 or (rows is not None and len(array) != rows):
+        want = "one number a joint" if rows is None else f"{rows} numbers, one a joint"
+        raise RobotError(f"{where}: {name}: expected {want}, found shape {array.shape}.")
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        found = "NaN (a missing value)" if np.isnan(array[bad[0]]) else "infinity"
+        raise RobotError(f"{where}: joint {bad[0] + 1}: {name} is {found}; give a finite number.")
+    return array
+
+
+def _first_non_number(value: Any) -> str:
+    for item in value if isinstance(value, list | tuple | np.ndarray) else [value]:
+        try:
+            float(item)
+        except (TypeError, ValueError):
+            return f"{item!r:.40}"
+    return f"{value!r:.40}"
+
+
+def joint_count(rows: int, where: str) -> None:
+    if not MIN_JOINTS <= rows <= MAX_JOINTS:
+        found = "none" if rows == 0 else str(rows)
+        raise RobotError(f"{where}: expected {MIN_JOINTS} to {MAX_JOINTS} joints, found {found}.")
+
+
+def signs(sign: FloatArray, where: str) -> None:
+    bad = np.flatnonzero(np.abs(sign) != 1.0)
+    if bad.size:
+        raise RobotError(f"{where}: joint {bad[0] + 1}: sign is {sign[bad[0]]:g}; it must be 1 or -1.")
+
+
+def limits(value: FloatArray, prismatic: Any, where: str) -> None:
+    for i, (low, high) in enumerate(value):
+        if not low < high:
+            unit, label = ("mm", " mm") if prismatic[i] else ("deg", "°")
+            lo, hi = from_si(float(low), unit), from_si(float(high), unit)
+            raise RobotError(
+                f"{where}: joint {i + 1}: the lower limit {lo:g}{label} is not below the upper limit {hi:g}{label}; "
+                "give them as [lower, upper]."
+            )
+
+
+def compliance(value: FloatArray, name: str, where: str) -> None:
+    bad = np.flatnonzero(value < 0.0)
+    if bad.size:
+        raise RobotError(
+            f"{where}: joint {bad[0] + 1}: {name} is {value[bad[0]]:g}; a compliance cannot be negative (0 is rigid)."
+        )
+
+
+def frame(value: Any, name: str, where: str) -> FloatArray:
+    """A rigid transform (4, 4): rotation to 1e-9, last row 0 0 0 1."""
+    try:
+        T = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RobotError(f"{where}: {name}: expected a 4 x 4 matrix of numbers, found {value!r:.40}.") from None
+    if T.shape != (4, 4) or not np.isfinite(T).all():
+        raise RobotError(f"{where}: {name}: expected a 4 x 4 matrix of finite numbers, found shape {T.shape}.")
+    R = T[:3, :3]
+    error = float(np.abs(R.T @ R - np.eye(3)).max())
+    if error > 1e-9 or np.linalg.det(R) < 0 or not np.array_equal(T[3], [0.0, 0.0, 0.0, 1.0]):
+        why = "it is a mirror image" if error <= 1e-9 and np.linalg.det(R) < 0 else f"it is off by {error:.2g}"
+        raise RobotError(f"{where}: {name} is not a rotation and a shift ({why}); its three axes must be unit, square, right-handed.")
+    return T

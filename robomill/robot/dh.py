@@ -1,0 +1,120 @@
+"""Denavit-Hartenberg tables as a chain of constant transforms between joints.
+
+Both conventions become the same chain (standard: eq. (4) of Slavkovic et al. 2013; modified: Craig):
+
+    T_MT = T_0 @ prod_i [ M_i(q_i) @ E_i ],    q_i = sign_i * theta_i + offset_i
+
+where ``M_i`` turns about (revolute) or slides along (prismatic) the z axis of its frame. Blocked joints and the
+tool frame are folded into the constants, so a chain has one entry a *free* joint.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, frozen
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A serial arm as constants: what forward kinematics and the Jacobian need, and nothing else.
+
+    T_0 (4, 4); E (n, 4, 4), the last one includes the tool frame; sign (n,) of +-1; offset (n,) rad (m where
+    prismatic); prismatic (n,) bool. n counts the free joints.
+    """
+
+    T_0: FloatArray
+    E: FloatArray
+    sign: FloatArray
+    offset: FloatArray
+    prismatic: BoolArray
+
+    @property
+    def n(self) -> int:
+        return len(self.sign)
+
+
+def exact_cos_sin(angle: float) -> tuple[float, float]:
+    """cos and sin, exact at multiples of a right angle (cos of 90 degrees is 0, not 6e-17)."""
+    quarter = angle / (np.pi / 2)
+    if abs(quarter - round(quarter)) < 1e-15 * max(1.0, abs(quarter)):
+        k = round(quarter) % 4
+        return (1.0, 0.0, -1.0, 0.0)[k], (0.0, 1.0, 0.0, -1.0)[k]
+    return float(np.cos(angle)), float(np.sin(angle))
+
+
+def screw_x(alpha: float, a: float) -> FloatArray:
+    """Rot(x, alpha) Trans(a, 0, 0), (4, 4)."""
+    c, s = exact_cos_sin(alpha)
+    return np.array([[1.0, 0.0, 0.0, a], [0.0, c, -s, 0.0], [0.0, s, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
+
+
+def screw_z(theta: float, d: float) -> FloatArray:
+    """Rot(z, theta) Trans(0, 0, d), (4, 4)."""
+    c, s = exact_cos_sin(theta)
+    return np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, d], [0.0, 0.0, 0.0, 1.0]])
+
+
+def build_chain(
+    convention: str,
+    alpha: FloatArray,
+    a: FloatArray,
+    d: FloatArray,
+    theta_offset: FloatArray,
+    sign: FloatArray,
+    prismatic: BoolArray,
+    T_base: FloatArray,
+    T_tool: FloatArray,
+    blocked: FloatArray,
+) -> Chain:
+    """The chain of a D-H table; ``blocked`` holds NaN for a free joint, else the coordinate it is held at."""
+    rows = len(alpha)
+    links = [screw_x(alpha[i], a[i]) for i in range(rows)]
+    standard = convention == "standard"
+    T_0 = np.array(T_base) if standard else T_base @ links[0]
+    between: list[FloatArray] = []
+    free: list[int] = []
+    for i in range(rows):
+        # The part of the joint's own screw that does not move: d of a revolute, the angle of a prismatic.
+        E = screw_z(theta_offset[i], 0.0) if prismatic[i] else screw_z(0.0, d[i])
+        if standard:
+            E = E @ links[i]
+        elif i + 1 < rows:
+            E = E @ links[i + 1]
+        if i == rows - 1:
+            E = E @ T_tool
+        offset = d[i] if prismatic[i] else theta_offset[i]
+        if np.isnan(blocked[i]):
+            free.append(i)
+            between.append(E)
+            continue
+        q = sign[i] * blocked[i] + offset
+        held = (screw_z(0.0, q) if prismatic[i] else screw_z(q, 0.0)) @ E
+        if between:
+            between[-1] = between[-1] @ held
+        else:
+            T_0 = T_0 @ held
+    offsets = np.where(prismatic, d, theta_offset)
+    return Chain(
+        frozen(T_0), frozen(np.array(between)), frozen(sign[free]), frozen(offsets[free]), frozen(prismatic[free], bool)
+    )
+
+
+def modified_to_standard(
+    alpha: FloatArray, a: FloatArray, T_base: FloatArray, T_tool: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """(alpha, a, T_base, T_tool) of the standard table with the same poses; theta and d keep their rows.
+
+    A modified row i carries the link *before* joint i, a standard row the link after it: the first link moves into
+    the base frame, and the last row becomes (0, 0).
+    """
+    return np.append(alpha[1:], 0.0), np.append(a[1:], 0.0), T_base @ screw_x(alpha[0], a[0]), T_tool
+
+
+def standard_to_modified(
+    alpha: FloatArray, a: FloatArray, T_base: FloatArray, T_tool: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """(alpha, a, T_base, T_tool) of the modified table with the same poses: the last link moves into the tool frame."""
+    return np.append(0.0, alpha[:-1]), np.append(0.0, a[:-1]), T_base, screw_x(alpha[-1], a[-1]) @ T_tool

@@ -1,0 +1,242 @@
+"""The robot as a value: D-H table, frames, limits, joint compliances, and where each number comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Literal
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, digest, frozen
+from robomill.errors import RobotError
+from robomill.robot import checks
+from robomill.robot.dh import Chain, build_chain, modified_to_standard, standard_to_modified
+
+KINDS = ("paper", "measured", "assumed", "user", "computed")
+USER_SET = "user"
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a block of numbers comes from: a kind and the source in words."""
+
+    kind: Literal["paper", "measured", "assumed", "user", "computed"]
+    source: str
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise RobotError(f"Provenance: kind is {self.kind!r}; expected one of {', '.join(KINDS)}.")
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A serial arm of 2 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
+
+    The table has one row a joint (``rows``): alpha, theta_offset in rad, a, d in m, sign +-1, prismatic. A joint turns
+    by theta_DH = sign * theta + theta_offset; a prismatic one slides by d_DH = sign * theta + d at the fixed angle
+    theta_offset. ``blocked`` (rows,) is NaN, or the coordinate (rad or m) at which an axis is held: a held axis neither
+    moves nor gives, and is no longer counted in ``n``. What is per *free* joint (``limits``, ``C_theta``, every theta and
+    Jacobian) has n entries; ``limits_all`` and ``C_theta_all`` have all rows.
+
+    T_base = T_M0 and T_tool = T_nT are (4, 4). C_theta_all is rad/(N m), m/N where prismatic.
+    Raises RobotError with one sentence for anything that cannot be a robot.
+    """
+
+    name: str
+    convention: Literal["standard", "modified"]
+    alpha: FloatArray
+    a: FloatArray
+    d: FloatArray
+    theta_offset: FloatArray
+    limits_all: FloatArray
+    C_theta_all: FloatArray
+    title: str = ""
+    sign: FloatArray | None = None  # type: ignore[assignment]
+    prismatic: BoolArray | None = None  # type: ignore[assignment]
+    T_base: FloatArray | None = None  # type: ignore[assignment]
+    T_tool: FloatArray | None = None  # type: ignore[assignment]
+    blocked: FloatArray | None = None  # type: ignore[assignment]
+    compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
+    compliance_set: str = USER_SET
+    provenance: Mapping[str, Provenance] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        put = lambda key, value: object.__setattr__(self, key, value)  # noqa: E731
+        where = f"Robot {self.name!r}"
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise RobotError("Robot: the name is empty; give it a short name.")
+        if self.convention not in ("standard", "modified"):
+            raise RobotError(f"{where}: convention is {self.convention!r}; expected 'standard' or 'modified'.")
+        alpha = checks.column(self.alpha, "alpha", None, where)
+        rows = len(alpha)
+        checks.joint_count(rows, where)
+        put("alpha", frozen(alpha))
+        for key in ("a", "d", "theta_offset"):
+            put(key, frozen(checks.column(getattr(self, key), key, rows, where)))
+        put("sign", frozen(np.ones(rows) if self.sign is None else checks.column(self.sign, "sign", rows, where)))
+        checks.signs(self.sign, where)
+        prismatic = np.zeros(rows, bool) if self.prismatic is None else np.asarray(self.prismatic, dtype=bool)
+        if prismatic.shape != (rows,):
+            raise RobotError(f"{where}: prismatic: expected {rows} flags, one a joint, found shape {prismatic.shape}.")
+        put("prismatic", frozen(prismatic, bool))
+        put("T_base", frozen(np.eye(4) if self.T_base is None else checks.frame(self.T_base, "the base frame", where)))
+        put("T_tool", frozen(np.eye(4) if self.T_tool is None else checks.frame(self.T_tool, "the tool frame", where)))
+        self._check_limits(rows, where)
+        self._check_blocked(rows, where)
+        self._check_compliance(rows, where)
+        put("provenance", MappingProxyType(dict(self.provenance)))
+
+    def _check_limits(self, rows: int, where: str) -> None:
+        try:
+            value = np.asarray(self.limits_all, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise RobotError(f"{where}: limits: expected [lower, upper] for each joint, found text.") from None
+        if value.shape != (rows, 2):
+            raise RobotError(f"{where}: limits: expected [lower, upper] for {rows} joints, found shape {value.shape}.")
+        for side, name in enumerate(("lower limit", "upper limit")):
+            checks.column(value[:, side], name, rows, where)
+        checks.limits(value, self.prismatic, where)
+        object.__setattr__(self, "limits_all", frozen(value))
+
+    def _check_blocked(self, rows: int, where: str) -> None:
+        value = np.full(rows, np.nan) if self.blocked is None else np.asarray(self.blocked, dtype=np.float64)
+        if value.shape != (rows,) or np.isinf(value).any():
+            raise RobotError(f"{where}: blocked: expected {rows} values, NaN for a free joint, found shape {value.shape}.")
+        if not np.isnan(value).any():
+            raise RobotError(f"{where}: every axis is blocked; leave at least one free.")
+        object.__setattr__(self, "blocked", frozen(value))
+
+    def _check_compliance(self, rows: int, where: str) -> None:
+        C_theta = checks.column(self.C_theta_all, "compliance", rows, where)
+        checks.compliance(C_theta, "compliance", where)
+        object.__setattr__(self, "C_theta_all", frozen(C_theta))
+        sets = {}
+        for key, value in self.compliance_sets.items():
+            column = checks.column(value, f"compliance set {key!r}", rows, where)
+            checks.compliance(column, f"compliance set {key!r}", where)
+            sets[key] = frozen(column)
+        object.__setattr__(self, "compliance_sets", MappingProxyType(sets))
+        if self.compliance_set != USER_SET and self.compliance_set not in sets:
+            known = ", ".join(sets) or "none"
+            raise RobotError(f"{where}: compliance set {self.compliance_set!r} is not among its sets ({known}).")
+
+    # ---- views --------------------------------------------------------------------------------------------------
+    @property
+    def rows(self) -> int:
+        """Rows of the D-H table, blocked axes included."""
+        return len(self.alpha)
+
+    @cached_property
+    def free(self) -> BoolArray:
+        """(rows,) True where the axis may move."""
+        return frozen(np.isnan(self.blocked), bool)
+
+    @cached_property
+    def n(self) -> int:
+        """Number of free joints: the length of every theta."""
+        return int(self.free.sum())
+
+    @cached_property
+    def limits(self) -> FloatArray:
+        """(n, 2) limits of the free joints, rad (m where prismatic)."""
+        return frozen(self.limits_all[self.free])
+
+    @cached_property
+    def C_theta(self) -> FloatArray:
+        """(n,) compliances of the free joints, rad/(N m) (m/N where prismatic)."""
+        return frozen(self.C_theta_all[self.free])
+
+    @cached_property
+    def joint_numbers(self) -> tuple[int, ...]:
+        """The 1-based table row of each free joint, for labels."""
+        return tuple(int(i) + 1 for i in np.flatnonzero(self.free))
+
+    @cached_property
+    def home(self) -> FloatArray:
+        """(n,) reference configuration: zero, or the middle of the range where zero is outside the limits."""
+        low, high = self.limits[:, 0], self.limits[:, 1]
+        return frozen(np.where((low <= 0) & (high >= 0), 0.0, 0.5 * (low + high)))
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The arm as constants between its free joints."""
+        return build_chain(
+            self.convention, self.alpha, self.a, self.d, self.theta_offset, self.sign, self.prismatic,
+            self.T_base, self.T_tool, self.blocked,
+        )  # fmt: skip
+
+    # ---- change is replacement ------------------------------------------------------------------------------------
+    def replace(self, **changes: Any) -> Robot:
+        """A checked copy with fields changed.
+
+        ``C_theta`` and ``limits`` are accepted with n entries (free joints) or with all rows. New compliances that are
+        not given with a ``compliance_set`` are the user's: the set in force becomes "user".
+        """
+        for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
+            if short in changes:
+                changes[full] = self._filled(np.asarray(changes.pop(short)), getattr(self, full))
+        if "C_theta_all" in changes and "compliance_set" not in changes:
+            changes["compliance_set"] = USER_SET
+        known = {f.name for f in fields(self)}
+        unknown = set(changes) - known
+        if unknown:
+            raise RobotError(f"Robot {self.name!r}: has no field {sorted(unknown)[0]!r}.")
+        return Robot(**{**{key: getattr(self, key) for key in known}, **changes})
+
+    def _filled(self, value: Any, current: FloatArray) -> Any:
+        if self.n == self.rows or len(value) != self.n:
+            return value
+        full = np.array(current)
+        full[self.free] = value
+        return full
+
+    def with_compliance_set(self, name: str) -> Robot:
+        """The same arm with one of its compliance sets in force."""
+        if name not in self.compliance_sets:
+            known = ", ".join(self.compliance_sets) or "none"
+            raise RobotError(f"Robot {self.name!r}: has no compliance set {name!r}; it has: {known}.")
+        return self.replace(C_theta_all=self.compliance_sets[name], compliance_set=name)
+
+    def with_convention(self, convention: Literal["standard", "modified"]) -> Robot:
+        """The same poses written in the other D-H convention (link constants move into the base or tool frame)."""
+        if convention == self.convention:
+            return self
+        convert = modified_to_standard if convention == "standard" else standard_to_modified
+        alpha, a, T_base, T_tool = convert(self.alpha, self.a, self.T_base, self.T_tool)
+        return self.replace(convention=convention, alpha=alpha, a=a, T_base=T_base, T_tool=T_tool)
+
+    def with_blocked(self, row: int, coordinate: float | None) -> Robot:
+        """Axis ``row`` (1-based) held at ``coordinate`` (rad or m), or freed with None."""
+        if not 1 <= row <= self.rows:
+            raise RobotError(f"Robot {self.name!r}: there is no axis {row}; it has {self.rows}.")
+        blocked = np.array(self.blocked)
+        blocked[row - 1] = np.nan if coordinate is None else coordinate
+        return self.replace(blocked=blocked)
+
+    def digest(self) -> str:
+        """SHA-256 over every field: equal robots have equal digests on every machine."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest({f.name: getattr(self, f.name) for f in fields(self)})
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Robot) and self._digest == other._digest
+
+    def __hash__(self) -> int:
+        return hash(self._digest)
+
+    def __reduce__(self) -> Any:
+        # MappingProxyType does not pickle; a plain rebuild does, and checks again.
+        state = {f.name: getattr(self, f.name) for f in fields(self)}
+        for key in ("compliance_sets", "provenance"):
+            state[key] = dict(state[key])
+        return _rebuild, (state,)
+
+
+def _rebuild(state: dict[str, Any]) -> Robot:
+    return Robot(**state)
