@@ -84,9 +84,7 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--program", help="another program than the set-up's")
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance, mm")
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")
-    run.add_argument(
-        "--out", metavar="DIR", help="write deviation.csv, sections.csv, result.json and machined.stl there"
-    )
+    run.add_argument("--out", metavar="DIR", help="write the result there: CSV tables, JSON, STL")
     return top
 
 
@@ -161,8 +159,8 @@ def run_ik(arguments: Any) -> int:
 
 
 def run_gcode(arguments: Any) -> int:
-    from robomill.io.projects import read_program
     from robomill.io.programs import program_record, read_tools, write_moves
+    from robomill.io.projects import read_program
     from robomill.report.plain import gcode_lines
 
     source = read_program(arguments.file, arguments.dialect)
@@ -175,8 +173,8 @@ def run_gcode(arguments: Any) -> int:
 
 
 def run_simulate(arguments: Any) -> int:
-    from robomill.io.projects import load_setup, read_program
     from robomill.io.meshes import zmap_to_stl
+    from robomill.io.projects import load_setup, read_program
     from robomill.io.results import json_text, write_files
     from robomill.report.plain import simulation_lines
     from robomill.report.records import jsonable, simulation_record

@@ -57,7 +57,7 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     lines = [
         record["name"],
         record["verdict_sentence"],
-        f"max       {format_value(record['max_deviation_mm'], 'mm')}   rms {format_value(record['rms_deviation_mm'], 'mm')}",
+        f"max       {worst}   rms {rms}",
         f"there     {vector(record['deviation_mm'], 'mm')}",
         f"force     {vector(record['force_N'], 'N')}",
     ]
