@@ -54,6 +54,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     version = top.whole("version")
     if version != VERSION:
         raise top.refuse("version", f"this file is version {version}; this robomill reads version {VERSION}.")
+    cutter = _cutter(top.table("cutter"))
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
@@ -61,9 +62,9 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         robot=_robot(top.table("robot"), folder),
         source=_source(top.table("path"), folder),
         T_MW=_part(top.table("part", {})),
-        cutter=_cutter(top.table("cutter")),
+        cutter=cutter,
         stock=_stock(top.table("stock")) if top.has("stock") else None,
-        force=force_from_table(top.table("force"), folder),
+        force=force_from_table(top.table("force"), cutter, folder),
         provenance=_provenance(top.table("provenance", {})),
         **_numerics(top.table("numerics", {})),
     )

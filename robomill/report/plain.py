@@ -50,9 +50,10 @@ def gcode_lines(record: dict[str, Any]) -> list[str]:
 
 def simulation_lines(record: dict[str, Any]) -> list[str]:
     def vector(values: Sequence[float | None], unit: str) -> str:
-        return "  ".join(
-            f"{a} {format_value(float('nan') if v is None else v, unit, sign=True)}" for a, v in zip(AXES, values)
-        )
+        numbers = [float("nan") if v is None else v for v in values]
+        return "  ".join(f"{axis} {format_value(v, unit, sign=True)}" for axis, v in zip(AXES, numbers))
+
+    worst, rms = (format_value(record[f"{key}_deviation_mm"], "mm") for key in ("max", "rms"))
 
     lines = [
         record["name"],

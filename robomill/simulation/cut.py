@@ -6,6 +6,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
+from robomill.cutting.force import feed_share
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -36,12 +37,8 @@ def cut_conditions(
 
 def _across(path: Toolpath) -> FloatArray:
     """(m,) share of the feed across the tool axis; a step of no length takes the next one's."""
-    move = np.diff(path.p, axis=0, prepend=path.p[:1])
+    share = np.array(feed_share(path.p, path.k))
     still = np.flatnonzero(path.step_length == 0.0)
     still = still[still + 1 < len(path)]
-    move[still] = move[still + 1]
-    length = np.linalg.norm(move, axis=1)
-    along = np.abs(np.einsum("ij,ij->i", move, path.k))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(length > 0, np.sqrt(np.maximum(1.0 - (along / length) ** 2, 0.0)), 1.0)
-    return np.asarray(share)
+    share[still] = share[still + 1]
+    return share

@@ -66,6 +66,9 @@ class SimulationSetup:
             if not (math.isfinite(value) and value > 0):
                 found = format_si(value, unit) if math.isfinite(value) else str(value)
                 raise SetupError(f"{label}: found {found}; expected more than 0 mm.", where=name)
+        if getattr(self.force, "cutter", self.cutter) != self.cutter:
+            # A process force is computed for the cutter that cuts; a changed cutter changes it too.
+            object.__setattr__(self, "force", dataclasses.replace(self.force, cutter=self.cutter))  # type: ignore[type-var]
         if self.coupling and not self.engagement:
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
 
