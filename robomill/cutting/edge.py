@@ -1,0 +1,171 @@
+"""Forces along the cutting edges, summed over teeth, arc and depth: one law for every milling force model.
+
+A slice of one tooth with chip thickness h and chip width db carries, for every term (e, Kt, Kr, Ka) of the law,
+
+    dF_t = Kt h^e db  against the tooth's motion      dF_r = Kr h^e db  into the tool, normal to its surface
+    dF_a = Ka h^e db  along the surface, towards the part where the helix pulls
+
+with h = c sin(phi) sin(kappa) and db = dz / sin(kappa): c is the feed per tooth, phi the angle of the tooth
+(clockwise from the left of the feed) and kappa the angle between the tool axis and the normal of the cutter's
+surface (90 deg on a cylinder). Mechanistic models have the terms e = 1 (chip) and e = 0 (edge), Kienzle's has
+e = 1 - mc. Source: Altintas, Manufacturing Automation, ch. 2; Engin and Altintas 2001 for general cutters.
+The arc is taken to be the same over the depth. Axes of all results: feed, feed-normal (left), axial (z_T).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.cutting.tool import Cutter
+
+
+@dataclass(frozen=True)
+class EdgeTerm:
+    """K h^exponent per width of chip (SI: N/m^(1+exponent)); tangential, radial and axial."""
+
+    exponent: float
+    Kt: float
+    Kr: float
+    Ka: float
+
+
+def sine_integral(q: float, angle: ArrayLike) -> FloatArray:
+    """Integral of sin^q from 0 to ``angle`` (...,) in 0..pi rad, for q > -1 (a beta integral)."""
+    phi = np.asarray(angle, dtype=np.float64)
+    if q == 0.0:
+        return phi
+    if q == 1.0:
+        return 2.0 * np.sin(0.5 * phi) ** 2
+    if q == 2.0:
+        return 0.5 * (phi - np.sin(phi) * np.cos(phi))
+    from scipy.special import beta, betainc
+
+    a = 0.5 * (q + 1.0)
+    quarter = 0.5 * beta(a, 0.5)
+    sine2, cosine2 = np.sin(phi) ** 2, np.cos(phi) ** 2
+    # From whichever end is near, so that neither loses digits beside pi/2.
+    rising = quarter * np.where(sine2 < 0.5, betainc(a, 0.5, sine2), 1.0 - betainc(0.5, a, cosine2))
+    return np.where(phi <= 0.5 * np.pi, rising, 2.0 * quarter - rising)
+
+
+def arc_moments(e: float, phi_st: FloatArray, phi_ex: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Integrals over the arc of sin^e(phi) times 1, sin(phi), cos(phi); each (...,)."""
+    plain = sine_integral(e, phi_ex) - sine_integral(e, phi_st)
+    sine = sine_integral(e + 1.0, phi_ex) - sine_integral(e + 1.0, phi_st)
+    # sin(pi) must be 0 and not 1e-16, whose powers are not small.
+    start, end = (np.sin(np.minimum(phi, np.pi - phi)) for phi in (phi_st, phi_ex))
+    cosine = (np.maximum(end, 0.0) ** (e + 1.0) - np.maximum(start, 0.0) ** (e + 1.0)) / (e + 1.0)
+    return plain, sine, cosine
+
+
+def depth_moment(cutter: Cutter, depth: ArrayLike, p: float, q: int) -> FloatArray:
+    """Integral over z from the tip to ``depth`` (...,) m of sin^p(kappa) cos^q(kappa), q = 0 or 1; p > -2 on a nose."""
+    a = np.asarray(depth, dtype=np.float64)
+    nose = np.minimum(a, cutter.nose_height)
+    side = (a - nose) if q == 0 else np.zeros_like(a)
+    if cutter.kind == "flat":
+        return side
+    if cutter.kind == "chamfer":
+        half = 0.5 * float(cutter.tip_angle or 0.0)
+        return side + nose * math.cos(half) ** p * math.sin(half) ** q
+    rho = cutter.corner_radius
+    kappa = 2.0 * np.arcsin(np.sqrt(np.clip(nose / (2.0 * rho), 0.0, 0.5)))
+    if q == 0:
+        return side + rho * sine_integral(p + 1.0, kappa)
+    return side + rho * np.sin(kappa) ** (p + 2.0) / (p + 2.0)
+
+
+def _depth_sums(
+    term: EdgeTerm, cutter: Cutter, depth: FloatArray, pull: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Tangential, radial (into the axis) and axial (along +z_T) force per h-power, summed over the depth."""
+    e = term.exponent
+    upright = depth_moment(cutter, depth, e, 0)
+    lying = depth_moment(cutter, depth, e - 1.0, 1)
+    tangential = term.Kt * depth_moment(cutter, depth, e - 1.0, 0)
+    radial = term.Kr * upright + pull * term.Ka * lying
+    axial = term.Kr * lying - pull * term.Ka * upright
+    return tangential, radial, axial
+
+
+def mean_force(
+    terms: tuple[EdgeTerm, ...],
+    cutter: Cutter,
+    c: ArrayLike,
+    a_p: ArrayLike,
+    phi_st: ArrayLike,
+    phi_ex: ArrayLike,
+) -> FloatArray:
+    """Mean force ON the tool over a revolution, (..., 3) N: feed, feed-normal, axial.
+
+    ``c`` feed per tooth m, ``a_p`` depth m, arc ``phi_st``..``phi_ex`` rad (as in CutConditions). With a flat
+    mill in a slot: F_x = -N a (Krc c/4 + Kre/pi), F_y = N a (Ktc c/4 + Kte/pi), |F_z| = N a (Kac c/pi + Kae/2).
+    """
+    c, a_p, st, ex = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (c, a_p, phi_st, phi_ex)))
+    mirror = cutter.hand == "left"
+    if mirror:  # a left-hand cutter is a right-hand one seen in a mirror along the feed
+        st, ex = np.pi - ex, np.pi - st
+    force = np.zeros((*c.shape, 3))
+    for term in terms:
+        plain, sine, cosine = arc_moments(term.exponent, st, ex)
+        load = c**term.exponent
+        tangential, radial, axial = (load * part for part in _depth_sums(term, cutter, a_p, cutter.pull))
+        force[..., 0] -= tangential * cosine + radial * sine
+        force[..., 1] += tangential * sine - radial * cosine
+        force[..., 2] += axial * plain
+    force *= cutter.flutes / (2.0 * np.pi)
+    if mirror:
+        force[..., 1] *= -1.0
+    return force
+
+
+def force_over_pitch(
+    terms: tuple[EdgeTerm, ...],
+    cutter: Cutter,
+    c: ArrayLike,
+    a_p: ArrayLike,
+    phi_st: ArrayLike,
+    phi_ex: ArrayLike,
+    *,
+    instants: int = 120,
+    slices: int = 48,
+) -> FloatArray:
+    """Force ON the tool at ``instants`` evenly spread over one tooth pitch, (..., instants, 3) N, with helix lag.
+
+    The depth is cut into ``slices``; the edge lags by z tan(helix angle) / R (constant lead). The pattern repeats
+    every pitch (teeth alike, no run-out), so its mean is ``mean_force`` and its extremes are those of a revolution.
+    """
+    c, a_p, st, ex = np.broadcast_arrays(
+        *(np.asarray(v, dtype=np.float64)[..., None] for v in (c, a_p, phi_st, phi_ex))
+    )
+    mirror = cutter.hand == "left"
+    if mirror:
+        st, ex = np.pi - ex, np.pi - st
+    pitch = 2.0 * np.pi / cutter.flutes
+    turn = (np.arange(instants) + 0.5) * (pitch / instants)
+    lag_per_depth = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
+    force = np.zeros((*c.shape[:-1], instants, 3))
+    for i in range(slices):
+        low, high = a_p * (i / slices), a_p * ((i + 1) / slices)
+        lag = 0.5 * (low + high) * lag_per_depth
+        loads = []
+        for term in terms:
+            above, below = (_depth_sums(term, cutter, depth, cutter.pull) for depth in (high, low))
+            loads.append([c**term.exponent * (x - y) for x, y in zip(above, below, strict=True)])
+        for tooth in range(cutter.flutes):
+            phi = (turn + tooth * pitch - lag) % (2.0 * np.pi)
+            inside = (phi >= st) & (phi <= ex)
+            sine, cosine = np.sin(np.minimum(phi, np.pi)), np.cos(phi)
+            for term, (tangential, radial, axial) in zip(terms, loads, strict=True):
+                power = np.where(inside, np.maximum(sine, 0.0) ** term.exponent, 0.0)
+                force[..., 0] -= power * (tangential * cosine + radial * sine)
+                force[..., 1] += power * (tangential * sine - radial * cosine)
+                force[..., 2] += power * axial
+    if mirror:
+        force[..., 1] *= -1.0
+    return force

@@ -1,0 +1,310 @@
+"""Milling force: closed forms against brute force over the tooth angle, symmetries, and the paper's six rows."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robomill.cutting.conditions import CutConditions, arc_of_cut
+from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, force_over_pitch, mean_force, sine_integral
+from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.milling import KienzleForce, MechanisticForce
+from robomill.cutting.tool import Cutter
+from robomill.errors import CuttingError
+from robomill.io.materials import load_material, sample_materials
+from robomill.robot.model import Provenance
+
+MILL = Cutter("flat", 8e-3, flutes=3)
+#: The paper's slot: 12 000 1/min, 30 mm/s, 2 mm deep.
+SLOT = CutConditions.steady(0.03, 200.0, 2e-3)
+CHIP = 0.05e-3
+REF190 = load_material("al7075_t6_carbide_ref190")
+CUTTERS = [
+    MILL,
+    Cutter("ball", 8e-3),
+    Cutter("bull", 8e-3, corner_radius=1e-3, flutes=4),
+    Cutter("chamfer", 8e-3, tip_angle=math.radians(80), tip_diameter=1e-3),
+]
+GAUSS, WEIGHT = np.polynomial.legendre.leggauss(40)
+
+
+def gauss(low, high, panels=40):
+    """Nodes and weights of a composite rule on [low, high], graded towards both ends (sin^p is not smooth there)."""
+    share = np.linspace(0, 1, panels + 1)
+    for _ in range(2):
+        share = np.sin(0.5 * np.pi * share) ** 2
+    edges = low + (high - low) * share
+    half, middle = 0.5 * np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+    return (middle[:, None] + half[:, None] * GAUSS).ravel(), (half[:, None] * WEIGHT).ravel()
+
+
+def brute_force(terms, cutter, c, a_p, phi_st, phi_ex):
+    """Add up the force vectors of every bit of one tooth's edge over a turn (right-hand cutters), without moments."""
+    total = np.zeros(3)
+    nose = min(a_p, cutter.nose_height)
+    pieces = []
+    if nose > 0.0 and cutter.kind == "chamfer":
+        slope = math.atan2(nose, float(cutter.radius_at(nose)) - cutter.flat_radius)
+        pieces.append((np.array([slope]), np.array([nose / math.sin(slope)])))  # angle of the flank, length of edge
+    elif nose > 0.0:
+        kappa, w = gauss(0.0, math.acos(1.0 - nose / cutter.corner_radius))
+        pieces.append((kappa, cutter.corner_radius * w))
+    if a_p > nose:
+        pieces.append((np.array([math.pi / 2]), np.array([a_p - nose])))
+    phi, w_phi = gauss(phi_st, phi_ex)
+    zero = np.zeros_like(phi)
+    outward = np.stack([np.sin(phi), np.cos(phi), zero], -1)
+    motion = np.stack([np.cos(phi), -np.sin(phi), zero], -1)
+    up = np.array([0.0, 0.0, 1.0])
+    for kappas, lengths in pieces:
+        for kappa, length in zip(kappas, lengths, strict=True):
+            normal = math.sin(kappa) * outward - math.cos(kappa) * up
+            down_the_edge = -math.sin(kappa) * up - math.cos(kappa) * outward
+            h = np.maximum(c * np.sin(phi) * math.sin(kappa), 0.0)
+            for term in terms:
+                pushes = -term.Kt * motion - term.Kr * normal + cutter.pull * term.Ka * down_the_edge
+                total += length * ((w_phi * h**term.exponent) @ pushes)
+    return total * cutter.flutes / (2 * np.pi)
+
+
+@pytest.mark.parametrize("q", [0.0, 0.3, 0.75, 1.0, 1.75, 2.0, 2.4])
+def test_sine_integral_by_quadrature(q):
+    for angle in (1e-4, 0.3, np.pi / 2 - 1e-8, np.pi / 2, 2.0, np.pi):
+        x, w = gauss(0.0, angle)
+        assert sine_integral(q, angle) == pytest.approx(w @ np.sin(x) ** q, rel=1e-10)
+
+
+def test_beta_integral_meets_the_closed_forms():
+    phi = np.linspace(0, np.pi, 61)
+    for q in (1.0, 2.0):
+        np.testing.assert_allclose(sine_integral(q + 1e-13, phi), sine_integral(q, phi), atol=1e-12)
+
+
+@pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
+@pytest.mark.parametrize("arc", [(0, np.pi), (0, np.pi / 2), (np.pi / 2, np.pi), (0.4, 2.9), (1.0, 1.01)])
+@pytest.mark.parametrize("name", ["al7075_t6_carbide_ref190", "al_wrought_cured_kienzle"])
+def test_mean_force_equals_brute_force(cutter, arc, name):
+    material = load_material(name)
+    if material.kind == "kienzle":
+        material = material.replace(radial_ratio=0.4, axial_ratio=0.15)
+    for depth in (0.3e-3, 2e-3, 6e-3):
+        exact = mean_force(material.terms, cutter, CHIP, depth, *arc)
+        brute = brute_force(material.terms, cutter, CHIP, depth, *arc)
+        np.testing.assert_allclose(exact, brute, rtol=1e-9, atol=1e-9 * np.linalg.norm(brute))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    start=st.floats(0, np.pi),
+    end=st.floats(0, np.pi),
+    e=st.sampled_from([0.0, 1.0, 0.75, 0.6]),
+    depth=st.floats(1e-5, 8e-3),
+    chip=st.floats(1e-6, 3e-4),
+    cutter=st.sampled_from(CUTTERS),
+)
+def test_mean_force_equals_brute_force_for_any_arc(start, end, e, depth, chip, cutter):
+    arc = min(start, end), max(start, end)
+    terms = (EdgeTerm(e, 7.0, 3.0, 2.0),)
+    exact = mean_force(terms, cutter, chip, depth, *arc)
+    scale = 10 * cutter.flutes * depth * chip**e * cutter.radius / max(depth, 1e-5)
+    np.testing.assert_allclose(exact, brute_force(terms, cutter, chip, depth, *arc), rtol=1e-9, atol=1e-9 * scale)
+
+
+# N a (Ktc c/4 + Kte/pi) to the tenth; in whole newtons 110, 79, 93, 136, 33, 72.
+PAPER_ROWS = {
+    "al7075_t6_carbide_ref190": 110.4,
+    "al7075_t6_carbide_ref160": 79.2,
+    "al7075_hss_ref156": 92.6,
+    "al7075_carbide_ref47": 136.5,
+    "al6061_t6_carbide_ref160": 32.7,
+    "al6082_t6_carbide_ref189": 72.2,
+}
+
+
+@pytest.mark.parametrize(("name", "F_y"), PAPER_ROWS.items())
+def test_paper_slot_by_formula_and_by_brute_force(name, F_y):
+    row = load_material(name)
+    N, a, c = 3, 2e-3, CHIP
+    by_hand = [
+        -N * a * (row.Krc * c / 4 + row.Kre / np.pi),
+        N * a * (row.Ktc * c / 4 + row.Kte / np.pi),
+        -N * a * ((row.Kac or 0) * c / np.pi + (row.Kae or 0) / 2),
+    ]
+    force = MechanisticForce(MILL, row).components(SLOT)[0]
+    np.testing.assert_allclose(force, by_hand, rtol=1e-12)
+    np.testing.assert_allclose(force, brute_force(row.terms, MILL, CHIP, 2e-3, 0, np.pi), rtol=1e-9, atol=1e-12)
+    assert force[1] == pytest.approx(F_y, abs=0.1)
+
+
+def test_first_row_of_the_paper_has_its_axial_pull():
+    force = MechanisticForce(MILL, REF190).components(SLOT)[0]
+    assert force[1] == pytest.approx(110.4, abs=0.05)
+    assert force[2] == pytest.approx(-23.3, abs=0.05)
+    assert MechanisticForce(MILL, REF190, axial=False).components(SLOT)[0] == pytest.approx([*force[:2], 0.0])
+    left = MechanisticForce(MILL.replace(helix="left"), REF190).components(SLOT)[0]
+    assert left == pytest.approx(force * [1, 1, -1])
+
+
+def test_left_hand_cutter_is_the_mirror_image():
+    arc = (0.2, 1.7)
+    mirrored = (np.pi - arc[1], np.pi - arc[0])
+    left = MILL.replace(hand="left", helix="left")
+    right = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc)
+    np.testing.assert_allclose(mean_force(REF190.terms, left, CHIP, 2e-3, *mirrored), right * [1, -1, 1], rtol=1e-12)
+    turns = [
+        force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, *arc), (left, CHIP, 2e-3, *mirrored))
+    ]
+    np.testing.assert_allclose(turns[1], turns[0] * [1, -1, 1], atol=1e-12)
+
+
+def test_climb_pushes_away_from_the_wall_and_conventional_less_or_towards():
+    # Half immersion with this row: climb has the part on the right and is pushed left, away from it.
+    climb = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc_of_cut(4e-3, 8e-3, "climb"))
+    conventional = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc_of_cut(4e-3, 8e-3, "conventional"))
+    assert climb[1] > conventional[1]
+    assert climb[1] > 0
+    assert climb[0] > conventional[0]  # climb pulls the tool into the cut
+    slot = mean_force(REF190.terms, MILL, CHIP, 2e-3, 0.0, np.pi)
+    np.testing.assert_allclose(climb + conventional, slot, rtol=1e-12)
+
+
+def test_engagement_arcs_against_geometry():
+    assert np.degrees(arc_of_cut(8e-3, 8e-3, "climb")) == pytest.approx([0, 180], abs=1e-6)
+    assert np.degrees(arc_of_cut(4e-3, 8e-3, "climb")) == pytest.approx([90, 180])
+    assert np.degrees(arc_of_cut(4e-3, 8e-3, "conventional")) == pytest.approx([0, 90])
+    assert np.degrees(arc_of_cut(2e-3, 8e-3, "conventional")) == pytest.approx([0, 60])
+    assert np.degrees(arc_of_cut(2e-3, 8e-3, "conventional", "left")) == pytest.approx([120, 180])
+    assert np.degrees(arc_of_cut(1e-3, 8e-3, "slot")) == pytest.approx([0, 180])
+
+
+@pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
+def test_mean_over_a_pitch_is_the_mean_force(cutter):
+    turns = force_over_pitch(REF190.terms, cutter, CHIP, 2e-3, 0.3, 2.2, instants=720)
+    exact = mean_force(REF190.terms, cutter, CHIP, 2e-3, 0.3, 2.2)
+    assert np.linalg.norm(turns.mean(0) - exact) < 2e-3 * np.linalg.norm(exact)
+
+
+def test_peak_of_one_straight_tooth_in_a_slot():
+    """One straight tooth: F_y = a (Ktc c sin^2 + Kte sin - Krc c sin cos - Kre cos), searched on a fine grid."""
+    mill = MILL.replace(flutes=1, helix_angle=0.0)
+    conditions = CutConditions.steady(0.01, 200.0, 2e-3)
+    peak = MechanisticForce(mill, REF190).peak(conditions)
+    phi = np.linspace(0, np.pi, 20001)
+    F_t = 2e-3 * (REF190.Ktc * CHIP * np.sin(phi) + REF190.Kte)
+    F_r = 2e-3 * (REF190.Krc * CHIP * np.sin(phi) + REF190.Kre)
+    F_y = F_t * np.sin(phi) - F_r * np.cos(phi)
+    assert peak.high[0, 1] == pytest.approx(F_y.max(), rel=2e-3)
+    assert np.linalg.norm(peak.at_peak[0]) == pytest.approx(np.hypot(F_t, F_r).max(), rel=2e-3)
+
+
+def test_peak_is_at_least_the_mean_and_helix_smooths_it():
+    force = MechanisticForce(MILL, REF190)
+    mean, peak = force.components(SLOT), force.peak(SLOT)
+    assert (peak.high >= mean).all()
+    assert (peak.low <= mean).all()
+    steep = MechanisticForce(MILL.replace(helix_angle=math.radians(60)), REF190).peak(SLOT)
+    assert steep.high[0, 1] < peak.high[0, 1]
+
+
+def test_band_spans_the_alternative_rows_of_the_same_alloy():
+    rows = alternatives(REF190, sample_materials())
+    assert {row.name for row in rows} == {"al7075_hss_ref156", "al7075_carbide_ref47", "al7075_t6_carbide_ref160"}
+    force = MechanisticForce(MILL, REF190, rows)
+    band = force.band(SLOT)
+    assert band.low[0, 1] == pytest.approx(79.2, abs=0.1)
+    assert band.high[0, 1] == pytest.approx(136.5, abs=0.1)
+    assert force.by_material(SLOT)[0][0].name == "al7075_t6_carbide_ref190"
+
+
+def test_batch_equals_loop_and_rest_is_zero_in_air():
+    rng = np.random.default_rng(5)
+    m = 40
+    start = rng.uniform(0, 2, m)
+    values = {
+        "v_f": rng.uniform(0.005, 0.05, m), "n_s": rng.uniform(50, 300, m), "a_p": rng.uniform(0, 3e-3, m),
+        "phi_st": start, "phi_ex": np.minimum(start + rng.uniform(0, 1.5, m), np.pi), "cutting": rng.random(m) < 0.8,
+        "s": np.arange(m), "t": np.arange(m), "across": rng.uniform(0.2, 1, m),
+    }  # fmt: skip
+    values["a_p"][:5] = 0.0
+    values["n_s"][:5] = 0.0  # the spindle may stand in air
+    force = KienzleForce(MILL, load_material("al_wrought_cured_kienzle"))
+    many = force.components(CutConditions(**values))
+    for i in range(m):
+        one = force.components(CutConditions(**{key: value[i] for key, value in values.items()}))
+        np.testing.assert_allclose(many[i], one[0], rtol=1e-12)
+    idle = ~values["cutting"] | (values["a_p"] == 0)
+    np.testing.assert_array_equal(many[idle], 0.0)
+    assert (np.abs(many[~idle]).sum(1) > 0).all()
+    np.testing.assert_array_equal(force.peak(CutConditions(**values)).high[idle], 0.0)
+
+
+def test_ramps_make_the_chip_of_their_level_part_and_plunges_none():
+    force = MechanisticForce(MILL, REF190)
+    ramp = force.components(CutConditions.steady(0.03, 200.0, 2e-3, across=0.5))
+    level = force.components(CutConditions.steady(0.015, 200.0, 2e-3))
+    np.testing.assert_allclose(ramp, level)
+    plunge = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, block=[7])
+    np.testing.assert_array_equal(force.components(plunge), 0.0)
+    assert "Line 7: the tool plunges" in force.warnings(plunge)[0]
+
+
+def test_depth_beyond_the_flutes_is_warned_of():
+    mill = MILL.replace(flute_length=1.5e-3)
+    assert MechanisticForce(mill, REF190).warnings(SLOT) == (
+        "Step 0: depth 2.000 mm is beyond the flute length 1.500 mm; the shank would rub (1 steps).",
+    )
+    assert MechanisticForce(MILL, REF190).warnings(SLOT) == ()
+
+
+def test_unknown_axial_coefficients_are_named():
+    force = MechanisticForce(MILL, load_material("al6061_t6_carbide_ref160"))
+    assert force.components(SLOT)[0, 2] == 0.0
+    assert "axial coefficients are unknown" in force.notes[0]
+    assert MechanisticForce(MILL, REF190).notes == ()
+    assert force.provenance.kind == "computed"
+    assert "10.1186/s10033-021-00536-9" in force.provenance.source
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"n_s": 0.0}, "Line 12: the spindle stands still while the tool is in the material; give S before the cut."),
+        ({"v_f": 0.0}, "Line 12: the feed rate is 0"),
+        ({"v_f": -0.01}, "Line 12: v_f is negative"),
+        ({"a_p": -1e-3}, "Line 12: a_p is negative"),
+        ({"phi_ex": 4.0}, "to 229.18°; expected 0° <= start <= end <= 180°"),
+        ({"phi_st": 2.0, "phi_ex": 1.0}, "arc of engagement from 114.59° to 57.30°"),
+        ({"v_f": math.nan}, "expected finite numbers"),
+        ({"v_f": [1.0, 1.0, 1.0], "t": [0.0, 1.0]}, "t: expected 3 values, found shape (2,)"),
+    ],
+)
+def test_refused_conditions(change, sentence):
+    base = {"v_f": 0.03, "n_s": 200.0, "a_p": 2e-3, "phi_st": 0.0, "phi_ex": np.pi, "cutting": True, "s": 0.0, "t": 0.0}
+    with pytest.raises(CuttingError) as refusal:
+        MechanisticForce(MILL, REF190).components(CutConditions(**{**base, "block": 12, **change}))
+    assert sentence in str(refusal.value)
+
+
+def test_refused_arcs_and_models():
+    with pytest.raises(CuttingError, match=r"9\.000 mm: expected 0 to the cutter's diameter 8\.000 mm"):
+        arc_of_cut(9e-3, 8e-3, "climb")
+    with pytest.raises(CuttingError, match="Side of the cut 'up'"):
+        arc_of_cut(1e-3, 8e-3, "up")
+    with pytest.raises(CuttingError, match="has kienzle coefficients; a mechanistic force needs"):
+        MechanisticForce(MILL, load_material("al_wrought_cured_kienzle"))
+
+
+def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
+    source = Provenance("user", "test")
+    kienzle = Material("k", "k", "x", source, kc11=8e8, mc=0.0, radial_ratio=0.3, axial_ratio=0.1)
+    mechanistic = Material("m", "m", "x", source, Ktc=8e8, Kte=0.0, Krc=2.4e8, Kre=0.0, Kac=8e7, Kae=0.0)
+    np.testing.assert_allclose(
+        KienzleForce(MILL, kienzle).components(SLOT), MechanisticForce(MILL, mechanistic).components(SLOT), rtol=1e-12
+    )
+
+
+def test_moments_of_an_empty_arc_and_of_no_depth():
+    assert np.all(np.array(arc_moments(0.0, np.array(1.2), np.array(1.2))) == 0.0)
+    assert all(depth_moment(cutter, 0.0, -1.0, q) == 0.0 for cutter in CUTTERS for q in (0, 1))
