@@ -1,0 +1,121 @@
+"""Set-up files: round trip, and one sentence for each thing that can be wrong."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from robomill.errors import ProjectError, RobomillError
+from robomill.io.projects import load_setup, open_project, program_from_bytes, setup_from_toml, setup_to_toml
+from robomill.io.samples import samples_dir
+from robomill.toolpath.source import GCodeSource, LinesSource
+
+SAMPLE = samples_dir() / "paper_flute" / "setup.toml"
+
+
+@pytest.fixture(scope="module")
+def setup():
+    return load_setup(SAMPLE)
+
+
+def test_a_saved_setup_is_the_same_setup(setup) -> None:
+    assert setup_from_toml(setup_to_toml(setup)).digest() == setup.digest()
+
+
+def test_edits_survive_saving(setup) -> None:
+    T_MW = setup.T_MW.copy()
+    T_MW[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    robot = setup.robot.replace(C_theta=setup.robot.C_theta * 0.7)
+    lines = LinesSource([[0, 0, 0]], [[0.1 / 3, 0, 0]], [0.031], 123.4)
+    edited = setup.replace(robot=robot, source=lines, T_MW=T_MW, stock=None, tolerance=1e-4 / 3)
+    again = setup_from_toml(setup_to_toml(edited))
+    assert again.digest() == edited.digest()
+    assert np.array_equal(again.robot.C_theta, robot.C_theta)
+
+
+@pytest.mark.parametrize(
+    "text", ["G1 X1 F100\n", "(quotes \"\"\" and ''' and \\ back)\nG1 X1 F1\n", "G0 X0\r\nG1 X1 F9\r\n", "\tG1 X1\n\n"]
+)
+def test_a_program_survives_saving_to_the_letter(setup, text: str) -> None:
+    edited = setup.replace(source=GCodeSource(text, "a b.NC"))
+    assert setup_from_toml(setup_to_toml(edited)).source == edited.source
+
+
+def test_every_number_counts_in_the_digest(setup) -> None:
+    digests = {setup.digest()}
+    C_theta = setup.robot.C_theta.copy()
+    C_theta[4] = np.nextafter(C_theta[4], 1)
+    changes = [
+        {"robot": setup.robot.replace(C_theta=C_theta)},
+        {"tolerance": 0.2e-3},
+        {"cell": 2e-4},
+        {"cutter": setup.cutter.replace(diameter=6e-3)},
+        {"source": GCodeSource(setup.source.text + " ", setup.source.name)},
+        {"T_MW": setup.T_MW + np.eye(4) * 0 + np.pad([[1e-9]], ((0, 3), (3, 0)))},
+    ]
+    for change in changes:
+        digests.add(setup.replace(**change).digest())
+    assert len(digests) == 1 + len(changes)
+
+
+TEXT = SAMPLE.read_text()
+BAD = [
+    ("", "format: expected 'robomill-setup', found ''"),
+    ("not toml [", "not a readable TOML file"),
+    (TEXT.replace("version = 1", "version = 99"), "version: this file is version 99; this robomill reads version 1"),
+    (
+        TEXT.replace("tolerance_mm = 0.3", 'tolerance_mm = "wide"'),
+        "tolerance_mm: expected a number in mm, found 'wide'",
+    ),
+    (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = 0"), "Tolerance: found 0.000 mm; expected more than 0 mm"),
+    (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = nan"), "tolerance_mm: expected a finite number"),
+    (
+        TEXT.replace("cell_mm = 0.1", "cel_mm = 0.1"),
+        "[numerics], cel_mm: this key is not known here; known are: cell_mm",
+    ),
+    (TEXT.replace("diameter_mm = 8.0", ""), "[cutter], diameter_mm: missing; add it"),
+    (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "diameter"),
+    (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of constant, path"),
+    (TEXT.replace('name = "slavkovic_5r"', 'name = "robbie"'), "robbie"),
+    (TEXT.replace('"table_2"', '"table_9"'), "table_9"),
+    (TEXT.replace('program = "path.nc"', 'program = "lost.nc"'), "lost.nc: there is no such program"),
+    (TEXT.replace("[-46.0, -20.0, -10.0]", "[-46.0, -20.0]"), "lower_mm: expected a list of 3 numbers"),
+    (TEXT.replace("[-46.0, -20.0, -10.0]", "[99.0, -20.0, -10.0]"), "Stock in X"),
+    (TEXT.replace('kind = "paper"', 'kind = "rumour"', 1), "expected one of paper, measured"),
+]
+
+
+@pytest.mark.parametrize(("text", "sentence"), BAD, ids=[s[:40] for _, s in BAD])
+def test_bad_setups_are_refused_in_a_sentence(text: str, sentence: str) -> None:
+    assert text != TEXT
+    with pytest.raises(RobomillError, match=re.escape(sentence)) as refused:
+        setup_from_toml(text, "setup.toml", SAMPLE.parent)
+    assert "\n" not in str(refused.value).strip()
+
+
+def test_a_broken_project_names_its_file() -> None:
+    text = TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0")
+    with pytest.raises(ProjectError, match=re.escape("mine.toml: ")):
+        open_project(text, "mine.toml")
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [(b"", "the file is empty"), (b" \r\n", "the file is empty"), (b"\x7fELF\0\0", "binary file")],
+)
+def test_programs_that_are_no_text(data: bytes, sentence: str) -> None:
+    with pytest.raises(ProjectError, match=sentence):
+        program_from_bytes(data, "part.nc")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+def test_programs_in_other_encodings_are_read(encoding: str) -> None:
+    text = "(Nut fräsen)\nG1 X1 F100\n"
+    assert program_from_bytes(text.encode(encoding), "part.nc").text == text
+
+
+def test_a_missing_setup_is_named() -> None:
+    with pytest.raises(ProjectError, match="nowhere.toml: there is no such file"):
+        load_setup("nowhere.toml")
