@@ -14,7 +14,7 @@ from typing import Any
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.robot.model import Provenance
-from robomill.units import format_si, to_si
+from robomill.units import from_si, to_si, unit_label
 
 MECHANISTIC = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
 KIENZLE = ("kc11", "mc", "radial_ratio", "axial_ratio")
@@ -107,18 +107,17 @@ class Material:
         except (TypeError, ValueError) as exc:
             raise CuttingError(f"{self._who}: {name} should be a number, found {value!r:.40}.", where=name) from exc
         unit = COEFFICIENT_UNITS[name]
+        shown = f"{from_si(number, unit):g} {unit_label(unit)}".rstrip()
         if not math.isfinite(number):
             raise CuttingError(f"{self._who}: {name} should be a finite number, found {number}.", where=name)
         if number < 0.0 or (number == 0.0 and name in ("Ktc", "kc11")):
             expected = "must be greater than 0" if name in ("Ktc", "kc11") else "cannot be negative"
-            raise CuttingError(f"{self._who}: {name} is {format_si(number, unit)}; it {expected}.", where=name)
+            raise CuttingError(f"{self._who}: {name} is {shown}; it {expected}.", where=name)
         if name == "mc" and number >= 1.0:
             raise CuttingError(f"{self._who}: mc is {number:g}; expected 0 to less than 1.", where=name)
         low, high = CREDIBLE.get(unit, (0.0, math.inf))
         if number > high or (name in ("Ktc", "kc11") and number < low):
-            raise CuttingError(
-                f"{self._who}: {name} is {format_si(number, unit)}, which no metal has; check its unit.", where=name
-            )
+            raise CuttingError(f"{self._who}: {name} is {shown}, which no metal has; check its unit.", where=name)
         object.__setattr__(self, name, number)
 
     @property

@@ -1,0 +1,115 @@
+"""Material rows: what is refused, and that the sample rows say where they come from."""
+
+import math
+
+import pytest
+
+from robomill.cutting.materials import Material, alternatives
+from robomill.errors import CuttingError
+from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
+from robomill.robot.model import Provenance
+from robomill.units import to_si
+
+ROW = {
+    "name": "al", "title": "Aluminium", "alloy": "Al", "provenance": Provenance("measured", "dynamometer, 3 May"),
+    "Ktc": 7e8, "Kte": 2e4, "Krc": 2e8, "Kre": 2e4, "Kac": 2e8, "Kae": 1e3,
+}  # fmt: skip
+NO_CUTTING = dict.fromkeys(("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"))
+
+
+def test_samples_are_the_paper_s_six_rows_and_two_of_kienzle():
+    rows = sample_materials()
+    assert sum(row.kind == "mechanistic" for row in rows) == 6
+    assert sum(row.kind == "kienzle" for row in rows) == 2
+    for row in rows:
+        assert row.name in material_names()
+        assert len(row.provenance.source) > 20
+    first = load_material("al7075_t6_carbide_ref190")
+    assert first.Ktc == pytest.approx(767.01e6)
+    assert first.Kae == pytest.approx(700.0)
+    assert load_material("al6061_t6_carbide_ref160").Kac is None
+
+
+def test_files_round_trip():
+    for row in [*sample_materials(), Material(**{**ROW, "title": 'with "quotes", \\ and\ttabs'})]:
+        assert material_from_toml(material_to_toml(row)) == row
+
+
+def test_alternatives_share_alloy_and_kind():
+    row = Material(**ROW)
+    other = row.replace(name="b")
+    kienzle = row.replace(**NO_CUTTING, name="c", kc11=7e8, mc=0.25)
+    assert alternatives(row, [kienzle, other, row, row.replace(name="d", alloy="steel")]) == (other,)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"Ktc": -7e8}, "Ktc is -700 N/mm²; it must be greater than 0"),
+        ({"Ktc": 0.0}, "Ktc is 0 N/mm²"),
+        ({"Kre": -1.0}, "Kre is -0.001 N/mm; it cannot be negative"),
+        ({"Ktc": None}, "Ktc is missing; it takes Ktc, Kte, Krc, Kre (or kc11 and mc)"),
+        ({"Kre": None}, "Kre is missing"),
+        ({"Kac": None}, "Kae is given without Kac"),
+        ({"Kae": None}, "Kac is given without Kae"),
+        ({"kc11": 7e8, "mc": 0.25}, "either Ktc to Kae or Kienzle's"),
+        ({**NO_CUTTING}, "Ktc is missing"),
+        ({**NO_CUTTING, "kc11": 7e8}, "mc is missing; it takes kc11, mc."),
+        ({**NO_CUTTING, "mc": 0.25}, "kc11 is missing"),
+        ({**NO_CUTTING, "kc11": 7e8, "mc": 1.0}, "mc is 1; expected 0 to less than 1"),
+        ({"Ktc": 767.0}, "which no metal has; check its unit"),
+        ({"Ktc": 7e14}, "which no metal has; check its unit"),
+        ({"Kte": 2e7}, "Kte is 20000 N/mm, which no metal has"),
+        ({"Krc": math.nan}, "Krc should be a finite number, found nan"),
+        ({"Krc": "soft"}, "Krc should be a number, found 'soft'"),
+        ({"name": ""}, "needs a name"),
+        ({"provenance": Provenance("user", " ")}, "needs a source"),
+    ],
+)
+def test_refused_rows(change, sentence):
+    with pytest.raises(CuttingError) as refusal:
+        Material(**{**ROW, **change})
+    assert sentence in str(refusal.value)
+    assert refusal.value.where is not None
+
+
+TEXT = material_to_toml(Material(**ROW))
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("not toml at all [", "row.toml: not a TOML file"),
+        (TEXT.replace("Ktc_N_mm2", "Ktc"), "row.toml [coefficients]: key 'Ktc' is not known; expected"),
+        (TEXT.replace("Ktc_N_mm2 = 700.0", 'Ktc_N_mm2 = "hard"'), "Ktc_N_mm2: expected a number, found 'hard'"),
+        (TEXT.replace("Ktc_N_mm2 = 700.0", "Ktc_N_mm2 = true"), "expected a number, found True"),
+        (TEXT.replace("Ktc_N_mm2 = 700.0", "Ktc_N_mm2 = -700.0"), "row.toml: Material 'al': Ktc is -700"),
+        (TEXT.replace("Ktc_N_mm2 = 700.0", ""), "Ktc is missing"),
+        (TEXT.replace('kind = "measured"', 'kind = "guess"'), "kind is 'guess'"),
+        (TEXT.replace("[provenance]", "[origin]"), "key 'origin' is not known"),
+        (TEXT.split("[provenance]")[0], "the table [provenance] is missing"),
+        (TEXT.replace('alloy = "Al"', "alloy = 7075"), "alloy should be a text, found 7075"),
+        ('extra = 1\n' + TEXT, "key 'extra' is not known"),
+    ],
+)  # fmt: skip
+def test_refused_files(text, sentence):
+    with pytest.raises(CuttingError) as refusal:
+        material_from_toml(text, "row.toml")
+    assert sentence in str(refusal.value)
+
+
+def test_refused_names_and_unreadable_files(tmp_path):
+    with pytest.raises(CuttingError, match=r"'unobtainium' is not known: give a .toml file or one of al"):
+        load_material("unobtainium")
+    with pytest.raises(CuttingError, match="cannot be read as text"):
+        load_material(tmp_path / "missing.toml")
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00\x01")
+    with pytest.raises(CuttingError, match="cannot be read as text"):
+        load_material(binary)
+
+
+def test_an_added_file_loads_by_path(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    assert load_material(path).Ktc == to_si(700.0, "N/mm2")
