@@ -1,0 +1,60 @@
+"""Closed-form inverse kinematics of the paper's arm."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import KinematicsError
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return rm.load_robot("slavkovic_5r")
+
+
+def test_ik_after_fk_is_the_identity_on_10000_configurations(robot):
+    theta = np.random.default_rng(1).uniform(robot.limits[:, 0], robot.limits[:, 1], (10_000, 5))
+    result = rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near=theta)
+    assert result.reached.all()
+    assert np.abs(result.theta - theta).max() < 1e-7
+    assert result.residual.max() <= 1e-9
+    assert result.residual_angle.max() <= 1e-9
+
+
+def test_batch_equals_loop(robot):
+    x_M = np.array([[[0, -1.3, 0, 0, 0], [0.2, -1.1, 0.1, 0.3, -0.2]], [[9, 9, 9, 0, 0], [-0.3, -1.5, -0.3, 0, 0.5]]])
+    batch = rm.inverse_kinematics(robot, rm.pose_from_world(x_M))
+    for index in np.ndindex(2, 2):
+        one = rm.inverse_kinematics(robot, rm.pose_from_world(x_M[index]))
+        np.testing.assert_array_equal(one.theta, batch.theta[index])
+        assert one.branch == batch.branch[index]
+        assert one.reason() == batch.reason(index)
+
+
+def test_reasons_in_words(robot):
+    def reason(*x_M):
+        result = rm.inverse_kinematics(robot, rm.pose_from_world(x_M))
+        assert not result.reached
+        assert np.isnan(result.theta).all()
+        return result.reason()
+
+    assert reason(0, -3, 0, 0, 0) == "0.69 m beyond reach"
+    assert reason(0, 1.3, 0, 0, 0) == "joint 3 would need −160.0°, 50.0° past its limit of −110.0°"
+    assert "too close to the shoulder" in reason(0, 0, -0.3, 0, 0)
+
+
+def test_branch_by_name_or_part(robot):
+    wide = robot.replace(limits=np.tile([-3.2, 3.2], (5, 1)))
+    T_MT = rm.pose_from_world([0.1, -1.3, 0.0, 0.1, 0.2])
+    up = rm.inverse_kinematics(wide, T_MT)
+    down = rm.inverse_kinematics(wide, T_MT, branch="elbow down")
+    assert up.branch == "front, elbow up, wrist +"
+    assert down.branch.startswith("front, elbow down")
+    np.testing.assert_allclose(rm.tool_pose(wide, down.theta)[:3, 3], T_MT[:3, 3], atol=1e-12)
+    with pytest.raises(KinematicsError, match="elbow sideways"):
+        rm.inverse_kinematics(wide, T_MT, branch="elbow sideways")
+
+
+def test_poses_that_are_not_numbers_are_refused(robot):
+    with pytest.raises(KinematicsError, match="NaN"):
+        rm.inverse_kinematics(robot, np.full((4, 4), np.nan))
