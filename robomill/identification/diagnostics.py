@@ -1,0 +1,153 @@
+"""Checks of a fit in words: which joint cannot be seen and why, which rows do not belong, what hit a bound."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import stdtrit
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.identification.least_squares import Fit, robust_fit
+from robomill.identification.models import Parameter
+from robomill.identification.result import Outlier, UnseenJoint
+from robomill.identification.system import System
+from robomill.toolpath.path import Finding
+
+ALIKE = 0.7  # correlation from which two parameters are said to be confused
+CONDITION_WARNING = 100.0
+COLLINEAR = 1e-10  # 1 - |cosine| below which two columns are one
+
+
+def correlation(covariance: FloatArray) -> FloatArray:
+    """(p, p) correlations; NaN where a variance is not known or zero."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        size = np.sqrt(np.diag(covariance))
+        return covariance / np.outer(size, size)
+
+
+def shares(system: System, x: FloatArray) -> FloatArray:
+    """(p,) size of what each parameter predicts, as a share of what was measured (rms over the displacements)."""
+    size = float(np.sqrt(np.mean(system.b[system.linear] ** 2)))
+    predicted = np.sqrt(np.mean((system.A[system.linear] * x) ** 2, axis=0))
+    return predicted / size if size > 0 else np.zeros_like(predicted)
+
+
+def twins(system: System) -> dict[int, int]:
+    """Extra springs whose column is that of an earlier parameter: {column: earlier column}."""
+    found: dict[int, int] = {}
+    norms = np.linalg.norm(system.A, axis=0)
+    for k, parameter in enumerate(system.parameters):
+        if parameter.joint is not None or parameter.signed or norms[k] == 0:
+            continue
+        for j in range(k):
+            if j in found or norms[j] == 0:
+                continue
+            gap = system.A[:, k] / norms[k] - system.A[:, j] / norms[j]
+            if 0.5 * float(gap @ gap) < COLLINEAR:
+                found[k] = j
+                break
+    return found
+
+
+def outliers(system: System, row: IntArray) -> tuple[Outlier, ...]:
+    """Tests further from the robust fit than normal noise puts any number once in a hundred data sets."""
+    e = len(system.b)
+    A, b = system.A / system.noise[:, None], system.b / system.noise
+    dof = e - A.shape[1]
+    if dof < 3:
+        return ()
+    robust = robust_fit(A, b)
+    if robust.scale == 0.0:
+        return ()
+    miss = np.abs(robust.residual) / robust.scale
+    limit = float(stdtrit(dof, 1.0 - 0.01 / (2.0 * e)))
+    found: dict[int, Outlier] = {}
+    for k in np.flatnonzero(miss > limit):
+        number = int(row[system.test[k]])
+        best = found.get(number)
+        if best is None or miss[k] > best.times:
+            found[number] = Outlier(number, float(miss[k]), float(robust.residual[k] * system.noise[k]))
+    return tuple(sorted(found.values(), key=lambda outlier: -outlier.times))
+
+
+def unseen_joints(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray) -> tuple[UnseenJoint, ...]:
+    """Joints whose interval reaches down to zero, or that have none: in words, with what they are confused."""
+    signed = np.array([p.signed for p in parameters])
+    low = fit.interval(signed)[:, 0]
+    return tuple(
+        UnseenJoint(p.joint, confused_with(fit, parameters, k), sentence(fit, parameters, share, k))
+        for k, p in enumerate(parameters)
+        if p.joint is not None and (not fit.seen[k] or low[k] <= 0.0)
+    )
+
+
+def confused_with(fit: Fit, parameters: tuple[Parameter, ...], k: int) -> tuple[str, ...]:
+    """Labels of the parameters whose effect looks like that of parameter ``k`` at these poses."""
+    if not fit.seen[k]:
+        together = np.abs(fit.null.T @ fit.null)[k]  # the projector: it does not depend on the basis
+        chosen = together > 1e-3 * max(float(together.max()), 1e-300)
+    else:
+        chosen = np.abs(np.nan_to_num(correlation(fit.covariance)[k])) >= ALIKE
+    return tuple(p.label for j, p in enumerate(parameters) if chosen[j] and j != k)
+
+
+def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: int) -> str:
+    """Why parameter ``k`` is known as well as it is, and what would help."""
+    name = parameters[k].label.capitalize()
+    others = confused_with(fit, parameters, k)
+    cure = "measure where it has a longer lever on the tool, for example with the tool tilted"
+    if not fit.seen[k]:
+        if not others:
+            return f"{name} cannot be seen: no test makes it yield; {cure}."
+        return (
+            f"{name} cannot be seen: at these poses its effect is exactly made up of {_listed(others)}, "
+            "so only their sum is known; measure at poses where they move the tool differently."
+        )
+    relative = fit.stderr[k] / fit.x[k] if fit.x[k] > 0 else np.inf
+    known = f"known to ±{fit_half(fit, k):.0%}" if np.isfinite(relative) else "not told from a rigid one"
+    text = f"{name} is {known}: it makes {share[k]:.0%} of the measured displacement"
+    table = np.nan_to_num(correlation(fit.covariance)[k])
+    table[k] = 0.0
+    j = int(np.argmax(np.abs(table)))
+    if abs(table[j]) >= 0.3:
+        text += (
+            f" and at these poses it moves the tool much as {parameters[j].label} does (correlation {table[j]:+.2f})"
+        )
+        cure = f"measure where {parameters[k].label} and {parameters[j].label} move the tool differently"
+    return f"{text}; {cure}."
+
+
+def fit_half(fit: Fit, k: int) -> float:
+    """Half the 95 % interval of parameter ``k`` as a share of its estimate."""
+    t = float(stdtrit(fit.dof, 0.975)) if fit.dof > 0 else np.inf
+    return float(t * fit.stderr[k] / fit.x[k]) if fit.x[k] > 0 else float("inf")
+
+
+def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict[str, str]) -> list[Finding]:
+    """What the fit itself has to say: bounds, springs that are one, condition, noise against what was stated."""
+    found = []
+    for label in active:
+        text = f"{label.capitalize()} is held at zero: the tests ask for a negative compliance, which no spring has."
+        found.append(Finding("warning", 0, text))
+    for label, other in lumped.items():
+        text = f"{label.capitalize()} turns about the same line as {other} at these poses: one spring, counted there."
+        found.append(Finding("info", 0, text))
+    if fit.condition[1] > CONDITION_WARNING:
+        text = (
+            f"Condition number {fit.condition[1]:.0f} after scaling: small errors of measurement are much magnified; "
+            "add poses that differ more."
+        )
+        found.append(Finding("warning", 0, text))
+    if fit.dof == 0 and not system.stated:
+        text = "As many unknowns as measured numbers: nothing is left to judge the noise by, so there are no intervals."
+        found.append(Finding("warning", 0, text))
+    if system.stated and fit.dof > 0 and fit.sigma > 2.0:
+        text = (
+            f"The residuals are {fit.sigma:.1f} times the stated noise: the model does not explain all that was "
+            "measured; compare it with bending or a tool spring."
+        )
+        found.append(Finding("warning", 0, text))
+    return found
+
+
+def _listed(labels: tuple[str, ...]) -> str:
+    return labels[0] if len(labels) == 1 else f"{', '.join(labels[:-1])} and {labels[-1]}"

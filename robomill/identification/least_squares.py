@@ -1,0 +1,165 @@
+"""Linear least squares with parameters that cannot be negative: scaling, robust weights, covariance, intervals.
+
+Every fit works on the triangular factor R of [A b], a p x p matter however many tests there are; factors of
+parts are stacked to fit a whole (cross-validation leaves parts out that way).
+
+Intervals. The estimate is the bounded one; its covariance and 95 % intervals come from the *free* fit
+(Student's t with e - p degrees of freedom) and are then cut at zero. Cutting an interval to where the truth must
+lie cannot lose the truth, so the coverage stays 95 % for every parameter, on the bound or off it; the
+covariance of a fit with the active bounds taken as known would be too sure of itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import qr, solve_triangular
+from scipy.optimize import nnls
+from scipy.special import stdtrit
+
+from robomill.arrays import BoolArray, FloatArray
+
+NULL = 1e-9  # singular values below this share of the largest (columns scaled) count as zero
+BISQUARE = 4.685  # Tukey's constant: 95 % efficient on normal noise
+HUBER = 1.345
+MAD = 0.6744897501960817  # median |x| of the standard normal
+ROUNDS = 30
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A bounded fit of A x = b.
+
+    x (p,) bounded estimate, NaN never (an unseen parameter takes its share of the shortest solution);
+    covariance (p, p) of the free fit, NaN rows for what is not seen; sigma: standard deviation of one (weighted)
+    equation; seen (p,) bool; null (k, p) scaled directions that no equation sees; free (p,) the unbounded
+    estimate; condition before and after column scaling.
+    """
+
+    x: FloatArray
+    covariance: FloatArray
+    sigma: float
+    dof: int
+    seen: BoolArray
+    null: FloatArray
+    free: FloatArray
+    condition: tuple[float, float]
+
+    @property
+    def stderr(self) -> FloatArray:
+        """(p,) standard errors; infinite for what is not seen."""
+        return np.where(self.seen, np.sqrt(np.clip(np.diag(np.nan_to_num(self.covariance)), 0.0, None)), np.inf)
+
+    def interval(self, signed: BoolArray, level: float = 0.95) -> FloatArray:
+        """(p, 2) intervals; cut at zero unless ``signed``; they always hold the estimate."""
+        t = float(stdtrit(self.dof, 0.5 + level / 2.0)) if self.dof > 0 else np.inf
+        half = np.where(self.stderr > 0, t * self.stderr, 0.0) if np.isfinite(t) else np.full(len(self.x), np.inf)
+        low, high = np.minimum(self.free - half, self.x), np.maximum(self.free + half, self.x)
+        return np.stack([np.where(signed, low, np.maximum(low, 0.0)), high], axis=-1)
+
+
+def triangle(A: FloatArray, b: FloatArray) -> FloatArray:
+    """(k, p + 1) triangular factor of [A b], k <= p + 1: same normal equations, a handful of rows."""
+    whole = np.concatenate([A, b[:, None]], axis=1)
+    return np.asarray(qr(whole, mode="r", overwrite_a=True, check_finite=False)[0][: whole.shape[1]])
+
+
+def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma: float | None = None) -> Fit:
+    """Bounded least squares from the factor of [A b] with ``equations`` rows behind it."""
+    p = R.shape[1] - 1
+    A, b = R[:, :p], R[:, p]
+    norms = np.linalg.norm(A, axis=0)
+    top = norms.max(initial=0.0)
+    scale = np.where(norms > NULL * top, norms, np.inf if top > 0 else 1.0)
+    S = A / scale
+    _, values, Vt = np.linalg.svd(S, full_matrices=True)
+    values = np.pad(values, (0, p - len(values)))
+    keep = values > NULL * max(values.max(initial=0.0), 1e-300)
+    null = Vt[~keep]
+    seen = np.linalg.norm(null, axis=0) < 1e-6
+    inverse = (Vt[keep].T / np.where(keep, values, 1.0)[keep] ** 2) @ Vt[keep]
+    free = _free(S, b, keep)
+    bounded = _bounded(S, b, free, signed)
+    residual = S @ free - b
+    dof = equations - int(keep.sum())
+    sigma = float(np.sqrt(residual @ residual / dof)) if dof > 0 else 0.0
+    if dof <= 0 and given_sigma is not None:
+        sigma = given_sigma
+    covariance = sigma**2 * inverse / np.outer(scale, scale)
+    covariance[~seen] = covariance[:, ~seen] = np.nan
+    condition = (_condition(np.linalg.svd(A, compute_uv=False)), _condition(values))
+    return Fit(bounded / scale, covariance, sigma, dof, seen, null, free / scale, condition)
+
+
+def _free(S: FloatArray, b: FloatArray, keep: BoolArray) -> FloatArray:
+    if keep.all():
+        Q, R = np.linalg.qr(S)
+        return np.asarray(solve_triangular(R, Q.T @ b))
+    return np.asarray(np.linalg.lstsq(S, b, rcond=NULL)[0])
+
+
+def _bounded(S: FloatArray, b: FloatArray, free: FloatArray, signed: BoolArray) -> FloatArray:
+    """The bounded solution; where no bound is active it is the free one, to the last bit."""
+    if ((free >= 0) | signed).all():
+        return free
+    split = np.concatenate([S, -S[:, signed]], axis=1)  # a signed parameter is the difference of two positive ones
+    x = np.asarray(nnls(split, b)[0])
+    x[np.flatnonzero(signed)] -= x[S.shape[1] :]
+    x = x[: S.shape[1]]
+    inside = signed | (x > 1e-12 * np.abs(x).max(initial=0.0))
+    polished = np.zeros_like(x)
+    if inside.any():
+        polished[inside] = np.linalg.lstsq(S[:, inside], b, rcond=NULL)[0]
+    return polished if (polished[~signed] >= 0).all() else x
+
+
+def _condition(values: NDArray[Any]) -> float:
+    low = float(values.min(initial=np.inf))
+    high = float(values.max(initial=0.0))
+    return high / low if low > NULL * 1e-3 * high else np.inf
+
+
+@dataclass(frozen=True)
+class RobustFit:
+    """Tukey's bisquare: weights (e,), residuals (e,) of all equations, and the scale of the good ones."""
+
+    weights: FloatArray
+    residual: FloatArray
+    scale: float
+
+
+def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
+    """Weights that leave gross equations out. Starts as Huber's fit, so that a few bad rows cannot hide one another.
+
+    Works in an orthonormal basis of the columns, where the small normal equations are well conditioned.
+    """
+    norms = np.linalg.norm(A, axis=0)
+    scaled = A / np.where(norms > 0, norms, 1.0)
+    _, values, Vt = np.linalg.svd(triangle(scaled, b)[:, :-1], full_matrices=False)
+    keep = values > NULL * max(float(values.max(initial=0.0)), 1e-300)
+    B = scaled @ (Vt[keep].T / values[keep])
+    spare = np.sqrt(len(b) / max(len(b) - B.shape[1], 1))
+    tiny = 1e-12 * float(np.abs(b).max(initial=0.0))
+    weights, scale, residual = np.ones(len(b)), 0.0, b
+    for k in range(ROUNDS):
+        weighted = B * weights[:, None]
+        residual = b - B @ np.linalg.lstsq(weighted.T @ B, weighted.T @ b, rcond=None)[0]
+        size = np.abs(residual)
+        scale = max(float(np.median(size)) / MAD * spare, tiny)
+        if scale == 0.0:
+            break
+        u = size / scale
+        huber = k < ROUNDS // 3
+        new = (
+            np.minimum(1.0, HUBER / np.maximum(u, 1e-12))
+            if huber
+            else np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
+        )
+        settled = float(np.abs(new - weights).max()) < 1e-3
+        weights = new
+        if settled and not huber:
+            break
+    return RobustFit(weights, residual, scale)

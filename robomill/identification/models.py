@@ -1,0 +1,155 @@
+"""What could be giving way: springs whose compliances are fitted, as one linear law ``delta = D @ parameters``.
+
+Each spring has one direction of motion. With ``a`` the motion of a point when the spring yields by one
+(``a = u x (p - o)`` for a turn about ``u`` through ``o``, ``a = u`` for a shift along ``u``) and ``c`` its
+compliance, a wrench does the work ``a_F . W`` on it and the measuring point moves by ``c a_D (a_F . W)``:
+eqs. (13)-(16) when the springs are the joints. So every model is linear in its compliances.
+
+models: ``joints``; ``+bending`` adds turns about the x and y axes of the frame whose z is the joint's axis, at
+the shoulder and elbow (joints 2 and 3) unless joints are named; ``+tool`` adds a spindle and tool spring at the
+tip, one compliance across the tool axis and one along it; ``constant`` is one symmetric 3 x 3 for every pose,
+the naive baseline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import LoadTestError
+from robomill.identification.load_test import LoadTests
+from robomill.kinematics.forward import joint_frames
+from robomill.robot.model import Robot
+
+MODELS = ("joints", "joints+bending", "joints+tool", "joints+bending+tool", "constant")
+_SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+_XYZ = "xyz"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One fitted compliance: its label, its unit, whether it may be negative, and the joint it belongs to."""
+
+    label: str
+    unit: str
+    joint: int | None = None  # 1-based, for the springs that are the joints themselves
+    signed: bool = False
+
+
+@dataclass(frozen=True)
+class Model:
+    """A choice of springs. ``bending_joints`` are 1-based."""
+
+    name: str = "joints"
+    bending_joints: tuple[int, ...] = (2, 3)
+
+    def __post_init__(self) -> None:
+        if self.name not in MODELS:
+            raise LoadTestError(f"Model {self.name!r}: expected one of {', '.join(MODELS)}.")
+
+    @property
+    def bends(self) -> bool:
+        return "bending" in self.name
+
+    @property
+    def has_tool(self) -> bool:
+        return "tool" in self.name
+
+    def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
+        """What is fitted, in the order of the regressor's columns."""
+        if self.name == "constant":
+            return tuple(Parameter(f"C_{_XYZ[i]}{_XYZ[j]}", "m/N", None, i != j) for i, j in _SYMMETRIC)
+        slides = robot.chain.prismatic
+        listed = [
+            Parameter(f"joint {number}", "m/N" if slides[i] else "rad/(N m)", number)
+            for i, number in enumerate(robot.joint_numbers)
+        ]
+        if self.bends:
+            for joint in self._bending(robot):
+                number = robot.joint_numbers[joint]
+                listed += [Parameter(f"bending {u} at joint {number}", "rad/(N m)") for u in "xy"]
+        if self.has_tool:
+            listed += [Parameter("tool across", "m/N"), Parameter("tool along", "m/N")]
+        return tuple(listed)
+
+    def _bending(self, robot: Robot) -> tuple[int, ...]:
+        """Indices (from 0) among the free joints of those that bend."""
+        numbers = robot.joint_numbers
+        for joint in self.bending_joints:
+            if joint not in numbers:
+                listed = ", ".join(map(str, numbers))
+                raise LoadTestError(f"Bending at joint {joint}: expected one of the free joints {listed}.")
+        return tuple(numbers.index(joint) for joint in dict.fromkeys(self.bending_joints))
+
+    def columns(self, robot: Robot, theta: FloatArray, offset: FloatArray | None = None) -> FloatArray:
+        """(..., 6, s) motion in {M} (m, rad) of a point at ``offset`` (..., 3) m in {T} as each spring yields by one.
+
+        The tool counts as three springs (x, y and z of {T}); ``_collect`` adds the first two into one parameter.
+        """
+        frames = joint_frames(robot, theta)
+        p = frames[..., -1, :3, 3]
+        if offset is not None:
+            p = p + np.einsum("...ij,...j->...i", frames[..., -1, :3, :3], offset)
+        shafts = [
+            (frames[..., i, :3, 3], frames[..., i, :3, 2], bool(robot.chain.prismatic[i])) for i in range(robot.n)
+        ]
+        if self.bends:
+            for joint in self._bending(robot):
+                frame = frames[..., joint, :3, :]
+                shafts += [(frame[..., 3], frame[..., 0], False), (frame[..., 3], frame[..., 1], False)]
+        if self.has_tool:
+            shafts += [(p, frames[..., -1, :3, k], True) for k in range(3)]
+        a = np.zeros((*p.shape[:-1], 6, len(shafts)))
+        for s, (origin, axis, slides) in enumerate(shafts):
+            a[..., :3, s] = axis if slides else np.cross(axis, p - origin)
+            if not slides:
+                a[..., 3:, s] = axis
+        return a
+
+    def _collect(self, each: FloatArray) -> FloatArray:
+        """Spring by spring -> parameter by parameter: the two springs across the tool share a compliance."""
+        if not self.has_tool:
+            return each
+        return np.concatenate([each[..., :-3], each[..., -3:-1].sum(-1, keepdims=True), each[..., -1:]], axis=-1)
+
+    def regressor(self, robot: Robot, tests: LoadTests) -> FloatArray:
+        """(m, 6, p): displacement and rotation of the measuring point per unit of each parameter."""
+        if tests.theta is None:
+            raise LoadTestError("Load tests: the poses are given in the world; call with_joints(robot) first.")
+        if self.name == "constant":
+            D = np.full((len(tests), 6, len(_SYMMETRIC)), np.nan)
+            D[:, :3] = _constant(tests.wrench[:, :3])
+            return D
+        at_force = self.columns(robot, tests.theta, tests.force_point)
+        same = np.array_equal(tests.force_point, tests.measuring_point)
+        at_gauge = at_force if same else self.columns(robot, tests.theta, tests.measuring_point)
+        load = np.einsum("mcs,mc->ms", at_force, tests.wrench)
+        return self._collect(at_gauge * load[:, None, :])
+
+    def tip_regressor(self, robot: Robot, theta: FloatArray, F: FloatArray) -> FloatArray:
+        """(..., 3, p) D with delta = D @ parameters, for a force F (..., 3) N in {M} at the tool tip."""
+        theta, F = np.asarray(theta, dtype=np.float64), np.asarray(F, dtype=np.float64)
+        if self.name == "constant":
+            return np.broadcast_to(_constant(F), (*np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3, 6))
+        a = self.columns(robot, theta)[..., :3, :]
+        load = np.einsum("...cs,...c->...s", a, F)
+        return self._collect(a * load[..., None, :])
+
+    def compliance(self, robot: Robot, theta: FloatArray, parameters: Sequence[float] | FloatArray) -> FloatArray:
+        """C (..., 3, 3) m/N at the tool tip in {M}, for given parameters (p,)."""
+        theta = np.asarray(theta, dtype=np.float64)
+        D = self.tip_regressor(robot, theta[..., None, :], np.eye(3))  # (..., force, component, p)
+        return np.swapaxes(D @ np.asarray(parameters, dtype=np.float64), -1, -2)
+
+
+def _constant(F: FloatArray) -> FloatArray:
+    """(..., 3, 6): displacement per unit of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
+    D = np.zeros((*F.shape[:-1], 3, len(_SYMMETRIC)))
+    for k, (i, j) in enumerate(_SYMMETRIC):
+        D[..., i, k] += F[..., j]
+        if i != j:
+            D[..., j, k] += F[..., i]
+    return D

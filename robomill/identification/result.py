@@ -1,0 +1,181 @@
+"""What an identification says, and how far to trust it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.errors import LoadTestError
+from robomill.identification.models import Model, Parameter
+from robomill.robot.model import Provenance, Robot
+from robomill.toolpath.path import Finding
+from robomill.units import format_si, from_si
+
+
+class Condition(NamedTuple):
+    """Condition number of the equations as they are, and after scaling every column to length one."""
+
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """A test that does not fit the others: its row, how many robust standard deviations off, and by how much (m)."""
+
+    row: int
+    times: float
+    residual: float
+
+
+@dataclass(frozen=True)
+class UnseenJoint:
+    """A joint these tests cannot tell from a rigid one, or from others; the sentence says why and what to do."""
+
+    joint: int
+    confused_with: tuple[str, ...]
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False)
+class IdentificationResult:
+    """Fitted compliances with their uncertainty. n joints, p parameters (the joints first, then extra springs).
+
+    C_theta (n,) rad/(N m) (m/N if prismatic), NaN where not seen; stderr (n,), infinite where not seen;
+    ci95 (n, 2), cut at zero; correlation and covariance (p, p) of the parameters, NaN where not seen;
+    parameters (p,) with which predictions are made; condition before and after column scaling;
+    residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints);
+    residual_share (m,) of the measured size; residual_rms m (rad); noise: standard deviation of one measured
+    number, m (rad), as the residuals say; cv_relative_error: mean over poses of |predicted - measured| / |measured|,
+    each pose predicted without itself: the headline; cv_by_pose (poses,).
+    outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
+    exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
+    """
+
+    model: str
+    choice: Model
+    labels: tuple[Parameter, ...]
+    parameters: FloatArray
+    covariance: FloatArray
+    parameter_stderr: FloatArray
+    parameter_ci95: FloatArray
+    correlation: FloatArray
+    n: int
+    condition: Condition
+    residual: FloatArray
+    residual_share: FloatArray
+    residual_rms: float
+    noise: float
+    equations: int
+    dof: int
+    cv_by_pose: FloatArray
+    cv_relative_error: float
+    row: IntArray
+    share: FloatArray
+    outliers: tuple[Outlier, ...] = ()
+    unseen_joints: tuple[UnseenJoint, ...] = ()
+    active_bounds: tuple[str, ...] = ()
+    lumped: dict[str, str] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
+    excluded: tuple[int, ...] = ()
+    robust: bool = False
+    rotations: bool = False
+
+    @property
+    def C_theta(self) -> FloatArray:
+        """(n,) joint compliances; NaN for a joint that is not seen (or not in the model)."""
+        if self.model == "constant":
+            return np.full(self.n, np.nan)
+        return np.where(np.isfinite(self.parameter_stderr[: self.n]), self.parameters[: self.n], np.nan)
+
+    @property
+    def stderr(self) -> FloatArray:
+        """(n,) standard errors of C_theta."""
+        return np.full(self.n, np.inf) if self.model == "constant" else self.parameter_stderr[: self.n]
+
+    @property
+    def ci95(self) -> FloatArray:
+        """(n, 2) 95 % intervals of C_theta, cut at zero."""
+        return np.full((self.n, 2), np.nan) if self.model == "constant" else self.parameter_ci95[: self.n]
+
+    @property
+    def C_theta_covariance(self) -> FloatArray:
+        """(n, n) covariance of C_theta."""
+        return np.full((self.n, self.n), np.nan) if self.model == "constant" else self.covariance[: self.n, : self.n]
+
+    @property
+    def weakest_joint(self) -> int:
+        """The joint (1-based) with the widest interval for its size."""
+        if self.model == "constant":
+            raise LoadTestError("The constant model has no joints.")
+        with np.errstate(invalid="ignore", divide="ignore"):
+            relative = np.where(self.parameters[: self.n] > 0, self.stderr / self.parameters[: self.n], np.inf)
+        return self.labels[int(np.argmax(relative))].joint or 0
+
+    def applied_to(self, robot: Robot) -> Robot:
+        """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""
+        if self.model == "constant":
+            raise LoadTestError("The constant model has no joint compliances to give to a robot.")
+        seen = np.isfinite(self.C_theta)
+        kept = [str(robot.joint_numbers[i]) for i in np.flatnonzero(~seen)]
+        source = f"identified from {len(self.row)} load tests, model {self.model}"
+        if kept:
+            source += f"; joint {', '.join(kept)} not seen, value kept from {robot.compliance_set}"
+        provenance = {**robot.provenance, "compliance.identified": Provenance("measured", source)}
+        changed = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta))
+        sets = {**robot.compliance_sets, "identified": changed.C_theta_all}
+        return changed.replace(compliance_sets=sets, compliance_set="identified", provenance=provenance)
+
+
+def identification_report(result: IdentificationResult) -> dict[str, object]:
+    """The result for ``robomill identify --json``: SI but for ``residual_rms_mm``; null for what is not known."""
+    single = result.residual.shape[1] == 1
+    return {
+        "C_theta": _plain(result.C_theta),
+        "stderr": _plain(result.stderr),
+        "ci95": _plain(result.ci95),
+        "correlation": _plain(result.correlation),
+        "condition": {"before": _plain(result.condition.before), "after": _plain(result.condition.after)},
+        "residual_rms_mm": None if single else _plain(from_si(result.residual_rms, "mm")),
+        "cv_relative_error": _plain(result.cv_relative_error),
+        "outliers": [outlier.row for outlier in result.outliers],
+        "unseen_joints": [unseen.joint for unseen in result.unseen_joints],
+        "model": result.model,
+    }
+
+
+def _plain(value: object) -> object:
+    """Lists and floats for JSON, with None for what is not finite."""
+    array = np.asarray(value, dtype=np.float64)
+    if array.ndim:
+        return [_plain(part) for part in array]
+    return float(array) if np.isfinite(array) else None
+
+
+def parameter_rows(result: IdentificationResult) -> list[dict[str, object]]:
+    """One row a parameter, as text in display units: label, value, standard error, interval, share, remark."""
+    rows: list[dict[str, object]] = []
+    weak = {unseen.joint: unseen.sentence for unseen in result.unseen_joints}
+    for k, parameter in enumerate(result.labels):
+        unit = "1e-7 rad/(N m)" if parameter.unit.startswith("rad") else "um/N"
+        known = bool(np.isfinite(result.parameter_stderr[k]))
+        low, high = result.parameter_ci95[k]
+        remark = weak.get(parameter.joint, "") if parameter.joint else ""
+        if parameter.label in result.lumped:
+            remark = f"moves exactly as {result.lumped[parameter.label]} at these poses and is counted with it"
+        elif parameter.label in result.active_bounds:
+            remark = remark or "held at zero: the tests ask for no such spring"
+        rows.append(
+            {
+                "parameter": parameter.label,
+                "value": format_si(result.parameters[k], unit) if known else "not seen",
+                "stderr": format_si(result.parameter_stderr[k], unit) if known else "–",
+                "ci95": f"{format_si(low, unit)} to {format_si(high, unit)}" if known else "–",
+                "share": format_si(result.share[k], "%"),
+                "remark": remark,
+            }
+        )
+    return rows

@@ -1,0 +1,136 @@
+"""What looks wrong in the measurements before anything is fitted: signs, units, copies. Said aloud, never mended."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robomill.arrays import FloatArray
+from robomill.identification.load_test import JointTests, LoadTests
+from robomill.robot.model import Robot
+from robomill.toolpath.path import Finding
+
+PLAUSIBLE = (1e-10, 1e-4)  # m/N: from a rigid machine tool to a robot one can push about by hand
+PLAUSIBLE_JOINT = (1e-10, 1e-2)  # rad/(N m)
+_AXES = "xyz"
+
+
+def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
+    """Findings on sign, unit and repeated rows.
+
+    A compliance is positive definite, so a displacement *along* its own force is positive; against the force at most
+    tests means a flipped sign. A factor of 1000 against the plausible range, or against the robot's own values
+    where it has some, means a wrong unit.
+    """
+    if isinstance(tests, JointTests):
+        return _joint_suspicions(tests)
+    return (*_signs(tests), *_sizes(tests, robot), *_repeats(tests))
+
+
+def _signs(tests: LoadTests) -> list[Finding]:
+    F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
+    size = np.linalg.norm(F, axis=1)
+    found = []
+    flipped = []
+    for i in range(3):
+        main = (np.abs(F[:, i]) > 0.9 * size) & np.isfinite(moved[:, i]) & (size > 0)
+        against = main & (F[:, i] * moved[:, i] < 0)
+        if main.sum() >= 2 and against.sum() > 0.5 * main.sum():
+            flipped.append(i)
+            found.append(
+                f"d{_AXES[i]} runs against F{_AXES[i]} in {int(against.sum())} of the {int(main.sum())} tests loaded "
+                f"along {_AXES[i]}"
+            )
+    if flipped:
+        what = "the sign of the displacements" if len(flipped) == 3 else f"the sign of d{_AXES[flipped[0]]}"
+        return [Finding("suspicious", 0, f"{'; '.join(found)}: is {what} or of the forces turned round?")]
+    work = np.nansum(F * moved, axis=1)
+    loaded = np.isfinite(moved).all(axis=1) & (size > 0)
+    share = float((work[loaded] < 0).mean()) if loaded.any() else 0.0
+    if share > 0.5:
+        text = f"The tool moves against its force in {share:.0%} of the tests: is the sign of the displacements turned?"
+        return [Finding("suspicious", 0, text)]
+    return []
+
+
+def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
+    F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
+    size = np.linalg.norm(F, axis=1)
+    loaded = size > 0
+    if not loaded.any():
+        return []
+    given = float(np.median(np.sqrt(np.nansum(moved[loaded] ** 2, axis=1)) / size[loaded]))
+    if given == 0.0:
+        return [Finding("suspicious", 0, "Most displacements are zero: was the gauge read, and to enough digits?")]
+    expected = _expected(tests, robot)
+    if expected is not None and not 1 / 100 < given / expected < 100:
+        times, word = (given / expected, "larger") if given > expected else (expected / given, "smaller")
+        against = "than this robot's own compliances would give"
+    elif not PLAUSIBLE[0] < given < PLAUSIBLE[1]:
+        times, word = (given / 1e-6, "larger") if given > 1e-6 else (1e-6 / given, "smaller")
+        against = "than the 1 µm/N of a usual robot"
+    else:
+        return []
+    text = f"The displacements are about {times:.3g} times {word} {against}: is their unit, or the forces', right?"
+    return [Finding("suspicious", 0, text)]
+
+
+def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
+    """Typical m/N of the tests by the robot's own joint compliances, where it has any."""
+    if robot is None or tests.theta is None or not np.any(robot.C_theta > 0):
+        return None
+    from robomill.compliance.cartesian import cartesian_compliance
+
+    chosen = np.linspace(0, len(tests) - 1, min(len(tests), 200)).astype(int)
+    F = tests.wrench[chosen, :3]
+    moved = np.einsum("mij,mj->mi", cartesian_compliance(robot, tests.theta[chosen]), F)
+    size = np.linalg.norm(F, axis=1)
+    ratio = np.linalg.norm(moved, axis=1)[size > 0] / size[size > 0]
+    return float(np.median(ratio)) if len(ratio) and np.median(ratio) > 0 else None
+
+
+def _repeats(tests: LoadTests) -> list[Finding]:
+    poses = tests.theta if tests.theta is not None else tests.x_M
+    assert poses is not None
+    table = np.concatenate([poses, tests.wrench, np.nan_to_num(tests.displacement)], axis=1)
+    first, again = _first_repeat(table)
+    if again is None or first is None:
+        return []
+    copies = len(table) - len(np.unique(_bytes(table)))
+    others = f" (and {copies - 1} more)" if copies > 1 else ""
+    text = (
+        f"Row {tests.row[again]} repeats row {tests.row[first]} to the last digit{others}; both are used: "
+        "delete the copy unless it was measured twice."
+    )
+    return [Finding("warning", int(tests.row[again]), text, copies)]
+
+
+def _first_repeat(table: FloatArray) -> tuple[int | None, int | None]:
+    keys = _bytes(table)
+    _, index, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    original = index[inverse]
+    copies = np.flatnonzero(original != np.arange(len(table)))
+    return (None, None) if len(copies) == 0 else (int(original[copies[0]]), int(copies[0]))
+
+
+def _bytes(table: FloatArray) -> NDArray[np.uint64]:
+    """One hash a row: equal rows have equal hashes, and unequal ones differ but for chance of 2^-64."""
+    bits = np.ascontiguousarray(table + 0.0).view(np.uint64)
+    odd = np.asarray(np.random.default_rng(7).integers(1, 2**63, bits.shape[1], dtype=np.uint64) | 1)
+    mixed = (bits ^ (bits >> np.uint64(29))) * odd
+    return np.bitwise_xor.reduce((mixed ^ (mixed >> np.uint64(32))) * odd[::-1], axis=1)
+
+
+def _joint_suspicions(tests: JointTests) -> tuple[Finding, ...]:
+    found = []
+    against = tests.angle * tests.torque < 0
+    if against.mean() > 0.5:
+        text = (
+            f"The angle runs against the torque in {int(against.sum())} of {len(tests)} tests: is a sign turned round?"
+        )
+        found.append(Finding("suspicious", 0, text))
+    typical = float(np.median(np.abs(tests.angle / tests.torque)))
+    if not PLAUSIBLE_JOINT[0] < typical < PLAUSIBLE_JOINT[1]:
+        text = f"A typical joint gives {typical:.2g} rad/(N m), far from the 1e-7 to 1e-5 of robots: is the unit right?"
+        found.append(Finding("suspicious", 0, text))
+    return tuple(found)
