@@ -7,7 +7,7 @@ and axial = z_T (out of the part, towards the spindle).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +22,19 @@ PLUNGE = 1e-6
 ASSUMED = Provenance("user", "entered by hand")
 
 
+Frame = Literal["path", "M"]
+
+
 class ForceModel(Protocol):
-    """Every model gives ``components``: the mean force on the tool as feed, feed-normal, axial, (m, 3) N."""
+    """Every model gives the mean force on the tool at every step, in the ``frame`` it is known in.
+
+    ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame.
+    """
+
+    @property
+    def frame(self) -> Frame:
+        """Axes of ``components``."""
+        ...
 
     @property
     def provenance(self) -> Provenance:
@@ -36,7 +47,7 @@ class ForceModel(Protocol):
         ...
 
     def components(self, conditions: CutConditions) -> FloatArray:
-        """Mean force on the tool at every step, (m, 3) N."""
+        """Mean force ON the tool at every step, (m, 3) N, in ``frame``."""
         ...
 
 
@@ -47,6 +58,7 @@ class ConstantForce:
     vector_M: FloatArray
     provenance: Provenance = ASSUMED
     notes: tuple[str, ...] = ()
+    frame: ClassVar[Frame] = "M"
 
     def __post_init__(self) -> None:
         vector = as_floats(self.vector_M, "constant force (x, y, z in N)", (3,), error=CuttingError)
@@ -55,8 +67,8 @@ class ConstantForce:
         object.__setattr__(self, "vector_M", frozen(vector))
 
     def components(self, conditions: CutConditions) -> FloatArray:
-        """Not to be had: a vector in {M} has no components along the path without the path's frames."""
-        raise CuttingError("A constant force is given in the robot's frame; use force_on_tool with the feed frames.")
+        """The vector at every step, (m, 3) N in {M}."""
+        return np.tile(self.vector_M, (len(conditions), 1))
 
 
 @dataclass(frozen=True)
@@ -68,6 +80,7 @@ class PathForce:
     axial: float = 0.0
     provenance: Provenance = ASSUMED
     notes: tuple[str, ...] = ()
+    frame: ClassVar[Frame] = "path"
 
     def __post_init__(self) -> None:
         for name in ("feed", "feed_normal", "axial"):
@@ -137,9 +150,7 @@ def force_on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike)
     frames = as_floats(R_MF, "feed frames", (3, 3), error=CuttingError)
     if frames.shape != (len(conditions), 3, 3):
         raise CuttingError(f"Feed frames: expected shape ({len(conditions)}, 3, 3), found {frames.shape}.")
-    vector = getattr(model, "vector_M", None)
-    if vector is not None:
-        F = np.tile(vector, (len(conditions), 1))
-    else:
-        F = np.einsum("mij,mj->mi", frames, model.components(conditions))
+    F = model.components(conditions)
+    if model.frame == "path":
+        F = np.einsum("mij,mj->mi", frames, F)
     return np.where(conditions.cutting[:, None], F, 0.0)

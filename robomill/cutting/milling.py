@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.edge import force_over_pitch, mean_force
-from robomill.cutting.force import PLUNGE
+from robomill.cutting.force import PLUNGE, Frame
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
@@ -43,6 +43,7 @@ class ProcessForce:
     axial: bool = True
 
     kind: ClassVar[str] = ""
+    frame: ClassVar[Frame] = "path"
 
     def __post_init__(self) -> None:
         for row in (self.material, *self.alternatives):

@@ -97,5 +97,3 @@ def test_refusals():
         ConstantForce([0, 1])
     with pytest.raises(CuttingError, match="feed_normal"):
         PathForce(feed_normal="much")
-    with pytest.raises(CuttingError, match="use force_on_tool"):
-        ConstantForce([0, 1, 0]).components(steady(2))

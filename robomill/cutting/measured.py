@@ -1,0 +1,142 @@
+"""Measured force: a record over time or path length, low-pass filtered without phase shift and laid on the path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import Frame
+from robomill.errors import CuttingError
+from robomill.robot.model import Provenance
+from robomill.units import format_si
+
+Axis = Literal["time", "path"]
+#: Cut-off of the paper's dynamometer filter, Hz (its milling test, section 5).
+PAPER_CUTOFF = 50.0
+#: Order of the Butterworth filter; run forwards and backwards it has twice that and no phase.
+ORDER = 2
+FEWEST = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ForceRecord:
+    """Force ON the tool against time (s) or path length (m) from the start of the path.
+
+    x (k,) strictly increasing, F (k, 3) N in ``frame`` (feed, feed-normal, axial; or x, y, z of {M}).
+    Raises CuttingError for shapes that differ or an x that does not increase.
+    """
+
+    x: FloatArray
+    F: FloatArray
+    axis: Axis = "time"
+    frame: Frame = "path"
+    source: str = "measured force"
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        x = as_floats(self.x, f"{self.source}, {self.axis}", (None,), error=CuttingError)
+        F = as_floats(self.F, f"{self.source}, force (N)", (len(x), 3), error=CuttingError)
+        if x.ndim != 1 or F.ndim != 2 or len(x) < FEWEST:
+            raise CuttingError(f"{self.source}: found {len(x)} samples; a record needs at least {FEWEST}.")
+        if (np.diff(x) <= 0.0).any():
+            raise CuttingError(f"{self.source}: the {self.axis} does not increase at sample {np.diff(x).argmin() + 1}.")
+        object.__setattr__(self, "x", frozen(x))
+        object.__setattr__(self, "F", frozen(F))
+
+    @property
+    def rate(self) -> float:
+        """Samples per second (per metre for a path record), from the median spacing."""
+        return float(1.0 / np.median(np.diff(self.x)))
+
+    def low_pass(self, cutoff: float) -> ForceRecord:
+        """Without what oscillates faster than ``cutoff`` (Hz, or 1/m for a path record); evenly spaced, mean kept.
+
+        Butterworth run forwards and backwards, so that nothing is shifted along the path; the gain at the cut-off is
+        one half. Raises CuttingError where the record is sampled too slowly for it.
+        """
+        if not cutoff > 0.0:
+            raise CuttingError(f"{self.source}: cut-off {cutoff:g}; it must be greater than 0.", where="cutoff")
+        if self.rate <= 2.0 * cutoff:
+            unit = "per second" if self.axis == "time" else "per metre"
+            raise CuttingError(
+                f"{self.source}: {self.rate:.4g} samples {unit} are too few to filter at {cutoff:.4g} {unit}; "
+                f"it takes more than {2.0 * cutoff:.4g} (another unit of {self.axis}?), or leave the filter out.",
+                where="cutoff",
+            )
+        from scipy.signal import butter, sosfiltfilt
+
+        even = np.linspace(self.x[0], self.x[-1], round((self.x[-1] - self.x[0]) * self.rate) + 1)
+        F = np.stack([np.interp(even, self.x, column) for column in self.F.T], axis=1)
+        rate = (len(even) - 1) / (even[-1] - even[0])
+        sections = butter(ORDER, cutoff, fs=rate, output="sos")
+        # The ends are mirrored over about one period of the cut-off, as far as the record goes.
+        pad = min(len(even) - 1, max(3 * ORDER, round(rate / cutoff)))
+        return replace(self, x=even, F=sosfiltfilt(sections, F, axis=0, padlen=pad))
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredForce:
+    """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the path.
+
+    ``cutoff`` (Hz, None for no filter) applies in time; a path record is filtered at cutoff / feed, with the median
+    feed of the cut.
+    """
+
+    record: ForceRecord
+    cutoff: float | None = PAPER_CUTOFF
+    start: float = 0.0
+
+    @property
+    def frame(self) -> Frame:
+        """Axes of the record."""
+        return self.record.frame
+
+    @property
+    def provenance(self) -> Provenance:
+        """Measured, from the record's source."""
+        filtered = f", low-pass {self.cutoff:g} Hz, zero phase" if self.cutoff is not None else ", unfiltered"
+        return Provenance("measured", self.record.source + filtered)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader noticed."""
+        return self.record.notes
+
+    def components(self, conditions: CutConditions) -> FloatArray:
+        """Force ON the tool (m, 3) N, interpolated at every step; 0 on rapids.
+
+        Raises CuttingError where the path cuts before the record starts or after it ends (by more than a sample).
+        """
+        record = self.record
+        at = (conditions.t if record.axis == "time" else conditions.s) + self.start
+        cut = at[conditions.cutting]
+        if not cut.size:
+            return np.zeros((len(conditions), 3))
+        slack = 1.0 / record.rate
+        if cut.min() < record.x[0] - slack or cut.max() > record.x[-1] + slack:
+            unit = "s" if record.axis == "time" else "mm"
+            low, high, first, last = (
+                format_si(float(v), unit, 3) for v in (cut.min(), cut.max(), record.x[0], record.x[-1])
+            )
+            raise CuttingError(
+                f"{record.source}: the path cuts from {low} to {high}, the record holds {first} to {last}; "
+                "record the whole cut or set where the path starts in it.",
+                where="start",
+            )
+        if self.cutoff is not None:
+            record = record.low_pass(self.cutoff / self._speed(conditions))
+        F = np.stack([np.interp(at, record.x, column) for column in record.F.T], axis=1)
+        return np.where(conditions.cutting[:, None], F, 0.0)
+
+    def _speed(self, conditions: CutConditions) -> float:
+        """What turns Hz into the record's own frequency: 1, or the feed for a record over path length."""
+        if self.record.axis == "time":
+            return 1.0
+        feed = float(np.median(conditions.v_f[conditions.cutting]))
+        if feed <= 0.0:
+            raise CuttingError(f"{self.record.source}: the feed is 0, so a cut-off in Hz has no length; give a feed.")
+        return feed

@@ -1,0 +1,95 @@
+"""Measured force: the filter keeps the mean and the place, takes the tooth passing out, and lies on the path."""
+
+import numpy as np
+import pytest
+
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import feed_frame, force_on_tool
+from robomill.cutting.measured import ForceRecord, MeasuredForce
+from robomill.errors import CuttingError
+
+T = np.arange(0.0, 4.0, 1e-3)
+
+
+def record(feed_normal, x=T, **changes):
+    F = np.zeros((len(x), 3))
+    F[:, 1] = feed_normal
+    return ForceRecord(x, F, **changes)
+
+
+def test_filter_keeps_the_mean_and_takes_out_the_tooth_passing():
+    tooth = 100.0 + 60.0 * np.sin(2 * np.pi * 300.0 * T)
+    smooth = record(tooth).low_pass(50.0)
+    np.testing.assert_allclose(smooth.F[200:-200, 1], 100.0, atol=0.2)
+
+
+@pytest.mark.parametrize("frequency", [5.0, 20.0, 50.0, 120.0])
+def test_gain_is_that_of_the_butterworth_run_twice_and_nothing_is_shifted(frequency):
+    wave = np.cos(2 * np.pi * frequency * T)
+    smooth = record(wave).low_pass(50.0)
+    middle = slice(500, -500)
+    # Bilinear transform: frequencies as tan(pi f / rate).
+    warped = np.tan(np.pi * frequency / 1000) / np.tan(np.pi * 50 / 1000)
+    gain = 1.0 / (1.0 + warped**4)  # |H|^2 of a second-order Butterworth
+    np.testing.assert_allclose(smooth.F[middle, 1], gain * wave[middle], atol=1e-6)
+
+
+def test_a_step_keeps_its_place():
+    step = np.where(T >= 2.0, 100.0, 0.0)
+    smooth = record(step).low_pass(50.0).F[:, 1]
+    assert T[np.argmin(np.abs(smooth - 50.0))] == pytest.approx(2.0, abs=1.1e-3)
+
+
+def test_uneven_sampling_is_evened_out():
+    rng = np.random.default_rng(3)
+    x = np.sort(T + rng.uniform(-2e-4, 2e-4, len(T)))
+    wave = 100 + 30 * np.sin(2 * np.pi * 2 * x)
+    smooth = record(wave, x).low_pass(50.0)
+    np.testing.assert_allclose(smooth.F[300:-300, 1], 100 + 30 * np.sin(2 * np.pi * 2 * smooth.x[300:-300]), atol=0.05)
+
+
+def test_laid_on_the_path_by_time_and_by_length():
+    m = 21
+    t = np.linspace(0, 2, m)
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=np.arange(m) > 0, t=t, s=0.03 * t)
+    ramp = MeasuredForce(record(50.0 * T), start=0.5)
+    np.testing.assert_allclose(ramp.components(conditions)[1:, 1], 50 * (t[1:] + 0.5), rtol=2e-3)
+    np.testing.assert_array_equal(ramp.components(conditions)[0], 0.0)
+    by_length = MeasuredForce(record(50.0 * T, 0.03 * T, axis="path"), start=0.015)
+    np.testing.assert_allclose(by_length.components(conditions), ramp.components(conditions), rtol=1e-9, atol=1e-9)
+    raw = MeasuredForce(record(50.0 * T), cutoff=None)
+    np.testing.assert_allclose(raw.components(conditions)[1:, 1], 50 * t[1:], rtol=1e-12)
+    assert raw.provenance.source.endswith("unfiltered")
+    assert "50 Hz, zero phase" in ramp.provenance.source
+
+
+def test_in_the_robot_frame_or_along_the_path():
+    p = np.array([[0, 0, 0], [0, 1, 0]], float)
+    frames = feed_frame(p, [[0, 0, 1.0]] * 2)
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True], t=[0.0, 1.0])
+    for frame, expected in (("M", [0, 100, 0]), ("path", [-100, 0, 0])):
+        F = force_on_tool(MeasuredForce(record(100.0, frame=frame)), conditions, frames)
+        np.testing.assert_allclose(F, [[0, 0, 0], expected], atol=1e-6)
+
+
+def test_short_records_filter_too():
+    assert record([1.0, 2.0, 1.0, 2.0], [0, 1e-3, 2e-3, 3e-3]).low_pass(50.0).F.shape == (4, 3)
+
+
+def test_refusals():
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True, True], t=[0.0, 1.0, 5.0])
+    with pytest.raises(CuttingError, match=r"cuts from 1.000 s to 5.000 s, the record holds 0.000 s to 3.999 s"):
+        MeasuredForce(record(100.0)).components(conditions)
+    with pytest.raises(CuttingError, match=r"1 samples per second are too few to filter at 50 per second"):
+        MeasuredForce(record(100.0, 1e3 * T)).components(conditions)
+    with pytest.raises(CuttingError, match="must be greater than 0"):
+        record(100.0).low_pass(0.0)
+    with pytest.raises(CuttingError, match="found 2 samples"):
+        ForceRecord([0.0, 1.0], np.zeros((2, 3)))
+    with pytest.raises(CuttingError, match="does not increase at sample 2"):
+        ForceRecord([0.0, 1.0, 1.0, 2.0], np.zeros((4, 3)))
+    with pytest.raises(CuttingError, match="finite numbers"):
+        ForceRecord([0.0, 1.0, 2.0, 3.0], np.full((4, 3), np.nan))
+    still = CutConditions.steady(0.0, 200.0, 2e-3, s=[0.0, 0.01])
+    with pytest.raises(CuttingError, match="the feed is 0"):
+        MeasuredForce(record(100.0, 0.03 * T, axis="path")).components(still)

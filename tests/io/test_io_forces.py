@@ -1,0 +1,96 @@
+"""Measured force files: what is read, and one sentence with row and column for what is not."""
+
+import numpy as np
+import pytest
+
+from robomill.errors import CuttingError
+from robomill.io.forces import read_forces
+
+ROWS = [f"{0.001 * i:.3f},{-60 + i},{100 + i},{-20}" for i in range(12)]
+HEAD = "t_s,F_feed_N,F_feed_normal_N,F_axial_N"
+
+
+def text(rows=ROWS, head=HEAD):
+    return "\n".join([head, *rows]) + "\n"
+
+
+def test_reads_a_file_its_text_and_its_bytes(tmp_path):
+    path = tmp_path / "cut.csv"
+    path.write_text(text(), encoding="utf-8")
+    for given in (path, str(path), text(), text().encode(), b"\xef\xbb\xbf" + text().encode()):
+        record = read_forces(given)
+        assert (record.axis, record.frame, record.F.shape, record.notes) == ("time", "path", (12, 3), ())
+        np.testing.assert_allclose(record.x, 0.001 * np.arange(12))
+        np.testing.assert_allclose(record.F[3], [-57, 103, -20])
+    assert read_forces(path).source == "cut.csv"
+
+
+def test_the_force_on_the_part_is_turned_round():
+    np.testing.assert_array_equal(read_forces(text(), on="part").F, -read_forces(text()).F)
+
+
+def test_path_length_in_mm_and_robot_axes_with_decimal_commas():
+    rows = [f"{0.5 * i};{100 + i},5".replace(".", ",") for i in range(6)]
+    record = read_forces(text(rows, "s_mm;F_y_N"))
+    assert (record.axis, record.frame) == ("path", "M")
+    np.testing.assert_allclose(record.x, 0.5e-3 * np.arange(6))
+    np.testing.assert_allclose(record.F[2], [0, 102.5, 0])
+    assert [note.split(": ")[1] for note in record.notes] == [
+        "no x force was recorded; it is taken as 0.",
+        "no z force was recorded; it is taken as 0.",
+    ]
+
+
+def test_comments_blank_lines_and_columns_that_are_not_used():
+    rows = ["# dynamometer", *[f"{row},ok {i}" for i, row in enumerate(ROWS)], ""]
+    record = read_forces(text(rows, HEAD + ",remark"))
+    assert record.notes == ("Force file: the column 'remark' is not used.",)
+    np.testing.assert_allclose(record.F[0], [-60, 100, -20])
+
+
+def changed(i, row):
+    return text([*ROWS[:i], row, *ROWS[i + 1 :]])
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (changed(4, "0.004,-56,abc,-20"), "row 6, column F_feed_normal_N: expected a number, found 'abc'"),
+        (changed(4, "0.004,nan,104,-20"), "row 6, column F_feed_N: expected a finite number, found nan"),
+        (changed(4, "0.004,1e999,104,-20"), "row 6, column F_feed_N: expected a finite number, found 1e999"),
+        (changed(4, "0.004,-56,,-20"), "row 6, column F_feed_normal_N: the cell is empty"),
+        (changed(4, "0.004,-56"), "row 6, column F_feed_normal_N: the cell is empty"),
+        (changed(4, "0.003,-56,104,-20"), "row 6, column t_s: 0.003 repeats the value before it (0.003)"),
+        (changed(4, "0.001,-56,104,-20"), "row 6, column t_s: 0.001 is smaller than the value before it (0.003)"),
+        (text(ROWS[:6] + [r.replace("0.0", "0.1") for r in ROWS[6:]]), "row 8, column t_s: a gap from 0.005 to 0.106"),
+        (text(["0.0,1,2,3"] * 2), "found 2 rows of numbers; expected a line of column names and at least 4 rows"),
+        ("\n", "found 0 rows of numbers"),
+        (b"\x89PNG\r\n\x1a\n\0\0", "not a text file"),
+        (b"a\0b\n", "not a text file"),
+        (text(head="time,F_feed_N,F_feed_normal_N,F_axial_N"), "one column of t_s, time_s, s_mm, s_m, found time"),
+        (text(head="t_s,s_mm,F_feed_normal_N,F_axial_N"), "expected one column of t_s"),
+        (text(head="t_s,Fx,Fy,Fz"), "expected columns of either F_feed_N"),
+        (text(head="t_s,F_x_N,F_feed_normal_N,F_axial_N"), "expected columns of either F_feed_N"),
+        (text(head="t_s,F_feed_N,F_feed_N,F_axial_N"), "the column 'f_feed_n' is there twice"),
+        (text([f"{0.001 * i},{110432 + i}" for i in range(9)], "t_s,F_feed_normal_N"),
+         "column F_feed_normal_N, all rows: the mean size is 1.104e+05 N, expected 1 to 20000 N; is it in mN?"),
+        (text([f"{0.001 * i},{0.11}" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0.11 N"),
+        (text([f"{0.001 * i},0" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0 N"),
+    ],
+)  # fmt: skip
+def test_refusals_name_row_and_column(given, sentence):
+    with pytest.raises(CuttingError) as refusal:
+        read_forces(given, source="cut.csv")
+    assert sentence in str(refusal.value)
+    assert str(refusal.value).startswith("cut.csv")
+    assert "\n" not in str(refusal.value)
+
+
+def test_sizes_can_be_vouched_for():
+    rows = [f"{0.001 * i},0.11" for i in range(9)]
+    assert read_forces(text(rows, "t_s,F_feed_normal_N"), trust_units=True).F[0, 1] == 0.11
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(CuttingError, match=r"none.csv: the file cannot be read \(FileNotFoundError\)"):
+        read_forces(tmp_path / "none.csv")
