@@ -12,15 +12,17 @@ A rotation about y by phi turns the complex number x - i z by exp(i phi), which 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from robomill.arrays import FloatArray, frozen
+from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
 
 SQUARE = 1e-9  # rad: how square or parallel axes must be
 CROSSING = 1e-9  # m: how close axes must pass to count as crossing
+ROUNDING = 1e-12  # how far below zero a square may come out and still be zero
 SIDES = np.array([1.0, -1.0])
 
 
@@ -51,7 +53,14 @@ class Decoupled:
     c_w: FloatArray
     direction: FloatArray
 
+    @property
+    def spindle_on_last_axis(self) -> bool:
+        """True where the tool axis is axis 6 itself: the spin about the tool is joint 6 and moves nothing else."""
+        along = abs(abs(self.c_u[2]) - 1.0) < SQUARE
+        return self.n == 6 and along and bool(np.hypot(self.c_w[0], self.c_w[1]) < CROSSING)
 
+
+@lru_cache(maxsize=64)
 def decoupled(robot: Robot) -> Decoupled | None:
     """The closed-form structure of ``robot``, or None where it has none."""
     if robot.n not in (5, 6) or robot.chain.prismatic.any():
@@ -146,22 +155,26 @@ def unit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.where(some, x * scale, 1.0), y * scale
 
 
-def solutions(arm: Decoupled, T_MT: FloatArray) -> FloatArray:
-    """theta (8, n, m) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, each +,-; angles in (-pi, pi].
+def solutions(arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """(theta (m, 8, n), possible (m, 8)) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, each +, -; angles in (-pi, pi].
 
-    Where a pose is out of reach the nearest attempt is given: only a check by forward kinematics tells.
+    Where the geometry has no solution the nearest attempt is given and ``possible`` is False; a check by forward
+    kinematics has the last word.
     """
     R = T_MT[:, :3, :3]
     p_S = arm.S @ ((T_MT[:, :3, 3] - R @ arm.c_w) - arm.origin).T
     side = SIDES[:, None]
     # Shoulder (2, m): axis 1 turns the arm's plane through the wrist centre.
     rho2 = p_S[0] ** 2 + p_S[1] ** 2
-    x = side * np.sqrt(np.maximum(rho2 - arm.h**2, 0.0))
+    under = rho2 - arm.h**2
+    x = side * np.sqrt(np.maximum(under, 0.0))
     c_1, s_1 = unit(p_S[0] * x + p_S[1] * arm.h, p_S[1] * x - p_S[0] * arm.h)
     # Elbow (2, 2, m): two links in the plane.
     L_2, L_3 = np.hypot(*arm.l_2), np.hypot(*arm.l_3)
     r_x, r_z = x - arm.a_1, p_S[2]
-    cos_g = np.clip((r_x**2 + r_z**2 - L_2**2 - L_3**2) / (2 * L_2 * L_3), -1.0, 1.0)
+    cos_g = (r_x**2 + r_z**2 - L_2**2 - L_3**2) / (2 * L_2 * L_3)
+    placed = (under >= -ROUNDING) & (np.abs(cos_g) <= 1.0 + ROUNDING)
+    cos_g = np.clip(cos_g, -1.0, 1.0)
     sin_g = SIDES[None, :, None] * (side * np.sqrt((1.0 - cos_g) * (1.0 + cos_g)))[:, None]
     cos_g = cos_g[:, None]
     bend = complex(*arm.l_2) * complex(*arm.l_3).conjugate() / (L_2 * L_3)
@@ -173,7 +186,9 @@ def solutions(arm: Decoupled, T_MT: FloatArray) -> FloatArray:
     # Wrist (2, 2, 2, m): the direction u must come to v.
     turn = (c_1[:, None], s_1[:, None], c_2 * c_3 - s_2 * s_3, s_2 * c_3 + c_2 * s_3)
     v = _into_wrist(arm, turn, arm.S @ (R @ arm.c_u).T)
-    x_w = SIDES[:, None] * np.sqrt(np.maximum(v[0] ** 2 + v[1] ** 2 - arm.u[1] ** 2, 0.0))[:, :, None]
+    under = v[0] ** 2 + v[1] ** 2 - arm.u[1] ** 2
+    possible = np.broadcast_to((placed[:, None] & (under >= -ROUNDING))[:, :, None], (2, 2, 2, len(T_MT)))
+    x_w = SIDES[:, None] * np.sqrt(np.maximum(under, 0.0))[:, :, None]
     v = [component[:, :, None] for component in v]
     c_5, s_5 = unit(v[2] * arm.u[2] + x_w * arm.u[0], x_w * arm.u[2] - v[2] * arm.u[0])
     c_4, s_4 = unit(v[0] * x_w + v[1] * arm.u[1], v[1] * x_w - v[0] * arm.u[1])
@@ -191,7 +206,7 @@ def solutions(arm: Decoupled, T_MT: FloatArray) -> FloatArray:
         across = g_x * arm.gn[0] + g_y * arm.gn[1] + g_z * arm.gn[2]
         theta[..., 5, :] = np.arctan2(across, g_x * arm.g[0] + g_y * arm.g[1] + g_z * arm.g[2])
     theta *= arm.direction[:, None]
-    return theta.reshape(8, arm.n, -1)
+    return theta.reshape(8, arm.n, -1).transpose(2, 0, 1), possible.reshape(8, -1).T
 
 
 def _into_wrist(arm: Decoupled, turn: tuple[FloatArray, ...], d: FloatArray) -> list[FloatArray]:

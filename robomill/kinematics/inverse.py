@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -9,13 +10,15 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.kinematics.choice import choose, choose_spin, join_path, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled, solutions
-from robomill.kinematics.forward import BLOCK, tool_pose
-from robomill.kinematics.result import LIMIT_SLACK, RESIDUAL, IKResult, overshoot, wrap
+from robomill.kinematics.forward import BLOCK
+from robomill.kinematics.numeric import solve_numerically
+from robomill.kinematics.result import IKResult, Mode, check, task_mode
 from robomill.robot.model import Robot
 
-# Order in which shoulder and elbow are tried: as at home, other elbow, other shoulder, both.
-ARM_ORDER = np.array([0, 0, 1, 1, 2, 2, 3, 3])
+Spin = float | Literal["least motion", "fixed"]
+Found = tuple[FloatArray, IntArray, FloatArray | None]
 
 
 def inverse_kinematics(
@@ -24,57 +27,85 @@ def inverse_kinematics(
     *,
     branch: str | None = None,
     near: ArrayLike | Literal["path"] | None = None,
+    spin: Spin = "least motion",
 ) -> IKResult:
     """Configurations theta (..., n) that bring the tool to T_MT (..., 4, 4), within the joint limits.
 
-    Five axes: the tip and the tool axis z_T count, the spin about the tool axis is free. ``branch`` keeps the solutions
-    whose name contains every word given ("elbow down", "front, wrist -"). ``near`` (..., n) takes the solution nearest
-    to a configuration; "path" joins the poses of the last batch axis with the least joint motion. Otherwise shoulder
-    and elbow stand as at home where that is within limits, and the wrist nearest to home.
+    What of the pose counts: up to four joints the tip only (a planar arm reaches points of its plane); five joints the
+    tip and the tool axis z_T; six and seven joints the same, and the spin about the tool axis, which is free in
+    milling, follows ``spin``: "least motion" (the turn that moves the joints least from ``near`` or from home; along a
+    path one turn for the whole path), "fixed" (the pose as given, all six coordinates) or an angle in rad by which the
+    given pose is turned about z_T.
 
-    A pose is reached when forward kinematics meets it to 1e-9 m and 1e-9 rad; otherwise theta is NaN and
-    ``reason`` says why. Raises KinematicsError for poses that are not numbers or an unknown branch.
+    Which solution: ``branch`` keeps those whose name contains every part given ("elbow down", "front, wrist -").
+    ``near`` (..., n) takes the one nearest to a configuration; "path" joins the poses of the last batch axis with the
+    least joint motion. Otherwise shoulder and elbow stand as at home where the limits allow, the wrist nearest to home.
+
+    Decoupled arms are solved in closed form, others numerically. A pose is reached when forward kinematics meets it to
+    1e-9 m and 1e-9 rad; otherwise theta is NaN and ``reason`` says why. Raises KinematicsError for poses that are not
+    numbers, an unknown branch, or a branch asked of an arm without named ones.
     """
     T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
     lead = T_MT.shape[:-2]
     flat = T_MT.reshape(-1, 4, 4)
+    along_path = isinstance(near, str)
+    if along_path and (near != "path" or not lead):
+        raise KinematicsError(f"near: expected a configuration, or 'path' for a batch of poses; found {near!r}.")
+    goal = robot.home[None] if near is None or along_path else _reference(robot, near, lead)
+    free_spin = robot.n >= 6 and spin == "least motion"
+    mode: Mode = "axis" if free_spin else task_mode(robot)
+    if robot.n >= 6 and not isinstance(spin, str):
+        flat = spun(flat, float(spin))
+    elif isinstance(spin, str) and spin not in ("least motion", "fixed"):
+        raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
     arm = decoupled(robot)
     if arm is None:
-        raise KinematicsError(f"{robot.name}: no closed-form inverse kinematics for this arm.")
-    wanted = branch_mask(branch)
-    theta = np.empty((len(flat), robot.n))
-    index = np.empty(len(flat), dtype=np.int64)
-    if isinstance(near, str):
-        if near != "path":
-            raise KinematicsError(f"near: expected a configuration or 'path', found {near!r}.")
-        reference: FloatArray | None = None
+        if branch is not None:
+            raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
+        theta, index, turn = _numerical(robot, flat, goal, mode, lead, along_path)
+        names: tuple[str, ...] = ("numerical",)
     else:
-        reference = None if near is None else _reference(robot, near, lead)
-    for start in range(0, len(flat), BLOCK):
-        block = slice(start, start + BLOCK)
-        every = solutions(arm, flat[block]).transpose(2, 0, 1)
-        goal = robot.home if reference is None else reference[block, None, :]
-        theta[block], index[block] = choose(robot, every, goal, wanted, reference is None)
-    sound, residual, angle = check(robot, theta, flat)
+        wanted, names = branch_mask(branch), branch_names()
+        if along_path:
+            theta, index, turn = _along_path(robot, arm, flat, lead[-1], wanted, free_spin)
+        else:
+            theta, index, turn = _pose_by_pose(robot, arm, flat, goal, wanted, near is None, free_spin)
+    sound, residual, angle = check(robot, theta, flat, mode)
     reached = sound & (index >= 0)
-    theta[~reached] = np.nan
-    index[~reached] = -1
     return IKResult(
         robot=robot,
-        T_MT=T_MT,
-        theta=theta.reshape(*lead, robot.n),
+        T_MT=flat.reshape(*lead, 4, 4),
+        theta=np.where(reached[:, None], theta, np.nan).reshape(*lead, robot.n),
         reached=reached.reshape(lead),
         residual=residual.reshape(lead),
         residual_angle=angle.reshape(lead),
-        branch_index=index.reshape(lead),
-        branch_names=branch_names(),
+        branch_index=np.where(reached, index, -1).reshape(lead),
+        branch_names=names,
         asked_branch=branch,
+        free_spin=free_spin,
+        spin=None if turn is None else turn.reshape(lead),
     )
 
 
-def _reference(robot: Robot, near: ArrayLike, lead: tuple[int, ...]) -> FloatArray:
-    value = as_floats(near, "near", (robot.n,), error=KinematicsError)
-    return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
+def all_branches(robot: Robot, T_MT: ArrayLike) -> tuple[FloatArray, BoolArray]:
+    """(theta (..., 8, n), sound (..., 8)): every closed-form solution, limits left aside, in the order of ``branch_names()``.
+
+    ``sound`` says which meet the pose by forward kinematics to 1e-9 m and rad; angles are in (-pi, pi]. Six axes: the
+    whole pose. Raises KinematicsError where the arm has no closed form.
+    """
+    T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
+    arm = decoupled(robot)
+    if arm is None:
+        raise KinematicsError(f"{robot.name}: its wrist axes do not cross as a closed form needs; use inverse_kinematics.")
+    flat = T_MT.reshape(-1, 4, 4)
+    theta = np.empty((len(flat), 8, robot.n))
+    sound = np.empty((len(flat), 8), dtype=bool)
+    for start in range(0, len(flat), BLOCK):
+        block = slice(start, start + BLOCK)
+        theta[block], possible = solutions(arm, flat[block])
+        sound[block] = possible & check(robot, theta[block], flat[block, None], task_mode(robot))[0]
+    lead = T_MT.shape[:-2]
+    return theta.reshape(*lead, 8, robot.n), sound.reshape(*lead, 8)
 
 
 def branch_mask(branch: str | None) -> BoolArray:
@@ -85,40 +116,74 @@ def branch_mask(branch: str | None) -> BoolArray:
     parts = [part.strip() for part in branch.split(",") if part.strip()]
     mask = np.array([all(part in name.split(", ") for part in parts) for name in names])
     if not parts or not mask.any():
-        raise KinematicsError(f"branch {branch!r}: expected some of 'front', 'back', 'elbow up', 'elbow down', 'wrist +', 'wrist -', joined by commas.")
+        raise KinematicsError(
+            f"branch {branch!r}: expected some of front, back, elbow up, elbow down, wrist +, wrist -, joined by commas."
+        )
     return mask
 
 
-def choose(
-    robot: Robot, every: FloatArray, goal: FloatArray, wanted: BoolArray, arm_first: bool
-) -> tuple[FloatArray, IntArray]:
-    """(theta (m, n), index (m,)) of the solutions every (m, 8, n) within limits that is nearest ``goal``; index -1: none.
-
-    With ``arm_first`` the order of shoulder and elbow goes before nearness.
-    """
-    turned = wrap(every, robot.limits, goal)
-    within = (np.abs(overshoot(robot, turned)) <= LIMIT_SLACK).all(axis=-1)
-    cost = ((turned - goal) ** 2).sum(axis=-1)
-    if arm_first:
-        cost = cost + 1e6 * ARM_ORDER
-    cost = np.where(within & wanted, cost, np.inf)
-    index = np.argmin(cost, axis=-1)
-    best = np.take_along_axis(turned, index[:, None, None], axis=1)[:, 0]
-    found = np.isfinite(np.take_along_axis(cost, index[:, None], axis=1)[:, 0])
-    return np.clip(best, robot.limits[:, 0], robot.limits[:, 1]), np.where(found, index, -1)
+def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
+    value = as_floats(near, "near", (robot.n,), error=KinematicsError)  # type: ignore[arg-type]
+    return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
 
 
-def check(robot: Robot, theta: FloatArray, T_MT: FloatArray) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """(sound, residual m, residual_angle rad), each (...,): forward kinematics of theta (..., n) against T_MT (..., 4, 4).
+def _pose_by_pose(
+    robot: Robot, arm: Decoupled, flat: FloatArray, goal: FloatArray, wanted: BoolArray, arm_first: bool, free_spin: bool
+) -> Found:
+    theta = np.empty((len(flat), robot.n))
+    index = np.empty(len(flat), dtype=np.int64)
+    turn = np.zeros(len(flat)) if free_spin else None
+    for start in range(0, len(flat), BLOCK):
+        block = slice(start, start + BLOCK)
+        target = (goal if len(goal) == 1 else goal[block])[:, None, :]
+        if free_spin and not arm.spindle_on_last_axis:
+            found = choose_spin(robot, partial(solutions, arm), flat[block], target, wanted, arm_first)
+            theta[block], index[block], turn[block] = found  # type: ignore[index]
+            continue
+        every, possible = solutions(arm, flat[block])
+        if free_spin:
+            every[..., 5] = target[..., 5]
+        theta[block], index[block], _ = choose(robot, every, possible & wanted, target, arm_first)
+    return theta, index, turn
 
-    Up to five axes only the tool axis is compared.
-    """
-    found = tool_pose(robot, theta)
-    residual = np.linalg.norm(found[..., :3, 3] - T_MT[..., :3, 3], axis=-1)
-    angle = np.linalg.norm(found[..., :3, 2] - T_MT[..., :3, 2], axis=-1)
-    return (residual <= RESIDUAL) & (angle <= RESIDUAL), residual, angle
+
+def _along_path(
+    robot: Robot, arm: Decoupled, flat: FloatArray, length: int, wanted: BoolArray, free_spin: bool
+) -> Found:
+    """Each run of ``length`` poses joined; with a free spin, one spin a run: most poses reached, then least motion."""
+    theta = np.empty((len(flat), robot.n))
+    index = np.empty(len(flat), dtype=np.int64)
+    turn = np.zeros(len(flat)) if free_spin else None
+    spins = np.radians(np.arange(0.0, 360.0, 15.0)) if free_spin and not arm.spindle_on_last_axis else np.zeros(1)
+    for start in range(0, len(flat), length):
+        run = slice(start, start + length)
+        best: tuple[float, float] | None = None
+        for angle in spins:
+            every, possible = solutions(arm, spun(flat[run], float(angle)))
+            if free_spin and arm.spindle_on_last_axis:
+                every[..., 5] = robot.home[5]
+            found, which, motion = join_path(robot, every, possible & wanted, robot.home)
+            score = (float((which < 0).sum()), motion)
+            if best is None or score < best:
+                best = score
+                theta[run], index[run] = found, which
+                if turn is not None:
+                    turn[run] = angle
+    return theta, index, turn
 
 
-def structure(robot: Robot) -> Decoupled | None:
-    """The closed-form structure of the arm, None where the numeric solver is used."""
-    return decoupled(robot)
+def _numerical(
+    robot: Robot, flat: FloatArray, goal: FloatArray, mode: Mode, lead: tuple[int, ...], along_path: bool
+) -> Found:
+    if not along_path:
+        theta, found = solve_numerically(robot, flat, goal, mode)
+        return theta, np.where(found, 0, -1), None
+    theta = np.empty((len(flat), robot.n))
+    found = np.empty(len(flat), dtype=bool)
+    length = lead[-1]
+    for start in range(0, len(flat), length):
+        near = goal
+        for i in range(start, start + length):
+            theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, flat[i : i + 1], near, mode)
+            near = theta[i : i + 1] if found[i] else near
+    return theta, np.where(found, 0, -1), None

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.kinematics.decoupled import decoupled, shortfall, solutions
+from robomill.kinematics.forward import tool_pose
+from robomill.kinematics.transforms import rotation_z, transform
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
+Mode = Literal["position", "axis", "pose"]
 RESIDUAL = 1e-9  # m and rad: an answer further off than this is not an answer
 LIMIT_SLACK = 1e-10  # rad or m past a limit that is still rounding
 
@@ -22,7 +25,7 @@ class IKResult:
 
     theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m and
     residual_angle (...,) rad of the answer or of the best attempt; branch_index (...,) into branch_names, -1 where not
-    reached. ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
+    reached; spin (...,) rad is the turn about the tool axis that was chosen, None where the arm does not choose one. ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
     """
 
     robot: Robot
@@ -34,6 +37,8 @@ class IKResult:
     branch_index: IntArray
     branch_names: tuple[str, ...]
     asked_branch: str | None = None
+    free_spin: bool = False
+    spin: FloatArray | None = None
 
     @property
     def branch(self) -> Any:
@@ -45,39 +50,74 @@ class IKResult:
         """Why the pose at ``index`` of the batch is not reached, in words; "" if it is."""
         if bool(self.reached[index]):
             return ""
-        return explain(self.robot, self.T_MT[index], self.asked_branch, float(self.residual[index]))
+        return explain(self, self.T_MT[index], float(self.residual[index]))
 
 
-def explain(robot: Robot, T_MT: FloatArray, branch: str | None, residual: float) -> str:
+def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
     """One clause on a pose (4, 4) that was not reached: the joint at fault, or how far beyond reach."""
+    robot = result.robot
     arm = decoupled(robot)
     if arm is None:
-        if residual < RESIDUAL:
-            return "the tool axis cannot be brought to the commanded direction"
-        return f"no configuration found; the nearest attempt stays {format_si(residual, 'mm')} away"
-    missing = shortfall(arm, T_MT)
-    if missing:
-        return missing
-    candidates = solutions(arm, T_MT[None])[:, :, 0]
-    over = overshoot(robot, wrap(candidates, robot.limits, robot.home))
-    from robomill.kinematics.inverse import check  # the check needs forward kinematics only; avoids a cycle
-
-    sound = check(robot, candidates, np.broadcast_to(T_MT, (8, 4, 4)))[0]
+        return f"no configuration within the limits found; the nearest attempt stays {format_si(residual, 'mm')} away"
+    if result.free_spin:
+        angles = np.radians(np.arange(0.0, 360.0, 10.0))
+        spun = T_MT @ transform(rotation_z(angles), np.zeros(3))
+        missing = [shortfall(arm, T) for T in spun]
+        if all(missing):
+            return missing[0]
+    else:
+        spun = T_MT[None]
+        missing = [shortfall(arm, T_MT)]
+        if missing[0]:
+            return missing[0]
+    every, possible = solutions(arm, spun)
+    candidates = every.reshape(-1, robot.n)
+    poses = np.repeat(spun, 8, axis=0)
+    if result.free_spin and arm.spindle_on_last_axis:
+        candidates[:, 5] = robot.home[5]
+    sound = possible.ravel() & check(robot, candidates, poses, "axis" if result.free_spin else task_mode(robot))[0]
     if not sound.any():
         return "the wrist cannot bring the tool axis to the commanded direction"
+    turned = wrap(candidates, robot.limits, robot.home)
+    over = overshoot(robot, turned)
     total = np.where(sound, np.abs(over).max(axis=1), np.inf)
     best = int(np.argmin(total))
     if total[best] <= LIMIT_SLACK:
-        return f"only another branch than {branch!r} reaches it" if branch else ""
-    joint = int(np.argmax(np.abs(over[best])))
-    value = wrap(candidates[best], robot.limits, robot.home)[joint]
-    limit = robot.limits[joint, 0 if over[best, joint] < 0 else 1]
+        return f"only another branch than {result.asked_branch!r} reaches it"
+    return _past_limit(robot, turned[best], over[best])
+
+
+def _past_limit(robot: Robot, theta: FloatArray, over: FloatArray) -> str:
+    joint = int(np.argmax(np.abs(over)))
+    limit = robot.limits[joint, 0 if over[joint] < 0 else 1]
     unit = "mm" if robot.chain.prismatic[joint] else "deg"
-    digits = 1
     return (
-        f"joint {robot.joint_numbers[joint]} would need {format_si(value, unit, digits)}, "
-        f"{format_si(abs(over[best, joint]), unit, digits)} past its limit of {format_si(limit, unit, digits)}"
+        f"joint {robot.joint_numbers[joint]} would need {format_si(theta[joint], unit, 1)}, "
+        f"{format_si(abs(over[joint]), unit, 1)} past its limit of {format_si(limit, unit, 1)}"
     )
+
+
+def task_mode(robot: Robot) -> Mode:
+    """What of a pose counts for an arm: "position" up to four joints, "axis" for five, "pose" (all of it) from six."""
+    return "position" if robot.n < 5 else "axis" if robot.n == 5 else "pose"
+
+
+def check(
+    robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode
+) -> tuple[BoolArray, FloatArray, FloatArray]:
+    """(sound, residual m, residual_angle rad), each (...,): forward kinematics of theta (..., n) against T_MT (..., 4, 4).
+
+    residual_angle is of the whole rotation ("pose") or of the tool axis; it does not count where only position does.
+    """
+    found = tool_pose(robot, theta)
+    residual = np.linalg.norm(found[..., :3, 3] - T_MT[..., :3, 3], axis=-1)
+    if mode == "pose":
+        turned = found[..., :3, :3] - T_MT[..., :3, :3]
+        angle = 2.0 * np.arcsin(np.minimum(np.sqrt((turned**2).sum(axis=(-1, -2)) / 8.0), 1.0))
+    else:
+        angle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(found[..., :3, 2] - T_MT[..., :3, 2], axis=-1), 1.0))
+    close = residual <= RESIDUAL
+    return (close if mode == "position" else close & (angle <= RESIDUAL)), residual, angle
 
 
 def overshoot(robot: Robot, theta: FloatArray) -> FloatArray:

@@ -1,0 +1,125 @@
+"""Inverse kinematics of any arm: damped least squares on whole batches, from several starts, within the limits.
+
+The damping follows the error (Sugihara, IEEE T-RO 27 (2011) 984: half the squared error plus a small bias), so steps are
+careful far away and Newton's near the solution.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.forward import BLOCK, tool_pose
+from robomill.kinematics.jacobian import pose_and_jacobian
+from robomill.kinematics.result import Mode
+from robomill.robot.model import Robot
+
+STARTS = 64  # starts a pose is given before it counts as not found
+LIBRARY = 8192  # random configurations from which the nearest serve as starts
+STEPS = 40
+TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
+LONGEST_STEP = 0.6  # rad (or m) a joint may move in one step
+
+
+def solve_numerically(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
+    """(theta (m, n), found (m,)) for poses T_MT (m, 4, 4), started from ``near`` (1 or m, n) and then from near misses.
+
+    ``mode`` says what of the pose counts, as in ``result.task_mode``. Deterministic: the library of starts has a fixed seed.
+    """
+    m = len(T_MT)
+    theta = np.empty((m, robot.n))
+    found = np.empty(m, dtype=bool)
+    for start in range(0, m, BLOCK):
+        block = slice(start, start + BLOCK)
+        reference = near if len(near) == 1 else near[block]
+        theta[block], found[block] = _solve_block(robot, T_MT[block], reference, mode)
+    return theta, found
+
+
+def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
+    m = len(T_MT)
+    theta = np.array(np.broadcast_to(near, (m, robot.n)))
+    theta, error = descend(robot, T_MT, theta, mode)
+    starts: FloatArray | None = None
+    for attempt in range(STARTS):
+        open_ = np.flatnonzero(error > TIGHT)
+        if not open_.size:
+            break
+        if starts is None:
+            starts, first = _starts(robot, T_MT[open_], mode), open_
+        rows = np.searchsorted(first, open_)
+        trial, remains = descend(robot, T_MT[open_], starts[rows, attempt], mode)
+        better = remains < error[open_]
+        theta[open_[better]], error[open_[better]] = trial[better], remains[better]
+    return theta, error <= TIGHT
+
+
+def descend(robot: Robot, T_MT: FloatArray, theta: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:
+    """(theta (m, n), error (m,)) after damped least squares from theta (m, n); coordinates stay within the limits."""
+    theta = np.clip(theta, robot.limits[:, 0], robot.limits[:, 1])
+    error = np.full(len(theta), np.inf)
+    active = np.arange(len(theta))
+    for step in range(STEPS + 1):
+        pose, J = pose_and_jacobian(robot, theta[active])
+        e, J = _task(pose, J, T_MT[active], mode)
+        size = np.abs(e).max(axis=1)
+        error[active] = size
+        going = size > TIGHT
+        if step == STEPS or not going.any():
+            break
+        active, e, J = active[going], e[going], J[going]
+        damping = 0.5 * (e**2).sum(axis=1) + 1e-13
+        JJt = J @ np.swapaxes(J, 1, 2) + damping[:, None, None] * np.eye(J.shape[1])
+        move = np.einsum("mkn,mk->mn", J, np.linalg.solve(JJt, e[..., None])[..., 0])
+        move *= np.minimum(1.0, LONGEST_STEP / np.maximum(np.abs(move).max(axis=1), 1e-300))[:, None]
+        theta[active] = np.clip(theta[active] + move, robot.limits[:, 0], robot.limits[:, 1])
+    return theta, error
+
+
+def _task(pose: FloatArray, J: FloatArray, T_MT: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:
+    """(error (m, k), Jacobian (m, k, n)) of what counts; angles as the tangent-plane components of the turn left."""
+    e_v = T_MT[:, :3, 3] - pose[:, :3, 3]
+    if mode == "position":
+        return e_v, J[:, :3]
+    if mode == "axis":
+        # x and y of the tool span the tangent plane of its axis; the sine would fold a half turn, the angle does not.
+        R = pose[:, :3, :3]
+        aim = np.einsum("mji,mj->mi", R, T_MT[:, :3, 2])
+        sine = np.hypot(aim[:, 0], aim[:, 1])
+        scale = np.where(sine > 1e-12, np.arctan2(sine, aim[:, 2]) / np.maximum(sine, 1e-12), 1.0)
+        e_w = np.stack([-aim[:, 1] * scale, aim[:, 0] * scale], axis=1)
+        return np.concatenate([e_v, e_w], axis=1), np.concatenate(
+            [J[:, :3], np.einsum("mji,mjn->min", R[:, :, :2], J[:, 3:])], axis=1
+        )
+    turn = T_MT[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
+    w = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1)
+    sine, cosine = np.linalg.norm(w, axis=1), 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0)
+    scale = np.where(sine > 1e-12, np.arctan2(sine, cosine) / np.maximum(sine, 1e-12), 1.0)
+    return np.concatenate([e_v, w * scale[:, None]], axis=1), J
+
+
+def _features(T: FloatArray, mode: Mode) -> FloatArray:
+    """What makes two poses near: position (m), and directions of the tool's axes weighed at half a metre a radian."""
+    if mode == "position":
+        return T[:, :3, 3]
+    axes = T[:, :3, 2] if mode == "axis" else T[:, :3, :3].reshape(len(T), 9)
+    return np.concatenate([T[:, :3, 3], 0.5 * axes], axis=1)
+
+
+@lru_cache(maxsize=16)
+def _library(robot: Robot, mode: Mode) -> tuple[Any, FloatArray]:
+    from scipy.spatial import cKDTree
+
+    rng = np.random.default_rng(20130401)
+    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (LIBRARY, robot.n))
+    return cKDTree(_features(tool_pose(robot, theta), mode)), theta
+
+
+def _starts(robot: Robot, T_MT: FloatArray, mode: Mode) -> FloatArray:
+    """(m, STARTS, n): the library's configurations whose poses are nearest to the wanted ones."""
+    tree, theta = _library(robot, mode)
+    _, nearest = tree.query(_features(T_MT, mode), k=STARTS)
+    return theta[nearest]
