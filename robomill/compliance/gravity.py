@@ -1,0 +1,84 @@
+"""Sag of the tip under the arm's own weight and its payload: a constant offset, joint by joint.
+
+Parts are usually zeroed with the arm sagged, so this is shown and not added to the deviation unless asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.errors import RobotError
+from robomill.kinematics.forward import joint_frames
+from robomill.robot.model import Provenance, Robot
+
+#: Standard gravity in a {M} whose z axis points up, m/s^2.
+GRAVITY = (0.0, 0.0, -9.80665)
+BY_HAND = Provenance("user", "entered by hand")
+
+
+@dataclass(frozen=True, eq=False)
+class LinkMasses:
+    """mass (n,) kg and centre (n, 3) m of what moves with each free joint, in the frame after it.
+
+    That is the frame of the next joint, and {T} for the last; spindle and tool belong to the last entry.
+    Raises RobotError for negative masses or shapes that differ.
+    """
+
+    mass: FloatArray
+    centre: FloatArray
+    provenance: Provenance = BY_HAND
+
+    def __post_init__(self) -> None:
+        mass = as_floats(self.mass, "link masses (kg)", (None,), error=RobotError)
+        if mass.ndim != 1 or (mass < 0.0).any():
+            raise RobotError("Link masses (kg): expected one number a joint, 0 or more.", where="mass")
+        centre = as_floats(self.centre, "centres of mass (m)", (len(mass), 3), error=RobotError)
+        if centre.ndim != 2:
+            raise RobotError(f"Centres of mass (m): expected shape ({len(mass)}, 3), found {centre.shape}.")
+        object.__setattr__(self, "mass", frozen(mass))
+        object.__setattr__(self, "centre", frozen(centre))
+
+
+def gravity_torques(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: ArrayLike = GRAVITY) -> FloatArray:
+    """tau (..., n) N m (N where prismatic): what the weight of the links does about each joint, in theta's sense."""
+    frames = joint_frames(robot, theta)
+    columns = _columns(robot, frames, _centres(robot, frames, links))
+    weight = links.mass[:, None] * as_floats(gravity, "gravity (m/s^2)", (3,), error=RobotError)
+    return np.einsum("...jlk,lk->...j", columns, weight)
+
+
+def gravity_sag(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: ArrayLike = GRAVITY) -> FloatArray:
+    """Sag of the tip, each joint's share (..., n, 3) m in {M}: J_i C_theta,i tau_i; their sum is the sag."""
+    frames = joint_frames(robot, theta)
+    tau = gravity_torques(robot, theta, links, gravity)
+    tip = _columns(robot, frames, frames[..., -1:, :3, 3])[..., 0, :]
+    return tip * (robot.C_theta * tau)[..., None]
+
+
+def _centres(robot: Robot, frames: FloatArray, links: LinkMasses) -> FloatArray:
+    """Centres of mass (..., n, 3) in {M}."""
+    if len(links.mass) != robot.n:
+        raise RobotError(
+            f"Link masses: found {len(links.mass)}, expected {robot.n}, one for each free joint of {robot.name!r}.",
+            where="mass",
+        )
+    after = frames[..., 1:, :, :]
+    return np.einsum("...lij,lj->...li", after[..., :3, :3], links.centre) + after[..., :3, 3]
+
+
+def _columns(robot: Robot, frames: FloatArray, points: FloatArray) -> FloatArray:
+    """How joint j moves point l, (..., n, l, 3); a joint does not move the points of the links before it.
+
+    With a single point it is the tip, which every joint moves.
+    """
+    axis = robot.chain.sign[:, None] * frames[..., :-1, :3, 2]
+    arm = points[..., None, :, :] - frames[..., :-1, None, :3, 3]
+    moved = np.where(robot.chain.prismatic[:, None, None], axis[..., None, :], np.cross(axis[..., None, :], arm))
+    if points.shape[-2] == 1:
+        return moved
+    carried = np.arange(robot.n)[:, None] <= np.arange(points.shape[-2])
+    return np.where(carried[..., None], moved, 0.0)

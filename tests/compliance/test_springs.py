@@ -1,0 +1,147 @@
+"""Springs beside the joints: closed forms, brute-force elastostatics, energy, reciprocity."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from robomill.compliance.cartesian import joint_contributions
+from robomill.compliance.deflection import deflection
+from robomill.compliance.springs import JointBending, SpindleSpring, ToolBending, extra_contributions
+from robomill.errors import RobotError
+from robomill.io.robots import load_robot
+from robomill.kinematics.forward import joint_frames, tool_pose
+from robomill.kinematics.jacobian import geometric_jacobian
+
+ROBOT = load_robot("slavkovic_5r")
+RNG = np.random.default_rng(11)
+THETA = RNG.uniform(-0.6, 0.6, (6, ROBOT.n))
+SPRINGS = [
+    ToolBending(8e-3, 40e-3),
+    SpindleSpring(0.05e-6, 0.02e-6),
+    *(JointBending(i, 3e-7 * i, 5e-7) for i in range(1, ROBOT.n + 1)),
+]
+FORCE = np.array([-63.0, 110.0, -23.0])
+
+
+def test_cantilever_closed_form():
+    tool = ToolBending(8e-3, 40e-3, core=1.0)
+    by_hand = 0.04**3 / (3 * 600e9 * math.pi * 8e-3**4 / 64)
+    delta = tool.compliance(ROBOT, THETA) @ FORCE
+    z = tool_pose(ROBOT, THETA)[:, :3, 2]
+    across = FORCE - (z @ FORCE)[:, None] * z
+    np.testing.assert_allclose(delta, by_hand * across, rtol=1e-12, atol=1e-18)
+    assert ToolBending(8e-3, 40e-3).lateral == pytest.approx(by_hand / 0.8**4)
+
+
+def test_spindle_is_soft_across_and_along_its_axis():
+    spindle = SpindleSpring(0.05e-6, 0.02e-6)
+    T_MT = tool_pose(ROBOT, THETA)
+    expected = T_MT[:, :3, :3] @ np.diag([0.05e-6, 0.05e-6, 0.02e-6]) @ np.swapaxes(T_MT[:, :3, :3], 1, 2)
+    np.testing.assert_allclose(spindle.compliance(ROBOT, THETA), expected, atol=1e-20)
+
+
+def chain_under(F, scale):
+    """Tip of the arm when every joint and bending spring turns by C tau under scale * F: forward kinematics only.
+
+    The torque about each axis is moment . axis at the unloaded arm; the turns are put between the joints as rotations.
+    """
+    tips = []
+    for theta in THETA:
+        frames = joint_frames(ROBOT, theta)
+        tip = frames[-1, :3, 3]
+        T = np.eye(4)
+        for i in range(ROBOT.n):
+            moment = np.cross(tip - frames[i, :3, 3], scale * F)
+            torque = frames[i, :3, :3].T @ moment
+            bend = SPRINGS[2 + i]
+            turn = np.eye(4)
+            angles = torque * [bend.C_x, bend.C_y, ROBOT.C_theta[i]]
+            turn[:3, :3] = Rotation.from_rotvec(angles).as_matrix()
+            T = T @ frames[i] @ turn @ np.linalg.inv(frames[i])
+        tips.append((T @ frames[-1])[:3, 3])
+    return np.array(tips)
+
+
+def test_brute_force_elastostatics_with_a_quadratic_remainder():
+    frames = joint_frames(ROBOT, THETA)
+    C_joint = joint_contributions(geometric_jacobian(ROBOT, THETA)[..., :3, :], ROBOT.C_theta)
+    C = C_joint.sum(-3) + extra_contributions(SPRINGS[2:], frames).sum(-3)
+    linear = C @ FORCE
+    remainders = []
+    for scale in (1.0, 2.0, 4.0):
+        moved = chain_under(FORCE, scale) - frames[:, -1, :3, 3]
+        remainders.append(np.linalg.norm(moved - scale * linear))
+        assert remainders[-1] < 0.01 * np.linalg.norm(scale * linear)
+    order = np.log2(np.array(remainders[1:]) / remainders[:-1])
+    np.testing.assert_allclose(order, 2.0, atol=0.05)
+
+
+def test_energy_stored_equals_work_done():
+    """Half F . delta of all springs = energy from each spring's own moment or force, computed apart."""
+    frames = joint_frames(ROBOT, THETA)
+    delta = deflection(extra_contributions(SPRINGS, frames), FORCE)
+    assert delta.shape == (6, len(SPRINGS), 3)
+    work = 0.5 * delta @ FORCE
+    z = frames[:, -1, :3, 2]
+    axial = z @ FORCE
+    lateral = np.linalg.norm(FORCE - axial[:, None] * z, axis=1)
+    tool, spindle = SPRINGS[:2]
+    x, w = np.polynomial.legendre.leggauss(5)
+    arm = 0.5 * tool.stick_out * (x + 1)
+    EI = tool.E * math.pi / 64 * (tool.core * tool.diameter) ** 4
+    bending = (lateral[:, None] * arm) ** 2 / (2 * EI) @ (0.5 * tool.stick_out * w)
+    np.testing.assert_allclose(work[:, 0], bending, rtol=1e-12)
+    springs = 0.5 * (spindle.lateral * lateral**2 + spindle.axial * axial**2)
+    np.testing.assert_allclose(work[:, 1], springs, rtol=1e-12)
+    for i, bend in enumerate(SPRINGS[2:]):
+        moment = np.cross(frames[:, -1, :3, 3] - frames[:, i, :3, 3], FORCE)
+        about = np.einsum("mji,mj->mi", frames[:, i, :3, :3], moment)
+        np.testing.assert_allclose(work[:, 2 + i], 0.5 * about[:, :2] ** 2 @ [bend.C_x, bend.C_y], rtol=1e-10)
+
+
+def test_reciprocity_and_no_spring_pushes_back():
+    C = extra_contributions(SPRINGS, joint_frames(ROBOT, THETA))
+    np.testing.assert_allclose(C, np.swapaxes(C, -1, -2), atol=1e-22)
+    assert np.linalg.eigvalsh(C).min() > -1e-20
+    f, g = RNG.normal(size=(2, 3))
+    np.testing.assert_allclose(g @ (C @ f)[..., None], f @ (C @ g)[..., None], rtol=1e-9, atol=1e-18)
+
+
+def test_batch_equals_loop_and_unreached_stays_nan():
+    frames = joint_frames(ROBOT, THETA)
+    batch = extra_contributions(SPRINGS, frames.reshape(2, 3, *frames.shape[1:]))
+    assert batch.shape == (2, 3, len(SPRINGS), 3, 3)
+    for i, theta in enumerate(THETA):
+        for j, spring in enumerate(SPRINGS):
+            np.testing.assert_allclose(batch[i // 3, i % 3, j], spring.compliance(ROBOT, theta), rtol=1e-12, atol=1e-24)
+    assert np.isnan(extra_contributions(SPRINGS, joint_frames(ROBOT, np.full(ROBOT.n, np.nan)))).all()
+    assert extra_contributions([], frames).shape == (6, 0, 3, 3)
+
+
+def test_names_are_lines_of_the_result():
+    names = [spring.name for spring in SPRINGS]
+    assert names[:4] == ["tool bending", "spindle and holder", "joint 1 bending", "joint 2 bending"]
+    assert len(set(names)) == len(names)
+    assert "E = 600 GPa" in ToolBending(8e-3, 40e-3).provenance.source
+
+
+@pytest.mark.parametrize(
+    ("build", "sentence"),
+    [
+        (lambda: ToolBending(0.0, 0.04), "Tool bending: diameter is 0.000 mm; it must be greater than 0"),
+        (lambda: ToolBending(8e-3, -0.04), "stick_out is −40.000 mm"),
+        (lambda: ToolBending(8e-3, None), "stick_out should be a number, found None"),
+        (lambda: ToolBending(8e-3, 0.04, E=math.inf), "E should be finite"),
+        (lambda: ToolBending(8e-3, 0.04, core=1.5), "at most 1"),
+        (lambda: SpindleSpring(-1e-6), "Spindle and holder: lateral is −1.000 µm/N; it cannot be negative"),
+        (lambda: JointBending(0), "joint is 0; expected a number from 1"),
+        (lambda: JointBending(2, C_y=-1e-7), "Joint 2 bending: C_y is −1.00"),
+        (lambda: JointBending(9).compliance(ROBOT, THETA), "there is no joint 9; the robot has 5"),
+    ],
+)
+def test_refusals(build, sentence):
+    with pytest.raises(RobotError) as refusal:
+        build()
+    assert sentence in str(refusal.value)
