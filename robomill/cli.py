@@ -213,7 +213,7 @@ def _theta(robot: Any, text: str) -> Any:
 
     what = f"the {robot.n} joint coordinates of {robot.name}"
     values = np.array(_numbers(text, "--theta-deg", robot.n, what))
-    return np.where(robot.prismatic[robot.free], to_si(values, "mm"), to_si(values, "deg"))
+    return np.where(robot.chain.prismatic, to_si(values, "mm"), to_si(values, "deg"))
 
 
 def _numbers(text: str, option: str, count: int, what: str) -> list[float]:

@@ -13,6 +13,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.springs import links_from_table, links_to_table, spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
@@ -66,9 +67,11 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         stock=_stock(top.table("stock")) if top.has("stock") else None,
         force=force_from_table(top.table("force"), cutter, folder),
         provenance=_provenance(top.table("provenance", {})),
+        springs=tuple(spring_from_table(entry) for entry in top.tables("springs")),
+        links=links_from_table(top.table("links")) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
-    top.asked.add("stock")
+    top.asked.update(("stock", "links"))
     top.finish()
     return setup
 
@@ -194,6 +197,7 @@ def _numerics(table: Table) -> dict[str, Any]:
         "cell": table.number("cell_mm", "mm", 1e-4),
         "engagement": table.flag("engagement", False),
         "coupling": table.flag("coupling", False),
+        "add_sag": table.flag("add_sag", False),
     }
     table.finish()
     return values
@@ -218,7 +222,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "force": force_to_table(setup.force),
         "numerics": {
             "step_mm": _shown(setup.step, "mm"), "cell_mm": _shown(setup.cell, "mm"),
-            "engagement": setup.engagement, "coupling": setup.coupling,
+            "engagement": setup.engagement, "coupling": setup.coupling, "add_sag": setup.add_sag,
         },
         "provenance": {key: {"kind": p.kind, "source": p.source} for key, p in setup.provenance.items()},
     }  # fmt: skip
@@ -227,6 +231,10 @@ def setup_to_toml(setup: SimulationSetup) -> str:
             "lower_mm": [_shown(v, "mm") for v in setup.stock.lower],
             "upper_mm": [_shown(v, "mm") for v in setup.stock.upper],
         }
+    if setup.springs:
+        data["springs"] = [spring_to_table(spring) for spring in setup.springs]
+    if setup.links is not None:
+        data["links"] = links_to_table(setup.links)
     return tomli_w.dumps(data, multiline_strings=True)
 
 

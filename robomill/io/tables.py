@@ -96,6 +96,13 @@ class Table:
         name = self.where.removesuffix("]") + f".{key}]" if self.where.endswith("]") else f"{self.where}, [{key}]"
         return Table(self._get(key, default), name, self.error)
 
+    def tables(self, key: str) -> list[Table]:
+        """The entries of an array of tables, [[key]]; none where it is absent."""
+        entries = self._get(key, [])
+        if not isinstance(entries, list):
+            raise self.refuse(key, f"expected entries written as [[{key}]], found {entries!r:.40}.")
+        return [Table(entry, f"{self.where}, [[{key}]] {i}", self.error) for i, entry in enumerate(entries, start=1)]
+
     def provenance(self, key: str) -> Provenance:
         """An entry ``{ kind = "paper", source = "..." }``."""
         entry = self.table(key)

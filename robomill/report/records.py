@@ -20,6 +20,9 @@ from robomill.surface.groove import GrooveSection
 from robomill.units import from_si
 
 
+COMPONENTS = ("feed", "feed_normal", "axial")
+
+
 def jsonable(value: Any) -> Any:
     """Arrays as lists, NaN and infinity as null: JSON has no word for them."""
     if isinstance(value, dict):
@@ -42,7 +45,7 @@ def shown(value: ArrayLike, unit: str) -> Any:
 
 def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:
     """(..., n) joint coordinates in degrees, millimetres for prismatic joints."""
-    prismatic = robot.prismatic[robot.free]
+    prismatic = robot.chain.prismatic
     return np.where(prismatic, from_si(theta, "mm"), from_si(theta, "deg"))
 
 
@@ -97,8 +100,15 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "rms_deviation_mm": float(from_si(result.rms_deviation, "mm")),
         "deviation_mm": shown(result.delta[i] if i >= 0 else nan3, "mm"),
         "joint_share_mm": shown(result.delta_joint[i] if i >= 0 else np.full((n, 3), np.nan), "mm"),
-        "spring_share_mm": {name: shown(d[i] if i >= 0 else nan3, "mm") for name, d in result.delta_spring.items()},
+        "spring_share_mm": {
+            spring.name: shown(result.delta_spring[i, k] if i >= 0 else nan3, "mm")
+            for k, spring in enumerate(result.setup.springs)
+        },
         "force_N": shown(result.F[i] if i >= 0 else nan3, "N"),
+        "force_component_N": dict(zip(COMPONENTS, shown(result.force_components[i] if i >= 0 else nan3, "N"))),
+        "force_share_mm": {
+            name: shown(result.delta_component[i, c] if i >= 0 else nan3, "mm") for c, name in enumerate(COMPONENTS)
+        },
         "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {

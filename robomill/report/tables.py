@@ -31,9 +31,9 @@ def deviation_columns(result: SimulationResult) -> Columns:
     for j, number in enumerate(result.setup.robot.joint_numbers):
         for i, axis in enumerate("xyz"):
             columns[f"joint{number}_{axis}_mm"] = from_si(result.delta_joint[:, j, i], "mm")
-    for name, share in result.delta_spring.items():
+    for k, spring in enumerate(result.setup.springs):
         for i, axis in enumerate("xyz"):
-            columns[f"{name}_{axis}_mm"] = from_si(share[:, i], "mm")
+            columns[f"{spring.name.replace(' ', '_')}_{axis}_mm"] = from_si(result.delta_spring[:, k, i], "mm")
     return columns
 
 

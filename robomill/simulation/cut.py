@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
@@ -13,32 +15,52 @@ from robomill.toolpath.path import Toolpath
 
 def cut_conditions(
     setup: SimulationSetup, path: Toolpath, reached: BoolArray, p: FloatArray | None = None
-) -> tuple[CutConditions, tuple[str, ...]]:
-    """Conditions at each sample of ``path`` and what is to be said about them.
+) -> CutConditions:
+    """Conditions at each sample of ``path``.
 
     ``p`` (m, 3) m in {W}: where the tip really goes, if not where it was told to (coupled runs).
     """
     tip = path.p if p is None else p
     cutting = path.cutting & reached
-    common = {
+    common: dict[str, Any] = {
         "v_f": path.v_f, "n_s": path.n_s, "s": path.s, "t": path.t, "cutting": cutting,
-        "across": _across(path), "block": path.block,
+        "across": at_starts(path, feed_share(path.p, path.k)), "block": path.block,
     }  # fmt: skip
-    if setup.engagement:
-        from robomill.surface.engagement import engage
-
-        engagement = engage(setup.stock_block, setup.cell, setup.cutter, tip, path.k, cutting)
-        conditions = CutConditions(a_p=engagement.a_p, phi_st=engagement.phi_st, phi_ex=engagement.phi_ex, **common)
-    else:
+    if not setup.engagement:
         a_p = np.maximum(setup.stock_block.upper[2] - tip[:, 2], 0.0)
-        conditions = CutConditions.steady(a_p=np.nan_to_num(a_p), **common)
-    return conditions, cut_warnings(setup.cutter, conditions) + setup.stock_block.warnings(setup.cutter)
+        return CutConditions.steady(a_p=np.nan_to_num(a_p), **common)
+    from robomill.surface.engagement import engage
+
+    found = engage(setup.stock_block, setup.cell, setup.cutter, tip, path.k, cutting)
+    arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex")}
+    return CutConditions(**arc, **common)
 
 
-def _across(path: Toolpath) -> FloatArray:
-    """(m,) share of the feed across the tool axis; a step of no length takes the next one's."""
-    share = np.array(feed_share(path.p, path.k))
-    still = np.flatnonzero(path.step_length == 0.0)
+def at_starts(path: Toolpath, values: FloatArray) -> FloatArray:
+    """``values`` (m, ...) where a step of no length, which begins a cut, takes the value of the step after it."""
+    out = np.array(values)
+    still = np.flatnonzero(path.cutting & (path.step_length == 0.0))
     still = still[still + 1 < len(path)]
-    share[still] = share[still + 1]
-    return share
+    out[still] = out[still + 1]
+    return out
+
+
+def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: FloatArray) -> FloatArray:
+    """(m, 3) m in {W}: where the tip goes under ``delta`` (m, 3) m in {M}.
+
+    A rapid arrives where the cut that follows it begins, and points that are not reached stay where they were told.
+    """
+    moved = np.where(reached[:, None], np.nan_to_num(delta), 0.0)
+    arrives = np.flatnonzero(~path.cutting & np.append(path.cutting[1:], False))
+    moved[arrives] = moved[arrives + 1]
+    return np.asarray(path.p + moved @ T_MW[:3, :3])
+
+
+def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, ...]:
+    """What a reader of the numbers must know about cutter, stock and force."""
+    notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.notes]
+    if not setup.engagement and hasattr(setup.force, "material"):
+        notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
+    if conditions.a_p.any():
+        notes += cut_warnings(setup.cutter, conditions)
+    return tuple(notes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -12,6 +11,8 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
 from robomill.kinematics.inverse import IKResult
+from robomill.simulation.coupling import FixedPoint
+from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection, groove_section
 from robomill.surface.zmap import ZMap, cut
@@ -41,24 +42,38 @@ class SimulationResult:
 
     path           the sampled Toolpath, in {W}
     theta          (m, n) rad          C_joint      (m, n, 3, 3) m/N, joint shares of the compliance
-    reached        (m,) bool           C_spring     name -> (m, 3, 3), springs beside the joints
-    F              (m, 3) N, force on the tool
-    delta          (m, 3) m            delta_joint  (m, n, 3), joint shares; delta_spring name -> (m, 3)
+    reached        (m,) bool           C_spring     (m, k, 3, 3), springs beside the joints
+    F              (m, 3) N, force on the tool        R_MF (m, 3, 3) feed, feed-normal, axial
+    delta          (m, 3) m            delta_joint  (m, n, 3), delta_spring (m, k, 3): the shares
+    sag            (m, n, 3) m, joint shares of the sag under gravity; None where no masses are given
     conditions     feed, speed, engagement at each sample
-    notes          what a reader of the numbers must know (assumptions met on the way)
+    coupling       how force and deflection were brought to agree; None for a one-pass run
     """
 
     setup: SimulationSetup
     path: Toolpath
     ik: IKResult
     C_joint: FloatArray
-    C_spring: Mapping[str, FloatArray]
+    C_spring: FloatArray
     conditions: CutConditions
+    R_MF: FloatArray
     F: FloatArray
     delta_joint: FloatArray
-    delta_spring: Mapping[str, FloatArray]
+    delta_spring: FloatArray
     delta: FloatArray
-    notes: tuple[str, ...] = ()
+    sag: FloatArray | None = None
+    coupling: FixedPoint | None = None
+
+    @cached_property
+    def force_components(self) -> FloatArray:
+        """(m, 3) N: feed, feed-normal, axial components of the force on the tool."""
+        return np.einsum("mij,mi->mj", self.R_MF, self.F)
+
+    @cached_property
+    def delta_component(self) -> FloatArray:
+        """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
+        C = self.C_joint.sum(axis=-3) + self.C_spring.sum(axis=-3)
+        return np.einsum("mij,mjc,mc->mci", C, self.R_MF, self.force_components)
 
     @property
     def theta(self) -> FloatArray:
@@ -108,10 +123,15 @@ class SimulationResult:
     @cached_property
     def p_machined(self) -> FloatArray:
         """(m, 3) m in {W}: where the tip really goes. A rapid arrives where the cut that follows it begins."""
-        moved = np.where(self.reached[:, None], self.delta, 0.0)
-        arrives = ~self.path.cutting & np.append(self.path.cutting[1:], False)
-        moved[arrives] = moved[np.flatnonzero(arrives) + 1]
-        return np.asarray(self.path.p + np.nan_to_num(moved) @ self.setup.T_MW[:3, :3])
+        return moved_points(self.setup.T_MW, self.path, self.reached, self.delta)
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What a reader of the numbers must know, one sentence each."""
+        found = list(cut_notes(self.setup, self.conditions))
+        if self.coupling is not None:
+            found.append(self.coupling.sentence)
+        return tuple(found)
 
     @cached_property
     def removes(self) -> BoolArray:

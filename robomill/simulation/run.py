@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
+from robomill.compliance.gravity import gravity_sag
+from robomill.compliance.springs import extra_contributions
+from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
 from robomill.errors import ToolpathError
+from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import pose_from_world
-from robomill.simulation.cut import cut_conditions
+from robomill.simulation.coupling import FixedPoint, fixed_point
+from robomill.simulation.cut import at_starts, cut_conditions, moved_points
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import resample
+
+COUPLING_TOLERANCE = 1e-8
+COUPLING_ITERATIONS = 40
 
 
 def simulate(setup: SimulationSetup) -> SimulationResult:
@@ -29,18 +37,59 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
     ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path))
-    J = geometric_jacobian(setup.robot, ik.theta)
-    C_joint = joint_contributions(J[..., :3, :], setup.robot.C_theta)
-    C_spring = {spring.name: spring.compliance(setup.robot, ik.theta) for spring in setup.springs}
-    conditions, notes = cut_conditions(setup, path, ik.reached)
-    F = force_on_tool(setup.force, conditions, feed_directions(setup, path))
-    delta_joint = deflection(C_joint, F)
-    delta_spring = {name: np.einsum("...ij,...j->...i", C, F) for name, C in C_spring.items()}
-    delta = delta_joint.sum(axis=-2) + sum(delta_spring.values(), start=np.zeros(3))
+    C_joint, C_spring = compliances(setup, ik.theta)
+    sag = None if setup.links is None else gravity_sag(setup.robot, ik.theta, setup.links)
+    offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
+    R_MF = feed_directions(setup, path)
+    conditions, F, coupling = forces(
+        setup, path, ik.reached, R_MF, C_joint.sum(axis=-3) + C_spring.sum(axis=-3), offset
+    )
+    delta_joint, delta_spring = deflection(C_joint, F), deflection(C_spring, F)
     return SimulationResult(
-        setup=setup, path=path, ik=ik, C_joint=C_joint, C_spring=C_spring, conditions=conditions, F=F,
-        delta_joint=delta_joint, delta_spring=delta_spring, delta=delta, notes=notes,
+        setup=setup, path=path, ik=ik, C_joint=C_joint, C_spring=C_spring, conditions=conditions, R_MF=R_MF, F=F,
+        delta_joint=delta_joint, delta_spring=delta_spring, sag=sag,
+        delta=delta_joint.sum(axis=-2) + delta_spring.sum(axis=-2) + offset, coupling=coupling,
     )  # fmt: skip
+
+
+def compliances(setup: SimulationSetup, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shares of the joints (m, n, 3, 3) and of the springs beside them (m, k, 3, 3), m/N, eqs. (13), (14)."""
+    J = geometric_jacobian(setup.robot, theta)
+    C_joint = joint_contributions(J[..., :3, :], setup.robot.C_theta)
+    if not setup.springs:
+        return C_joint, np.zeros((len(theta), 0, 3, 3))
+    return C_joint, extra_contributions(setup.springs, joint_frames(setup.robot, theta))
+
+
+def forces(
+    setup: SimulationSetup, path: Toolpath, reached: BoolArray, R_MF: FloatArray, C: FloatArray, offset: FloatArray
+) -> tuple[CutConditions, FloatArray, FixedPoint | None]:
+    """Conditions and force F (m, 3) N in {M}; coupled runs iterate until force and deflection agree."""
+
+    def pushed(delta: FloatArray | None) -> tuple[CutConditions, FloatArray]:
+        p = None if delta is None else moved_points(setup.T_MW, path, reached, delta)
+        conditions = cut_conditions(setup, path, reached, p)
+        return conditions, force_on_tool(setup.force, conditions, R_MF)
+
+    conditions, F = pushed(None)
+    if not setup.coupling:
+        return conditions, F, None
+
+    C = np.where(reached[:, None, None], C, 0.0)
+
+    def again(delta: FloatArray) -> FloatArray:
+        return bend(C, pushed(delta)[1]) + offset
+
+    coupling = fixed_point(again, bend(C, F) + offset, COUPLING_TOLERANCE, COUPLING_ITERATIONS)
+    if not coupling.converged:
+        return conditions, F, coupling
+    conditions, F = pushed(coupling.value)
+    return conditions, F, coupling
+
+
+def bend(C: FloatArray, F: FloatArray) -> FloatArray:
+    """delta = C F, eq. (15), along the path."""
+    return np.einsum("mij,mj->mi", C, F)
 
 
 def tool_frames(path: Toolpath) -> FloatArray:
@@ -51,10 +100,5 @@ def tool_frames(path: Toolpath) -> FloatArray:
 
 
 def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:
-    """(m, 3, 3) R_MF, columns feed, feed-normal, axial in {M}; a step of no length takes the next one's."""
-    points = path.p.copy()
-    still = np.flatnonzero(path.cutting & (path.step_length == 0.0))
-    R_MW = setup.T_MW[:3, :3]
-    frames = R_MW @ feed_frame(points, path.k)
-    frames[still[still + 1 < len(path)]] = frames[still[still + 1 < len(path)] + 1]
-    return np.asarray(frames)
+    """(m, 3, 3) R_MF, columns feed, feed-normal, axial in {M}."""
+    return setup.T_MW[:3, :3] @ at_starts(path, feed_frame(path.p, path.k))

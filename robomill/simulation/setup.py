@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.compliance.gravity import LinkMasses
+from robomill.compliance.springs import Spring
 from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
@@ -36,6 +38,8 @@ class SimulationSetup:
     engagement  True: the force follows the arc of engagement found from the stock as it stands
     coupling    True: deflection changes the cut, iterated to a fixed point (needs engagement)
     springs     extra compliances beside the joints', each with its own line in the result
+    links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
+                deviation, False only shows it, since parts are zeroed with the arm sagged
     provenance  block name -> where its numbers come from
     """
 
@@ -51,7 +55,9 @@ class SimulationSetup:
     cell: float = 1e-4
     engagement: bool = False
     coupling: bool = False
-    springs: tuple[Any, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    links: LinkMasses | None = None
+    add_sag: bool = False
     description: str = field(default="", compare=False)
     provenance: Mapping[str, Provenance] = field(default_factory=dict, compare=False)
 
@@ -69,6 +75,12 @@ class SimulationSetup:
         if getattr(self.force, "cutter", self.cutter) != self.cutter:
             # A process force is computed for the cutter that cuts; a changed cutter changes it too.
             object.__setattr__(self, "force", dataclasses.replace(self.force, cutter=self.cutter))  # type: ignore[type-var]
+        names = [spring.name for spring in self.springs]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise SetupError(f"Springs: there are two named {twice[0]!r}; keep one of them or rename it.")
+        if self.add_sag and self.links is None:
+            raise SetupError("Sag: no link masses are given; add them or leave the sag out.")
         if self.coupling and not self.engagement:
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
 
