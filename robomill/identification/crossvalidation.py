@@ -39,6 +39,12 @@ def cross_validate(system: System, weights: FloatArray | None = None, folds: int
         inside = fold == k
         needed = np.abs(system.A[inside]) @ (seen & ~fit.seen) > 0
         missed[inside] = np.where(needed, np.nan, system.A[inside] @ fit.x - system.b[inside])
+    return relative_by_pose(system, missed)
+
+
+def relative_by_pose(system: System, missed: FloatArray) -> FloatArray:
+    """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved."""
+    poses = int(system.pose.max()) + 1
     linear = system.linear
     error = np.bincount(system.pose[linear], missed[linear] ** 2, minlength=poses)
     size = np.bincount(system.pose[linear], system.b[linear] ** 2, minlength=poses)

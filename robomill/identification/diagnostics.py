@@ -11,6 +11,7 @@ from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.identification.system import System
 from robomill.toolpath.path import Finding
+from robomill.units import format_si
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
@@ -102,21 +103,26 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
             f"{name} cannot be seen: at these poses its effect is exactly made up of {_listed(others)}, "
             "so only their sum is known; measure at poses where they move the tool differently."
         )
-    relative = fit.stderr[k] / fit.x[k] if fit.x[k] > 0 else np.inf
-    known = f"known to ±{fit_half(fit, k):.0%}" if np.isfinite(relative) else "not told from a rigid one"
-    text = f"{name} is {known}: it makes {share[k]:.0%} of the measured displacement"
     table = np.nan_to_num(correlation(fit.covariance)[k])
     table[k] = 0.0
     j = int(np.argmax(np.abs(table)))
-    if abs(table[j]) >= 0.3:
-        text += (
-            f" and at these poses it moves the tool much as {parameters[j].label} does (correlation {table[j]:+.2f})"
+    alike, other = abs(table[j]), parameters[j].label
+    part = format_si(share[k], "%", 1 if share[k] < 0.1 else 0)
+    half = half_share(fit, k)
+    if half >= 1.0 and alike >= ALIKE:
+        return (
+            f"{name} cannot be told from {other}: at these poses both move the tool alike (correlation {table[j]:+.2f}), "
+            f"so only a mix of the two is known; measure where they move it differently."
         )
-        cure = f"measure where {parameters[k].label} and {parameters[j].label} move the tool differently"
-    return f"{text}; {cure}."
+    known = f"is known to ±{format_si(half, '%', 0)}" if half < 1.0 else "cannot be told from a rigid one"
+    text = f"{name} {known}: it makes {part} of the measured displacement"
+    if alike >= 0.3:
+        text += f", and here it moves the tool much as {other} does (correlation {table[j]:+.2f})"
+        cure = f"measure where {parameters[k].label} and {other} move the tool differently"
+    return f"{text}; to know it better, {cure}."
 
 
-def fit_half(fit: Fit, k: int) -> float:
+def half_share(fit: Fit, k: int) -> float:
     """Half the 95 % interval of parameter ``k`` as a share of its estimate."""
     t = float(stdtrit(fit.dof, 0.975)) if fit.dof > 0 else np.inf
     return float(t * fit.stderr[k] / fit.x[k]) if fit.x[k] > 0 else float("inf")
@@ -127,11 +133,15 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
     found = []
     for label in active:
         text = f"{label.capitalize()} is held at zero: the tests ask for a negative compliance, which no spring has."
-        found.append(Finding("warning", 0, text))
+        found.append(Finding("warning" if label.startswith("joint") else "info", 0, text))
     for label, other in lumped.items():
         text = f"{label.capitalize()} turns about the same line as {other} at these poses: one spring, counted there."
         found.append(Finding("info", 0, text))
-    if fit.condition[1] > CONDITION_WARNING:
+    if len(fit.null):
+        names = _listed(tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k]))
+        text = f"These poses do not tell {names} apart or do not move them; predictions near the poses still hold."
+        found.append(Finding("warning", 0, text))
+    elif fit.condition[1] > CONDITION_WARNING:
         text = (
             f"Condition number {fit.condition[1]:.0f} after scaling: small errors of measurement are much magnified; "
             "add poses that differ more."

@@ -14,7 +14,7 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
-from robomill.identification.crossvalidation import FOLDS, cross_validate, headline
+from robomill.identification.crossvalidation import FOLDS, cross_validate, headline, relative_by_pose
 from robomill.identification.least_squares import Fit, robust_fit
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model
@@ -92,12 +92,14 @@ def _result(
         equations=len(system.b),
         dof=fit.dof,
         cv_by_pose=frozen(cv),
+        in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b)),
         cv_relative_error=headline(cv),
         row=tests.row,
         share=frozen(share),
         outliers=diagnostics.outliers(system, tests.row),
         unseen_joints=diagnostics.unseen_joints(fit, system.parameters, share),
         active_bounds=active,
+        explanations=tuple(diagnostics.sentence(fit, system.parameters, share, k) for k in range(len(fit.x))),
         lumped=lumped,
         findings=(*tests.findings, *suspicions(tests, robot), *found),
         excluded=left_out,

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.compliance.springs import JointBending, SpindleSpring, Spring
 from robomill.errors import LoadTestError
 from robomill.identification.models import Model, Parameter
 from robomill.robot.model import Provenance, Robot
@@ -48,9 +49,9 @@ class IdentificationResult:
     ci95 (n, 2), cut at zero; correlation and covariance (p, p) of the parameters, NaN where not seen;
     parameters (p,) with which predictions are made; condition before and after column scaling;
     residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints);
-    residual_share (m,) of the measured size; residual_rms m (rad); noise: standard deviation of one measured
+    explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise: standard deviation of one measured
     number, m (rad), as the residuals say; cv_relative_error: mean over poses of |predicted - measured| / |measured|,
-    each pose predicted without itself: the headline; cv_by_pose (poses,).
+    each pose predicted without itself: the headline; cv_by_pose and in_sample_by_pose (poses,), the latter flatters.
     outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
     exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
     """
@@ -72,12 +73,14 @@ class IdentificationResult:
     equations: int
     dof: int
     cv_by_pose: FloatArray
+    in_sample_by_pose: FloatArray
     cv_relative_error: float
     row: IntArray
     share: FloatArray
     outliers: tuple[Outlier, ...] = ()
     unseen_joints: tuple[UnseenJoint, ...] = ()
     active_bounds: tuple[str, ...] = ()
+    explanations: tuple[str, ...] = ()
     lumped: dict[str, str] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     excluded: tuple[int, ...] = ()
@@ -114,6 +117,27 @@ class IdentificationResult:
         with np.errstate(invalid="ignore", divide="ignore"):
             relative = np.where(self.parameters[: self.n] > 0, self.stderr / self.parameters[: self.n], np.inf)
         return self.labels[int(np.argmax(relative))].joint or 0
+
+    def springs(self, robot: Robot) -> tuple[Spring, ...]:
+        """The bending and tool springs found, for ``extra_contributions``; empty for the joints alone."""
+        values = {p.label: float(self.parameters[k]) for k, p in enumerate(self.labels)}
+        source = Provenance("measured", f"identified from {len(self.row)} load tests, model {self.model}")
+        found: list[Spring] = []
+        for index, number in enumerate(robot.joint_numbers, 1):
+            pair = [values.get(f"bending {u} at joint {number}", 0.0) for u in "xy"]
+            if any(pair):
+                found.append(JointBending(index, pair[0], pair[1], provenance=source))
+        across, along = values.get("tool across", 0.0), values.get("tool along", 0.0)
+        if across or along:
+            found.append(SpindleSpring(across, along, provenance=source))
+        return tuple(found)
+
+    def explain(self, joint: int) -> str:
+        """Why a joint (1-based) is known as well as it is, and what would help."""
+        for parameter, text in zip(self.labels, self.explanations, strict=True):
+            if parameter.joint == joint:
+                return text
+        raise LoadTestError(f"Joint {joint}: not among the fitted joints.")
 
     def applied_to(self, robot: Robot) -> Robot:
         """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""

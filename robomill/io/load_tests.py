@@ -27,6 +27,7 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Finding
@@ -53,6 +54,7 @@ _QUANTITIES: dict[str, tuple[str, ...]] = {
     "noise": (*_LENGTH, "mrad", "urad"),
 }
 _WORLD = ("x", "y", "z", "a", "b")
+assert all(_SPELLING.get(unit, unit) in UNITS for allowed in _QUANTITIES.values() for unit in allowed)
 
 
 @dataclass(frozen=True)
@@ -318,4 +320,11 @@ def _source(name: str, table: _Table) -> str:
     return f"{name}\n{table.remarks}".strip()
 
 
-assert all(_SPELLING.get(unit, unit) in UNITS for allowed in _QUANTITIES.values() for unit in allowed)
+def read_measured_map(path_or_text: str | Path, robot: Robot) -> MeasuredField:
+    """The paper's second method: a grid of measured compliances (or displacements in three directions) as a map."""
+    tests = read_load_tests(path_or_text)
+    if isinstance(tests, JointTests):
+        raise LoadTestError(
+            "Measured map: this file has tests of single joints; give compliances Cxx_um_N ... at poses."
+        )
+    return MeasuredField.from_tests(robot, tests)

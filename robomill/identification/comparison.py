@@ -1,0 +1,109 @@
+"""Models side by side: which springs the measurements support. The cross-validated error is the judge.
+
+A richer model always fits its own data better; predicting poses that were left out, it does so only if its extra
+springs are there. The gap between the two errors is the over-fitting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.errors import LoadTestError
+from robomill.identification.estimate import BENDING_JOINTS, identify
+from robomill.identification.load_test import LoadTests
+from robomill.identification.models import MODELS
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Results by model, best cross-validated error first, and the models that could not be fitted with the reason."""
+
+    results: tuple[IdentificationResult, ...]
+    refused: dict[str, str]
+
+    @property
+    def best(self) -> IdentificationResult:
+        """The model that predicts left-out poses best."""
+        return self.results[0]
+
+    @property
+    def simplest_good(self) -> IdentificationResult:
+        """The model with the fewest parameters whose cross-validated error is within 5 % of the best one's."""
+        limit = 1.05 * self.best.cv_relative_error
+        good = [r for r in self.results if r.cv_relative_error <= limit or r is self.best]
+        return min(good, key=lambda r: len(r.labels) - len(r.lumped))
+
+    def rows(self) -> list[dict[str, object]]:
+        """A table: model, parameters, in-sample and cross-validated relative error, residual rms (m), remark."""
+        table: list[dict[str, object]] = []
+        for result in self.results:
+            inside = in_sample(result)
+            remark = []
+            if result is self.best:
+                remark.append("predicts best")
+            if result is self.simplest_good:
+                remark.append("simplest that predicts as well")
+            if result.cv_relative_error > 1.5 * inside:
+                remark.append("over-fits: far better on its own data than on poses left out")
+            if result.active_bounds:
+                remark.append(f"held at zero: {', '.join(result.active_bounds)}")
+            table.append(
+                {
+                    "model": result.model,
+                    "parameters": len(result.labels) - len(result.lumped),
+                    "in_sample": inside,
+                    "cross_validated": result.cv_relative_error,
+                    "residual_rms": result.residual_rms,
+                    "remark": "; ".join(remark),
+                }
+            )
+        return table
+
+    def absorbed(self) -> str:
+        """What joint-only values mean when a richer model predicts better; empty when they stand as they are."""
+        joints = next((r for r in self.results if r.model == "joints"), None)
+        richer = self.best
+        if joints is None or richer.model in ("joints", "constant") or self.simplest_good.model == "joints":
+            return ""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            grown = joints.C_theta / richer.C_theta - 1.0
+        order = [int(k) for k in np.argsort(-np.nan_to_num(np.abs(grown))) if np.isfinite(grown[k])][:2]
+        changes = " and ".join(f"joint {joints.labels[k].joint} by {grown[k]:+.0%}" for k in order)
+        return (
+            f"The joint-only values have absorbed what is not in the joints ({changes} against the model "
+            f"{richer.model}): they predict well only near the measured poses, and say little of the joints themselves."
+        )
+
+
+def in_sample(result: IdentificationResult) -> float:
+    """Mean over poses of |residual| / |measured| with every pose in the fit; flatters."""
+    return float(np.nanmean(result.in_sample_by_pose))
+
+
+def compare_models(
+    robot: Robot,
+    tests: LoadTests,
+    models: Iterable[str] = MODELS,
+    *,
+    bending_joints: Iterable[int] = BENDING_JOINTS,
+    robust: bool = False,
+    exclude: Iterable[int] = (),
+) -> Comparison:
+    """Fit every model to the same tests. Raises LoadTestError where none can be fitted."""
+    tests = tests.with_joints(robot)
+    joints, rows = tuple(bending_joints), tuple(exclude)
+    results, refused = [], {}
+    for name in models:
+        try:
+            results.append(identify(robot, tests, name, bending_joints=joints, robust=robust, exclude=rows))
+        except LoadTestError as exc:
+            refused[name] = str(exc)
+    if not results:
+        raise LoadTestError(next(iter(refused.values()), "Comparison: no model was named."))
+    results.sort(key=lambda r: (np.nan_to_num(r.cv_relative_error, nan=np.inf), len(r.labels)))
+    return Comparison(tuple(results), refused)

@@ -1,0 +1,195 @@
+"""The paper's second method: compliance matrices measured on a grid, used as they are, eq. (17).
+
+Between the measured points the entries are interpolated linearly (multilinearly on a grid, over a Delaunay mesh
+otherwise), which keeps symmetric matrices symmetric and positive ones positive. Outside, or too far from any
+measured point, the answer is NaN. The map holds for the tool orientation it was measured at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import BoolArray, FloatArray, as_floats, frozen
+from robomill.errors import LoadTestError
+from robomill.identification.load_test import LoadTests
+from robomill.kinematics.transforms import world_from_pose
+from robomill.robot.model import Robot
+from robomill.toolpath.path import Finding
+from robomill.units import format_si
+
+GRID = 1e-6  # m: coordinates closer than this are one grid line
+ASYMMETRY = 0.15  # |C - C^T| / |C| from which a point is named
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredField:
+    """Compliance matrices C (k, 3, 3) m/N measured with the tip at p (k, 3) m in {M}, tool orientation AB (k, 2) rad.
+
+    reach (m): points further than this from every measured one are masked; chosen from the spacing unless given.
+    """
+
+    p: FloatArray
+    C: FloatArray
+    AB: FloatArray = None  # type: ignore[assignment]
+    reach: float = 0.0
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        p = as_floats(self.p, "measured points", (None, 3), error=LoadTestError)
+        C = as_floats(self.C, "measured compliances", (len(p), 3, 3), error=LoadTestError)
+        if len(p) == 0:
+            raise LoadTestError("Measured map: no point in it.")
+        rounded = np.round(p / GRID)
+        if len(np.unique(rounded, axis=0)) < len(p):
+            raise LoadTestError("Measured map: a point is there twice; average its measurements or delete one.")
+        object.__setattr__(self, "p", frozen(p))
+        object.__setattr__(self, "C", frozen(C))
+        object.__setattr__(self, "AB", frozen(np.zeros((len(p), 2)) if self.AB is None else self.AB))
+        if self.reach <= 0.0:
+            object.__setattr__(self, "reach", self._spacing())
+
+    @classmethod
+    def from_tests(cls, robot: Robot, tests: LoadTests, reach: float = 0.0) -> MeasuredField:
+        """One matrix a pose, from three or more independent force directions; several loads are averaged.
+
+        Raises LoadTestError naming the row of a pose loaded in fewer than three directions.
+        """
+        pose = tests.pose_index()
+        x_M = tests.x_M if tests.x_M is not None else world_from_pose(tests.tool_poses(robot))
+        count = int(pose.max()) + 1
+        C, where = np.empty((count, 3, 3)), np.empty((count, 5))
+        for k in range(count):
+            here = np.flatnonzero(pose == k)
+            F, moved = tests.wrench[here, :3], tests.displacement[here, :3]
+            if np.linalg.matrix_rank(F, tol=1e-6 * np.abs(F).max()) < 3 or not np.isfinite(moved).all():
+                raise LoadTestError(
+                    f"Row {tests.row[here[0]]}: this pose is not fully measured; a map needs dx, dy, dz under forces "
+                    "in three independent directions at every point."
+                )
+            C[k] = np.linalg.lstsq(F, moved, rcond=None)[0].T
+            where[k] = x_M[here[0]]
+        return cls(where[:, :3], C, where[:, 3:], reach, tests.source)
+
+    # ---- between the points ----------------------------------------------------------------------------------------
+    def compliance(self, p: ArrayLike) -> FloatArray:
+        """C (..., 3, 3) m/N with the tip at p (..., 3) m in {M}; NaN outside the measured region."""
+        p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
+        flat = p.reshape(-1, 3)
+        C = self._interpolate(flat)
+        C[self.distance(flat) > self.reach] = np.nan
+        return C.reshape(*p.shape[:-1], 3, 3)
+
+    def deflection(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
+        """delta (..., 3) m under F (..., 3) N, eq. (15) with the measured C; NaN outside."""
+        return np.einsum("...ij,...j->...i", self.compliance(p), np.asarray(F, dtype=np.float64))
+
+    def distance(self, p: ArrayLike) -> FloatArray:
+        """(...) m to the nearest measured point."""
+        p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
+        known = np.where(np.isfinite(p), p, 1e6)
+        return np.asarray(self._tree.query(known)[0], dtype=np.float64)
+
+    def inside(self, p: ArrayLike) -> BoolArray:
+        """(...) bool: where the map answers."""
+        return np.isfinite(self.compliance(p)[..., 0, 0])
+
+    def symmetric(self) -> MeasuredField:
+        """The same map with (C + C^T) / 2: an elastic arm is symmetric, the rest is error of measurement."""
+        return MeasuredField(self.p, 0.5 * (self.C + np.swapaxes(self.C, -1, -2)), self.AB, self.reach, self.source)
+
+    # ---- checks ----------------------------------------------------------------------------------------------------
+    @cached_property
+    def asymmetry(self) -> FloatArray:
+        """(k,) |C - C^T| / |C| (Frobenius): zero for an elastic arm measured without error."""
+        size = np.linalg.norm(self.C, axis=(1, 2))
+        return np.linalg.norm(self.C - np.swapaxes(self.C, 1, 2), axis=(1, 2)) / np.where(size > 0, size, 1.0)
+
+    @cached_property
+    def smallest(self) -> FloatArray:
+        """(k,) m/N, smallest eigenvalue of the symmetric part: negative where the tip would move against a force."""
+        return np.asarray(np.linalg.eigvalsh(0.5 * (self.C + np.swapaxes(self.C, 1, 2)))[:, 0], dtype=np.float64)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the checks say: points that are not symmetric, not positive, or measured at several orientations."""
+        found = []
+        crooked, negative = self.asymmetry > ASYMMETRY, self.smallest <= 0.0
+        if crooked.any():
+            k = int(np.argmax(self.asymmetry))
+            text = (
+                f"{int(crooked.sum())} of {len(self.p)} matrices are not symmetric (worst {self.asymmetry[k]:.0%} at "
+                f"{_point(self.p[k])}): an elastic arm's is, so look for a wrong sign, gauge or axis there."
+            )
+            found.append(Finding("suspicious", 0, text, int(crooked.sum())))
+        if negative.any():
+            k = int(np.argmin(self.smallest))
+            text = (
+                f"{int(negative.sum())} of {len(self.p)} matrices are not positive definite (first to mend: "
+                f"{_point(self.p[k])}): there a force would move the tip against itself."
+            )
+            found.append(Finding("suspicious", 0, text, int(negative.sum())))
+        if float(np.ptp(self.AB, axis=0).max()) > 1e-6:
+            text = (
+                "The points were measured at different tool orientations; the map does not interpolate between those."
+            )
+            found.append(Finding("warning", 0, text))
+        return tuple(found)
+
+    # ---- inside ----------------------------------------------------------------------------------------------------
+    @cached_property
+    def lines(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+        """The grid's x, y and z coordinates where the points fill a grid, else None."""
+        axes = tuple(np.unique(np.round(self.p[:, i] / GRID)) * GRID for i in range(3))
+        return axes if len(axes[0]) * len(axes[1]) * len(axes[2]) == len(self.p) else None  # type: ignore[return-value]
+
+    @cached_property
+    def _tree(self) -> Any:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.p)
+
+    def _spacing(self) -> float:
+        """Half the diagonal of the coarsest cell, a little more for rounding: no point of a grid is further off."""
+        if len(self.p) == 1:
+            return 0.05
+        if self.lines is not None:
+            gaps = [float(np.diff(line).max()) if len(line) > 1 else 0.1 for line in self.lines]
+            return 0.505 * float(np.linalg.norm(gaps))
+        return 1.5 * float(self._tree.query(self.p, k=2)[0][:, 1].max())
+
+    def _interpolate(self, p: FloatArray) -> FloatArray:
+        """(m, 3, 3) over the axes along which the points vary; NaN outside them."""
+        from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
+
+        used = np.flatnonzero(np.ptp(self.p, axis=0) > GRID)
+        if len(used) == 0:
+            return np.repeat(self.C, len(p), axis=0)
+        if self.lines is not None:
+            axes = [self.lines[i] for i in used]
+            order = np.lexsort(np.round(self.p[:, used] / GRID).T[::-1])
+            values = self.C[order].reshape(*(len(axis) for axis in axes), 3, 3)
+            ends = np.array([[axis[0], axis[-1]] for axis in axes])
+            at = p[:, used]
+            near = np.clip(at, ends[:, 0], ends[:, 1])
+            at = np.where(np.abs(at - near) <= GRID, near, at)
+            call = RegularGridInterpolator(axes, values, bounds_error=False, fill_value=np.nan)
+            return np.asarray(call(at), dtype=np.float64)
+        if len(used) == 1:
+            order = np.argsort(self.p[:, used[0]])
+            s, values = self.p[order, used[0]], self.C[order].reshape(-1, 9)
+            columns = [np.interp(p[:, used[0]], s, values[:, k], left=np.nan, right=np.nan) for k in range(9)]
+            return np.stack(columns, axis=-1).reshape(-1, 3, 3)
+        try:
+            mesh = LinearNDInterpolator(self.p[:, used], self.C.reshape(-1, 9))
+        except Exception as exc:  # Qhull's own error type has no sentence a person could use
+            raise LoadTestError("Measured map: the points lie on one line; measure off it too.") from exc
+        return np.asarray(mesh(p[:, used])).reshape(-1, 3, 3)
+
+
+def _point(p: FloatArray) -> str:
+    return "(" + ", ".join(format_si(float(v), "mm", 0) for v in p) + ")"
