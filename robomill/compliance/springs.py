@@ -69,6 +69,9 @@ class ToolBending(Spring):
             _positive(self, field, unit)
         if self.core > 1.0:
             raise RobotError(f"Tool bending: core is {self.core:g}; it is a share of the diameter, at most 1.")
+        if self.provenance == CARBIDE and (self.E, self.core) != (E_CARBIDE, FLUTED_CORE):
+            words = f"cantilever, E = {self.E:.4g} N/m^2, bending diameter {self.core:g} of the cutter's"
+            object.__setattr__(self, "provenance", Provenance("user", words))
 
     @property
     def lateral(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -38,6 +38,10 @@ class ForceRecord:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for field, known in (("axis", get_args(Axis)), ("frame", get_args(Frame))):
+            if getattr(self, field) not in known:
+                expected, found = " or ".join(map(repr, known)), getattr(self, field)
+                raise CuttingError(f"{self.source}: {field} is {found!r:.40}; expected {expected}.", where=field)
         x = as_floats(self.x, f"{self.source}, {self.axis}", (None,), error=CuttingError)
         F = as_floats(self.F, f"{self.source}, force (N)", (len(x), 3), error=CuttingError)
         if x.ndim != 1 or F.ndim != 2 or len(x) < FEWEST:
@@ -89,6 +93,15 @@ class MeasuredForce:
     record: ForceRecord
     cutoff: float | None = PAPER_CUTOFF
     start: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.cutoff is not None and not (np.isfinite(self.cutoff) and self.cutoff > 0.0):
+            raise CuttingError(
+                f"{self.record.source}: cut-off {self.cutoff:g} Hz; it must be greater than 0, or left out.",
+                where="cutoff",
+            )
+        if not np.isfinite(self.start):
+            raise CuttingError(f"{self.record.source}: the start {self.start} is not a number.", where="start")
 
     @property
     def frame(self) -> Frame:

@@ -125,6 +125,8 @@ def test_names_are_lines_of_the_result():
     assert names[:4] == ["tool bending", "spindle and holder", "joint 1 bending", "joint 2 bending"]
     assert len(set(names)) == len(names)
     assert "E = 600 GPa" in ToolBending(8e-3, 40e-3).provenance.source
+    steel = ToolBending(8e-3, 40e-3, E=210e9).provenance
+    assert (steel.kind, "E = 2.1e+11 N/m^2" in steel.source) == ("user", True)
 
 
 @pytest.mark.parametrize(

@@ -93,3 +93,11 @@ def test_refusals():
     still = CutConditions.steady(0.0, 200.0, 2e-3, s=[0.0, 0.01])
     with pytest.raises(CuttingError, match="the feed is 0"):
         MeasuredForce(record(100.0, 0.03 * T, axis="path")).components(still)
+    with pytest.raises(CuttingError, match="axis is 'angle'; expected 'time' or 'path'"):
+        record(100.0, axis="angle")
+    with pytest.raises(CuttingError, match="frame is 'W'; expected 'path' or 'M'"):
+        record(100.0, frame="W")
+    with pytest.raises(CuttingError, match="cut-off -5 Hz; it must be greater than 0, or left out"):
+        MeasuredForce(record(100.0), cutoff=-5.0)
+    with pytest.raises(CuttingError, match="start nan is not a number"):
+        MeasuredForce(record(100.0), start=float("nan"))
