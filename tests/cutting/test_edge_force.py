@@ -308,3 +308,12 @@ def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
 def test_moments_of_an_empty_arc_and_of_no_depth():
     assert np.all(np.array(arc_moments(0.0, np.array(1.2), np.array(1.2))) == 0.0)
     assert all(depth_moment(cutter, 0.0, -1.0, q) == 0.0 for cutter in CUTTERS for q in (0, 1))
+
+
+@pytest.mark.parametrize(("helix", "first", "last"), [("right", 1.0, 1.1 + 0.5774), ("left", 1.0 - 0.5774, 1.1)])
+def test_the_upper_edge_lags_on_a_pulling_helix_and_leads_on_a_pushing_one(helix, first, last):
+    mill = MILL.replace(flutes=1, helix=helix)  # 30 deg: the edge turns by tan(30 deg) over 4 mm
+    force = force_over_pitch(REF190.terms, mill, CHIP, 4e-3, 1.0, 1.1, instants=1440)
+    turn = (np.arange(1440) + 0.5) * 2 * np.pi / 1440
+    cuts = turn[np.abs(force).sum(1) > 0]
+    assert (cuts.min(), cuts.max()) == pytest.approx((first, last), abs=0.02)
