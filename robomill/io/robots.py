@@ -158,16 +158,16 @@ def _joint_columns(joints: list[dict[str, Any]], where: str) -> dict[str, Any]:
 def _limits(row: dict[str, Any], units: dict[str, str], place: str) -> list[float]:
     keys = [f"limits_{s}" for s in units if f"limits_{s}" in row]
     if len(keys) != 1:
-        raise RobotError(f"{place}: give the limits once, as {' or '.join(f'limits_{s}' for s in units)} = [lower, upper].")
+        raise RobotError(
+            f"{place}: give the limits once, as {' or '.join(f'limits_{s}' for s in units)} = [lower, upper]."
+        )
     pair = row[keys[0]]
     if not isinstance(pair, list) or len(pair) != 2:
         raise RobotError(f"{place}: {keys[0]}: expected [lower, upper], found {pair!r:.40}.")
     return [to_si(_number(v, keys[0], place), units[keys[0].rsplit("_", 1)[1]]) for v in pair]
 
 
-def _compliance(
-    table: Any, rows: int, where: str
-) -> tuple[dict[str, FloatArray], str, FloatArray]:
+def _compliance(table: Any, rows: int, where: str) -> tuple[dict[str, FloatArray], str, FloatArray]:
     """(sets, name in force, C_theta_all). ``use`` names the set; numbers beside it are the user's own."""
     place = f"{where}: compliance"
     if not isinstance(table, dict) or not table:

@@ -61,7 +61,12 @@ def choose_spin(
         every, possible = solve(spun(T_MT, angle))
         found, which, price = choose(robot, every, possible & wanted, goal, arm_first)
         better = price < cost
-        theta[better], index[better], cost[better], spin[better] = found[better], which[better], price[better], angle[better]
+        theta[better], index[better], cost[better], spin[better] = (
+            found[better],
+            which[better],
+            price[better],
+            angle[better],
+        )
 
     step = 2 * np.pi / SPIN_STEPS
     for i in range(SPIN_STEPS):

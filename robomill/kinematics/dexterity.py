@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -25,10 +27,11 @@ def square_rows(robot: Robot) -> tuple[str, ...]:
     return tuple(ROWS[i] for i in _row_indices(robot))
 
 
-def _row_indices(robot: Robot) -> list[int]:
+@lru_cache(maxsize=64)
+def _row_indices(robot: Robot) -> tuple[int, ...]:
     """The first n rows of J (v before omega) that are independent of each other over random configurations."""
     if robot.n >= 6:
-        return list(range(6))
+        return tuple(range(6))
     rng = np.random.default_rng(0)
     low, high = robot.limits[:, 0], robot.limits[:, 1]
     theta = rng.uniform(low, high, (24, robot.n))
@@ -38,15 +41,19 @@ def _row_indices(robot: Robot) -> list[int]:
         trial = rows[[*kept, i]]
         if len(kept) < robot.n and np.linalg.matrix_rank(trial, tol=1e-9) == len(trial):
             kept.append(i)
-    return kept
+    return tuple(kept)
 
 
 def task_matrix(robot: Robot, theta: ArrayLike) -> FloatArray:
     """The Jacobian (..., r, n) of the arm's own task, rows as named by ``square_rows``; square unless n is 7."""
-    T_MT, J = pose_and_jacobian(robot, theta)
+    return square_matrix(robot, *pose_and_jacobian(robot, theta))
+
+
+def square_matrix(robot: Robot, T_MT: FloatArray, J: FloatArray) -> FloatArray:
+    """As ``task_matrix``, from pose (..., 4, 4) and geometric Jacobian (..., 6, n)."""
     if robot.n == 5:
         return task_rows(T_MT, J)
-    return J[..., _row_indices(robot), :]
+    return J[..., list(_row_indices(robot)), :]
 
 
 def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
@@ -58,7 +65,8 @@ def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
     J = task_matrix(robot, theta)
     if J.shape[-1] != J.shape[-2]:
         return manipulability(robot, theta)
-    return np.linalg.det(J)
+    with np.errstate(invalid="ignore"):  # NaN in, NaN out
+        return np.linalg.det(J)
 
 
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:

@@ -16,7 +16,9 @@ BLOCK = 4096
 
 def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
     """``theta`` as (..., n) floats. NaN is allowed (a configuration that is not reached). Raises KinematicsError."""
-    return as_floats(theta, f"theta of {robot.name!r} (one entry a free joint)", (robot.n,), error=KinematicsError, finite=False)
+    return as_floats(
+        theta, f"theta of {robot.name!r} (one entry a free joint)", (robot.n,), error=KinematicsError, finite=False
+    )
 
 
 def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:

@@ -96,7 +96,9 @@ def all_branches(robot: Robot, T_MT: ArrayLike) -> tuple[FloatArray, BoolArray]:
     T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
     arm = decoupled(robot)
     if arm is None:
-        raise KinematicsError(f"{robot.name}: its wrist axes do not cross as a closed form needs; use inverse_kinematics.")
+        raise KinematicsError(
+            f"{robot.name}: its wrist axes do not cross as a closed form needs; use inverse_kinematics."
+        )
     flat = T_MT.reshape(-1, 4, 4)
     theta = np.empty((len(flat), 8, robot.n))
     sound = np.empty((len(flat), 8), dtype=bool)
@@ -128,7 +130,13 @@ def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
 
 
 def _pose_by_pose(
-    robot: Robot, arm: Decoupled, flat: FloatArray, goal: FloatArray, wanted: BoolArray, arm_first: bool, free_spin: bool
+    robot: Robot,
+    arm: Decoupled,
+    flat: FloatArray,
+    goal: FloatArray,
+    wanted: BoolArray,
+    arm_first: bool,
+    free_spin: bool,
 ) -> Found:
     theta = np.empty((len(flat), robot.n))
     index = np.empty(len(flat), dtype=np.int64)

@@ -44,8 +44,9 @@ def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -
     theta = np.array(np.broadcast_to(near, (m, robot.n)))
     theta, error = descend(robot, T_MT, theta, mode)
     starts: FloatArray | None = None
+    possible = _within_stretch(robot, T_MT)
     for attempt in range(STARTS):
-        open_ = np.flatnonzero(error > TIGHT)
+        open_ = np.flatnonzero((error > TIGHT) & possible)
         if not open_.size:
             break
         if starts is None:
@@ -55,6 +56,14 @@ def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -
         better = remains < error[open_]
         theta[open_[better]], error[open_[better]] = trial[better], remains[better]
     return theta, error <= TIGHT
+
+
+def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
+    """(m,) False where the tip is further from the first frame than all links in a line could bring it."""
+    chain = robot.chain
+    travel = np.abs(robot.limits).max(axis=1) + np.abs(chain.offset)
+    stretch = np.linalg.norm(chain.E[:, :3, 3], axis=1).sum() + travel[chain.prismatic].sum()
+    return np.linalg.norm(T_MT[:, :3, 3] - chain.T_0[:3, 3], axis=1) <= stretch + 1e-9
 
 
 def descend(robot: Robot, T_MT: FloatArray, theta: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:
@@ -95,7 +104,9 @@ def _task(pose: FloatArray, J: FloatArray, T_MT: FloatArray, mode: Mode) -> tupl
             [J[:, :3], np.einsum("mji,mjn->min", R[:, :, :2], J[:, 3:])], axis=1
         )
     turn = T_MT[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
-    w = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1)
+    w = 0.5 * np.stack(
+        [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1
+    )
     sine, cosine = np.linalg.norm(w, axis=1), 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0)
     scale = np.where(sine > 1e-12, np.arctan2(sine, cosine) / np.maximum(sine, 1e-12), 1.0)
     return np.concatenate([e_v, w * scale[:, None]], axis=1), J

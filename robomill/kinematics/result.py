@@ -102,9 +102,7 @@ def task_mode(robot: Robot) -> Mode:
     return "position" if robot.n < 5 else "axis" if robot.n == 5 else "pose"
 
 
-def check(
-    robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode
-) -> tuple[BoolArray, FloatArray, FloatArray]:
+def check(robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode) -> tuple[BoolArray, FloatArray, FloatArray]:
     """(sound, residual m, residual_angle rad), each (...,): forward kinematics of theta (..., n) against T_MT (..., 4, 4).
 
     residual_angle is of the whole rotation ("pose") or of the tool axis; it does not count where only position does.

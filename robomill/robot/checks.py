@@ -81,5 +81,7 @@ def frame(value: Any, name: str, where: str) -> FloatArray:
     error = float(np.abs(R.T @ R - np.eye(3)).max())
     if error > 1e-9 or np.linalg.det(R) < 0 or not np.array_equal(T[3], [0.0, 0.0, 0.0, 1.0]):
         why = "it is a mirror image" if error <= 1e-9 and np.linalg.det(R) < 0 else f"it is off by {error:.2g}"
-        raise RobotError(f"{where}: {name} is not a rotation and a shift ({why}); its three axes must be unit, square, right-handed.")
+        raise RobotError(
+            f"{where}: {name} is not a rotation and a shift ({why}); its three axes must be unit, square, right-handed."
+        )
     return T

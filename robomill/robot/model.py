@@ -104,7 +104,9 @@ class Robot:
     def _check_blocked(self, rows: int, where: str) -> None:
         value = np.full(rows, np.nan) if self.blocked is None else np.asarray(self.blocked, dtype=np.float64)
         if value.shape != (rows,) or np.isinf(value).any():
-            raise RobotError(f"{where}: blocked: expected {rows} values, NaN for a free joint, found shape {value.shape}.")
+            raise RobotError(
+                f"{where}: blocked: expected {rows} values, NaN for a free joint, found shape {value.shape}."
+            )
         if not np.isnan(value).any():
             raise RobotError(f"{where}: every axis is blocked; leave at least one free.")
         object.__setattr__(self, "blocked", frozen(value))

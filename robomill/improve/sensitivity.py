@@ -1,0 +1,111 @@
+"""What stiffer joints would buy: at a point, along a path, over a box.
+
+Compliance is linear in the joint compliances, so a stiffer joint scales its own share and leaves the rest: nothing has
+to be computed again, and the answers are exact, not estimates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, IntArray, as_floats
+from robomill.errors import KinematicsError
+from robomill.robot.model import Robot
+
+STIFFER = 1.1  # the usual question: 10 % stiffer
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """What ``factor`` times the stiffness of each joint alone buys.
+
+    before (...,): the measure as it is (SI); gain (..., n): how much smaller it becomes with joint i stiffer (positive is
+    better); ranking (n,): joints, 0-based, by their mean gain, best first; joint_numbers names them as the robot does.
+    """
+
+    factor: float
+    before: FloatArray
+    gain: FloatArray
+    ranking: IntArray
+    joint_numbers: tuple[int, ...]
+
+    def relative(self) -> FloatArray:
+        """(n,) mean gain as a part of the mean measure."""
+        gain = np.nanmean(self.gain.reshape(-1, self.gain.shape[-1]), axis=0)
+        return gain / np.nanmean(self.before)
+
+
+def stiffened(robot: Robot, factors: ArrayLike) -> Robot:
+    """The robot with each free joint's stiffness multiplied by ``factors`` (n,) > 0; one number serves all joints."""
+    factors = np.broadcast_to(as_floats(factors, "stiffness factors", (), error=KinematicsError), (robot.n,))
+    _positive(factors)
+    return robot.replace(C_theta=robot.C_theta / factors)
+
+
+def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArray:
+    """Joint shares of anything linear in C_theta (C_joint, delta_joint, a field's shares) with stiffer joints.
+
+    ``axis`` is the joint axis of ``shares``; factors (n,) multiply the stiffness.
+    """
+    shares = np.asarray(shares, dtype=np.float64)
+    factors = as_floats(factors, "stiffness factors", (shares.shape[axis],), error=KinematicsError)
+    _positive(factors)
+    shape = [1] * shares.ndim
+    shape[axis] = -1
+    return shares / factors.reshape(shape)
+
+
+def compliance_sensitivity(
+    C_joint: ArrayLike, component: str = "yy", factor: float = STIFFER, joint_numbers: tuple[int, ...] = ()
+) -> Sensitivity:
+    """What a stiffer joint takes off |C_ab|, for C_joint (..., n, 3, 3) m/N at a point or over a grid.
+
+    ``component`` is two of x, y, z. NaN cells (not reached) stay NaN and are left out of the ranking.
+    """
+    C_joint = as_floats(C_joint, "C_joint", (None, 3, 3), error=KinematicsError, finite=False)
+    if len(component) != 2 or any(c not in "xyz" for c in component):
+        raise KinematicsError(f"component {component!r}: expected two of x, y, z, such as 'yy'.")
+    parts = C_joint[..., "xyz".index(component[0]), "xyz".index(component[1])]
+    return _sensitivity(parts[..., None], factor, joint_numbers)
+
+
+def deflection_sensitivity(
+    delta_joint: ArrayLike,
+    direction: ArrayLike | None = None,
+    factor: float = STIFFER,
+    joint_numbers: tuple[int, ...] = (),
+) -> Sensitivity:
+    """What a stiffer joint takes off the deviation, for delta_joint (..., n, 3) m at a point or along a path.
+
+    The size of the deviation, or with ``direction`` (3,) the size of its part along that.
+    """
+    delta_joint = as_floats(delta_joint, "delta_joint", (None, 3), error=KinematicsError, finite=False)
+    if direction is not None:
+        along = as_floats(direction, "direction", (3,), error=KinematicsError)
+        size = float(np.linalg.norm(along))
+        if size == 0:
+            raise KinematicsError("direction: expected a vector other than zero.")
+        delta_joint = (delta_joint @ (along / size))[..., None]
+    return _sensitivity(delta_joint, factor, joint_numbers)
+
+
+def _sensitivity(parts: FloatArray, factor: float, joint_numbers: tuple[int, ...]) -> Sensitivity:
+    """From vectors parts (..., n, d) whose sum over joints is the vector the measure is the length of."""
+    _positive(np.array([factor]))
+    whole = parts.sum(axis=-2)
+    before = np.linalg.norm(whole, axis=-1)
+    after = np.linalg.norm(whole[..., None, :] - (1.0 - 1.0 / factor) * parts, axis=-1)
+    gain = before[..., None] - after
+    n = gain.shape[-1]
+    flat = gain.reshape(-1, n)
+    known = np.isfinite(flat).all(axis=1)
+    mean = flat[known].mean(axis=0) if known.any() else np.zeros(n)
+    return Sensitivity(factor, before, gain, np.argsort(-mean, kind="stable"), joint_numbers or tuple(range(1, n + 1)))
+
+
+def _positive(factors: FloatArray) -> None:
+    if (factors <= 0).any() or not np.isfinite(factors).all():
+        raise KinematicsError("stiffness factors: expected numbers above zero (1.1 is 10 % stiffer).")

@@ -1,0 +1,99 @@
+"""Maps as files: CSV and Parquet tables in display units, VTK image data in SI; NaN where a pose is not reached."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import WorkspaceError
+from robomill.units import from_si
+from robomill.workspace.fields import Field
+from robomill.workspace.grid import Grid
+
+SUFFIXES = (".csv", ".parquet", ".vti")
+
+
+def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
+    """Write one or more fields over the same grid; the suffix of ``path`` says the format.
+
+    CSV and Parquet: one row a cell, columns X_mm, Y_mm, Z_mm and one a quantity with its unit in the name. ``.vti``: image
+    data in m and SI, which needs evenly spaced axes. NaN marks cells that are not reached. Raises WorkspaceError.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if not fields:
+        raise WorkspaceError("Map: there is no quantity to write.")
+    if any(field.grid is not fields[0].grid for field in fields):
+        raise WorkspaceError("Map: the quantities of one file must share one grid.")
+    if suffix not in SUFFIXES:
+        raise WorkspaceError(f"Map: {path.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")
+    try:
+        if suffix == ".vti":
+            _write_vti(path, fields)
+        elif suffix == ".parquet":
+            _write_parquet(path, map_columns(fields))
+        else:
+            path.write_text(map_csv(fields), encoding="utf-8")
+    except OSError as exc:
+        raise WorkspaceError(f"Map: cannot write {path}: {exc.strerror or exc}.") from None
+    return path
+
+
+def map_columns(fields: Sequence[Field]) -> dict[str, FloatArray]:
+    """Columns (cells,) in display units, x slowest, z fastest."""
+    points = fields[0].grid.points().reshape(-1, 3)
+    columns = {f"{axis}_mm": from_si(points[:, i], "mm") for i, axis in enumerate("XYZ")}
+    for field in fields:
+        columns[column_name(field)] = from_si(field.values.ravel(), field.quantity.unit)
+    return columns
+
+
+def column_name(field: Field) -> str:
+    """Name and unit of a quantity's column, e.g. ``C_yy_um/N``."""
+    unit = "percent" if field.quantity.unit == "%" else field.quantity.unit
+    return field.quantity.name if unit == "1" else f"{field.quantity.name}_{unit}"
+
+
+def map_csv(fields: Sequence[Field]) -> str:
+    """The CSV text of ``write_map``."""
+    columns = map_columns(fields)
+    rows = [",".join(columns)]
+    table = np.column_stack(list(columns.values()))
+    rows += [",".join("NaN" if np.isnan(value) else f"{value:.10g}" for value in row) for row in table]
+    return "\n".join(rows) + "\n"
+
+
+def _write_parquet(path: Path, columns: Mapping[str, FloatArray]) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    pq.write_table(pa.table({name: pa.array(values) for name, values in columns.items()}), path)
+
+
+def _write_vti(path: Path, fields: Sequence[Field]) -> None:
+    import pyvista as pv
+
+    grid = fields[0].grid
+    image = pv.ImageData(
+        dimensions=grid.shape,
+        spacing=tuple(_even_spacing(grid, axis) for axis in "xyz"),
+        origin=(grid.x[0], grid.y[0], grid.z[0]),
+    )
+    for field in fields:
+        image.point_data[field.quantity.name] = field.values.ravel(order="F")
+    image.save(path)
+
+
+def _even_spacing(grid: Grid, name: str) -> float:
+    axis = getattr(grid, name)
+    if len(axis) == 1:
+        return 1.0
+    steps = np.diff(axis)
+    if np.abs(steps - steps[0]).max() > 1e-9:
+        raise WorkspaceError(
+            f"Map: a .vti file needs evenly spaced points, and axis {name} is not; write .csv or .parquet."
+        )
+    return float(steps[0])

@@ -1,0 +1,219 @@
+"""A URDF file as a serial chain: joint axes become a modified D-H table, and every pose stays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobotError
+from robomill.robot.model import Provenance, Robot
+
+MOVING = ("revolute", "continuous", "prismatic")
+# A URDF holds no compliances: 1 um/N at a metre for every joint, marked assumed, until the user gives better ones.
+DEFAULT_COMPLIANCE = 1e-6
+PARALLEL = 1e-12
+
+
+def read_urdf(path: str | Path, *, base: str | None = None, tip: str | None = None, name: str | None = None) -> Robot:
+    """The serial arm from link ``base`` to link ``tip`` of a URDF file (defaults: the root and the only end link).
+
+    Frames {M} and {T} are those of the two links; joint senses, zeros and limits are the file's. Compliances are not in
+    a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed. Raises RobotError for branches (name the tip), missing links or
+    joints, closed loops, mimic and floating joints.
+    """
+    from yourdfpy import URDF
+
+    path = Path(path)
+    where = path.name
+    if not path.is_file():
+        raise RobotError(f"{where}: no such file.", where=str(path))
+    try:
+        urdf = URDF.load(str(path), load_meshes=False, build_scene_graph=False, load_collision_meshes=False)
+        joints = list(urdf.robot.joints)
+        links = [link.name for link in urdf.robot.links]
+    except Exception as exc:  # the parser raises whatever XML or numpy raise
+        raise RobotError(
+            f"{where}: this is not a URDF that can be read ({str(exc).strip()[:80] or type(exc).__name__})."
+        ) from None
+    chain = _serial_chain(joints, links, base, tip, where)
+    return _robot(chain, name or urdf.robot.name or path.stem, where)
+
+
+def _serial_chain(joints: list[Any], links: list[str], base: str | None, tip: str | None, where: str) -> list[Any]:
+    """Joints from base to tip, in order."""
+    children: dict[str, list[Any]] = {}
+    parents: dict[str, Any] = {}
+    for joint in joints:
+        for end, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in links:
+                raise RobotError(
+                    f"{where}: joint {joint.name!r} names the {end} link {link!r}, which the file does not have."
+                )
+        if joint.child in parents:
+            raise RobotError(
+                f"{where}: link {joint.child!r} hangs on two joints, a closed loop; only a serial arm can be read."
+            )
+        parents[joint.child] = joint
+        children.setdefault(joint.parent, []).append(joint)
+    if tip is not None:
+        if tip not in links:
+            raise RobotError(f"{where}: has no link {tip!r}; its links are {', '.join(links)}.")
+        return _walk_up(parents, tip, base, where)
+    roots = [link for link in links if link not in parents]
+    if base is None and len(roots) != 1:
+        raise RobotError(
+            f"{where}: {len(roots)} links ({', '.join(roots)}) have no parent joint; a joint between them is missing."
+        )
+    link = base if base is not None else roots[0]
+    if link not in links:
+        raise RobotError(f"{where}: has no link {link!r}; its links are {', '.join(links)}.")
+    chain: list[Any] = []
+    while children.get(link):
+        moving = [j for j in children[link] if _moves_below(j, children)]
+        options = moving or children[link][:1]
+        if len(options) > 1:
+            ends = ", ".join(repr(joint.child) for joint in options)
+            raise RobotError(
+                f"{where}: the arm branches at link {link!r} into {ends}; name the tip link of the branch you want."
+            )
+        chain.append(options[0])
+        link = options[0].child
+    return chain
+
+
+def _moves_below(joint: Any, children: dict[str, list[Any]]) -> bool:
+    return joint.type != "fixed" or any(_moves_below(j, children) for j in children.get(joint.child, []))
+
+
+def _walk_up(parents: dict[str, Any], tip: str, base: str | None, where: str) -> list[Any]:
+    chain: list[Any] = []
+    link = tip
+    while link != base:
+        if link not in parents:
+            if base is None:
+                break
+            raise RobotError(f"{where}: no joints lead from link {base!r} to link {tip!r}; one is missing.")
+        chain.append(parents[link])
+        if len(chain) > len(parents):
+            raise RobotError(f"{where}: the joints above link {tip!r} form a loop; only a serial arm can be read.")
+        link = parents[link].parent
+    return chain[::-1]
+
+
+def _robot(chain: list[Any], name: str, where: str) -> Robot:
+    T_M = np.eye(4)
+    axes: list[FloatArray] = []
+    points: list[FloatArray] = []
+    moving: list[Any] = []
+    for joint in chain:
+        T_M = T_M @ (np.eye(4) if joint.origin is None else np.asarray(joint.origin, dtype=np.float64))
+        if joint.type == "fixed":
+            continue
+        if joint.type not in MOVING:
+            raise RobotError(
+                f"{where}: joint {joint.name!r} is of type {joint.type!r}; only revolute, continuous, prismatic and fixed can be read."
+            )
+        if joint.mimic is not None:
+            raise RobotError(f"{where}: joint {joint.name!r} mimics another; only independent joints can be read.")
+        axis = np.asarray([1.0, 0.0, 0.0] if joint.axis is None else joint.axis, dtype=np.float64)
+        if not np.linalg.norm(axis) > 0:
+            raise RobotError(f"{where}: joint {joint.name!r} has a zero axis.")
+        axes.append(T_M[:3, :3] @ (axis / np.linalg.norm(axis)))
+        points.append(T_M[:3, 3].copy())
+        moving.append(joint)
+    if not moving:
+        raise RobotError(f"{where}: has no moving joints; a robot needs 2 to 7.")
+    prismatic = np.array([joint.type == "prismatic" for joint in moving])
+    table = dh_from_axes(np.array(axes), np.array(points), prismatic, T_M)
+    file = Provenance("user", f"URDF file {where}")
+    return Robot(
+        name=name,
+        title=f"{name} (from URDF)",
+        convention="modified",
+        prismatic=prismatic,
+        limits_all=np.array([_limits(joint, where) for joint in moving]),
+        C_theta_all=np.full(len(moving), DEFAULT_COMPLIANCE),
+        provenance={
+            "geometry": file, "limits": file, "base": file, "tool": file,
+            "compliance": Provenance("assumed", "a URDF holds no compliances; 1e-6 rad/(N m) (m/N) for every joint"),
+        },
+        **table,
+    )  # fmt: skip
+
+
+def _limits(joint: Any, where: str) -> list[float]:
+    if joint.type == "continuous":
+        return [-np.pi, np.pi]
+    limit = joint.limit
+    if limit is None or limit.lower is None or limit.upper is None:
+        raise RobotError(f"{where}: joint {joint.name!r} has no limits; give <limit lower= upper=>.")
+    return [float(limit.lower), float(limit.upper)]
+
+
+def dh_from_axes(k: FloatArray, p: FloatArray, prismatic: Any, T_MT: FloatArray) -> dict[str, FloatArray]:
+    """Columns of a modified D-H table, T_base and T_tool, from joint axes at zero: k (n, 3) unit, p (n, 3) m, tool T_MT.
+
+    Frame i has its z along axis i and its x along the common perpendicular from axis i to axis i + 1 (any where they
+    cross, as before where they are parallel). The base frame takes up where the first one stands.
+    """
+    n = len(k)
+    frames = []
+    x = _any_square(k[0])
+    for i in range(n):
+        origin = p[i]
+        if i + 1 < n:
+            across = np.cross(k[i], k[i + 1])
+            size = np.linalg.norm(across)
+            gap = p[i + 1] - p[i]
+            if size > 1e-9:
+                origin = p[i] + k[i] * (np.cross(gap, k[i + 1]) @ across) / size**2
+                between = gap - k[i] * (gap @ k[i])
+                foot = origin + across / size * (gap @ across) / size
+                x = (
+                    across / size
+                    if np.linalg.norm(foot - origin) < PARALLEL
+                    else (foot - origin) / np.linalg.norm(foot - origin)
+                )
+            else:
+                between = gap - k[i] * (gap @ k[i])
+                size = np.linalg.norm(between)
+                x = between / size if size > 1e-9 else _square_part(x, k[i])
+        else:
+            x = _square_part(x, k[i])
+        T = np.eye(4)
+        T[:3, :3] = np.column_stack([x, np.cross(k[i], x), k[i]])
+        T[:3, 3] = origin
+        frames.append(T)
+    alpha, a, d, theta = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    for i in range(1, n):
+        # Rx(alpha) Tx(a) Rz(theta) Tz(d) between neighbouring frames.
+        E = np.linalg.inv(frames[i - 1]) @ frames[i]
+        alpha[i] = np.arctan2(-E[1, 2], E[2, 2])
+        a[i] = E[0, 3]
+        theta[i] = np.arctan2(-E[0, 1], E[0, 0])
+        d[i] = -E[1, 3] * np.sin(alpha[i]) + E[2, 3] * np.cos(alpha[i])
+    return {
+        "alpha": alpha, "a": a, "d": d, "theta_offset": theta,
+        "T_base": _rigid(frames[0]), "T_tool": _rigid(np.linalg.inv(frames[-1]) @ T_MT),
+    }  # fmt: skip
+
+
+def _any_square(k: FloatArray) -> FloatArray:
+    return _square_part(np.eye(3)[np.argmin(np.abs(k))], k)
+
+
+def _square_part(x: FloatArray, k: FloatArray) -> FloatArray:
+    part = x - k * (x @ k)
+    size = np.linalg.norm(part)
+    return part / size if size > 1e-9 else _any_square(k)
+
+
+def _rigid(T: FloatArray) -> FloatArray:
+    """T with its rotation made exactly orthonormal and its last row exact."""
+    u, _, vt = np.linalg.svd(T[:3, :3])
+    result = np.eye(4)
+    result[:3, :3], result[:3, 3] = u @ vt, T[:3, 3]
+    return result

@@ -1,0 +1,161 @@
+"""Compliance, joint shares and dexterity over a grid: the laws of one configuration at every point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.cartesian import joint_contributions
+from robomill.errors import WorkspaceError
+from robomill.kinematics import dexterity
+from robomill.robot.model import Robot
+from robomill.workspace.grid import Grid
+from robomill.workspace.quantities import COMPONENTS, Quantity, quantity
+from robomill.workspace.solve import solve_grid
+
+ROW = {"x": 0, "y": 1, "z": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """One quantity over a grid: values (nx, ny, nz) in SI, NaN where the pose is not reached."""
+
+    robot: Robot
+    grid: Grid
+    A: float
+    B: float
+    quantity: Quantity
+    values: FloatArray
+
+    @property
+    def reached(self) -> int:
+        """How many cells are reached."""
+        return int(np.isfinite(self.values).sum()) if self.quantity.name != "reach" else int(self.values.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class ComplianceField:
+    """Every cell of a grid at the tool tilt A, B: joints, Jacobian, joint shares, determinant; NaN where not reached.
+
+    theta (nx, ny, nz, n), reached (nx, ny, nz), J (nx, ny, nz, 6, n), shares (nx, ny, nz, n, 6) m/N: each joint's part of
+    C_xx, C_yy, C_zz, C_xy, C_xz, C_yz; det_J (nx, ny, nz).
+    """
+
+    robot: Robot
+    grid: Grid
+    A: float
+    B: float
+    theta: FloatArray
+    reached: BoolArray
+    J: FloatArray
+    shares: FloatArray
+    det_J: FloatArray
+
+    @cached_property
+    def total(self) -> FloatArray:
+        """(nx, ny, nz, 6) m/N: C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
+        return self.shares.sum(axis=-2)
+
+    def C(self) -> FloatArray:
+        """Compliance (nx, ny, nz, 3, 3) m/N."""
+        return symmetric(self.total)
+
+    def C_joint(self) -> FloatArray:
+        """Joint contributions (nx, ny, nz, n, 3, 3) m/N, eq. (14)."""
+        return symmetric(self.shares)
+
+    def values(self, name: str) -> FloatArray:
+        """The quantity called ``name`` (see ``quantities``), (nx, ny, nz) in SI, NaN where not reached."""
+        return _evaluate(self, quantity(self.robot, name))
+
+    def field(self, name: str) -> Field:
+        """The quantity as a ``Field``."""
+        return Field(self.robot, self.grid, self.A, self.B, quantity(self.robot, name), self.values(name))
+
+
+def symmetric(six: FloatArray) -> FloatArray:
+    """(..., 3, 3) from the six components xx, yy, zz, xy, xz, yz (..., 6)."""
+    return six[..., [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]
+
+
+def compliance_field(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ComplianceField:
+    """Reach, joints, Jacobian, joint shares and det(J) over ``grid`` with the tool tilted by A, B (rad), in one pass.
+
+    Raises WorkspaceError where the grid needs more memory than the budget, naming the step that fits.
+    """
+    _finite_tilt(A, B)
+    grid.check_budget(8 * (13 * robot.n + 2 + 6) + 1)
+    theta, reached, J, shares, det_J = solve_grid(robot, grid, A, B)
+    return ComplianceField(robot, grid, A, B, theta, reached, J, shares, det_J)
+
+
+def compute_field(robot: Robot, grid: Grid, name: str, A: float = 0.0, B: float = 0.0) -> Field:
+    """One quantity by name over a plane or box at the tilt A, B (rad). Raises WorkspaceError."""
+    quantity(robot, name)
+    return compliance_field(robot, grid, A, B).field(name)
+
+
+def _finite_tilt(A: float, B: float) -> None:
+    if not np.isfinite([A, B]).all():
+        raise WorkspaceError(f"Tool tilt: A and B must be finite angles, found {A!r} and {B!r}.")
+
+
+def _evaluate(field: ComplianceField, what: Quantity) -> FloatArray:
+    if what.name == "reach":
+        return field.reached.astype(np.float64)
+    if what.name == "det_J":
+        return field.det_J
+    if what.name in _OF_CONFIGURATION:
+        return _at_reached(field, _OF_CONFIGURATION[what.name])
+    if what.name in ("C_soft", "C_stiff"):
+        pick = -1 if what.name == "C_soft" else 0
+        return _where_reached(field, np.linalg.eigvalsh(field.C()[field.reached])[:, pick])
+    if what.name == "dominant":
+        return _dominant(field, field.shares[..., :3].sum(axis=-1))
+    index = COMPONENTS.index(what.component)
+    if what.name.startswith("dominant"):
+        return _dominant(field, np.abs(field.shares[..., index]))
+    if what.joint < 0:
+        return field.total[..., index]
+    part = field.shares[..., what.joint, index]
+    if what.name.startswith("share"):
+        whole = np.abs(field.shares[..., index]).sum(axis=-1)
+        return np.divide(part, whole, out=np.where(field.reached, 0.0, np.nan), where=whole > 0)
+    return part
+
+
+_OF_CONFIGURATION: dict[str, Callable[[Robot, FloatArray], FloatArray]] = {
+    "manipulability": dexterity.manipulability,
+    "inverse_condition": dexterity.inverse_condition,
+    "smallest_singular_value": dexterity.smallest_singular_value,
+    "limit_distance": dexterity.limit_distance,
+}
+
+
+def _where_reached(field: ComplianceField, values: FloatArray) -> FloatArray:
+    full = np.full(field.reached.shape, np.nan)
+    full[field.reached] = values
+    return full
+
+
+def _at_reached(field: ComplianceField, law: Callable[[Robot, FloatArray], FloatArray]) -> FloatArray:
+    if not field.reached.any():
+        return np.full(field.reached.shape, np.nan)
+    return _where_reached(field, law(field.robot, field.theta[field.reached]))
+
+
+def _dominant(field: ComplianceField, size: FloatArray) -> FloatArray:
+    """Number (as in the robot's table) of the joint with the largest ``size`` (..., n)."""
+    numbers = np.array(field.robot.joint_numbers, dtype=np.float64)
+    best = numbers[np.argmax(np.where(np.isnan(size), -1.0, size), axis=-1)]
+    return np.where(field.reached, best, np.nan)
+
+
+def shares_from_jacobian(J: FloatArray, C_theta: FloatArray) -> FloatArray:
+    """Joint shares (..., n, 6) m/N of xx, yy, zz, xy, xz, yz from J (..., 6, n) and C_theta (n,). Eq. (14)."""
+    C_joint = joint_contributions(J[..., :3, :], C_theta)
+    return np.stack([C_joint[..., ROW[c[0]], ROW[c[1]]] for c in COMPONENTS], axis=-1)

@@ -1,0 +1,98 @@
+"""Grids of points in {M}: planes and boxes, with a budget that refuses what memory cannot hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.errors import WorkspaceError
+from robomill.units import format_si
+
+# The paper's working box (Sec. 3): 1200 x 600 x 500 mm, Z_M from -400 to 100; its place in Y_M is assumed.
+PAPER_BOX = (frozen([-0.6, -1.6, -0.4]), frozen([0.6, -1.0, 0.1]))
+PAPER_BOX_SIZE = frozen([1.2, 0.6, 0.5])
+BUDGET = 1 << 30  # bytes a map may take
+LARGEST_AXIS = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Points x (nx,), y (ny,), z (nz,) m in {M}; fields over it have shape (nx, ny, nz). A plane has one axis of length 1."""
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "z"):
+            axis = np.atleast_1d(as_floats(getattr(self, name), f"Grid axis {name}", (), error=WorkspaceError))
+            if axis.ndim != 1 or len(axis) == 0:
+                raise WorkspaceError(f"Grid: axis {name} needs at least one coordinate.")
+            if (np.diff(axis) <= 0).any():
+                raise WorkspaceError(f"Grid: the coordinates of axis {name} must rise.")
+            object.__setattr__(self, name, frozen(axis))
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        return len(self.x), len(self.y), len(self.z)
+
+    @property
+    def cells(self) -> int:
+        return len(self.x) * len(self.y) * len(self.z)
+
+    def points(self) -> FloatArray:
+        """(nx, ny, nz, 3) m."""
+        return np.stack(np.meshgrid(self.x, self.y, self.z, indexing="ij"), axis=-1)
+
+    @property
+    def step(self) -> float:
+        """The smallest spacing of an axis that has one, m; 0 for a single point."""
+        steps = [float(np.diff(axis).min()) for axis in (self.x, self.y, self.z) if len(axis) > 1]
+        return min(steps, default=0.0)
+
+    def check_budget(self, bytes_per_cell: int) -> None:
+        """Raises WorkspaceError, naming the step that fits, where a map would need more than the budget."""
+        if self.cells * bytes_per_cell <= BUDGET:
+            return
+        fits = BUDGET // bytes_per_cell
+        axes = sum(size > 1 for size in self.shape)
+        step = self.step * (self.cells / fits) ** (1.0 / axes)
+        raise WorkspaceError(
+            f"Grid of {' x '.join(map(str, self.shape))} = {self.cells:,} cells needs {self.cells * bytes_per_cell / 2**30:.1f} GiB; "
+            f"{fits:,} cells fit, so use a step of {format_si(np.ceil(step * 1e4) / 1e4, 'mm', 1)} or more."
+        )
+
+
+def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
+    """Grid over the box lower (3,) .. upper (3,) m with spacing ``step`` m; an axis of zero length has one point."""
+    low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError)
+    high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError)
+    return Grid(*(axis_points(low[i], high[i], step, "xyz"[i]) for i in range(3)))
+
+
+def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
+    """Grid over the plane ``normal`` ("x", "y" or "z") = ``at`` m inside the box lower .. upper m."""
+    if normal not in ("x", "y", "z"):
+        raise WorkspaceError(f"Plane: the normal is {normal!r}; expected 'x', 'y' or 'z'.")
+    low, high = np.array(lower, dtype=np.float64), np.array(upper, dtype=np.float64)
+    low["xyz".index(normal)] = high["xyz".index(normal)] = at
+    return box_grid(low, high, step)
+
+
+def axis_points(low: float, high: float, step: float, name: str = "") -> FloatArray:
+    """Coordinates low, low + step, ... up to high (included where it falls on a step)."""
+    if not np.isfinite([low, high, step]).all() or step <= 0:
+        raise WorkspaceError(
+            f"Grid: axis {name} needs finite ends and a step above zero, found {low:g}:{high:g}:{step:g}."
+        )
+    if high < low:
+        raise WorkspaceError(f"Grid: axis {name} ends ({high:g}) before it begins ({low:g}).")
+    count = int(np.floor((high - low) / step + 1e-9)) + 1
+    if count > LARGEST_AXIS:
+        raise WorkspaceError(
+            f"Grid: axis {name} would have {count:,} points; at most {LARGEST_AXIS:,}, so use a larger step."
+        )
+    return low + step * np.arange(count)

@@ -1,0 +1,113 @@
+"""Deviation along straight lines across the workspace under a constant force normal to the feed (Fig. 8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import BoolArray, FloatArray, as_floats
+from robomill.compliance.cartesian import joint_contributions
+from robomill.compliance.deflection import deflection
+from robomill.errors import WorkspaceError
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.kinematics.transforms import axis_from_tilt, pose_from_world
+from robomill.robot.model import Robot
+from robomill.workspace.grid import PAPER_BOX
+
+
+@dataclass(frozen=True, eq=False)
+class LineDeviation:
+    """A line p (m, 3) m with feed (3,), normal (3,) unit vectors and force F (3,) N on the tool, all in {M}.
+
+    delta_joint (m, n, 3) m joint shares of the path deviation (deflected minus commanded), NaN where not reached.
+    """
+
+    name: str
+    p: FloatArray
+    feed: FloatArray
+    normal: FloatArray
+    F: FloatArray
+    theta: FloatArray
+    reached: BoolArray
+    delta_joint: FloatArray
+
+    @property
+    def delta(self) -> FloatArray:
+        """(m, 3) m, the sum of the joints' shares."""
+        return self.delta_joint.sum(axis=1)
+
+    @property
+    def s(self) -> FloatArray:
+        """(m,) m along the line."""
+        return (self.p - self.p[0]) @ self.feed
+
+    def along_normal(self) -> FloatArray:
+        """Joint shares (m, n) m of the deviation normal to the feed."""
+        return self.delta_joint @ self.normal
+
+
+def line_deviation(
+    robot: Robot,
+    start: ArrayLike,
+    end: ArrayLike,
+    force: float = 100.0,
+    points: int = 61,
+    A: float = 0.0,
+    B: float = 0.0,
+    name: str = "",
+) -> LineDeviation:
+    """Deviation along start (3,) to end (3,) m under ``force`` N on the tool, feed-normal (z_T x feed, left of the feed).
+
+    ``points`` equidistant points, tool tilt A, B rad.
+    """
+    first = as_floats(start, "Line, start", (3,), error=WorkspaceError)
+    last = as_floats(end, "Line, end", (3,), error=WorkspaceError)
+    feed = last - first
+    length = float(np.linalg.norm(feed))
+    if length == 0.0 or points < 2:
+        raise WorkspaceError("Line: it needs two different ends and at least two points.")
+    feed = feed / length
+    normal = np.cross(axis_from_tilt(A, B), feed)
+    if np.linalg.norm(normal) < 1e-9:
+        raise WorkspaceError(
+            "Line: the feed is along the tool axis, so it has no normal; tilt the tool or turn the line."
+        )
+    normal /= np.linalg.norm(normal)
+    p = first + np.linspace(0.0, length, points)[:, None] * feed
+    x_M = np.concatenate([p, np.broadcast_to([A, B], (points, 2))], axis=1)
+    found = inverse_kinematics(robot, pose_from_world(x_M), near="path")
+    J_v = geometric_jacobian(robot, found.theta)[:, :3]
+    F = force * normal
+    delta_joint = deflection(joint_contributions(J_v, robot.C_theta), F)
+    return LineDeviation(name, p, feed, normal, F, found.theta, found.reached, delta_joint)
+
+
+def border_and_middle_lines(
+    robot: Robot,
+    lower: ArrayLike = PAPER_BOX[0][:2],
+    upper: ArrayLike = PAPER_BOX[1][:2],
+    z: float = 0.0,
+    force: float = 100.0,
+    points: int = 61,
+) -> list[LineDeviation]:
+    """The six lines of Fig. 8: on two borders and through the middle of the plane, three along X_M and three along Y_M."""
+    low = as_floats(lower, "Plane, lower corner", (2,), error=WorkspaceError)
+    high = as_floats(upper, "Plane, upper corner", (2,), error=WorkspaceError)
+    middle = 0.5 * (low + high)
+    lines = []
+    for y in (low[1], middle[1], high[1]):
+        lines.append(
+            line_deviation(
+                robot, [low[0], y, z], [high[0], y, z], force, points, name=f"along X_M at Y_M = {y * 1e3:g} mm"
+            )
+        )
+    for x in (low[0], middle[0], high[0]):
+        lines.append(
+            line_deviation(
+                robot, [x, low[1], z], [x, high[1], z], force, points, name=f"along Y_M at X_M = {x * 1e3:g} mm"
+            )
+        )
+    return lines

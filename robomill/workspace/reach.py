@@ -1,0 +1,122 @@
+"""Where the arm can work: reach at one or several tilts, and the largest machining box inside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.errors import WorkspaceError
+from robomill.kinematics.forward import BLOCK
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import pose_from_world
+from robomill.robot.model import Robot
+from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """An axis-aligned box in {M}, m."""
+
+    lower: FloatArray
+    upper: FloatArray
+
+    @property
+    def size(self) -> FloatArray:
+        """(3,) m."""
+        return self.upper - self.lower
+
+    @property
+    def volume(self) -> float:
+        """m^3."""
+        return float(np.prod(self.size))
+
+    def holds(self, size: FloatArray) -> bool:
+        """True where a box of ``size`` (3,) m fits inside without turning it."""
+        return bool((self.size >= np.asarray(size) - 1e-9).all())
+
+
+def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> BoolArray:
+    """WS (nx, ny, nz), eq. (10): True where every tilt (A, B) rad of ``tilts`` is reached within the joint limits."""
+    grid.check_budget(8 * 3 + 1)
+    if not tilts:
+        raise WorkspaceError("Reach: give at least one tool tilt (A, B).")
+    points = grid.points().reshape(-1, 3)
+    mask = np.ones(len(points), dtype=bool)
+    for A, B in tilts:
+        left = np.flatnonzero(mask)
+        for start in range(0, len(left), BLOCK):
+            rows = left[start : start + BLOCK]
+            x_M = np.concatenate([points[rows], np.broadcast_to([A, B], (len(rows), 2))], axis=1)
+            mask[rows] = inverse_kinematics(robot, pose_from_world(x_M)).reached
+    return mask.reshape(grid.shape)
+
+
+def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
+    """The largest axis-aligned box all of whose grid points are True in ``mask`` (nx, ny, nz); None if there is none.
+
+    Largest by volume, exact over the grid; an axis with a single point counts as one unit of length. Every height in z
+    and width in x is tried for all positions at once, and the longest run in y taken.
+    """
+    nx, ny, nz = mask.shape
+    longest_x, longest_y = _extents(grid.x, nx).max(), _extents(grid.y, ny).max()
+    best, corners = 0.0, None
+    layers = np.ones((nz + 1, nx, ny), dtype=bool)
+    stack = np.ascontiguousarray(mask.transpose(2, 0, 1))
+    for h in range(1, nz + 1):
+        layers = layers[:-1] & stack[h - 1 :]
+        heights = _extents(grid.z, h)
+        if not layers.any():
+            break
+        if heights.max() * longest_x * longest_y <= best:
+            continue
+        slabs = np.ones((len(layers), nx + 1, ny), dtype=bool)
+        for w in range(1, nx + 1):
+            slabs = slabs[:, :-1] & layers[:, w - 1 :]
+            widths = _extents(grid.x, w)
+            if not slabs.any():
+                break
+            if heights.max() * widths.max() * longest_y <= best:
+                continue
+            volume, (k, i, j, j_end) = _longest_run(slabs, grid.y, heights[:, None] * widths[None, :])
+            if volume > best:
+                best, corners = (
+                    volume,
+                    ((grid.x[i], grid.y[j], grid.z[k]), (grid.x[i + w - 1], grid.y[j_end], grid.z[k + h - 1])),
+                )
+    return None if corners is None else Box(frozen(corners[0]), frozen(corners[1]))
+
+
+def machining_box(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> Box:
+    """The largest machining box inside the reach over ``grid`` for all ``tilts``. Raises WorkspaceError if there is none."""
+    box = largest_box(reach(robot, grid, tilts), grid)
+    if box is None:
+        raise WorkspaceError(
+            f"{robot.name} reaches no point of this grid at this tilt; move the grid nearer to the arm or change the tilt."
+        )
+    return box
+
+
+def against_paper(box: Box) -> dict[str, float | bool]:
+    """The box beside the paper's 1200 x 600 x 500 mm: whether that fits inside, and the ratio of the volumes."""
+    return {"holds_paper_box": box.holds(PAPER_BOX_SIZE), "volume_ratio": box.volume / float(np.prod(PAPER_BOX_SIZE))}
+
+
+def _extents(axis: FloatArray, count: int) -> FloatArray:
+    """Length of every run of ``count`` consecutive points of an axis, m; 1 for an axis that is a single point."""
+    if len(axis) == 1:
+        return np.ones(1)
+    return axis[count - 1 :] - axis[: len(axis) - count + 1]
+
+
+def _longest_run(slabs: BoolArray, y: FloatArray, section: FloatArray) -> tuple[float, tuple[int, int, int, int]]:
+    """(volume, (k, i, j, j_end)): the best run of True along y in slabs (nk, ni, ny), weighed by ``section`` (nk, ni) m^2."""
+    places = np.arange(len(y))
+    last_gap = np.maximum.accumulate(np.where(slabs, -1, places), axis=-1)
+    first = np.minimum(last_gap + 1, places)
+    length = np.where(slabs, y[places] - y[first] if len(y) > 1 else 1.0, 0.0)
+    volume = length * section[..., None]
+    k, i, j_end = np.unravel_index(int(np.argmax(volume)), volume.shape)
+    return float(volume[k, i, j_end]), (int(k), int(i), int(first[k, i, j_end]), int(j_end))

@@ -1,0 +1,52 @@
+"""One pass over the points of a grid: inverse kinematics, Jacobian, joint shares, determinant."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.dexterity import square_matrix
+from robomill.kinematics.forward import BLOCK
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.jacobian import pose_and_jacobian
+from robomill.kinematics.transforms import pose_from_world
+from robomill.robot.model import Robot
+from robomill.workspace.grid import Grid
+
+Solved = tuple[FloatArray, BoolArray, FloatArray, FloatArray, FloatArray]
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def solve_grid(robot: Robot, grid: Grid, A: float, B: float) -> Solved:
+    """(theta (..., n), reached (...), J (..., 6, n), shares (..., n, 6), det_J (...)) over the grid, NaN where not reached."""
+    n, m = robot.n, grid.cells
+    points = grid.points().reshape(-1, 3)
+    theta, J = np.empty((m, n)), np.empty((m, 6, n))
+    shares, det_J = np.empty((m, n, 6)), np.empty(m)
+    reached = np.empty(m, dtype=bool)
+    T_MT = np.array(np.broadcast_to(pose_from_world([0.0, 0.0, 0.0, A, B]), (min(m, BLOCK), 4, 4)))
+    for start in range(0, m, BLOCK):
+        block = slice(start, min(start + BLOCK, m))
+        poses = T_MT[: block.stop - start]
+        poses[:, :3, 3] = points[block]
+        result = inverse_kinematics(robot, poses)
+        theta[block], reached[block] = result.theta, result.reached
+        pose, J_block = pose_and_jacobian(robot, result.theta)
+        J[block] = J_block
+        for c, (i, j) in enumerate(PAIRS):
+            shares[block, :, c] = robot.C_theta * J_block[:, i] * J_block[:, j]
+        det_J[block] = square_determinant(robot, pose, J_block)
+    shape = grid.shape
+    return (
+        theta.reshape(*shape, n), reached.reshape(shape), J.reshape(*shape, 6, n),
+        shares.reshape(*shape, n, 6), det_J.reshape(shape),
+    )  # fmt: skip
+
+
+def square_determinant(robot: Robot, pose: FloatArray, J: FloatArray) -> FloatArray:
+    """det (m,) of the arm's task Jacobian; its size where that is not square (seven joints)."""
+    task = square_matrix(robot, pose, J)
+    if task.shape[-1] == task.shape[-2]:
+        with np.errstate(invalid="ignore"):  # NaN in, NaN out
+            return np.linalg.det(task)
+    return np.sqrt(np.maximum(np.linalg.det(task @ np.swapaxes(task, -1, -2)), 0.0))
