@@ -173,7 +173,6 @@ def run_gcode(arguments: Any) -> int:
 
 
 def run_simulate(arguments: Any) -> int:
-    from robomill.io.meshes import zmap_to_stl
     from robomill.io.projects import load_setup, read_program
     from robomill.io.results import json_text, write_files
     from robomill.report.plain import simulation_lines
@@ -191,6 +190,8 @@ def run_simulate(arguments: Any) -> int:
     result = simulate(setup)
     record = simulation_record(result)
     if arguments.out:
+        from robomill.io.meshes import zmap_to_stl
+
         files = {
             "result.json": json_text(jsonable(record)),
             "deviation.csv": csv_text(deviation_columns(result)),

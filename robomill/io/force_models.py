@@ -70,6 +70,7 @@ def _measured(table: Table, cutter: Cutter, folder: Path | None) -> ForceModel:
             axis=inner.text("axis"),  # type: ignore[arg-type]
             frame=inner.text("frame"),  # type: ignore[arg-type]
             source=inner.text("source"),
+            notes=tuple(inner.words("notes")),
         )
         inner.finish()
     table.asked.update(("file", "record", "force_on"))
@@ -109,7 +110,7 @@ def force_to_table(force: ForceModel) -> dict[str, Any]:
         return {
             "kind": "measured", "cutoff_Hz": force.cutoff or 0.0, "start": force.start,
             "record": {
-                "axis": record.axis, "frame": record.frame, "source": record.source,
+                "axis": record.axis, "frame": record.frame, "source": record.source, "notes": list(record.notes),
                 "x": record.x[:, None].tolist(), "F_N": record.F.tolist(),
             },
         }  # fmt: skip

@@ -235,7 +235,9 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         data["springs"] = [spring_to_table(spring) for spring in setup.springs]
     if setup.links is not None:
         data["links"] = links_to_table(setup.links)
-    return tomli_w.dumps(data, multiline_strings=True)
+    # TOML reads the line ends of multi-line strings as plain ones, so a program with others is written escaped.
+    plain = "\r" not in getattr(setup.source, "text", "")
+    return tomli_w.dumps(data, multiline_strings=plain)
 
 
 def _robot_table(robot: Robot) -> dict[str, Any]:
@@ -276,6 +278,9 @@ def _shown(value: float, unit: str) -> float:
         short = float(f"{exact:.{digits}g}")
         if to_si(short, unit) == value:
             return short
+    for near in (exact, np.nextafter(exact, -np.inf), np.nextafter(exact, np.inf)):
+        if to_si(float(near), unit) == value:
+            return float(near)
     return exact
 
 

@@ -54,6 +54,13 @@ class Table:
             raise self.refuse(key, f"expected text in quotes, found {value!r:.40}.")
         return value  # type: ignore[no-any-return]
 
+    def words(self, key: str) -> list[str]:
+        """A list of texts; empty where it is absent."""
+        value = self._get(key, [])
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            raise self.refuse(key, f"expected a list of texts, found {value!r:.40}.")
+        return value
+
     def flag(self, key: str, default: bool) -> bool:
         value = self._get(key, default)
         if not isinstance(value, bool):

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
@@ -14,7 +15,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.setup import SimulationSetup
-from robomill.surface.groove import GrooveSection, groove_section
+from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si
@@ -153,11 +154,16 @@ class SimulationResult:
         return cut(setup.stock_block, setup.cell, setup.cutter, p, self.path.k, self.removes)
 
     def groove(self, station: float) -> GrooveSection:
-        """The groove's section at ``station`` (m, length travelled at feed)."""
-        return groove_section(
-            self.setup.stock_block, self.setup.cutter, self.path.p, self.p_machined, self.removes, station,
-            k=self.path.k,
-        )  # fmt: skip
+        """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
+        return self.grooves([station])[0]
+
+    def grooves(self, stations: ArrayLike) -> tuple[GrooveSection, ...]:
+        """The groove's sections at ``stations`` (q,) m."""
+        path = self.path
+        moved = np.where(self.reached[:, None], self.p_machined, np.nan)
+        return groove_sections(
+            self.setup.stock_block, self.setup.cutter, path.p, moved, path.cutting, path.block, stations, k=path.k
+        )
 
     @cached_property
     def stations(self) -> FloatArray:
@@ -166,7 +172,7 @@ class SimulationResult:
 
     @cached_property
     def sections(self) -> tuple[GrooveSection, ...]:
-        return tuple(self.groove(float(s)) for s in self.stations)
+        return self.grooves(self.stations)
 
     @cached_property
     def verdict(self) -> Verdict:
@@ -177,7 +183,7 @@ class SimulationResult:
         share = self.max_deviation / tolerance
         sentence = (
             f"Max {format_si(self.max_deviation, 'mm', 2)} at line {self.worst_block}, "
-            f"{share:.0%} of the {format_si(tolerance, 'mm', 2)} allowed"
+            f"{100 * share:.0f} % of the {format_si(tolerance, 'mm', 2)} allowed"
         )
         if missed:
             lines = sorted(set(self.path.block[~self.reached].tolist()))

@@ -23,7 +23,8 @@ STOREYS = [
     {"improve"},
     {"report", "viz", "io"},
     {"ui"},
-    {"cli", "__main__"},
+    {"cli"},
+    {"__main__"},
 ]
 LEVEL = {room: level for level, rooms in enumerate(STOREYS) for room in rooms}
 SCREEN = {"streamlit", "plotly", "pyvista", "pandas", "vtk", "matplotlib"}

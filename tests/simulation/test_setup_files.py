@@ -11,6 +11,7 @@ from robomill.errors import ProjectError, RobomillError
 from robomill.io.projects import load_setup, open_project, program_from_bytes, setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.toolpath.source import GCodeSource, LinesSource
+from robomill.units import to_si
 
 SAMPLE = samples_dir() / "paper_flute" / "setup.toml"
 
@@ -28,7 +29,7 @@ def test_edits_survive_saving(setup) -> None:
     T_MW = setup.T_MW.copy()
     T_MW[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     robot = setup.robot.replace(C_theta=setup.robot.C_theta * 0.7)
-    lines = LinesSource([[0, 0, 0]], [[0.1 / 3, 0, 0]], [0.031], 123.4)
+    lines = LinesSource([[0, 0, 0]], [[to_si(33.3, "mm"), 0, 0]], [to_si(1861.5, "mm/min")], to_si(7404.1, "1/min"))
     edited = setup.replace(robot=robot, source=lines, T_MW=T_MW, stock=None, tolerance=1e-4 / 3)
     again = setup_from_toml(setup_to_toml(edited))
     assert again.digest() == edited.digest()
@@ -73,7 +74,7 @@ BAD = [
     (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = nan"), "tolerance_mm: expected a finite number"),
     (
         TEXT.replace("cell_mm = 0.1", "cel_mm = 0.1"),
-        "[numerics], cel_mm: this key is not known here; known are: cell_mm",
+        "[numerics], cel_mm: this key is not known here; known are: add_sag, cell_mm",
     ),
     (TEXT.replace("diameter_mm = 8.0", ""), "[cutter], diameter_mm: missing; add it"),
     (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "diameter"),
