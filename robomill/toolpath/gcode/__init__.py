@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
-from robomill.toolpath.gcode.interpreter import interpret, read_gcode
 from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.reading import interpret, read_gcode
+from robomill.toolpath.gcode.report import gcode_report, write_moves_jsonl
+from robomill.toolpath.gcode.tools import Tool, read_tool_table
 
-__all__ = ["CHORD_ERROR", "Program", "interpret", "read_gcode"]
+__all__ = [
+    "CHORD_ERROR", "Program", "Tool", "gcode_report", "interpret", "read_gcode", "read_tool_table",
+    "write_moves_jsonl",
+]  # fmt: skip

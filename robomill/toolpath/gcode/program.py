@@ -13,9 +13,14 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
 from robomill.toolpath.path import Finding, Toolpath
 
-TRAVERSE, FEED, ARC, TAP = 0, 1, 2, 3
-KINDS = ("traverse", "feed", "arc", "tap")
+TRAVERSE, FEED, ARC, TAP, PROBE = 0, 1, 2, 3, 4
+KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
+
+_WIDTHS = {
+    "line": 1, "kind": 1, "start": 3, "end": 3, "rotary0": 3, "rotary": 3, "plane": 1, "centre": 3, "turns": 1,
+    "clockwise": 1, "v_f": 1, "n_s": 1, "tool": 1,
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +29,8 @@ class Program:
 
     line      (m,) int       1-based source line
     kind      (m,) int       0 traverse, 1 feed, 2 arc, 3 tap (down to the end and back); names in ``KINDS``
-    start     (m, 3) m       tip at the start; differs from the end before only where a tool length changes
-    end       (m, 3) m       tip at the end
+    start     (m, 3) m       tip at the start: the end before (of a tap: its start)
+    end       (m, 3) m       tip at the end (of a tap: its bottom)
     rotary0, rotary (m, 3) rad   A, B, C at the start and at the end
     plane     (m,) int       17, 18, 19 for arcs, 0 otherwise
     centre    (m, 3) m       arc centre, at the start's height; 0 otherwise
@@ -59,13 +64,13 @@ class Program:
 
     def __post_init__(self) -> None:
         m = len(self.line)
-        shapes: dict[str, Any] = {"start": 3, "end": 3, "rotary0": 3, "rotary": 3, "centre": 3}
-        for name in ("start", "end", "rotary0", "rotary", "centre", "v_f", "n_s"):
-            shape = (m, 3) if name in shapes else (m,)
-            object.__setattr__(self, name, frozen(np.broadcast_to(getattr(self, name), shape)))
-        for name in ("line", "kind", "plane", "turns", "tool"):
-            object.__setattr__(self, name, frozen(np.broadcast_to(getattr(self, name), (m,)), np.int64))
-        object.__setattr__(self, "clockwise", frozen(np.broadcast_to(self.clockwise, (m,)), bool))
+        for name, width in _WIDTHS.items():
+            shape = (m, width) if width > 1 else (m,)
+            array = np.broadcast_to(np.asarray(getattr(self, name)), shape)
+            if array.flags.writeable:
+                array = array.copy()
+                array.flags.writeable = False
+            object.__setattr__(self, name, array)
 
     def __len__(self) -> int:
         return len(self.line)
@@ -101,7 +106,7 @@ class Program:
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray] | None:
         """Lowest and highest corner (3,) m of all moves at feed, arcs with their true extremes; None without any."""
-        at_feed = self.kind != TRAVERSE
+        at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
         i, geometry = self._arcs()
@@ -115,7 +120,7 @@ class Program:
     def toolpath(self, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
         """The moves as straight pieces in {W}, arcs as chords within ``chord_error`` (m).
 
-        Where a tool change moves the tip, a rapid point joins. Raises GCodeError if nothing moves.
+        Raises GCodeError if nothing moves, or if a finding is an error.
         """
         if len(self) == 0:
             raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
@@ -137,32 +142,27 @@ class Program:
         if len(i):
             p[is_arc] = arcs.chord_points(*geometry, counts[i])
         angles = self.rotary0[owner] + fraction * (self.rotary - self.rotary0)[owner]
-        rows = self._with_jumps(p, tool_axis(angles), owner, last - counts + 1)
+        rows = self._with_returns(p, tool_axis(angles), owner, last - counts + 1)
         return Toolpath(findings=self.findings, units=self.units or "mm", **rows)
 
-    def _with_jumps(self, p: FloatArray, k: FloatArray, owner: IntArray, first: IntArray) -> dict[str, Any]:
-        """Rows of a Toolpath: the start, joining rapids where a start is not the end before, taps back up."""
-        rest = np.where((self.kind == TAP)[:, None], self.start, self.end)
-        gap = np.abs(self.start[1:] - rest[:-1]).max(axis=1) > 1e-9
-        jumps = np.flatnonzero(gap) + 1
+    def _with_returns(self, p: FloatArray, k: FloatArray, owner: IntArray, first: IntArray) -> dict[str, Any]:
+        """Rows of a Toolpath: the start in front, and after each tap the way back."""
         taps = np.flatnonzero(self.kind == TAP)
-        at = np.concatenate([[0], first[jumps], first[taps] + 1])
-        moves = np.concatenate([[0], jumps, taps])
-        points = np.concatenate([self.start[moves[: 1 + len(jumps)]], self.start[taps]])
-        axes = tool_axis(self.rotary0[moves])
-        cutting = np.concatenate([np.zeros(1 + len(jumps), bool), np.ones(len(taps), bool)])
+        at = np.concatenate([[0], first[taps] + 1])
+        moves = np.concatenate([[0], taps])
+        cutting = np.arange(len(at)) > 0
         inserted = np.zeros(len(p) + len(at), dtype=bool)
-        order = np.argsort(at, kind="stable")
-        inserted[at[order] + np.arange(len(at))] = True
+        inserted[at + np.arange(len(at))] = True
 
         def merge(values: Any, extra: Any) -> Any:
             out = np.empty((len(inserted), *values.shape[1:]), dtype=values.dtype)
-            out[~inserted], out[inserted] = values, extra[order]
+            out[~inserted], out[inserted] = values, extra
             return out
 
-        feeds = self.kind != TRAVERSE
+        feeds = (self.kind != TRAVERSE) & (self.kind != PROBE)
         return {
-            "p": merge(p, points), "k": merge(k, axes), "cutting": merge(feeds[owner], cutting),
+            "p": merge(p, self.start[moves]), "k": merge(k, tool_axis(self.rotary0[moves])),
+            "cutting": merge(feeds[owner], cutting),
             "v_f": merge(np.where(feeds, self.v_f, 0.0)[owner], np.where(cutting, self.v_f[moves], 0.0)),
             "block": merge(self.line[owner], self.line[moves]), "n_s": merge(self.n_s[owner], self.n_s[moves]),
             "tool": merge(self.tool[owner], self.tool[moves]),

@@ -1,0 +1,112 @@
+"""Checks on a line before it is executed: which motion it makes, and that every word has a use."""
+
+from __future__ import annotations
+
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.modal import (
+    COMPENSATION, CONTROL, CYCLES, IO, LENGTH, MOTION, NEEDS_AXES, NON_MODAL, OVERRIDE, SPINDLE, SPINDLE_MODE, TOOL,
+    USER, g_name,
+)  # fmt: skip
+from robomill.toolpath.gcode.words import Block
+
+_AXES = "xyzabcuvw"
+_ARCS = frozenset({20, 30})
+_COMPENSATION_ON = frozenset({410, 411, 420, 421})
+
+
+def choose_motion(machine: Machine, block: Block) -> None:
+    """Set ``block.motion``. Raises GCodeError if axis words have no use or two."""
+    words = block.words
+    polar = "@" in words or "^" in words
+    axes = any(letter in words for letter in _AXES)
+    if polar:
+        if machine.plane != 17:
+            raise block.refuse("polar coordinates work in the plane G17 only.")
+        for letter in "xy":
+            if letter in words:
+                raise block.refuse(f"polar coordinates and {letter.upper()} are on one line; give one of them.")
+    non_modal, motion = block.g.get(NON_MODAL, -1), block.g.get(MOTION, -1)
+    covets = non_modal in NEEDS_AXES
+    if covets and (polar or (not axes and non_modal in (520, 920))):
+        raise block.refuse(f"{g_name(non_modal)} needs axis words such as X0.")
+    if motion == 800:
+        if (axes or polar) and not covets:
+            raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
+    elif motion >= 0:
+        if covets:
+            raise block.refuse(
+                f"{g_name(non_modal)} and {g_name(motion)} both want the axis words; put them on two lines."
+            )
+        if not axes and not polar and motion not in (0, 10, 20, 30):
+            raise block.refuse(f"{g_name(motion)} needs axis words such as X0.")
+    if motion >= 0:
+        block.motion = motion
+    elif not covets and block.g.get(LENGTH) != 431:
+        if axes or polar:
+            if machine.motion in (-1, 800):
+                raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
+            block.motion = machine.motion
+        elif machine.motion in _ARCS and any(letter in words for letter in "ijk"):
+            block.motion = machine.motion
+    for letter in "uvw":
+        if letter in words:
+            raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")
+
+
+def check_words(block: Block) -> list[tuple[str, str]]:
+    """Words without a use, as (letter, who would use it). Raises GCodeError for senseless combinations."""
+    words, motion = block.words, block.motion
+    non_modal = block.g.get(NON_MODAL, -1)
+    is_cycle = motion in CYCLES
+    if non_modal == 40:
+        if "p" not in words:
+            raise block.refuse("G4 needs P, its dwell in seconds.")
+        if motion in _ARCS:
+            raise block.refuse("G4 and an arc on one line both use P; put them on two lines.")
+    if non_modal == 530 and motion not in (0, 10):
+        raise block.refuse("G53 needs G0 or G1.")
+    if is_cycle:
+        for letter in "abc":
+            if letter in words:
+                raise block.refuse(f"{g_name(motion)} takes no {letter.upper()}; turn the axis on a line before.")
+    if motion in _ARCS and "p" in words and (abs(words["p"] - round(words["p"])) > 1e-3 or round(words["p"]) < 1):
+        raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; expected a whole number of turns, 1 or more.")
+    if motion in (330, 331):
+        if "k" not in words:
+            raise block.refuse(f"{g_name(motion)} needs K, the distance per turn.")
+        if "f" in words:
+            raise block.refuse(f"{g_name(motion)} takes no F; K says the distance per turn.")
+    if block.g.get(SPINDLE_MODE) == 960 and "s" not in words:
+        raise block.refuse("G96 needs S, the surface speed.")
+    return [(letter, use) for letter, used, use in _uses(block) if letter in words and not used]
+
+
+def _uses(block: Block) -> list[tuple[str, bool, str]]:
+    motion, g, m = block.motion, block.g, block.m
+    non_modal, compensation = g.get(NON_MODAL, -1), g.get(COMPENSATION, -1)
+    data = non_modal == 100
+    arc, spline, thread = motion in _ARCS, motion in (50, 51), motion == 760
+    cycle = motion in CYCLES
+    io, user, orient = m.get(IO, -1), USER in m, m.get(SPINDLE) == 19
+    return [
+        ("d", compensation in _COMPENSATION_ON or g.get(SPINDLE_MODE) == 960, "G41, G42 or G96"),
+        ("e", thread or io in (66, 67, 68), "G76, M66, M67 or M68"),
+        ("h", g.get(LENGTH) in (430, 432) or thread, "G43"),
+        ("i", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
+        ("j", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
+        ("k", arc or motion in (330, 331, 760, 870), "G2, G3, G33 or G87"),
+        ("l", cycle or thread or data or motion == 52 or compensation in _COMPENSATION_ON or io == 66, "G10 or a cycle"),
+        (
+            "p",
+            data or non_modal == 40 or g.get(CONTROL) == 640 or arc or thread or motion in (50, 52)
+            or motion in (740, 820, 840, 860, 880, 890) or OVERRIDE in m or io in range(62, 67) or orient or user,
+            "G2, G3, G4, G10, G64 or a cycle with a dwell",
+        ),
+        (
+            "q",
+            motion in (730, 830, 50, 760) or data or m.get(TOOL) == 61 or g.get(CONTROL) == 640 or io in (66, 67, 68)
+            or orient or user,
+            "G10, G64, G73, G83 or M61",
+        ),
+        ("r", arc or thread or cycle or data or compensation in (411, 421) or orient, "G2, G3, G10 or a cycle"),
+    ]  # fmt: skip

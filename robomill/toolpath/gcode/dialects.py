@@ -1,0 +1,125 @@
+"""Dialects: what a program looks like that was not written for LinuxCNC, and what it means then."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.modal import g_name
+from robomill.toolpath.gcode.words import Block
+
+NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
+
+HARMLESS: dict[str, dict[int, str]] = {
+    "fanuc": {
+        50: "high-speed mode", 90: "exact stop", 150: "polar coordinates off", 220: "stored stroke check",
+        230: "stored stroke check off", 401: "normal direction control off", 501: "mirror image off",
+        500: "scaling off", 620: "corner override", 630: "tapping mode", 670: "macro call off",
+        690: "rotation off", 94: "", 1000: "",
+    },
+    "grbl": {},
+    "sinumerik": {
+        600: "exact stop", 601: "exact stop fine", 602: "exact stop coarse", 6010: "exact stop", 6020: "exact stop",
+        6410: "smoothing", 6420: "smoothing", 6430: "smoothing", 6440: "smoothing", 6450: "smoothing",
+        4500: "continuous", 4510: "", 4500_0: "", 5000: "no work offset",
+    },
+    "linuxcnc": {},
+}  # fmt: skip
+"""G words that move nothing, by dialect; they are counted as ignored."""
+
+_SINUMERIK = re.compile(r"\b(CR|AR|TURN)\s*=|\b[XYZIJKABCFS]\d?\s*=|\bG(?:71|70|710|700|500|601|64[1-5])\b|\bMSG\s*\(|^\s*;\s*\$PATH|\bM17\b|\bDEF\s+(?:REAL|INT)", re.IGNORECASE | re.MULTILINE)  # fmt: skip
+_FANUC = re.compile(r"^\s*(?::|O)\d{4,}\s*(?:\(|$)|\bM98\s*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|\bIF\s*\[.*\bGOTO\b|\bG28\s*U0", re.IGNORECASE | re.MULTILINE)  # fmt: skip
+_GRBL = re.compile(r"^\s*\$(?:H|X|\d+=|J=)", re.IGNORECASE | re.MULTILINE)
+_LINUXCNC = re.compile(r"^\s*o\s*(?:<[^>]+>|\d+)\s*(?:sub|if|while|do|repeat|call)|#<", re.IGNORECASE | re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How a program is read; ``guessed`` says that nobody stated it."""
+
+    name: str
+    guessed: bool = True
+
+    def line(self, raw: str) -> str:
+        """The line in LinuxCNC's words."""
+        if self.name == "sinumerik":
+            return _from_sinumerik(raw)
+        if self.name == "fanuc" and raw[:1] == ":":
+            return "O" + raw[1:]
+        if self.name == "grbl" and raw.lstrip()[:1] in "$!~?":
+            return _from_grbl(raw)
+        return raw
+
+    def unknown(self, machine: Machine, block: Block) -> None:
+        """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
+        for code in block.unknown_g:
+            if code in HARMLESS[self.name]:
+                machine.findings.add("ignored", block.line, f"{g_name(code)} is left out: it moves nothing")
+            else:
+                raise block.refuse(f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
+        for code in block.unknown_m:
+            machine.findings.add("ignored", block.line, f"M{code} is not known and is left out")
+
+    def unused_word(self, machine: Machine, block: Block, letter: str, use: str) -> None:
+        """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
+        if letter == "p" and block.words[letter] == -1.0:
+            return
+        if self.name == "linuxcnc" or letter in "ijkr":
+            raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
+        machine.findings.add("ignored", block.line, f"{letter.upper()} without {use} is left out")
+
+    def subprogram(self, block: Block) -> tuple[int, int]:
+        """Number and repeats of M98 P... L...; Fanuc also writes them as P<repeats><number>."""
+        p = block.words["p"]
+        if abs(p - round(p)) > 1e-4 or p < 0:
+            raise block.refuse(f"M98 has P{p:g}; expected the number of a program.")
+        number, repeats = round(p), round(block.words.get("l", 1.0))
+        if self.name == "fanuc" and number > 9999 and "l" not in block.words:
+            number, repeats = number % 10000, number // 10000
+        if repeats > 1_000_000:
+            raise block.refuse(f"M98 has L{repeats}; at most 1000000 repeats are made.")
+        return number, repeats
+
+
+def choose_dialect(text: str, wanted: str) -> Dialect:
+    """The dialect ``wanted``, or for ``"auto"`` the one the text looks like. Raises GCodeError for other names."""
+    if wanted != "auto":
+        if wanted not in NAMES:
+            raise GCodeError(f"Dialect {wanted!r} is not known; expected auto, {', '.join(NAMES)}.")
+        return Dialect(wanted, guessed=False)
+    sample = text[:200_000]
+    if _LINUXCNC.search(sample):
+        return Dialect("linuxcnc")
+    for name, pattern in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
+        if pattern.search(sample):
+            return Dialect(name)
+    return Dialect("linuxcnc")
+
+
+_UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
+_WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
+
+
+def _from_sinumerik(raw: str) -> str:
+    code, mark, comment = raw.partition(";")
+    message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
+    if message is not None:
+        code, comment, mark = message[1], "MSG," + message[2].strip('"'), ";"
+    code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
+    code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
+    code = re.sub(r"\b([XYZABCIJKFS])\s*=\s*AC\(([^()]*)\)", r"\1[\2]", code, flags=re.IGNORECASE)
+    code = re.sub(r"\b([XYZABCIJKFS])\d?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bM17\b", "M2", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bT\s*=?\s*\"[^\"]*\"", "", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
+    return code + (";" + comment if mark else "")
+
+
+def _from_grbl(raw: str) -> str:
+    text = raw.strip().upper()
+    if text.startswith(("$H", "$J")):
+        raise GCodeError(f"{text.split()[0]} moves the machine in a way the program does not say; remove it.")
+    return ""

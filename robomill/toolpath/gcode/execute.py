@@ -1,0 +1,209 @@
+"""What a line does, in the standard's order of execution."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robomill.toolpath.gcode import compensation as _compensation  # noqa: F401  (keeps the import order explicit)
+from robomill.toolpath.gcode import cycles, motion, offsets
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.modal import (
+    ARC_DISTANCE, COMPENSATION, CONTROL, COORDINATES, COOLANT, CYCLES, DIAMETER, DISTANCE, FEED_MODE, IO, LENGTH,
+    NON_MODAL, OVERRIDE, PLANE, PROBES, RETRACT, SPINDLE, SPINDLE_MODE, STOP, TOOL, UNITS, USER, g_name,
+)  # fmt: skip
+from robomill.toolpath.gcode.tools import Tool
+from robomill.toolpath.gcode.words import Block
+
+_DIRECTIONS = {3: 1, 4: -1, 5: 0, 19: 0}
+_CLOSED = "with cutter compensation on; use G40 first."
+
+
+def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
+    """Execute a checked line; True if the program ends here. ``saved`` is where M70 keeps the modes."""
+    words, g = block.words, block.g
+    if SPINDLE_MODE in g:
+        machine.spindle_mode = g[SPINDLE_MODE]
+        if g[SPINDLE_MODE] == 960:
+            machine.findings.add("warning", block.line, "G96: the spindle speed follows the diameter and is not known")
+    if FEED_MODE in g:
+        machine.feed_mode = g[FEED_MODE]
+        if machine.feed_mode != 930:
+            machine.feed = 0.0
+    if "f" in words and machine.feed_mode != 930:
+        machine.feed = words["f"]
+        if UNITS in g and offsets_unit_changes(machine, g[UNITS]):
+            machine.findings.add(
+                "suspicious", block.line, f"F and {g_name(g[UNITS])} on one line: F counts in the units before it"
+            )
+    if "s" in words:
+        machine.speed = words["s"]
+    if "t" in words:
+        offsets.known_tool(machine, block, round(words["t"]))
+        machine.selected = round(words["t"])
+    _execute_m(machine, block, saved)
+    _execute_g(machine, block)
+    if TOOL in block.m or block.m.get(IO) == 66:
+        machine.p = list(machine.sent)
+    return STOP in block.m and _stop(machine, block)
+
+
+def offsets_unit_changes(machine: Machine, code: int) -> bool:
+    """True if G20 or G21 changes the unit in force."""
+    return code != machine.unit_code
+
+
+def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
+    m = block.m
+    if IO in m:
+        machine.findings.add("ignored", block.line, f"M{m[IO]}: inputs and outputs are left out")
+        machine.store.numbered[5399] = -1.0
+    if TOOL in m:
+        _change_tool(machine, block)
+    spindle = m.get(SPINDLE, -1)
+    if spindle in _DIRECTIONS:
+        machine.spindle = _DIRECTIONS[spindle]
+    elif spindle in (70, 73):
+        saved.clear()
+        saved.update(machine.save_modes(), automatic=spindle == 73)
+    elif spindle == 71:
+        saved.clear()
+    elif spindle == 72:
+        if not saved:
+            raise block.refuse("M72 has nothing to restore; M70 or M73 comes first.")
+        restore_modes(machine, block, saved)
+    coolant = m.get(COOLANT, -1)
+    if coolant == 9:
+        machine.mist = machine.flood = False
+    elif coolant >= 0:
+        machine.mist, machine.flood = machine.mist or coolant == 7, machine.flood or coolant == 8
+    if OVERRIDE in m and machine.compensation is not None:
+        raise block.refuse(f"M{m[OVERRIDE]} cannot be used {_CLOSED}")
+    if USER in m:
+        machine.findings.add("ignored", block.line, f"M{m[USER]} is made by the user of a machine and is left out")
+
+
+def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
+    """Put back what M70 or M73 kept: units first, then everything else."""
+    if saved["unit_code"] != machine.unit_code:
+        machine.set_units(saved["unit_code"])
+    if saved["system"] != machine.system:
+        code = next(code for code, system in offsets.SYSTEMS.items() if system == saved["system"])
+        offsets.select_system(machine, block, code)
+    for name, value in saved.items():
+        if name not in ("unit_code", "system", "automatic"):
+            setattr(machine, name, value)
+
+
+def _change_tool(machine: Machine, block: Block) -> None:
+    if block.m[TOOL] == 61:
+        number = round(block.words.get("q", -1.0))
+        if number < 0:
+            raise block.refuse("M61 needs Q, a tool number of 0 or more.")
+    else:
+        if machine.selected < 0:
+            raise block.refuse("M6 needs a tool; select it with T first.")
+        if machine.compensation is not None:
+            raise block.refuse(f"M6 cannot be used {_CLOSED}")
+        number = machine.selected
+        machine.spindle = 0
+    machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
+    machine.recorder.tool = number
+
+
+def _execute_g(machine: Machine, block: Block) -> None:
+    g = block.g
+    if g.get(NON_MODAL) == 40:
+        machine.dwell(block.words["p"])
+    if PLANE in g:
+        _set_plane(machine, block, g[PLANE])
+    if UNITS in g:
+        machine.set_units(g[UNITS])
+    if DIAMETER in g:
+        diameter = g[DIAMETER] == 70
+        if diameter != machine.diameter_mode and "x" in block.words:
+            block.words["x"] *= 0.5 if diameter else 2.0
+        machine.diameter_mode = diameter
+    if COMPENSATION in g:
+        if g[COMPENSATION] == 400:
+            if machine.compensation is not None:
+                machine.compensation.off(machine, block)
+        else:
+            offsets.compensation_on(machine, block)
+    if LENGTH in g:
+        offsets.tool_length(machine, block, g[LENGTH])
+    if COORDINATES in g:
+        offsets.select_system(machine, block, g[COORDINATES])
+    for group in (CONTROL, RETRACT):
+        if group in g and machine.compensation is not None:
+            raise block.refuse(f"{g_name(g[group])} cannot be used {_CLOSED}")
+    if DISTANCE in g:
+        machine.absolute = g[DISTANCE] == 900
+    if ARC_DISTANCE in g:
+        machine.arc_absolute = g[ARC_DISTANCE] == 901
+    if RETRACT in g:
+        machine.retract_r = g[RETRACT] == 990
+    if NON_MODAL in g:
+        _non_modal(machine, block, g[NON_MODAL])
+    if block.motion >= 0:
+        _move(machine, block)
+
+
+def _set_plane(machine: Machine, block: Block, code: int) -> None:
+    if code % 10:
+        raise block.refuse(f"{g_name(code)}: this machine has no U, V, W axes; use G17, G18 or G19.")
+    if machine.compensation is not None and code != 10 * machine.plane:
+        raise block.refuse(f"{g_name(code)} cannot change the plane {_CLOSED}")
+    machine.plane = code // 10
+
+
+def _non_modal(machine: Machine, block: Block, code: int) -> None:
+    if code == 100:
+        offsets.set_data(machine, block)
+    elif code in (280, 300):
+        motion.home(machine, block, code)
+    elif code in (281, 301):
+        motion.save_home(machine, block, code)
+    elif code in (520, 920, 921, 922, 923):
+        offsets.axis_offsets(machine, block, code)
+
+
+def _move(machine: Machine, block: Block) -> None:
+    code = block.motion
+    if code not in CYCLES:
+        machine.initial_level = None
+    if code in (0, 10, 330, 331):
+        motion.straight(machine, block)
+    elif code in (20, 30):
+        motion.arc(machine, block)
+    elif code == 800:
+        machine.motion = 800
+    elif code in CYCLES:
+        cycles.cycle(machine, block)
+    elif code in PROBES:
+        _probe(machine, block)
+    else:
+        raise block.refuse(f"{g_name(code)} is not supported; write the motion with G1, G2 and G3.")
+
+
+def _probe(machine: Machine, block: Block) -> None:
+    if machine.compensation is not None:
+        raise block.refuse(f"{g_name(block.motion)} cannot be used {_CLOSED}")
+    if machine.feed == 0.0:
+        raise block.refuse(f"{g_name(block.motion)} needs a feed rate; give an F word above 0 first.")
+    if machine.feed_mode == 950:
+        raise block.refuse(f"{g_name(block.motion)} cannot be used in feed per revolution (G95).")
+    end = motion.find_end(machine, block)
+    if block.motion in (382, 384) and end == machine.p:
+        raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
+    machine.probe_to(block.line, end)
+    machine.findings.add("warning", block.line, "probing: the probe is taken to travel its whole way")
+    machine.store.numbered[5061:5067] = end
+    machine.store.numbered[5070] = 1.0
+    machine.p = end
+    machine.motion = block.motion
+
+
+def _stop(machine: Machine, block: Block) -> bool:
+    if machine.compensation is not None:
+        machine.compensation.finish(machine, block)
+    return block.m[STOP] in (2, 30)

@@ -1,0 +1,224 @@
+"""The machine that the program talks to: modes, offsets and the current point, in the units of the program.
+
+Lengths here are in program units (mm or inch, whatever G20/G21 says) and angles in degrees, as LinuxCNC keeps
+them; ``Machine.point`` is the one place where they become m in the machine frame.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.gcode.parameters import Parameters
+from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE
+from robomill.toolpath.gcode.recorder import Point, Recorder
+from robomill.toolpath.gcode.tools import Tool, ToolTable
+from robomill.units import from_si, to_si
+
+UNITS = {200: "in", 210: "mm"}
+_NO_TOOL = Tool(0)
+_SAVED = (
+    "unit_code", "plane", "absolute", "arc_absolute", "feed_mode", "feed", "speed", "spindle", "retract_r",
+    "spindle_mode", "diameter_mode", "system",
+)  # fmt: skip
+XYZABC = "xyzabc"
+
+
+class Machine:
+    """State that lines change. ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system.
+
+    ``sent`` is the end of the last move that was recorded. After a tool change or an input the machine is asked
+    where it stands and answers with that, as LinuxCNC's preview does.
+    """
+
+    def __init__(self, tools: ToolTable | None) -> None:
+        self.store = Parameters(self.provided)
+        self.findings = Findings()
+        self.recorder = Recorder()
+        self.tools = None if tools is None else dict(tools)
+        self.unit, self.unit_code, self.units_said = "mm", 210, ""
+        self.factor = to_si(1.0, "mm")
+        self.p = [0.0] * 6
+        self.sent = [0.0] * 6
+        self.g5x, self.g92 = [0.0] * 6, [0.0] * 6
+        self.rotation = 0.0
+        self.system = 1
+        self.length_offset = [0.0] * 3
+        self.motion, self.plane, self.absolute, self.arc_absolute = 800, 17, True, False
+        self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
+        self.retract_r, self.diameter_mode = True, False
+        self.tool, self.selected = _NO_TOOL, -1
+        self.mist = self.flood = False
+        self.cycle: dict[str, float] = {}
+        self.initial_level: float | None = None
+        self.compensation: Any = None
+        self.arc_not_allowed = False
+        self.line = 0
+        self.return_value, self.value_returned = 0.0, 0.0
+        self.dwells, self.dwell_time = 0, 0.0
+        self.messages: list[tuple[int, str]] = []
+
+    # --- units and frames
+    def set_units(self, code: int) -> None:
+        """G20 or G21: every length that is kept changes its unit."""
+        unit = UNITS[code]
+        self.units_said = unit
+        if unit == self.unit:
+            return
+        ratio = to_si(1.0, self.unit) / to_si(1.0, unit)
+        for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset):
+            values[:3] = [v * ratio for v in values[:3]]
+        self.feed *= ratio
+        if self.compensation is not None:
+            self.compensation.scale(ratio)
+        self.unit, self.unit_code, self.factor = unit, code, to_si(1.0, unit)
+
+    def to_user(self, length: float) -> float:
+        """A length of the program in mm, the unit of stored parameters."""
+        return from_si(to_si(length, self.unit), "mm")
+
+    def from_user(self, length: float) -> float:
+        """A stored parameter (mm) in program units."""
+        return from_si(to_si(length, "mm"), self.unit)
+
+    def point(self, x: float, y: float, z: float) -> Point:
+        """A point of the current coordinate system in the machine frame, m."""
+        x, y, z = x + self.g92[0], y + self.g92[1], z + self.g92[2]
+        if self.rotation:
+            x, y = rotate(x, y, self.rotation)
+        g5x, factor = self.g5x, self.factor
+        return (x + g5x[0]) * factor, (y + g5x[1]) * factor, (z + g5x[2]) * factor
+
+    def angles(self, a: float, b: float, c: float) -> Point:
+        """Rotary axes in the machine frame, rad."""
+        g5x, g92 = self.g5x, self.g92
+        return (
+            math.radians(a + g92[3] + g5x[3]), math.radians(b + g92[4] + g5x[4]), math.radians(c + g92[5] + g5x[5]),
+        )  # fmt: skip
+
+    # --- moves
+    @property
+    def spindle_speed(self) -> float:
+        """Revolutions per second that are commanded; 0 at constant surface speed, which is not modelled."""
+        return self.speed / 60.0 if self.spindle_mode == 970 else 0.0
+
+    @property
+    def feed_speed(self) -> float:
+        """The feed rate in m/s (per revolution: at the commanded spindle speed)."""
+        per_second = self.spindle_speed if self.feed_mode == 950 else 1.0 / 60.0
+        return self.feed * self.factor * per_second
+
+    def go(self, kind: int, line: int, end: list[float], v_f: float | None = None) -> None:
+        """Record a straight move to ``end`` (6,) and, except for taps, stand there."""
+        recorder = self.recorder
+        self.sent = list(end)
+        speed = self.feed_speed if v_f is None and kind != TRAVERSE else v_f or 0.0
+        recorder.n_s = self.spindle_speed if self.spindle else 0.0
+        if kind == TAP:
+            at, turned = recorder.at, recorder.turned
+            recorder.move(line, kind, self.point(*end[:3]), turned, speed)
+            recorder.at = at
+            return
+        recorder.move(line, kind, self.point(end[0], end[1], end[2]), self.angles(end[3], end[4], end[5]), speed)
+
+    def go_arc(self, line: int, end: list[float], plane: int, centre: Point, turn: int, v_f: float) -> None:
+        """Record an arc in ``plane`` about ``centre`` (x, y, z in the current system)."""
+        self.sent = list(end)
+        self.recorder.n_s = self.spindle_speed if self.spindle else 0.0
+        self.recorder.arc(line, self.point(*end[:3]), self.angles(*end[3:]), plane, self.point(*centre), turn, v_f)
+
+    def traverse(self, line: int, end: list[float]) -> None:
+        """Record a rapid to ``end`` (6,)."""
+        self.go(TRAVERSE, line, end)
+
+    def feed_to(self, line: int, end: list[float]) -> None:
+        """Record a feed move to ``end`` (6,)."""
+        self.go(FEED, line, end)
+
+    def probe_to(self, line: int, end: list[float]) -> None:
+        """Record a probing move to its programmed end."""
+        self.go(PROBE, line, end)
+
+    def dwell(self, seconds: float) -> None:
+        """Count a dwell."""
+        self.dwells += 1
+        self.dwell_time += max(seconds, 0.0)
+
+    # --- tools
+    def find_tool(self, number: int) -> Tool | None:
+        """The tool of the table; None if there is no table. Tool 0 is no tool. KeyError if it is missing."""
+        if number == 0:
+            return _NO_TOOL
+        return None if self.tools is None else self.tools[number]
+
+    def set_length_offset(self, offset: list[float]) -> None:
+        """Apply tool length offsets (program units): the machine stands still, the tip is elsewhere.
+
+        The recorded path goes on from where the tip was last sent, as the reference's does.
+        """
+        change = [before - after for before, after in zip(self.length_offset, offset)]
+        dx, dy = rotate(change[0], change[1], -self.rotation)
+        self.p = [self.p[0] + dx, self.p[1] + dy, self.p[2] + change[2], *self.p[3:]]
+        self.length_offset = list(offset)
+
+    # --- saved modes
+    def save_modes(self) -> dict[str, Any]:
+        """What M70 and M73 keep."""
+        return {name: getattr(self, name) for name in _SAVED}
+
+    # --- values that programs can read
+    def provided(self, name: str | int) -> float | None:
+        """Value of a read-only parameter, None if the machine provides no such name."""
+        if isinstance(name, int):
+            return self._provided_number(name)
+        if name in ("_x", "_y", "_z", "_a", "_b", "_c"):
+            return self.p["_x_y_z_a_b_c".index(name) // 2]
+        entry = _PROVIDED.get(name)
+        return None if entry is None else float(entry(self))
+
+    def _provided_number(self, index: int) -> float:
+        if index >= 5420:
+            if self.compensation is not None:
+                raise GCodeError("the position cannot be read with cutter compensation on; use G40 first.")
+            return self.p[index - 5420] if index < 5426 else 0.0
+        tool = self.tool
+        if 5401 <= index <= 5403:
+            return from_si(tool.offset[index - 5401], "mm")
+        if index == 5400:
+            return float(tool.number)
+        return from_si(tool.diameter, "mm") if index == 5410 else float(tool.orientation if index == 5413 else 0)
+
+
+def rotate(x: float, y: float, degrees: float) -> tuple[float, float]:
+    """(x, y) turned about the origin."""
+    t = math.radians(degrees)
+    return x * math.cos(t) - y * math.sin(t), x * math.sin(t) + y * math.cos(t)
+
+
+def _system_code(machine: Machine) -> int:
+    return 530 + 10 * machine.system if machine.system < 7 else 584 + machine.system
+
+
+_PROVIDED: dict[str, Any] = {
+    "_vmajor": lambda m: 2.9, "_vminor": lambda m: 0.0, "_line": lambda m: m.line,
+    "_motion_mode": lambda m: m.motion, "_plane": lambda m: 10 * m.plane,
+    "_ccomp": lambda m: 400 if m.compensation is None else (410 if m.compensation.left else 420),
+    "_metric": lambda m: m.unit == "mm", "_imperial": lambda m: m.unit == "in",
+    "_absolute": lambda m: m.absolute, "_incremental": lambda m: not m.absolute,
+    "_inverse_time": lambda m: m.feed_mode == 930, "_units_per_minute": lambda m: m.feed_mode == 940,
+    "_units_per_rev": lambda m: m.feed_mode == 950, "_coord_system": _system_code,
+    "_tool_offset": lambda m: any(m.length_offset), "_retract_r_plane": lambda m: m.retract_r,
+    "_retract_old_z": lambda m: not m.retract_r, "_spindle_rpm_mode": lambda m: m.spindle_mode == 970,
+    "_spindle_css_mode": lambda m: m.spindle_mode == 960, "_ijk_absolute_mode": lambda m: m.arc_absolute,
+    "_lathe_diameter_mode": lambda m: m.diameter_mode, "_lathe_radius_mode": lambda m: not m.diameter_mode,
+    "_spindle_on": lambda m: m.spindle != 0, "_spindle_cw": lambda m: m.spindle > 0, "_mist": lambda m: m.mist,
+    "_flood": lambda m: m.flood, "_speed_override": lambda m: 1, "_feed_override": lambda m: 1,
+    "_adaptive_feed": lambda m: 0, "_feed_hold": lambda m: 1, "_feed": lambda m: m.feed,
+    "_rpm": lambda m: m.speed, "_current_tool": lambda m: m.tool.number,
+    "_current_pocket": lambda m: m.tool.number, "_selected_pocket": lambda m: m.selected,
+    "_selected_tool": lambda m: m.selected, "_u": lambda m: 0, "_v": lambda m: 0, "_w": lambda m: 0,
+    "_value": lambda m: m.return_value, "_value_returned": lambda m: m.value_returned,
+    "_call_level": lambda m: len(m.store.frames) - 1, "_remap_level": lambda m: 0, "_task": lambda m: 0,
+}  # fmt: skip

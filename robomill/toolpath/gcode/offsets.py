@@ -1,0 +1,249 @@
+"""Where zero is: G10, G52, G54 to G59.3, G92 and its kin, and tool lengths G43, G49."""
+
+from __future__ import annotations
+
+from robomill.toolpath.gcode.compensation import Compensation
+from robomill.toolpath.gcode.machine import XYZABC, Machine, rotate
+from robomill.toolpath.gcode.modal import COMPENSATION, g_name
+from robomill.toolpath.gcode.tools import Tool
+from robomill.toolpath.gcode.words import Block
+from robomill.units import from_si, to_si
+
+SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}
+_CORNER_OFF = "with cutter compensation on; use G40 first."
+
+
+def stored_system(machine: Machine, system: int) -> tuple[list[float], float]:
+    """Origin (x, y, z, a, b, c) in program units and degrees, and rotation (deg) of a coordinate system 1..9."""
+    at = 5201 + 20 * system
+    values = machine.store.numbered[at : at + 6]
+    return [machine.from_user(v) for v in values[:3]] + values[3:], machine.store.numbered[at + 9]
+
+
+def _store_axis(machine: Machine, system: int, axis: int, value: float) -> None:
+    machine.store.numbered[5201 + 20 * system + axis] = machine.to_user(value) if axis < 3 else value
+
+
+def _absolute(machine: Machine) -> list[float]:
+    """The current point without offsets (tool length left in)."""
+    point = [p + o for p, o in zip(machine.p, machine.g92)]
+    point[0], point[1] = rotate(point[0], point[1], machine.rotation)
+    return [p + o for p, o in zip(point, machine.g5x)]
+
+
+def _in_system(machine: Machine, absolute: list[float], origin: list[float], rotation: float) -> list[float]:
+    point = [p - o for p, o in zip(absolute, origin)]
+    point[0], point[1] = rotate(point[0], point[1], -rotation)
+    if machine.store.numbered[5210]:
+        g92 = machine.store.numbered[5211:5217]
+        point = [p - (machine.from_user(g) if i < 3 else g) for i, (p, g) in enumerate(zip(point, g92))]
+    return point
+
+
+def select_system(machine: Machine, block: Block, code: int) -> None:
+    """G54 to G59.3."""
+    if machine.compensation is not None:
+        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    system = SYSTEMS[code]
+    if system == machine.system:
+        return
+    absolute = _absolute(machine)
+    origin, rotation = stored_system(machine, system)
+    machine.p = _in_system(machine, absolute, origin, rotation)
+    machine.g5x, machine.rotation, machine.system = origin, rotation, system
+    machine.store.numbered[5220] = float(system)
+
+
+def axis_offsets(machine: Machine, block: Block, code: int) -> None:
+    """G52 and the G92 family."""
+    if machine.compensation is not None:
+        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    numbered = machine.store.numbered
+    if code in (520, 920):
+        numbered[5210] = 1.0
+        for axis, letter in enumerate(XYZABC):
+            if letter not in block.words:
+                continue
+            value = block.words[letter]
+            if code == 520:
+                machine.p[axis] += machine.g92[axis] - value
+                machine.g92[axis] = value
+            else:
+                machine.g92[axis] += machine.p[axis] - value
+                machine.p[axis] = value
+        for axis in range(6):
+            numbered[5211 + axis] = machine.to_user(machine.g92[axis]) if axis < 3 else machine.g92[axis]
+        return
+    numbered[5210] = 1.0 if code == 923 else 0.0
+    new = [0.0] * 6
+    if code == 923:
+        new = [machine.from_user(v) if i < 3 else v for i, v in enumerate(numbered[5211:5217])]
+    machine.p = [p + old - n for p, old, n in zip(machine.p, machine.g92, new)]
+    machine.g92 = new
+    if code == 921:
+        numbered[5211:5217] = [0.0] * 6
+
+
+def set_data(machine: Machine, block: Block) -> None:
+    """G10 L1, L2, L10, L11 and L20."""
+    kind = round(block.words.get("l", -1.0))
+    if kind not in (1, 2, 10, 11, 20):
+        raise block.refuse("G10 needs L1, L2, L10, L11 or L20.")
+    p = block.words.get("p")
+    if p is None or abs(p - round(p)) > 1e-4:
+        raise block.refuse("G10 needs P, a whole number.")
+    if kind in (1, 10, 11):
+        _set_tool(machine, block, kind, round(p))
+        return
+    if not 0 <= round(p) <= 9:
+        raise block.refuse(f"G10 L{kind} has P{p:g}; coordinate systems run from 1 to 9 (0: the current one).")
+    if "i" in block.words or "j" in block.words:
+        raise block.refuse(f"G10 L{kind} takes no I or J.")
+    system = round(p) or machine.system
+    if machine.compensation is not None and system == machine.system:
+        raise block.refuse(f"G10 L{kind} cannot move the current coordinate system {_CORNER_OFF}")
+    if kind == 20 and "r" in block.words:
+        raise block.refuse("G10 L20 takes no R.")
+    _set_system(machine, block, kind, system)
+
+
+def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
+    words = block.words
+    origin, rotation = stored_system(machine, system)
+    absolute = _absolute(machine)
+    here = _in_system(machine, absolute, origin, rotation)
+    new_rotation = words.get("r", rotation)
+    new = list(origin)
+    if kind == 20:
+        wanted = [words.get(letter, h) for letter, h in zip(XYZABC, here)]
+        old_xy, new_xy = rotate(here[0], here[1], new_rotation), rotate(wanted[0], wanted[1], new_rotation)
+        new[0] += old_xy[0] - new_xy[0]
+        new[1] += old_xy[1] - new_xy[1]
+        for axis in range(2, 6):
+            if XYZABC[axis] in words:
+                new[axis] += here[axis] - wanted[axis]
+    else:
+        for axis, letter in enumerate(XYZABC):
+            if letter in words:
+                new[axis] = words[letter]
+    for axis in range(6):
+        _store_axis(machine, system, axis, new[axis])
+    machine.store.numbered[5210 + 20 * system] = new_rotation
+    if system == machine.system:
+        point = [p - n for p, n in zip(_unrotated(machine), new)]
+        point[0], point[1] = rotate(point[0], point[1], -new_rotation)
+        machine.p = point
+        machine.g5x, machine.rotation = new, new_rotation
+
+
+def _unrotated(machine: Machine) -> list[float]:
+    """The current point in machine axes, with the axis offsets left out as the reference does."""
+    point = list(machine.p)
+    point[0], point[1] = rotate(point[0], point[1], machine.rotation)
+    return [p + o for p, o in zip(point, machine.g5x)]
+
+
+def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
+    words = block.words
+    if number < 1:
+        raise block.refuse(f"G10 L{kind} has P{number}; tool numbers start at 1.")
+    if not any(letter in words for letter in "xyzabcrqij"):
+        raise block.refuse(f"G10 L{kind} sets nothing; give Z, R or another word.")
+    if machine.tools is not None and number not in machine.tools:
+        raise block.refuse(f"tool {number} is not in the tool table; add it.")
+    if machine.tools is None:
+        machine.tools = _Assumed()
+    tool = machine.tools[number]
+    offset = list(tool.offset)
+    if kind == 1:
+        here = [0.0, 0.0, 0.0]
+        sign = 1.0
+    else:
+        system = 9 if kind == 11 else machine.system
+        absolute = [a + (machine.length_offset[i] if i < 3 else 0.0) for i, a in enumerate(_absolute(machine))]
+        here = _in_system(machine, absolute, *stored_system(machine, system))[:3]
+        if kind == 11 and machine.store.numbered[5210]:
+            here = [h + machine.from_user(v) for h, v in zip(here, machine.store.numbered[5211:5214])]
+        sign = -1.0
+    for axis, letter in enumerate("xyz"):
+        if letter in words:
+            offset[axis] = to_si(here[axis] + sign * words[letter], machine.unit)
+    diameter = to_si(2.0 * words["r"], machine.unit) if "r" in words else tool.diameter
+    changed = Tool(number, diameter, (offset[0], offset[1], offset[2]), round(words.get("q", tool.orientation)))
+    machine.tools[number] = changed
+    if machine.tool.number == number:
+        machine.tool = changed
+
+
+class _Assumed(dict[int, Tool]):
+    """A table that has every tool, of no size, until G10 sets one."""
+
+    def __missing__(self, number: int) -> Tool:
+        return Tool(number)
+
+
+def tool_length(machine: Machine, block: Block, code: int) -> None:
+    """G43, G43.1, G43.2 and G49."""
+    if machine.compensation is not None:
+        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    if code == 490:
+        machine.set_length_offset([0.0, 0.0, 0.0])
+        return
+    if code == 431:
+        offset = [block.words.get(letter, old) for letter, old in zip("xyz", machine.length_offset)]
+        machine.set_length_offset(offset)
+        return
+    if code == 432 and "h" not in block.words:
+        raise block.refuse("G43.2 needs H, a tool number.")
+    number = round(block.words["h"]) if "h" in block.words else machine.tool.number
+    tool = machine.tool if "h" not in block.words else known_tool(machine, block, number)
+    if machine.tools is None and number:
+        machine.findings.add(
+            "info", block.line, f"{g_name(code)}: no tool table; the program is taken to say where the tip goes"
+        )
+    length = [from_si(v, machine.unit) for v in tool.offset]
+    if code == 432:
+        length = [old + new for old, new in zip(machine.length_offset, length)]
+    machine.set_length_offset(length)
+
+
+def known_tool(machine: Machine, block: Block, number: int) -> Tool:
+    """The tool, of no size if there is no table. Raises GCodeError if the table lacks it."""
+    try:
+        return machine.find_tool(number) or Tool(number)
+    except KeyError:
+        raise block.refuse(f"tool {number} is not in the tool table; add it.") from None
+
+
+def compensation_on(machine: Machine, block: Block) -> None:
+    """G41, G42, G41.1 and G42.1."""
+    code = block.g[COMPENSATION]
+    name = g_name(code)
+    if machine.plane not in (17, 18):
+        raise block.refuse(f"{name} works in the planes G17 and G18 only.")
+    if machine.compensation is not None:
+        raise block.refuse(f"{name}: cutter compensation is on already; use G40 first.")
+    orientation = 0
+    if code in (411, 421):
+        if "d" not in block.words:
+            raise block.refuse(f"{name} needs D, the diameter.")
+        if "l" in block.words and machine.plane != 18:
+            raise block.refuse(f"{name} takes L in the plane G18 only.")
+        radius = block.words["d"] / 2.0
+        orientation = round(block.words.get("l", 0.0))
+    else:
+        tool = machine.tool
+        if "d" in block.words:
+            number = block.words["d"]
+            if abs(number - round(number)) > 1e-4 or number < 0:
+                raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
+            tool = known_tool(machine, block, round(number))
+        if machine.tools is None and tool.number:
+            raise block.refuse(f"{name} needs the diameter of tool {tool.number}; give a tool table.")
+        radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
+        if machine.plane != 18 and orientation not in (0, 9):
+            raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
+    left = (code in (410, 411)) == (radius >= 0)
+    if radius == 0:
+        machine.findings.add("warning", block.line, f"{name} with a diameter of 0: the contour is followed as it is")
+    machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)

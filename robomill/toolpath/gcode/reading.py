@@ -1,0 +1,82 @@
+"""The two ways in: ``interpret`` for canonical moves, ``read_gcode`` for a toolpath."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.gcode.dialects import choose_dialect
+from robomill.toolpath.gcode.interpreter import Cancel, File, Interpreter, Progress
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.source import Source, read_source
+from robomill.toolpath.gcode.tools import ToolTable, read_tool_table
+from robomill.toolpath.path import Toolpath
+
+
+def read_gcode(
+    path_or_text: Source,
+    *,
+    chord_error: float = CHORD_ERROR,
+    dialect: str = "auto",
+    tools: ToolTable | str | Path | None = None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Toolpath:
+    """The toolpath of a program in {W}: arcs as chords within ``chord_error`` (m), findings attached.
+
+    Raises GCodeError naming the line that is refused, or if nothing moves.
+    """
+    program = interpret(path_or_text, dialect=dialect, tools=tools, progress=progress, cancel=cancel)
+    return program.toolpath(chord_error)
+
+
+def interpret(
+    source: Source,
+    *,
+    dialect: str = "auto",
+    tools: ToolTable | str | Path | None = None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    fast: bool = True,
+) -> Program:
+    """Canonical moves of a program: a path, the text itself, or its bytes (see ``source.read_source``).
+
+    ``tools`` is a tool table or its file; without one every tool is accepted, of unknown size. ``progress`` is
+    called with the share that is done, ``cancel`` asked whether to stop. ``fast`` lets plain stretches of long
+    programs be read as arrays; the result is the same. Raises GCodeError naming the line that is refused.
+    """
+    data, name = read_source(source)
+    text = data.decode("utf-8", "replace")
+    lines = text.split("\n")
+    del data
+    if isinstance(tools, str | Path):
+        tools = read_tool_table(tools)
+    chosen = choose_dialect(text, dialect)
+    machine = Machine(tools)
+    folder = Path(source).parent if isinstance(source, Path) or (isinstance(source, str) and name != "program") else None
+    interpreter = Interpreter(machine, File(name, lines, folder), chosen, progress, cancel)
+    try:
+        interpreter.run()
+    except RecursionError:
+        raise GCodeError(f"Line {machine.line}: too deeply nested to read.", line=machine.line) from None
+    if chosen.guessed and chosen.name != "linuxcnc":
+        machine.findings.add("info", 0, f"read as {chosen.name} code; this is a guess from how it looks")
+    return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
+
+
+def _program(machine: Machine, dialect: str, lines: int) -> Program:
+    columns: dict[str, Any] = machine.recorder.columns()
+    if not np.isfinite(columns["end"]).all() or not np.isfinite(columns["centre"]).all():
+        bad = int(columns["line"][np.flatnonzero(~np.isfinite(columns["end"]).all(axis=1))[:1]].sum())
+        raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
+    if not machine.units_said and len(columns["line"]):
+        machine.findings.add("suspicious", 0, "no G20 or G21: lengths are taken as mm")
+    return Program(
+        **columns, units=machine.units_said, dialect=dialect, lines=lines, dwells=machine.dwells,
+        dwell_time=machine.dwell_time, findings=machine.findings.freeze(), messages=tuple(machine.messages),
+    )  # fmt: skip

@@ -1,0 +1,75 @@
+"""A program in the figures of the shop floor: for the command line's JSON and for files of moves."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
+from robomill.units import from_si
+
+_IN_PLANE = {17: (0, 1), 18: (2, 0), 19: (1, 2)}
+
+
+def gcode_report(program: Program) -> dict[str, Any]:
+    """Counts and lengths of moves by kind, extents of feed moves (mm), units, findings and ``ok``.
+
+    ``moves`` and ``length_mm`` always have ``traverse``, ``feed`` and ``arc``; ``tap`` and ``probe`` where there
+    are such. ``extents_mm`` is ``[[x, y, z], [x, y, z]]`` or None without feed moves.
+    """
+    counts, lengths = {}, {}
+    for code, name in enumerate(KINDS):
+        chosen = program.kind == code
+        n = int(chosen.sum())
+        if n or code <= ARC:
+            counts[name] = n
+            lengths[name] = from_si(float(program.length[chosen].sum()), "mm")
+    extents = program.extents
+    return {
+        "moves": counts,
+        "length_mm": lengths,
+        "extents_mm": None if extents is None else [[from_si(float(v), "mm") for v in corner] for corner in extents],
+        "units": program.units,
+        "dialect": program.dialect,
+        "lines": program.lines,
+        "dwells": program.dwells,
+        "findings": [
+            {"line": f.line, "level": f.level, "message": f.message, "count": f.count} for f in program.findings
+        ],
+        "ok": program.ok,
+    }
+
+
+def _mm(point: Any) -> list[float]:
+    return [from_si(float(v), "mm") for v in point]
+
+
+def write_moves_jsonl(program: Program, path: str | Path) -> None:
+    """One canonical move a line, in order: ``line``, ``kind``, ``start``, ``end`` (mm, machine frame).
+
+    Arcs also have ``plane`` (XY, XZ, YZ), ``centre`` (the two coordinates of the plane: x y, z x, y z), ``turns``,
+    ``clockwise``, ``sweep_deg`` and ``length_mm``; feed moves ``feed_mm_min``; moves with turned axes ``rotary_deg``.
+    """
+    sweep, length = program.sweep, program.length
+    turned = bool(program.rotary.any())
+    with Path(path).open("w", encoding="utf-8") as out:
+        for i in range(len(program)):
+            kind = int(program.kind[i])
+            row: dict[str, Any] = {
+                "line": int(program.line[i]), "kind": KINDS[kind], "start": _mm(program.start[i]),
+                "end": _mm(program.end[i]),
+            }  # fmt: skip
+            if kind == ARC:
+                plane = int(program.plane[i])
+                row |= {
+                    "plane": PLANES[plane], "centre": _mm(program.centre[i][list(_IN_PLANE[plane])]),
+                    "turns": int(program.turns[i]), "clockwise": bool(program.clockwise[i]),
+                    "sweep_deg": math.degrees(float(sweep[i])), "length_mm": from_si(float(length[i]), "mm"),
+                }  # fmt: skip
+            if kind:
+                row["feed_mm_min"] = from_si(float(program.v_f[i]), "mm/min")
+            if turned:
+                row["rotary_deg"] = [math.degrees(float(v)) for v in program.rotary[i]]
+            out.write(json.dumps(row) + "\n")
