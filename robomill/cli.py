@@ -79,6 +79,24 @@ def parser() -> argparse.ArgumentParser:
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
     gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
 
+    grid = verb("map", run_map, "A quantity over a plane or a box, NaN where the robot cannot reach.")
+    grid.add_argument("robot", help="name of a robot or a .toml file")
+    grid.add_argument("--quantity", action="append", required=True, help="C_yy, det_J, ...; several with commas")
+    for axis in "xyz":
+        grid.add_argument(f"--{axis}", required=True, metavar="LOW:HIGH:STEP", help="mm, or one number")
+    grid.add_argument("--a-deg", type=float, default=0.0, help="tool tilt A")
+    grid.add_argument("--b-deg", type=float, default=0.0, help="tool tilt B")
+    grid.add_argument("--compliance-set", help="one of the robot's compliance sets")
+    grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti")
+
+    fit = verb("identify", run_identify, "Joint compliances from load tests, with their intervals.")
+    fit.add_argument("robot", help="name of a robot or a .toml file")
+    fit.add_argument("tests", help="load tests (.csv)")
+    fit.add_argument(
+        "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
+    )
+    fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
+
     run = verb("simulate", run_simulate, "Run a set-up: deviation, groove, verdict.")
     run.add_argument("setup", help="a set-up (.toml) or a sample's folder")
     run.add_argument("--program", help="another program than the set-up's")
@@ -159,16 +177,62 @@ def run_ik(arguments: Any) -> int:
 
 
 def run_gcode(arguments: Any) -> int:
-    from robomill.io.programs import program_record, read_tools, write_moves
-    from robomill.io.projects import read_program
     from robomill.report.plain import gcode_lines
+    from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    source = read_program(arguments.file, arguments.dialect)
-    tools = read_tools(arguments.tools) if arguments.tools else None
-    record, program = program_record(source, tools)
+    program = interpret(Path(arguments.file), dialect=arguments.dialect, tools=arguments.tools)
+    record = gcode_report(program)
     if arguments.moves:
-        write_moves(program, Path(arguments.moves))
+        write_moves_jsonl(program, arguments.moves)
     say(arguments, record, gcode_lines(record))
+    return 0
+
+
+def run_map(arguments: Any) -> int:
+    from robomill.io.maps import write_map
+    from robomill.io.robots import load_robot
+    from robomill.report.plain import map_lines
+    from robomill.report.records import map_record
+    from robomill.units import to_si
+    from robomill.workspace.fields import compliance_field
+    from robomill.workspace.grid import Grid
+
+    robot = _with_set(load_robot(arguments.robot), arguments.compliance_set)
+    grid = Grid(*(_axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
+    A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
+    everything = compliance_field(robot, grid, A, B)
+    fields = [everything.field(name) for name in ",".join(arguments.quantity).split(",")]
+    if arguments.out:
+        write_map(arguments.out, fields)
+    record = map_record(fields)
+    say(arguments, record, map_lines(record))
+    return 0
+
+
+def _axis(text: str, option: str) -> Any:
+    """Points of one axis in m from "low:high:step" or one number, in mm."""
+    from robomill.units import to_si
+    from robomill.workspace.grid import axis_points
+
+    words = text.split(":")
+    low, *rest = _numbers(",".join(words), option, 3 if len(words) != 1 else 1, "low:high:step or one number, in mm")
+    return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")
+
+
+def run_identify(arguments: Any) -> int:
+    from robomill.identification.estimate import identify
+    from robomill.identification.result import identification_report
+    from robomill.io.load_tests import read_findings, read_load_tests
+    from robomill.io.robots import load_robot
+    from robomill.report.plain import identification_lines
+    from robomill.report.records import finding_record
+
+    robot = load_robot(arguments.robot)
+    tests = read_load_tests(Path(arguments.tests), robot)
+    result = identify(robot, tests, arguments.model, robust=arguments.robust)
+    record = identification_report(result)
+    record["findings"] = [finding_record(f) for f in read_findings(tests, robot)]
+    say(arguments, record, identification_lines(record))
     return 0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from robomill.units import format_value
+from robomill.units import format_value, from_si
 
 AXES = "XYZ"
 
@@ -73,3 +73,26 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         )
     lines += [f"note      {note}" for note in record["notes"]]
     return lines
+
+
+def map_lines(record: dict[str, Any]) -> list[str]:
+    sizes = " x ".join(str(len(record[f"{axis.lower()}_mm"])) for axis in AXES)
+    lines = [f"{record['robot']}, {sizes} points, {record['reached']['count']} of {record['reached']['of']} reached"]
+    for quantity in record["quantities"]:
+        low, high = (format_value(quantity[end], quantity["unit"]) for end in ("min", "max"))
+        lines.append(f"{quantity['name']:18} {low} to {high}   {quantity['title']}")
+    return lines
+
+
+def identification_lines(record: dict[str, Any]) -> list[str]:
+    lines = [f"model {record['model']}", "joint   C_theta (1e-7 rad/(N m))   95 % interval"]
+    for i, (value, interval) in enumerate(zip(record["C_theta"] or [], record["ci95"] or []), start=1):
+        shown = [float("nan") if v is None else from_si(v, "1e-7 rad/(N m)") for v in (value, *interval)]
+        lines.append(f"{i:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
+    if record["cv_relative_error"] is not None:
+        lines.append(f"cross-validated error  {100 * record['cv_relative_error']:.1f} % of the measured displacement")
+    if record["unseen_joints"]:
+        lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
+    if record["outliers"]:
+        lines.append(f"do not fit the others: row {', '.join(map(str, record['outliers']))}")
+    return lines + [f"{f['level']:10} {f['message']}" for f in record["findings"]]

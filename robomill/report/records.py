@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.surface.groove import GrooveSection
 from robomill.units import from_si
-
+from robomill.workspace.fields import Field
 
 COMPONENTS = ("feed", "feed_normal", "axial")
 
@@ -125,6 +126,33 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "findings": [finding_record(f) for f in result.setup.toolpath.findings],
         "digest": result.setup.digest(),
     }
+
+
+def map_record(fields: Sequence[Field]) -> dict[str, Any]:
+    """Maps over one grid: the axes in mm, each quantity's values (nx, ny, nz) in its unit, null where not reached."""
+    grid = fields[0].grid
+    return {
+        "robot": fields[0].robot.name,
+        **{f"{axis}_mm": shown(getattr(grid, axis), "mm") for axis in "xyz"},
+        "a_deg": float(from_si(fields[0].A, "deg")),
+        "b_deg": float(from_si(fields[0].B, "deg")),
+        "reached": {"count": fields[0].reached, "of": int(fields[0].values.size)},
+        "quantities": [
+            {
+                "name": field.quantity.name,
+                "title": field.quantity.title,
+                "unit": field.quantity.unit,
+                "min": _extreme(field, np.fmin),
+                "max": _extreme(field, np.fmax),
+                "values": shown(field.values, field.quantity.unit),
+            }
+            for field in fields
+        ],
+    }
+
+
+def _extreme(field: Field, which: Any) -> float:
+    return float(from_si(which.reduce(field.values, axis=None), field.quantity.unit))
 
 
 def finding_record(finding: Any) -> dict[str, Any]:

@@ -135,3 +135,44 @@ def test_text_output_reads_like_a_report(capsys) -> None:
     assert code == 0
     assert "within tolerance, tight" in out
     assert "joint 5" in out
+
+
+def test_map_marks_what_is_not_reached(capsys, tmp_path: Path) -> None:
+    words = ("--quantity", "C_yy,det_J", "--z", "0", "--x", "-600:600:300", "--y", "-3000:-1000:500")
+    r = record(capsys, "map", "slavkovic_5r", *words, "--out", tmp_path / "map.csv")
+    values = np.array(r["quantities"][0]["values"], dtype=float)
+    assert values.shape == (5, 5, 1)
+    assert np.isnan(values[:, 0]).all()
+    assert np.isfinite(values[:, -1]).all()
+    assert r["reached"]["of"] == 25
+    assert (tmp_path / "map.csv").read_text().count("\n") == 26
+
+
+def test_map_at_the_papers_point(capsys) -> None:
+    r = record(capsys, "map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
+    assert r["quantities"][0]["values"][0][0][0] == pytest.approx(2.295, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--quantity", "C_qq", "--z", "0", "--x", "0", "--y", "-1300"), "C_qq"),
+        (("--quantity", "C_yy", "--z", "0", "--x", "0:1", "--y", "-1300"), "--x: expected 3 numbers"),
+        (("--quantity", "C_yy", "--z", "0", "--x", "0:100:0", "--y", "-1300"), "step above zero"),
+    ],
+)
+def test_bad_maps_are_refused(capsys, words, sentence: str) -> None:
+    code, _, err = run(capsys, "map", "slavkovic_5r", *words)
+    assert code == 2
+    assert sentence in err
+
+
+def test_identify_the_papers_sample(capsys) -> None:
+    tests = sorted((samples_dir() / "load_tests").glob("*.csv"))[0]
+    r = record(capsys, "identify", "slavkovic_5r", tests, "--model", "joints")
+    keys = {
+        "C_theta", "stderr", "ci95", "correlation", "condition", "residual_rms_mm", "cv_relative_error", "outliers",
+        "unseen_joints", "model",
+    }  # fmt: skip
+    assert keys <= set(r)
+    assert len(r["C_theta"]) == 5
