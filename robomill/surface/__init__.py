@@ -1,0 +1,1 @@
+"""What is left of the part: stock, height map, groove sections, engagement, error and its metrology."""

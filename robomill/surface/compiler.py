@@ -1,0 +1,63 @@
+"""The compiled path, loaded in the background so that nothing waits for it: until then NumPy does the work."""
+
+from __future__ import annotations
+
+import threading
+from types import ModuleType
+from typing import Literal
+
+import numpy as np
+
+Engine = Literal["auto", "compiled", "numpy"]
+
+# From this much work on (moves times steps) waiting for the compiler is quicker than NumPy.
+WORTH_WAITING = 3_000
+
+_ready: ModuleType | None = None
+_failed: BaseException | None = None
+_thread: threading.Thread | None = None
+_lock = threading.Lock()
+
+
+def warm_up(wait: bool = False) -> bool:
+    """Load (the first time on a machine: compile) the kernels in a background thread; True once they are ready."""
+    global _thread
+    with _lock:
+        if _ready is None and _failed is None and _thread is None:
+            _thread = threading.Thread(target=_load, name="surface-kernels", daemon=True)
+            _thread.start()
+        thread = _thread
+    if wait and thread is not None:
+        thread.join()
+    return _ready is not None
+
+
+def kernels(engine: Engine = "auto", work: int = 0) -> ModuleType | None:
+    """The kernels, or None where NumPy is to be used. ``work`` is the number of moves ahead."""
+    if engine == "numpy":
+        return None
+    warm_up(wait=engine == "compiled" or work > WORTH_WAITING)
+    if engine == "compiled" and _ready is None:
+        raise RuntimeError("The compiled surface kernels could not be loaded.") from _failed
+    return _ready
+
+
+def _load() -> None:
+    global _ready, _failed
+    try:
+        from robomill.surface import kernels as module
+
+        _exercise(module)
+        _ready = module
+    except Exception as exc:
+        _failed = exc
+
+
+def _exercise(module: ModuleType) -> None:
+    """Call every kernel once on a few cells, which compiles it or loads it from the cache on disk."""
+    z = np.ones((4, 4))
+    tile = (z, z.copy(), z.copy(), np.zeros((4, 4, 4)), np.zeros(16, dtype=np.int64), np.zeros(1, dtype=np.int64))
+    grid, shape, chosen = (0.0, 0.0, 0.5, 0.5), (0, 1.0, 1.0, 0.0, 0.0), np.zeros(1, dtype=np.int64)
+    module.cut_moves(shape, np.zeros((1, 6)), chosen, grid, tile)
+    moves, frames, boxes = np.zeros((1, 7)), np.ones((1, 8)), np.zeros((1, 4))
+    module.cut_tilted(shape, moves, frames, boxes, chosen, grid, z, z.copy(), z.copy())

@@ -1,0 +1,359 @@
+"""The compiled path of the surface: ``envelope.py`` for one cell at a time, and the loops over cells.
+
+Imported only through ``compiler.py``, since importing it loads numba. One thread, without the interpreter lock.
+A move is (ax, ay, az, ux, uy, length, m), a shape (kind, R, r0, rc, slope) as in ``envelope.py``.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+FLAT, BALL, BULL, CHAMFER = 0, 1, 2, 3
+COS_SECTOR, SIN_SECTOR = math.cos(0.29), math.sin(0.29)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def clip(value, low, high):  # type: ignore[no-untyped-def]
+    """Value held between low and high."""
+    return min(max(value, low), high)
+
+
+@njit(cache=True, nogil=True)
+def profile(shape, r):  # type: ignore[no-untyped-def]
+    """Height of the cutting surface above the tip at radius r <= R."""
+    kind, _, r0, rc, slope = shape
+    if kind == FLAT or r <= r0:
+        return 0.0
+    if kind == CHAMFER:
+        return slope * (r - r0)
+    e = r - r0
+    return rc - math.sqrt(max(rc * rc - e * e, 0.0))
+
+
+@njit(cache=True, nogil=True)
+def lag_residual(shape, m, v2, w):  # type: ignore[no-untyped-def]
+    """Sign of ``profile'(r) w / r - m`` for a corner radius, without its division by zero at the rim."""
+    _, _, r0, rc, _ = shape
+    r = math.sqrt(w * w + v2)
+    e = max(r - r0, 0.0)
+    return e * w - m * r * math.sqrt(max(rc * rc - e * e, 0.0))
+
+
+@njit(cache=True, nogil=True)
+def contact_lag(shape, m, v2):  # type: ignore[no-untyped-def]
+    """How far behind a point the cutter stands when it cuts lowest there."""
+    kind, R, r0, rc, slope = shape
+    if m == 0.0:
+        return 0.0
+    widest = math.sqrt(max(R * R - v2, 0.0))
+    if kind == FLAT:
+        return widest
+    if kind == BALL:
+        return widest * (m / math.sqrt(1.0 + m * m))
+    kink = math.sqrt(max(r0 * r0 - v2, 0.0))
+    if kind == CHAMFER:
+        if m >= slope:
+            return widest
+        return min(max(math.sqrt(v2) * (m / math.sqrt(slope * slope - m * m)), kink), widest)
+    # Regula falsi (Illinois): the height is stationary at the root, so a rough root is exact enough.
+    low, high = kink, widest
+    f_low, f_high = lag_residual(shape, m, v2, low), lag_residual(shape, m, v2, high)
+    side = 0
+    w = low
+    for _ in range(40):
+        if high - low < 1e-9 * R or f_high <= f_low:
+            break
+        w = (low * f_high - high * f_low) / (f_high - f_low)
+        f = lag_residual(shape, m, v2, w)
+        if abs(f) < 1e-9 * R * R * m:
+            break
+        if f < 0.0:
+            low, f_low = w, f
+            if side < 0:
+                f_high *= 0.5
+            side = -1
+        else:
+            high, f_high = w, f
+            if side > 0:
+                f_low *= 0.5
+            side = 1
+    return w
+
+
+@njit(cache=True, nogil=True)
+def swept_height(shape, move, x, y):  # type: ignore[no-untyped-def]
+    """Lowest height cut at (x, y) by an upright cutter."""
+    ax, ay, az, ux, uy, length, m = move
+    X, Y = x - ax, y - ay
+    s = X * ux + Y * uy
+    v = Y * ux - X * uy
+    v2 = v * v
+    t = clip(s - contact_lag(shape, m, v2), 0.0, length)
+    if shape[0] == FLAT:
+        return az + m * t
+    return az + m * t + profile(shape, math.sqrt((s - t) ** 2 + v2))
+
+
+@njit(cache=True, nogil=True)
+def move_of(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+    """The move between two points, from its lower end."""
+    if bz < az:
+        ax, ay, az, bx, by, bz = bx, by, bz, ax, ay, az
+    length = math.hypot(bx - ax, by - ay)
+    if length < 1e-12:
+        return (ax, ay, az, 1.0, 0.0, 0.0, 0.0)
+    return (ax, ay, az, (bx - ax) / length, (by - ay) / length, length, (bz - az) / length)
+
+
+@njit(cache=True, nogil=True)
+def row_interval(move, R, x):  # type: ignore[no-untyped-def]
+    """Where the line at ``x`` parallel to y lies inside the track of radius R; low > high if nowhere."""
+    ax, ay, _, ux, uy, length, _ = move
+    low, high = math.inf, -math.inf
+    X = x - ax
+    w2 = R * R - X * X
+    if w2 >= 0.0:
+        w = math.sqrt(w2)
+        low, high = -w, w
+    if length > 0.0:
+        cy = length * uy
+        w2 = R * R - (X - length * ux) ** 2
+        if w2 >= 0.0:
+            w = math.sqrt(w2)
+            low, high = min(low, cy - w), max(high, cy + w)
+        a, b = -math.inf, math.inf
+        if uy == 0.0:
+            if X * ux < 0.0 or X * ux > length:
+                a = math.inf
+        else:
+            a, b = -X * ux / uy, (length - X * ux) / uy
+            if a > b:
+                a, b = b, a
+        if ux == 0.0:
+            if abs(X * uy) > R:
+                a = math.inf
+        else:
+            c, d = (X * uy - R) / ux, (X * uy + R) / ux
+            if c > d:
+                c, d = d, c
+            a, b = max(a, c), min(b, d)
+        if a <= b:
+            low, high = min(low, a), max(high, b)
+    return low + ay, high + ay
+
+
+@njit(cache=True, nogil=True)
+def covered_share(d, nx, ny, dx, dy):  # type: ignore[no-untyped-def]
+    """Share of a cell on the inner side of a straight edge."""
+    a, b = abs(nx) * dx, abs(ny) * dy
+    if a < b:
+        a, b = b, a
+    p = clip(d + 0.5 * (a + b), 0.0, a + b)
+    if p < b:
+        return p * p / (2.0 * a * b)
+    if p <= a:
+        return (p - 0.5 * b) / a
+    return 1.0 - (a + b - p) ** 2 / (2.0 * a * b)
+
+
+@njit(cache=True, nogil=True)
+def sector(ex, ey):  # type: ignore[no-untyped-def]
+    """Which of four sides of a cell the material beside an edge lies on."""
+    a, b = COS_SECTOR * ex + SIN_SECTOR * ey, COS_SECTOR * ey - SIN_SECTOR * ex
+    if abs(a) >= abs(b):
+        return 0 if a > 0.0 else 1
+    return 2 if b > 0.0 else 3
+
+
+@njit(cache=True, nogil=True)
+def cut_edge_cells(shape, move, grid, i, runs, tile):  # type: ignore[no-untyped-def]
+    """Cells of row i that the edge of the track may cross (two runs of columns): each full, or a share of it."""
+    z, z_centre, z_low, share, edges, count = tile
+    x0, y0, dx, dy = grid
+    ax, ay, az, ux, uy, length, m = move
+    flat = shape[0] == FLAT and m == 0.0
+    x = x0 + i * dx
+    X = x - ax
+    j, left_to, right_from, right_to = runs
+    height = az
+    while True:
+        if j == left_to:
+            j = right_from
+        if j >= right_to:
+            break
+        column, j = j, j + 1
+        if z[i, column] <= az:
+            continue
+        y = y0 + column * dy
+        Y = y - ay
+        near = clip(X * ux + Y * uy, 0.0, length)
+        ex, ey = X - near * ux, Y - near * uy
+        distance = math.sqrt(ex * ex + ey * ey)
+        d = shape[1] - distance
+        if distance > 0.0:
+            ex, ey = ex / distance, ey / distance
+        else:
+            ex, ey = 1.0, 0.0
+        half = 0.5 * (abs(ex) * dx + abs(ey) * dy)
+        if d <= -half:
+            continue
+        if not flat:
+            shift = 0.0 if d >= 0.0 else 0.5 * (half - d)
+            height = swept_height(shape, move, x - shift * ex, y - shift * ey)
+        if height >= z[i, column]:
+            continue
+        if d >= half:
+            z[i, column] = height
+            continue
+        if z_low[i, column] == math.inf:
+            edges[count[0]] = i * z.shape[1] + column
+            count[0] += 1
+        if d >= 0.0:
+            z_centre[i, column] = min(z_centre[i, column], height)
+        z_low[i, column] = min(z_low[i, column], height)
+        side = sector(ex, ey)
+        share[i, column, side] = max(share[i, column, side], covered_share(d, ex, ey, dx, dy))
+
+
+@njit(cache=True, nogil=True)
+def cut_upright(shape, move, grid, tile):  # type: ignore[no-untyped-def]
+    """Cut one move of an upright cutter into a tile; grid (x0, y0, dx, dy) locates cell [0, 0] of the tile."""
+    z = tile[0]
+    x0, y0, dx, dy = grid
+    ax, _, az, ux, _, length, m = move
+    nx, ny = z.shape
+    R = shape[1]
+    half = 0.5 * math.sqrt(dx * dx + dy * dy)
+    level = m == 0.0 and shape[0] == FLAT
+    reach_low, reach_high = min(0.0, length * ux) - R - half, max(0.0, length * ux) + R + half
+    first = max(0, math.ceil((ax + reach_low - x0) / dx))
+    last = min(nx - 1, math.floor((ax + reach_high - x0) / dx))
+    for i in range(first, last + 1):
+        x = x0 + i * dx
+        low, high = row_interval(move, R + half, x)
+        if low > high:
+            continue
+        j_low = max(0, math.ceil((low - y0) / dy))
+        j_high = min(ny - 1, math.floor((high - y0) / dy))
+        full_low, full_high = row_interval(move, R - half, x)
+        full_from, full_to = j_high + 1, j_high + 1
+        if full_low <= full_high:
+            full_from = min(max(j_low, math.ceil((full_low - y0) / dy)), j_high + 1)
+            full_to = max(min(j_high, math.floor((full_high - y0) / dy)) + 1, full_from)
+        cut_edge_cells(shape, move, grid, i, (j_low, full_from, full_to, j_high + 1), tile)
+        if level:
+            row = z[i, full_from:full_to]
+            for j in range(row.size):
+                now = row[j]
+                row[j] = az if az < now else now
+        else:
+            for j in range(full_from, full_to):
+                if z[i, j] > az:
+                    z[i, j] = min(z[i, j], swept_height(shape, move, x, y0 + j * dy))
+
+
+@njit(cache=True, nogil=True)
+def cut_moves(shape, ends, chosen, grid, tile):  # type: ignore[no-untyped-def]
+    """Cut the chosen rows of ``ends`` (n, 6) into a tile."""
+    for n in chosen:
+        move = move_of(ends[n, 0], ends[n, 1], ends[n, 2], ends[n, 3], ends[n, 4], ends[n, 5])
+        cut_upright(shape, move, grid, tile)
+
+
+@njit(cache=True, nogil=True)
+def hull_gap(shape, move, X, Y0, h0, tilt, z):  # type: ignore[no-untyped-def]
+    """Height of the swept surface over a point of a vertical line, along the tool axis; <= 0 inside the body."""
+    sine, cosine = tilt
+    return swept_height(shape, move, X, Y0 + z * sine) - (h0 + z * cosine)
+
+
+@njit(cache=True, nogil=True)
+def tilted_interval(shape, move, X, Y0, h0, tilt, ceiling):  # type: ignore[no-untyped-def]
+    """Heights (low, high) of a vertical line inside the body swept by a tilted cutter, up to ``ceiling``.
+
+    ``move`` and the line are given in the tool's own frame; low > high if the line misses it.
+    """
+    sine, _ = tilt
+    low, high = row_interval(move, shape[1], X)
+    low, high = (low - Y0) / sine, min((high - Y0) / sine, ceiling)
+    if low >= high:
+        return math.inf, -math.inf
+    inside = low
+    if hull_gap(shape, move, X, Y0, h0, tilt, low) > 0.0:
+        a, b = low, high
+        inside = math.inf
+        golden = 0.6180339887498949
+        c, d = b - golden * (b - a), a + golden * (b - a)
+        gap_c, gap_d = hull_gap(shape, move, X, Y0, h0, tilt, c), hull_gap(shape, move, X, Y0, h0, tilt, d)
+        if hull_gap(shape, move, X, Y0, h0, tilt, high) <= 0.0:
+            inside = high
+        for _ in range(64):
+            if inside < math.inf:
+                break
+            if gap_c <= 0.0:
+                inside = c
+            elif gap_d <= 0.0:
+                inside = d
+            elif gap_c < gap_d:
+                b, d, gap_d = d, c, gap_c
+                c = b - golden * (b - a)
+                gap_c = hull_gap(shape, move, X, Y0, h0, tilt, c)
+            else:
+                a, c, gap_c = c, d, gap_d
+                d = a + golden * (b - a)
+                gap_d = hull_gap(shape, move, X, Y0, h0, tilt, d)
+        if inside == math.inf:
+            return math.inf, -math.inf
+        a, b = low, inside
+        for _ in range(48):
+            middle = 0.5 * (a + b)
+            if hull_gap(shape, move, X, Y0, h0, tilt, middle) > 0.0:
+                a = middle
+            else:
+                b = middle
+        low = b
+    if hull_gap(shape, move, X, Y0, h0, tilt, high) > 0.0:
+        a, b = inside, high
+        for _ in range(48):
+            middle = 0.5 * (a + b)
+            if hull_gap(shape, move, X, Y0, h0, tilt, middle) > 0.0:
+                b = middle
+            else:
+                a = middle
+        high = a
+    return low, high
+
+
+@njit(cache=True, nogil=True)
+def cut_tilted(shape, moves, frames, boxes, chosen, grid, z, hidden_low, hidden_high):  # type: ignore[no-untyped-def]
+    """Cut moves of a tilted cutter into a tile: z is the material seen from above, hidden_* what was cut below it.
+
+    moves (n, 7) in the tool's frame, frames (n, 8) = e1 (x, y), e2 (x, y), k (x, y), sine, cosine of the tilt,
+    boxes (n, 4) plan limits in {W}.
+    """
+    x0, y0, dx, dy = grid
+    nx, ny = z.shape
+    for n in chosen:
+        move = (moves[n, 0], moves[n, 1], moves[n, 2], moves[n, 3], moves[n, 4], moves[n, 5], moves[n, 6])
+        tilt = (frames[n, 6], frames[n, 7])
+        for i in range(
+            max(0, math.ceil((boxes[n, 0] - x0) / dx)), min(nx - 1, math.floor((boxes[n, 1] - x0) / dx)) + 1
+        ):
+            x = x0 + i * dx
+            for j in range(
+                max(0, math.ceil((boxes[n, 2] - y0) / dy)), min(ny - 1, math.floor((boxes[n, 3] - y0) / dy)) + 1
+            ):
+                y = y0 + j * dy
+                X = x * frames[n, 0] + y * frames[n, 1]
+                Y0 = x * frames[n, 2] + y * frames[n, 3]
+                h0 = x * frames[n, 4] + y * frames[n, 5]
+                low, high = tilted_interval(shape, move, X, Y0, h0, tilt, z[i, j])
+                if low >= high:
+                    continue
+                if high >= z[i, j]:
+                    z[i, j] = low
+                else:
+                    hidden_low[i, j] = min(hidden_low[i, j], low)
+                    hidden_high[i, j] = max(hidden_high[i, j], high)

@@ -1,0 +1,118 @@
+"""The block of material before the cut: a box in {W}, or a solid read from a mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.units import format_si
+
+AXES = ("X", "Y", "Z")
+
+
+@dataclass(frozen=True, eq=False)
+class Stock:
+    """A block in {W}: ``lower`` and ``upper`` corner, (3,) m.
+
+    ``triangles`` (t, 3, 3) m, if given, is a closed mesh inside those corners; its upper skin is the stock's top.
+    Raises SurfaceError for corners the wrong way round or a block without extent.
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+    triangles: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        lower = as_floats(self.lower, "stock lower corner", (3,), error=SurfaceError)
+        upper = as_floats(self.upper, "stock upper corner", (3,), error=SurfaceError)
+        for name, a, b in zip(AXES, lower, upper, strict=True):
+            if not b - a > 1e-9:
+                found = f"{format_si(a, 'mm')} to {format_si(b, 'mm')}"
+                raise SurfaceError(f"Stock in {name}: found {found}; the upper end must lie above the lower end.")
+        object.__setattr__(self, "lower", frozen(lower))
+        object.__setattr__(self, "upper", frozen(upper))
+        if self.triangles is not None:
+            triangles = as_floats(self.triangles, "stock mesh", (None, 3, 3), error=SurfaceError)
+            object.__setattr__(self, "triangles", frozen(triangles))
+
+    @classmethod
+    def from_path(
+        cls,
+        p: ArrayLike,
+        cutter: Cutter,
+        cutting: ArrayLike | None = None,
+        *,
+        margin: float = 2e-3,
+        top: float | None = None,
+        below: float = 5e-3,
+    ) -> Stock:
+        """The block around the feed moves of a path: cutter radius and ``margin`` beside it, ``below`` under it.
+
+        p (m, 3) m, cutting (m,) bool (entry i is the move that ends at p[i]). ``top`` (m) is the block's upper
+        face; without it, z = 0 if the path cuts below zero (part zero on the top face), else its highest point.
+        """
+        points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError)
+        used = np.ones(len(points), dtype=bool) if cutting is None else np.asarray(cutting, dtype=bool)
+        ends = points[used | np.append(used[1:], False)]
+        if len(ends) == 0:
+            raise SurfaceError("Stock from the path: found no feed move to put a block around; give its corners.")
+        reach = cutter.radius + margin
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        if top is None:
+            top = 0.0 if low[2] < -1e-9 else float(high[2]) + 1e-3
+        return cls(
+            lower=np.array([low[0] - reach, low[1] - reach, low[2] - below]),
+            upper=np.array([high[0] + reach, high[1] + reach, max(top, low[2] + 1e-6)]),
+        )
+
+    @property
+    def size(self) -> FloatArray:
+        """(3,) m."""
+        return self.upper - self.lower
+
+    def digest(self) -> str:
+        """SHA-256 of corners and mesh."""
+        return digest((self.lower, self.upper, self.triangles))
+
+    def warnings(self, cutter: Cutter) -> tuple[str, ...]:
+        """What is odd about this stock with this cutter, one sentence each."""
+        found = []
+        width = float(self.size[:2].min())
+        if cutter.diameter > width:
+            found.append(
+                f"Stock: the cutter ({format_si(cutter.diameter, 'mm')}) is wider than the block"
+                f" ({format_si(width, 'mm')}); no groove with two walls can be left."
+            )
+        return tuple(found)
+
+
+def stock_grid(stock: Stock, cell: float, budget: int = 50_000_000) -> tuple[int, int, float, float]:
+    """Cells of a height map over ``stock``: nx, ny and their sizes dx, dy (m), none above ``cell``.
+
+    The cells fill the block exactly. Raises SurfaceError for a cell size that is not positive, or that needs more
+    than ``budget`` cells, naming the size that fits.
+    """
+    if not (np.isfinite(cell) and cell > 0):
+        raise SurfaceError(f"Cell size: found {cell}; expected a length above 0, e.g. 0.1 mm.")
+    length, width = float(stock.size[0]), float(stock.size[1])
+    nx, ny = (max(1, int(np.ceil(side / cell - 1e-6))) for side in (length, width))
+    if nx * ny > budget:
+        fits = fitting_cell(length, width, budget)
+        raise SurfaceError(
+            f"Cell size: {format_si(cell, 'mm', 4)} needs {nx * ny / 1e6:.4g} million cells for this stock; at most"
+            f" {budget / 1e6:.4g} million fit, so use {format_si(fits, 'mm', 4)} or more."
+        )
+    return nx, ny, length / nx, width / ny
+
+
+def fitting_cell(length: float, width: float, budget: int) -> float:
+    """The smallest cell (m), rounded up to 0.1 um, whose cells over length x width stay within ``budget``."""
+    cell = np.ceil(np.sqrt(length * width / budget) * 1e7) / 1e7
+    while np.ceil(length / cell - 1e-6) * np.ceil(width / cell - 1e-6) > budget:
+        cell = max(cell * 1.001, cell + 1e-7)
+    return float(np.ceil(cell * 1e7 - 1e-3) / 1e7)

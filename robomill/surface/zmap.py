@@ -1,0 +1,175 @@
+"""The part after the cut as a height map: exact heights at cell centres, exact shares of cells at walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import BoolArray, FloatArray, as_floats, digest, frozen
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.surface.compiler import Engine, kernels
+from robomill.surface.envelope import cutter_shape
+from robomill.surface.raster import stock_heights
+from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright
+from robomill.surface.stock import AXES, Stock, stock_grid
+from robomill.surface.tilted import cut_tilted, split_turning, tilted_moves
+from robomill.units import format_si
+
+UPRIGHT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ZMap:
+    """Heights of the part over a grid in {W}.
+
+    x (nx,), y (ny,) m    cell centres; ``cell`` m is the size asked for, ``dx``, ``dy`` the sizes that fill the stock
+    z (nx, ny) m          height of the material at each centre, seen from above
+    edge                  cells crossed by a wall, with their mean height
+    z_stock               height of the stock before the cut: one number for a block, (nx, ny) for a mesh
+    bottom                the stock's lower face, m
+    overhang              number of cells where a tilted cutter left material over a void, which z cannot show
+    skipped               feed moves left out because one of their ends is not a number (not reached)
+    below                 True where the cutter would have gone through the bottom
+    """
+
+    x: FloatArray
+    y: FloatArray
+    cell: float
+    z: FloatArray
+    edge: EdgeCells
+    z_stock: FloatArray
+    bottom: float
+    overhang: int = 0
+    skipped: int = 0
+    below: bool = False
+
+    @property
+    def dx(self) -> float:
+        """Cell size along X, m."""
+        return float(self.x[1] - self.x[0]) if len(self.x) > 1 else self.cell
+
+    @property
+    def dy(self) -> float:
+        """Cell size along Y, m."""
+        return float(self.y[1] - self.y[0]) if len(self.y) > 1 else self.cell
+
+    @property
+    def mean(self) -> FloatArray:
+        """(nx, ny) m: mean height of the material in each cell (differs from z at walls only)."""
+        mean = self.z.copy()
+        mean.reshape(-1)[self.edge.index] = self.edge.mean
+        return mean
+
+    @cached_property
+    def removed_volume(self) -> float:
+        """Material cut away, m^3."""
+        heights = float(self.z.sum()) + float((self.edge.mean - self.z.reshape(-1)[self.edge.index]).sum())
+        before = float(self.z_stock) * self.z.size if self.z_stock.ndim == 0 else float(self.z_stock.sum())
+        return (before - heights) * self.dx * self.dy
+
+    @property
+    def cut_mask(self) -> BoolArray:
+        """(nx, ny) bool: cells whose centre was cut."""
+        return np.asarray(self.z < self.z_stock)
+
+    def digest(self) -> str:
+        """SHA-256 over every height."""
+        return digest((self.x, self.y, self.z, self.edge.index, self.edge.mean, self.bottom))
+
+    def notes(self) -> tuple[str, ...]:
+        """What a reader must know about this surface, one sentence each."""
+        found = []
+        if self.overhang:
+            found.append(
+                f"Surface: in {self.overhang} cells the tilted cutter undercuts the material; a height map shows"
+                " what is seen from above, not the void below it."
+            )
+        if self.skipped:
+            found.append(f"Surface: {self.skipped} feed moves have an end that is not reached and were not cut.")
+        if self.below:
+            found.append("Surface: the cutter goes through the bottom of the stock; heights end at its lower face.")
+        return tuple(found)
+
+
+def cut(
+    stock: Stock,
+    cell: float,
+    cutter: Cutter,
+    p: ArrayLike,
+    k: ArrayLike | None = None,
+    cutting: ArrayLike | None = None,
+    *,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    engine: Engine = "auto",
+    must_touch: bool = True,
+) -> ZMap:
+    """The stock after the feed moves of a path have been cut.
+
+    p (m, 3) m tool tip in {W}; k (3,) or (m, 3) unit tool axis (default: upright); cutting (m,) bool, entry i for
+    the move p[i-1] -> p[i] (default: all). Moves with an end that is not finite are left out and counted.
+    ``progress`` is called with 0..1, ``cancel`` asked whether to stop. Raises SurfaceError for a cell size that
+    does not fit, a tool axis too close to level, a cancelled cut, and (``must_touch``) a path that misses the stock.
+    """
+    nx, ny, dx, dy = stock_grid(stock, cell)
+    grid = Grid(float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
+    ends, axes, skipped = feed_moves(p, k, cutting)
+    shape = cutter_shape(cutter)
+    module = kernels(engine, len(ends))
+    x, y = grid.x0 + np.arange(nx) * dx, grid.y0 + np.arange(ny) * dy
+    z_stock = stock_heights(stock, x, y)
+    z = np.empty((nx, ny))
+    z[...] = z_stock
+    upright = np.abs(axes[:, [0, 1, 3, 4]]).max(axis=1, initial=0.0) <= UPRIGHT
+    edge = cut_upright(z, grid, shape, np.ascontiguousarray(ends[upright]), module, progress, cancel)
+    overhang = 0
+    if not upright.all():
+        before = z.copy()
+        pieces = split_turning(shape.R, ends[~upright], axes[~upright], cell)
+        tilted = tilted_moves(shape, *pieces, float(np.max(z_stock)))
+        overhang = int(cut_tilted(z, grid, shape, tilted, module, progress, cancel).sum())
+        kept = z.reshape(-1)[edge.index] == before.reshape(-1)[edge.index]
+        edge = EdgeCells(edge.index[kept], edge.mean[kept])
+    bottom = float(stock.lower[2])
+    below = bool((z < bottom).any())
+    if below:
+        np.maximum(z, bottom, out=z)
+    edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)))
+    z.flags.writeable = False
+    result = ZMap(frozen(x), frozen(y), cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
+    if must_touch and result.removed_volume <= 0.0:
+        raise SurfaceError(_misses(stock, ends))
+    return result
+
+
+def feed_moves(p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike | None) -> tuple[FloatArray, FloatArray, int]:
+    """Feed moves of a path: ends (n, 6) m, tool axes there (n, 6), and how many were left out for ends not finite."""
+    points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
+    m = len(points)
+    axes = np.broadcast_to(np.array([0.0, 0.0, 1.0]) if k is None else np.asarray(k, dtype=float), (m, 3))
+    used = np.ones(m, dtype=bool) if cutting is None else np.array(cutting, dtype=bool)
+    if used.shape != (m,):
+        raise SurfaceError(f"Cut: found {used.shape} cutting flags for {m} points; expected one each.")
+    if m < 2 or not used[1:].any():
+        raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
+    n = np.flatnonzero(used[1:]) + 1
+    ends = np.hstack([points[n - 1], points[n]])
+    known = np.isfinite(ends).all(axis=1)
+    return ends[known], np.hstack([axes[n - 1], axes[n]])[known], int((~known).sum())
+
+
+def _misses(stock: Stock, ends: FloatArray) -> str:
+    if len(ends) == 0:
+        return "Cut: no feed move of the path is reached, so nothing is cut."
+    points = ends.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    spans = [
+        f"{axis} {format_si(low[i], 'mm', 1)} to {format_si(high[i], 'mm', 1)} (stock"
+        f" {format_si(stock.lower[i], 'mm', 1)} to {format_si(stock.upper[i], 'mm', 1)})"
+        for i, axis in enumerate(AXES)
+    ]
+    return f"Stock: the path never touches it; the feed moves span {', '.join(spans)}: move the stock or the path."

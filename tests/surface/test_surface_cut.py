@@ -1,0 +1,158 @@
+"""Cutting a path into the stock: exact volumes, both engines, refusals."""
+
+import numpy as np
+import pytest
+import shapely
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.surface.stock import Stock, fitting_cell, stock_grid
+from robomill.surface.zmap import cut
+
+FLAT = Cutter("flat", 0.008)
+STOCK = Stock((0.0, 0.0, -0.02), (0.06, 0.04, 0.0))
+CUTTERS = {
+    "flat": FLAT,
+    "ball": Cutter("ball", 0.008),
+    "bull": Cutter("bull", 0.008, corner_radius=0.0015),
+    "chamfer": Cutter("chamfer", 0.008, tip_angle=np.radians(90.0), tip_diameter=0.001),
+}
+
+
+def walk(n=25, depth=0.002, ramp=0.0, seed=1):
+    rng = np.random.default_rng(seed)
+    return np.column_stack([rng.uniform(0.003, 0.057, n), rng.uniform(0.003, 0.037, n), -depth - ramp * rng.random(n)])
+
+
+def capsules(p, R, stock=STOCK):
+    lines = [shapely.LineString(p[i : i + 2, :2]).buffer(R, quad_segs=2000) for i in range(len(p) - 1)]
+    return shapely.union_all(lines).intersection(shapely.box(*stock.lower[:2], *stock.upper[:2]))
+
+
+def test_level_cut_is_the_union_of_capsules():
+    p = walk()
+    exact = capsules(p, 0.004).area * 0.002
+    assert cut(STOCK, 1e-4, FLAT, p, engine="numpy").removed_volume == pytest.approx(exact, rel=1e-5)
+
+
+def test_heights_at_cell_centres_are_exact():
+    p = walk(8)
+    surface = cut(STOCK, 5e-4, FLAT, p, engine="numpy")
+    area = capsules(p, 0.004)
+    x, y = np.meshgrid(surface.x, surface.y, indexing="ij")
+    inside = shapely.contains_xy(area, x, y)
+    np.testing.assert_array_equal(surface.z, np.where(inside, -0.002, 0.0))
+
+
+@pytest.mark.parametrize("kind", CUTTERS)
+@pytest.mark.parametrize("ramp", [0.0, 0.003])
+def test_compiled_and_numpy_agree(kind, ramp):
+    p = walk(12, ramp=ramp)
+    a, b = (cut(STOCK, 2.5e-4, CUTTERS[kind], p, engine=engine) for engine in ("numpy", "compiled"))
+    np.testing.assert_allclose(a.z, b.z, atol=1e-12)
+    np.testing.assert_allclose(a.mean, b.mean, atol=1e-10)
+
+
+def test_the_same_path_gives_the_same_bits():
+    p = walk()
+    delta = np.zeros(5) @ np.zeros((5, 3))
+    ideal, machined = (cut(STOCK, 3e-4, FLAT, q, engine="numpy") for q in (p, p + delta))
+    assert ideal.digest() == machined.digest()
+
+
+def test_order_of_moves_and_their_direction_do_not_matter():
+    p = walk(10, ramp=0.002)
+    forth, back = cut(STOCK, 3e-4, FLAT, p, engine="numpy"), cut(STOCK, 3e-4, FLAT, p[::-1], engine="numpy")
+    np.testing.assert_array_equal(forth.z, back.z)
+    assert forth.removed_volume == pytest.approx(back.removed_volume, rel=2e-5)  # edge cells of ramps only
+
+
+def test_dividing_a_line_changes_nothing():
+    a, b = np.array([0.006, 0.007, -0.002]), np.array([0.05, 0.031, -0.003])
+    whole = cut(STOCK, 3e-4, FLAT, np.stack([a, b]), engine="numpy")
+    pieces = cut(STOCK, 3e-4, FLAT, a + np.linspace(0, 1, 40)[:, None] * (b - a), engine="numpy")
+    np.testing.assert_allclose(pieces.z, whole.z, atol=1e-12)
+    assert pieces.removed_volume == pytest.approx(whole.removed_volume, rel=3e-4)  # edge cells of a ramp
+
+
+def test_touching_passes_leave_no_rib():
+    """Passes exactly one diameter apart share a wall that falls inside a row of cells."""
+    y = np.array([0.0081, 0.0161, 0.0241])
+    p = np.array([[x, q, -0.002] for i, q in enumerate(y) for x in ((-0.01, 0.07) if i % 2 == 0 else (0.07, -0.01))])
+    keep = np.array([False, True, False, True, False, True])
+    surface = cut(STOCK, 3.1e-4, FLAT, p, None, keep, engine="numpy")
+    assert surface.removed_volume == pytest.approx(0.06 * 0.024 * 0.002, rel=1e-9)
+
+
+def test_rapids_do_not_cut_and_unreached_moves_are_counted():
+    p = np.array([[0.01, 0.02, -0.002], [0.03, 0.02, -0.002], [0.03, np.nan, -0.002], [0.05, 0.02, -0.002]])
+    surface = cut(STOCK, 5e-4, FLAT, p, cutting=[False, True, True, True], engine="numpy")
+    assert surface.skipped == 2
+    assert any("not reached" in note for note in surface.notes())
+    assert surface.removed_volume == pytest.approx(capsules(p[:2], 0.004).area * 0.002, rel=1e-3)
+    with pytest.raises(SurfaceError, match="no feed move"):
+        cut(STOCK, 5e-4, FLAT, p[:2], cutting=[False, False])
+
+
+def test_cutting_through_ends_at_the_bottom():
+    p = np.array([[0.01, 0.02, -0.05], [0.03, 0.02, -0.05]])
+    surface = cut(STOCK, 5e-4, FLAT, p, engine="numpy")
+    assert surface.z.min() == STOCK.lower[2]
+    assert surface.mean.min() == STOCK.lower[2]
+    assert any("bottom" in note for note in surface.notes())
+
+
+def test_a_path_that_misses_the_stock_says_where_both_are():
+    above = np.array([[0.01, 0.02, 0.001], [0.03, 0.02, 0.001]])
+    with pytest.raises(SurfaceError, match=r"never touches it.*Z 1.0 mm.*stock −20.0 mm to 0.0 mm"):
+        cut(STOCK, 5e-4, FLAT, above)
+    assert cut(STOCK, 5e-4, FLAT, above, must_touch=False).removed_volume == 0.0
+    with pytest.raises(SurfaceError, match="never touches"):
+        cut(STOCK, 5e-4, FLAT, above + [1.0, 0.0, -0.01])
+
+
+def test_too_many_cells_are_refused_with_the_size_that_fits():
+    with pytest.raises(SurfaceError, match=r"at most 50 million fit, so use 0.00\d\d mm or more"):
+        cut(STOCK, 1e-6, FLAT, walk(3))
+    for length, width in ((0.06, 0.04), (0.123, 1.7), (2.0, 2e-4)):
+        cell = fitting_cell(length, width, 50_000_000)
+        nx, ny, dx, dy = stock_grid(Stock((0, 0, 0), (length, width, 1)), cell)
+        assert nx * ny <= 50_000_000
+        assert max(dx, dy) <= cell * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("cell", [0.0, -1e-4, np.nan, np.inf])
+def test_a_cell_must_have_a_size(cell):
+    with pytest.raises(SurfaceError, match="Cell size"):
+        cut(STOCK, cell, FLAT, walk(3))
+
+
+def test_progress_rises_to_one_and_cancel_stops():
+    seen: list[float] = []
+    cut(STOCK, 5e-4, FLAT, walk(200), progress=seen.append, engine="numpy")
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    with pytest.raises(SurfaceError, match="stopped on request"):
+        cut(STOCK, 5e-4, FLAT, walk(200), cancel=lambda: True, engine="numpy")
+
+
+def test_tiles_do_not_show(monkeypatch):
+    p = walk(12, ramp=0.002)
+    whole = cut(STOCK, 3e-4, CUTTERS["ball"], p, engine="numpy")
+    monkeypatch.setattr("robomill.surface.removal.TILE_CELLS", 1500)
+    tiled = cut(STOCK, 3e-4, CUTTERS["ball"], p, engine="numpy")
+    np.testing.assert_allclose(tiled.z, whole.z, atol=1e-15)
+    assert tiled.removed_volume == pytest.approx(whole.removed_volume, rel=1e-12)
+
+
+def test_stock_refusals_and_defaults():
+    with pytest.raises(SurfaceError, match="Stock in Y.*upper end must lie above"):
+        Stock((0, 1, 0), (1, 1, 1))
+    with pytest.raises(SurfaceError, match="finite"):
+        Stock((0, np.nan, 0), (1, 1, 1))
+    p = np.array([[0.0, 0.0, 0.01], [0.0, 0.0, -0.002], [0.05, 0.0, -0.002], [0.05, 0.0, 0.01]])
+    stock = Stock.from_path(p, FLAT, [False, True, True, False], margin=0.001, below=0.004)
+    np.testing.assert_allclose(stock.lower, [-0.005, -0.005, -0.006])
+    np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
+    assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(FLAT)[0].startswith("Stock: the cutter (8.000 mm) is wider")
+    assert not STOCK.warnings(FLAT)

@@ -1,0 +1,117 @@
+"""Sections of a groove against what one can work out with a pencil."""
+
+import numpy as np
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.surface.groove import feed_length, groove_section, groove_sections
+from robomill.surface.stock import Stock
+
+FLAT = Cutter("flat", 0.008, flutes=3)
+DELTA = np.array([0.0, 0.2295e-3, -0.1024e-3])  # the paper's slot with Table 2, in feed, feed-normal, axial
+
+
+def slot(angle_deg, step=1e-3):
+    angle = np.radians(angle_deg)
+    feed = np.array([np.cos(angle), np.sin(angle), 0.0])
+    left = np.array([-feed[1], feed[0], 0.0])
+    p = np.arange(-0.05, 0.05 + 0.5 * step, step)[:, None] * feed
+    cutting = np.arange(len(p)) > 0
+    stock = Stock(p.min(axis=0) - [0.012, 0.012, 0.008], p.max(axis=0) + [0.012, 0.012, 0.002])
+    return stock, p, cutting, np.stack([feed, left, [0.0, 0.0, 1.0]], axis=1)
+
+
+@pytest.mark.parametrize("angle", [0.0, 90.0, 37.0, -120.0])
+def test_slot_of_the_paper(angle):
+    stock, p, cutting, R = slot(angle)
+    for station in (0.01, 0.05, 0.0735):
+        section = groove_section(stock, FLAT, p, p + R @ DELTA, cutting, None, station)
+        assert section.centre_offset == pytest.approx(DELTA[1], abs=1e-11)
+        assert section.floor_error == pytest.approx(DELTA[2], abs=1e-12)
+        assert section.width == pytest.approx(0.008, abs=1e-11)
+        assert section.depth == pytest.approx(0.002 - DELTA[2], abs=1e-12)
+        assert (section.wall_left, section.wall_right) == pytest.approx((0.0042295, -0.0037705), abs=1e-11)
+        assert (section.wall_left_ideal, section.wall_right_ideal) == pytest.approx((0.004, -0.004), abs=1e-11)
+        assert np.degrees([section.wall_left_angle, section.wall_right_angle]) == pytest.approx(90.0, abs=1e-6)
+        assert section.wall_left_straightness < 1e-9
+        assert section.floor_tilt == pytest.approx(0.0, abs=1e-12)
+        assert section.note == ""
+
+
+def test_deflection_that_varies_along_the_cut():
+    """Lateral 0.1 sin: the wall is the envelope of the moved capsules, so its middle follows the tool to 2nd order."""
+    stock, p, cutting, _ = slot(0.0, step=5e-4)
+    s = p[:, 0] + 0.05
+    delta = np.column_stack([np.zeros_like(s), 1e-4 * np.sin(2 * np.pi * s / 0.1), np.zeros_like(s)])
+    for section in groove_sections(stock, FLAT, p, p + delta, cutting, None, [0.02, 0.035, 0.05, 0.07]):
+        assert section.centre_offset == pytest.approx(1e-4 * np.sin(2 * np.pi * section.station / 0.1), abs=2e-7)
+        assert section.width > 0.008
+
+
+def test_ramped_floor_is_cut_by_the_lowest_pass_of_the_rim():
+    stock, p, cutting, _ = slot(0.0)
+    fall = np.column_stack([np.zeros(len(p)), np.zeros(len(p)), -0.01 * (p[:, 0] + 0.05)])
+    section = groove_section(stock, FLAT, p, p + fall, cutting, None, 0.05)
+    assert section.floor_error == pytest.approx(-0.01 * (0.05 + 0.004), abs=1e-12)
+
+
+def test_ball_groove_width_and_walls():
+    ball = Cutter("ball", 0.008)
+    stock, p, cutting, R = slot(25.0)
+    section = groove_section(stock, ball, p, p + R @ DELTA, cutting, None, 0.05)
+    depth = 0.0021024
+    half = np.sqrt(2 * 0.004 * depth - depth**2)
+    assert section.width == pytest.approx(2 * half, rel=1e-6)
+    assert section.centre_offset == pytest.approx(DELTA[1], abs=1e-10)
+    assert section.wall_left_angle == pytest.approx(section.wall_right_angle, abs=1e-9)
+    assert section.wall_left_angle > np.radians(100)
+    assert section.wall_left_straightness > 1e-5
+
+
+def test_chamfer_groove_has_its_cone_as_wall():
+    cone = Cutter("chamfer", 0.01, tip_angle=np.radians(60.0))
+    stock, p, cutting, _ = slot(-60.0)
+    section = groove_section(stock, cone, p, p, cutting, None, 0.04)
+    assert np.degrees(section.wall_left_angle) == pytest.approx(120.0, abs=1e-6)
+    assert section.width == pytest.approx(2 * 0.002 * np.tan(np.radians(30.0)), rel=1e-6)
+
+
+def test_merged_passes_share_one_groove():
+    """Two passes 6 mm apart merge: the left pass's section runs to the far wall of the right one."""
+    p = np.array([[0, 0, -0.002], [0.05, 0, -0.002], [0.05, 0.006, -0.002], [0, 0.006, -0.002]])
+    stock = Stock((-0.01, -0.01, -0.01), (0.06, 0.02, 0.0))
+    cutting = np.array([False, True, True, True])
+    section = groove_section(stock, FLAT, p, p + [0, 1e-4, 0], cutting, [1, 2, 3, 4], 0.025)
+    assert (section.wall_left, section.wall_right) == pytest.approx((0.0101, -0.0039), abs=1e-9)
+    assert section.centre_offset == pytest.approx(1e-4, abs=1e-9)
+    assert section.block == 2
+
+
+def test_side_cut_has_one_wall():
+    p = np.array([[0, 0, -0.002], [0.05, 0, -0.002]])
+    stock = Stock((-0.01, -0.03, -0.01), (0.06, 0.001, 0.0))
+    section = groove_section(stock, FLAT, p, p + [0, 1e-4, -2e-5], [False, True], None, 0.025)
+    assert section.open_left
+    assert np.isnan(section.wall_left)
+    assert np.isnan(section.centre_offset)
+    assert not section.open_right
+    assert section.wall_right == pytest.approx(-0.0039, abs=1e-10)
+    assert section.floor_error == pytest.approx(-2e-5, abs=1e-12)
+
+
+def test_what_cannot_be_measured_says_why():
+    p = np.array([[0, 0, 0.005], [0, 0, -0.002], [0.05, 0, -0.002], [0.2, 0, -0.002]])
+    stock = Stock((-0.01, -0.02, -0.01), (0.1, 0.02, 0.0))
+    cutting = [False, True, True, True]
+    moved = p + [0, 1e-4, 0]
+    plunge, slot_, outside = groove_sections(stock, FLAT, p, moved, cutting, None, [0.003, 0.03, 0.2])
+    assert "along the tool axis" in plunge.note
+    assert np.isnan(plunge.width)
+    assert slot_.note == ""
+    assert "outside the stock" in outside.note
+    moved[2] = np.nan
+    assert "does not reach" in groove_section(stock, FLAT, p, moved, cutting, None, 0.03).note
+    with pytest.raises(SurfaceError, match="runs from 0 to 207"):
+        groove_section(stock, FLAT, p, moved, cutting, None, 0.3)
+    assert feed_length(p, cutting) == pytest.approx(0.207)
