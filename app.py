@@ -1,0 +1,58 @@
+"""The start page: the paper's milling test, finished, before anyone has clicked anything."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill import ui
+from robomill.ui import story
+from robomill.units import format_si
+from robomill.viz.arm import arm_figure, displacement_scale
+from robomill.viz.views import arm_scene, sample_at
+
+HEIGHT = 430
+
+
+
+def _round(times: float) -> int:
+    """A scale to two digits, as a caption says it."""
+    return int(float(f"{times:.2g}"))
+
+
+project = ui.begin("Start")
+setup, unit, dark = project.setup, project.view.length, ui.dark()
+result = ui.attempt(ui.result, setup)
+if result is None:
+    ui.note("The numbers above were refused. Undo the last change, or mend it on the Robot, Toolpath or Milling page.")
+    st.stop()
+
+ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
+ui.tiles(ui.verdict_tiles(result, unit))
+
+left, right = ui.split([1, 1.18], "pictures")
+with left, st.container(border=True, height="stretch"):
+    index = sample_at(result, project.view.station * float(result.path.s[-1]))
+    if index >= 0:
+        scene = arm_scene(result, index)
+        drawn = displacement_scale(result.delta[index], scene.frames)
+        ui.figure(
+            arm_figure(scene, dark=dark, height=HEIGHT, revision="start-arm"), "start-arm",
+            alt="The arm at the cut with the cutting force and the displacement of the tool tip.",
+            caption=f"Blue: force on the tool. Orange: displacement, shown × {_round(drawn):,}.",
+        )  # fmt: skip
+with right, st.container(border=True, height="stretch"):
+    story.groove_picture(result, project.view, HEIGHT, dark)
+
+st.subheader("What this rests on")
+left, right = ui.split([1.75, 1], "rests", gap="large")
+with left:
+    story.where_from(setup)
+with right:
+    story.evidence(project)
+
+st.subheader("Where to go from here")
+story.doors()
+ui.note(
+    f"Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_si(setup.tolerance, unit, 2)}. "
+    f"Fingerprint of this run: {setup.digest()[:12]}."
+)

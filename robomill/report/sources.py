@@ -1,0 +1,69 @@
+"""Where the numbers of a set-up come from, in words: one row a block."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.robot.model import USER_SET, Provenance
+from robomill.simulation.setup import SimulationSetup
+from robomill.units import format_si, from_si, unit_label
+
+NOT_STATED = Provenance("user", "not stated")
+MODEL = Provenance("assumed", "static force, stiff links, joints as linear springs, small deflections")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A block of numbers: what it is, its value in short, and its provenance."""
+
+    what: str
+    value: str
+    provenance: Provenance
+
+
+def sources(setup: SimulationSetup) -> list[Source]:
+    """One row for each block that the result rests on, the assumed ones among them."""
+    robot, given = setup.robot, {**setup.robot.provenance, **setup.provenance}
+    unit = "1e-7 rad/(N m)"
+    compliances = ", ".join(f"{from_si(v, unit):.2f}" for v in robot.C_theta)
+    name = robot.compliance_set.replace("_", " ").capitalize() if robot.compliance_set != USER_SET else "Edited"
+    set_source = given.get(f"compliance.{robot.compliance_set}", Provenance("user", "entered by hand"))
+    lengths = ", ".join(f"{from_si(v, 'mm'):g}" for v in _lengths(setup))
+    path = setup.toolpath
+    rows = [
+        Source("Joint compliances", f"{name}: {compliances} {unit_label(unit)}", set_source),
+        Source("D-H table", f"{robot.rows} joints, {robot.convention}", given.get("geometry", NOT_STATED)),
+        Source("Link lengths", f"{lengths} mm", given.get("lengths", given.get("geometry", NOT_STATED))),
+        Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
+        Source("Path", f"{format_si(float(path.s[-1]), 'mm', 0)} at feed", given.get("path", NOT_STATED)),
+        Source("Cutter", setup.cutter.title, given.get("cutter", NOT_STATED)),
+        Source("Force", _force(setup), given.get("force", setup.force.provenance)),
+        Source("Stock", _stock(setup), given.get("stock", NOT_STATED)),
+        Source("Tolerance", format_si(setup.tolerance, "mm", 2), given.get("tolerance", NOT_STATED)),
+        Source("Model", "C = J Cθ Jᵀ, δ = C F", MODEL),
+    ]
+    return rows
+
+
+def _lengths(setup: SimulationSetup) -> list[float]:
+    robot = setup.robot
+    return [float(v) for v in np.concatenate([robot.a, robot.d]) if v != 0.0]
+
+
+def _stock(setup: SimulationSetup) -> str:
+    size = from_si(setup.stock_block.upper - setup.stock_block.lower, "mm")
+    return " × ".join(f"{v:g}" for v in np.round(size, 3)) + " mm"
+
+
+def _force(setup: SimulationSetup) -> str:
+    vector = getattr(setup.force, "vector_M", None)
+    if vector is not None:
+        return "(" + ", ".join(format_si(float(v), "N", 0).partition(" ")[0] for v in vector) + ") N in {M}"
+    parts = [
+        f"{format_si(getattr(setup.force, name), 'N', 0)} {word}"
+        for name, word in (("feed", "along the feed"), ("feed_normal", "left of the feed"), ("axial", "axial"))
+        if getattr(setup.force, name, 0.0)
+    ]
+    return ", ".join(parts) or type(setup.force).__name__

@@ -1,0 +1,36 @@
+"""Results kept by fingerprint: the same set-up is computed once for everyone on the server, and bounded in number."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+from robomill.simulation.setup import SimulationSetup
+from robomill.surface.groove import GrooveSection
+from robomill.viz.views import Exaggerated, exaggerated
+
+
+def result(setup: SimulationSetup) -> SimulationResult:
+    """``simulate(setup)``, from the cache where it was computed before. Raises the refusal of ``simulate``."""
+    return _result(setup.digest(), setup)
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _result(digest: str, _setup: SimulationSetup) -> SimulationResult:
+    return simulate(_setup)
+
+
+def groove(setup: SimulationSetup, station: float) -> GrooveSection:
+    """The groove's section at ``station`` (m of length cut)."""
+    return result(setup).groove(station)
+
+
+def pictured(setup: SimulationSetup, times: float) -> Exaggerated:
+    """The surfaces for pictures with the displacement ``times`` times enlarged, from the cache."""
+    return _pictured((setup.digest(), times), result(setup))
+
+
+@st.cache_resource(max_entries=16, show_spinner=False)
+def _pictured(key: tuple[str, float], _result: SimulationResult) -> Exaggerated:
+    return exaggerated(_result, key[1])

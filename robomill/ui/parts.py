@@ -1,0 +1,178 @@
+"""The pieces pages are made of: tiles, badges, figures with their downloads, refusals."""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import streamlit as st
+
+from robomill.errors import RobomillError
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+Value = TypeVar("Value")
+Columns = Mapping[str, Any]
+SHOWN_ROWS = 1500
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One number: ``value`` as formatted text with its unit after a space, ``was`` the value before the last change.
+
+    ``tone`` is "", "ok", "tight" or "out" (a coloured edge; the words carry the meaning), ``kind`` a provenance.
+    """
+
+    label: str
+    value: str
+    note: str = ""
+    was: str = ""
+    tone: str = ""
+    kind: str = ""
+
+
+def tiles(items: Sequence[Tile]) -> None:
+    """The row of tiles on top of a page (four in a row, two on a narrow screen)."""
+    st.html(f'<div class="rm-tiles">{"".join(map(_tile, items))}</div>')
+
+
+def _tile(tile: Tile) -> str:
+    number, _, unit = tile.value.rpartition(" ")
+    split = number and not any(c.isdigit() for c in unit) and len(unit) < 7 and number[-1:].isdigit()
+    value = f"{html.escape(number)}<small>{html.escape(unit)}</small>" if split else html.escape(tile.value)
+    note = html.escape(tile.note)
+    if tile.was and tile.was != tile.value:
+        note = f'was <span class="rm-was">{html.escape(tile.was)}</span>' + (f" · {note}" if note else "")
+    mark = badge(tile.kind) if tile.kind else ""
+    return (
+        f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label"><span>{_label(tile.label)}</span>'
+        f'{mark}</div><div class="rm-value">{value}</div><div class="rm-sub">{note}</div></div>'
+    )
+
+
+def _label(text: str) -> str:
+    """``C_yy`` with its index set low."""
+    return re.sub(r"\b([A-Zδθ])_(\w+)", r"\1<sub>\2</sub>", html.escape(text))
+
+
+def badge(kind: str, text: str = "") -> str:
+    """A small coloured pill with a word, as HTML for ``write_html``: paper, measured, assumed, user or computed."""
+    return f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(text or kind)}</span>'
+
+
+def headline(kicker: str, title: str, lead: str = "") -> None:
+    """The page's one sentence. ``lead`` may hold HTML (badges)."""
+    lead_html = f'<p class="rm-lead">{lead}</p>' if lead else ""
+    st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><p class="rm-title">{html.escape(title)}</p>{lead_html}')
+
+
+def note(text: str) -> None:
+    """A quiet line; may hold HTML (badges)."""
+    st.html(f'<p class="rm-note">{text}</p>')
+
+
+def facts(rows: Sequence[tuple[str, str, str]]) -> None:
+    """A small table without lines of its own: what, value, HTML of the remark (badges)."""
+    body = "".join(
+        f'<tr><td class="q">{html.escape(a)}</td><td class="n">{html.escape(b)}</td><td>{c}</td></tr>'
+        for a, b, c in rows
+    )
+    st.html(f'<table class="rm-facts">{body}</table>')
+
+
+def matrix(rows: Sequence[Sequence[str]], names: Sequence[str]) -> None:
+    """A small matrix with named rows and columns, the diagonal bold."""
+    head = "".join(f"<th>{html.escape(n)}</th>" for n in names)
+    body = "".join(
+        f"<tr><th>{html.escape(names[i])}</th>"
+        + "".join(f'<td class="{"d" if i == j else ""}">{html.escape(v)}</td>' for j, v in enumerate(row))
+        + "</tr>"
+        for i, row in enumerate(rows)
+    )
+    st.html(f'<table class="rm-matrix"><tr><th></th>{head}</tr>{body}</table>')
+
+
+def error(exc: RobomillError | str) -> None:
+    """A refusal as people read it: one sentence."""
+    st.error(str(exc), icon=":material/error:")
+
+
+def thirds() -> tuple[Any, Any]:
+    """The two columns of a page: inputs in the left third, the picture in the right two thirds."""
+    left, right = split([1, 2], "page", gap="large")
+    return left, right
+
+
+def split(spec: Sequence[float], name: str, gap: Any = "medium") -> list[Any]:
+    """Columns that stand under each other in a narrow window; ``name`` is unique on its page."""
+    with st.container(key=f"split-{name}"):
+        return list(st.columns(list(spec), gap=gap))
+
+
+def attempt(function: Callable[..., Value], *args: Any) -> Value | None:
+    """``function(*args)``, or its refusal shown and None. Anything but a refusal is a bug and is raised."""
+    try:
+        return function(*args)
+    except RobomillError as exc:
+        error(exc)
+        return None
+
+
+def figure(
+    fig: go.Figure,
+    key: str,
+    *,
+    table: Callable[[], Columns] | None = None,
+    name: str = "",
+    caption: str = "",
+    alt: str = "",
+    on_select: Callable[[], None] | None = None,
+) -> Any:
+    """A plotly figure that keeps its camera, with its table twin and CSV beneath and PNG in its own tool bar.
+
+    ``name`` is the file name of what is taken away (default: the key), ``alt`` what a screen reader says,
+    ``on_select`` a callback for picked points (the picked points are returned, too).
+    """
+    file_name = name or key
+    config = {
+        "displaylogo": False,
+        "displayModeBar": "hover",
+        "modeBarButtonsToRemove": [
+            "select2d", "lasso2d", "autoScale2d", "zoomIn2d", "zoomOut2d", "resetCameraLastSave3d", "tableRotation",
+            "orbitRotation", "pan3d", "zoom3d",
+        ],
+        "toImageButtonOptions": {"format": "png", "filename": f"robomill-{file_name}", "scale": 2},
+    }  # fmt: skip
+    more: dict[str, Any] = {"on_select": on_select, "selection_mode": "points"} if on_select else {}
+    picked = st.plotly_chart(fig, key=key, theme=None, config=config, alt=alt or None, **more)
+    if caption or table is not None:
+        with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute", gap="small"):
+            if caption:
+                note(caption)
+            if table is not None:
+                table_twin(table, file_name)
+    return picked
+
+
+def table_twin(table: Callable[[], Columns], name: str) -> None:
+    """The numbers behind a figure, to read and to take away as CSV."""
+    with st.popover("Table", icon=":material/table:", type="tertiary"):
+        import pandas as pd
+
+        frame = pd.DataFrame(dict(table()))
+        shown = frame.head(SHOWN_ROWS)
+        st.dataframe(shown, hide_index=True, height=min(36 * (len(shown) + 1), 360), width=640)
+        if len(frame) > len(shown):
+            note(f"Showing {len(shown)} of {len(frame)} rows; the file has all of them.")
+        download("CSV", lambda: frame.to_csv(index=False), f"robomill-{name}.csv", "text/csv", key=f"csv:{name}")
+
+
+def download(label: str, data: Callable[[], Any] | Any, file_name: str, mime: str, *, key: str) -> None:
+    """A download that is made only when it is asked for."""
+    st.download_button(
+        label, data=data, file_name=file_name, mime=mime, key=key, icon=":material/download:", on_click="ignore",
+    )  # fmt: skip

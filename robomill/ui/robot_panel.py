@@ -1,0 +1,149 @@
+"""The robot page's inputs and its matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError
+from robomill.io.robots import load_robot, robot_names
+from robomill.robot.model import USER_SET, Provenance, Robot
+from robomill.ui import inputs, parts, state, tables
+from robomill.ui.editors import table_editor
+from robomill.ui.pose import PoseNumbers
+from robomill.units import from_si, unit_label
+
+EDITED = Provenance("user", "entered in the app")
+
+
+def editors(project: state.Project) -> None:
+    """Compliances, geometry, limits and tool, each in its own tab."""
+    robot = project.setup.robot
+    _which_robot(robot)
+    compliance, geometry, limits, tool = st.tabs(["Compliances", "D-H table", "Limits", "Tool"])
+    with compliance:
+        _compliances(robot, project.view.joint_unit)
+    with geometry:
+        table_editor(
+            "geometry", lambda: tables.geometry_frame(state.project().setup.robot), _write_geometry,
+            columns={"joint": st.column_config.TextColumn("Joint", width="small"),
+                     **{label: st.column_config.NumberColumn(label, format="%.6g", width="small")
+                        for label in tables.GEOMETRY.values()}},
+            locked=("joint",),
+        )  # fmt: skip
+        parts.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
+        _said(robot, "geometry")
+        _said(robot, "lengths")
+    with limits:
+        prismatic = bool(robot.prismatic.any())
+        unit = "° (mm where it slides)" if prismatic else "°"
+        table_editor(
+            "limits", lambda: tables.limits_frame(state.project().setup.robot), _write_limits,
+            columns={"joint": st.column_config.TextColumn("Joint", width="small"),
+                     "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
+                     "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g")},
+            locked=("joint",),
+        )  # fmt: skip
+        _said(robot, "limits")
+    with tool:
+        _tool(robot)
+
+
+def _which_robot(robot: Robot) -> None:
+    names = {name: name.replace("_", " ") for name in robot_names()}
+    if robot.name not in names:
+        names = {robot.name: robot.name, **names}
+    inputs.choice("Robot", "robot.name", names, robot.name, _take_robot, horizontal=False)
+
+
+def _take_robot(name: str) -> None:
+    state.change(robot=load_robot(name))
+    state.look(theta=None)
+
+
+def _compliances(robot: Robot, unit: str) -> None:
+    sets = {name: name.replace("_", " ").capitalize() for name in robot.compliance_sets}
+    if robot.compliance_set == USER_SET:
+        sets[USER_SET] = "Edited"
+    if sets:
+        inputs.choice(
+            "Set in force", "robot.compliance_set", sets, robot.compliance_set,
+            lambda name: None if name == USER_SET else state.change(
+                robot=state.project().setup.robot.with_compliance_set(name)),
+        )  # fmt: skip
+    word = "Stiffness" if tables.is_stiffness(unit) else "Compliance"
+    table_editor(
+        f"compliance:{unit}", lambda: tables.compliance_frame(state.project().setup.robot, unit),
+        lambda frame: state.change(
+            robot=tables.with_compliance(state.project().setup.robot, frame, unit), from_editor=True
+        ),
+        columns={"joint": st.column_config.TextColumn("Joint", width="small"),
+                 "value": st.column_config.NumberColumn(f"{word}, {unit_label(unit)}", format="%.6g")},
+        locked=("joint",),
+    )  # fmt: skip
+    if robot.compliance_set == USER_SET:
+        parts.note(f"{parts.badge('user')} entered in the app")
+    else:
+        _said(robot, f"compliance.{robot.compliance_set}")
+
+
+def _write_geometry(frame: pd.DataFrame) -> None:
+    robot = tables.with_geometry(state.project().setup.robot, frame)
+    marked = {**robot.provenance, "geometry": EDITED, "lengths": EDITED}
+    state.change(robot=robot.replace(provenance=marked), from_editor=True)
+
+
+def _write_limits(frame: pd.DataFrame) -> None:
+    robot = tables.with_limits(state.project().setup.robot, frame)
+    state.change(robot=robot.replace(provenance={**robot.provenance, "limits": EDITED}), from_editor=True)
+
+
+def _tool(robot: Robot) -> None:
+    st.markdown("Tool tip from the last axis, along its own axes")
+    columns = st.columns(3)
+    for i, (axis, column) in enumerate(zip("xyz", columns, strict=True)):
+        with column:
+            inputs.number(axis, f"robot.T_tool[{i},3]", "mm", step=1.0, digits=2)
+    _said(robot, "tool")
+
+
+def _said(robot: Robot, block: str) -> None:
+    found = robot.provenance.get(block)
+    if found is not None:
+        parts.note(f"{parts.badge(found.kind)} {found.source}")
+
+
+def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
+    """C at the pose in um/N, and how it changed."""
+    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
+    parts.matrix([[_signed(v) for v in row] for row in from_si(now.C, "um/N")], ["X", "Y", "Z"])
+    parts.note("Row: where the tip goes. Column: where you push.")
+    if old is not None:
+        st.markdown("**Before the last change**")
+        parts.matrix([[_signed(v) for v in row] for row in from_si(old.C, "um/N")], ["X", "Y", "Z"])
+
+
+def _signed(value: float) -> str:
+    text = f"{value:.3f}"
+    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
+
+
+def direction_words(C: FloatArray) -> str:
+    """The softest direction of C as a unit vector in words."""
+    vector = np.linalg.eigh(C)[1][:, -1]
+    vector = vector * np.sign(vector[np.argmax(np.abs(vector))])
+    return "along (" + ", ".join(_signed(round(float(v), 2))[:-1] for v in vector) + ") in {M}"
+
+
+def det_words(now: PoseNumbers) -> str:
+    """What det(J) says in words."""
+    if not np.isfinite(now.det):
+        return "the task Jacobian of this arm is not square"
+    return "singular here" if abs(now.det) < 1e-6 else "0 at a singularity"
+
+
+def refuse_unknown(exc: RobomillError) -> None:
+    """Show a refusal of the panel."""
+    parts.error(exc)

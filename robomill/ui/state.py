@@ -1,0 +1,176 @@
+"""The project: one frozen value under one session key, with its history. Widgets are views of it.
+
+``Project`` is what a person works on: the simulation set-up and how it is looked at. Every change replaces it
+(``change``, ``look``), so undo is a list of earlier values and nothing typed is lost on a page change.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import streamlit as st
+
+from robomill.errors import RobomillError
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.setup import SimulationSetup
+
+KEY = "robomill"
+DEFAULT_PRESET = "paper_flute"
+MAX_HISTORY = 60
+
+
+@dataclass(frozen=True)
+class View:
+    """How the project is looked at; saved with it, but not part of the history."""
+
+    units: str = "mm"
+    joint_unit: str = "1e-7 rad/(N m)"
+    exaggeration: float = 10.0
+    station: float = 0.5
+    camera: str = "iso"
+    share_axis: str = "y"
+    theta: tuple[float, ...] | None = None
+
+    @property
+    def length(self) -> str:
+        """Unit of lengths and deviations, a key of ``UNITS``."""
+        return self.units
+
+    @property
+    def feed(self) -> str:
+        """Unit of feed rates."""
+        return "in/min" if self.units == "in" else "mm/min"
+
+
+@dataclass(frozen=True, eq=False)
+class Project:
+    """The set-up, the view on it, and the preset it began with."""
+
+    setup: SimulationSetup
+    view: View = field(default_factory=View)
+    preset: str = DEFAULT_PRESET
+
+
+@dataclass(eq=False)
+class Store:
+    """What lives in the session: the project, its history, and input that was refused but is still shown.
+
+    ``revision`` counts changes that came from outside a table editor, so that editors start afresh then.
+    """
+
+    project: Project
+    past: list[Project] = field(default_factory=list)
+    future: list[Project] = field(default_factory=list)
+    revision: int = 0
+    refused: dict[str, tuple[Any, str]] = field(default_factory=dict)
+    frames: dict[str, Any] = field(default_factory=dict)
+    last_label: str = ""
+
+
+def presets() -> dict[str, str]:
+    """Folder name -> folder name of every sample with a set-up, the default first."""
+    names = sorted(path.parent.name for path in samples_dir().glob("*/setup.toml"))
+    return {name: name for name in sorted(names, key=lambda name: (name != DEFAULT_PRESET, name))}
+
+
+@st.cache_resource(max_entries=32, show_spinner=False)
+def preset_setup(name: str) -> SimulationSetup:
+    """The set-up of a sample folder, read once."""
+    return load_setup(samples_dir() / name / "setup.toml")
+
+
+def store() -> Store:
+    """The session's store; the first call opens the paper's milling test."""
+    if KEY not in st.session_state:
+        st.session_state[KEY] = Store(Project(preset_setup(DEFAULT_PRESET)))
+    found = st.session_state[KEY]
+    assert isinstance(found, Store) or type(found).__name__ == "Store"
+    return found  # type: ignore[no-any-return]
+
+
+def project() -> Project:
+    """The project of this session."""
+    return store().project
+
+
+def before() -> Project | None:
+    """The project before the last change, for ghosts and differences; None at the start."""
+    past = store().past
+    return past[-1] if past else None
+
+
+def change(*, label: str = "", from_editor: bool = False, **fields: Any) -> None:
+    """Replace fields of the set-up; remembered for undo. Changes with one ``label`` in a row count as one.
+
+    Raises the RobomillError of the field that refuses; the project then stays as it was.
+    """
+    kept = store()
+    replace(dataclasses.replace(kept.project, setup=kept.project.setup.replace(**fields)), label, from_editor)
+
+
+def replace(new: Project, label: str = "", from_editor: bool = False) -> None:
+    """Put a whole new project in force; the old one can be had back with ``undo``."""
+    kept = store()
+    if not (label and label == kept.last_label and kept.past):
+        kept.past = [*kept.past, kept.project][-MAX_HISTORY:]
+    kept.project, kept.future, kept.last_label = new, [], label
+    if not from_editor:
+        kept.revision += 1
+
+
+def look(**fields: Any) -> None:
+    """Replace fields of the view; not part of the history."""
+    kept = store()
+    kept.project = dataclasses.replace(kept.project, view=dataclasses.replace(kept.project.view, **fields))
+
+
+def undo() -> None:
+    """Back to the project before the last change; the view stays."""
+    _step(lambda kept: (kept.past, kept.future))
+
+
+def redo() -> None:
+    """Forward again after an undo."""
+    _step(lambda kept: (kept.future, kept.past))
+
+
+def _step(lists: Callable[[Store], tuple[list[Project], list[Project]]]) -> None:
+    kept = store()
+    source, target = lists(kept)
+    if not source:
+        return
+    target.append(kept.project)
+    kept.project = dataclasses.replace(source.pop(), view=kept.project.view)
+    _forget(kept)
+
+
+def open_preset(name: str) -> None:
+    """Start from a sample; undo leads back."""
+    kept = store()
+    replace(Project(preset_setup(name), kept.project.view, name))
+    look(theta=None)
+    _forget(kept)
+
+
+def open_text(text: str) -> str:
+    """Open a project file; returns "" or the reason why it was refused (the current project then stays)."""
+    from robomill.ui.files import project_from_toml
+
+    try:
+        new = project_from_toml(text, store().project.view)
+    except RobomillError as exc:
+        return str(exc)
+    replace(new)
+    _forget(store())
+    return ""
+
+
+def _forget(kept: Store) -> None:
+    kept.revision += 1
+    kept.last_label = ""
+    kept.refused.clear()
+    kept.frames.clear()

@@ -1,0 +1,150 @@
+"""What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.errors import RobomillError
+from robomill.io.samples import app_dir
+from robomill.report.sources import sources
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.ui import cache, parts, render, state
+from robomill.units import format_si, from_si
+from robomill.viz.surfaces import surface_figure
+from robomill.viz.views import surface_picture
+
+PAPER = "paper_flute"
+# The paper's own numbers for this cut, in m: section 5.2 and figs. 15, 16.
+PAPER_TABLE_2, PAPER_MAP, PAPER_MEASURED = 0.23e-3, 0.29e-3, 0.30e-3
+
+DOORS = (
+    ("I design robots", "Which joint should I spend money on? Change a compliance or a link and watch the cut.",
+     "pages/1_Robot.py", "Open the robot"),
+    ("I mill parts", "Will my groove be in tolerance? Drop a program, choose a cutter, read one sentence.",
+     "pages/5_Toolpath.py", "Open the toolpath"),
+    ("I teach", "Why does a robot bend sideways? One push, one picture, the equations beside it.",
+     "pages/8_Learn.py", "Open the lesson"),
+)  # fmt: skip
+
+
+def cause(result: SimulationResult, unit: str) -> str:
+    """One line: the force, the joints that give most, and where the tip goes."""
+    i = result.worst
+    if i < 0:
+        return ""
+    size = np.linalg.norm(result.delta_joint[i], axis=-1)
+    order = np.argsort(size)[::-1]
+    along = result.delta[i] / (np.linalg.norm(result.delta[i]) or 1.0)
+    share = result.delta_joint[i] @ along / (np.linalg.norm(result.delta[i]) or 1.0)
+    main = [j for j in order if share[j] > 0.08][:3]
+    numbers = result.setup.robot.joint_numbers
+    blame = " and ".join(f"joint {numbers[j]} ({share[j]:.0%})" for j in main)
+    force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
+    digits = 4 if unit == "in" else 3
+    moved = ", ".join(
+        f"{format_si(float(v), unit, digits, sign=True)} in {a}" for a, v in zip("XYZ", result.delta[i])
+        if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
+    )  # fmt: skip
+    return f"{force} on the tool move the tip by {moved}. Most of it comes from {blame}."
+
+
+def groove_picture(result: SimulationResult, view: state.View, height: int, dark: bool) -> None:
+    """The machined groove as a rendered picture, or turnable where nothing can be rendered."""
+    try:
+        shown = cache.pictured(result.setup, view.exaggeration)
+    except RobomillError as exc:
+        parts.error(exc)
+        return
+    scene = surface_picture(
+        result, shown, camera="iso", dark=dark, station=None, size=(1120, round(1120 * height / 560)), words=False,
+    )  # fmt: skip
+    png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
+    alt = "The machined groove coloured by its signed error against the ideal one."
+    if png is not None:
+        st.image(png, width="stretch", alt=alt)
+    else:
+        limit = float(from_si(result.setup.tolerance, "um"))
+        unit = view.length
+        figure = surface_figure(
+            from_si(shown.drawn.x, unit), from_si(shown.drawn.y, unit), from_si(shown.drawn.z, unit),
+            from_si(shown.error, "um"), limit, dark=dark, height=height, revision="start-surface", unit=unit,
+        )  # fmt: skip
+        parts.figure(figure, "start-surface", alt=alt)
+    parts.note(
+        f"The groove as milled, displacement shown × {view.exaggeration:g}. Colours end at the tolerance, "
+        f"± {format_si(result.setup.tolerance, 'um', 0)}."
+    )
+
+
+def where_from(setup: SimulationSetup) -> None:
+    """Each block of numbers with its badge and its source."""
+    rows = [
+        (s.what, html.escape(s.value), f"{parts.badge(s.provenance.kind)} {html.escape(s.provenance.source)}")
+        for s in sources(setup)
+    ]
+    body = "".join(f'<tr><td class="q">{html.escape(a)}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
+    st.html(f'<table class="rm-facts">{body}</table>')
+
+
+def evidence(project: state.Project) -> None:
+    """The paper's numbers beside those of robomill, for the paper's own cut; never forced to match."""
+    if project.preset != PAPER:
+        parts.note("The paper's numbers are shown beside robomill's when its milling test is open.")
+        return
+    preset = state.preset_setup(PAPER)
+    rows: list[tuple[str, float, str]] = []
+    for label, setup in (
+        ("robomill, as edited" if project.setup.digest() != preset.digest() else "", project.setup),
+        ("robomill, Table 2", preset),
+        ("robomill, Table 3", preset.replace(robot=preset.robot.with_compliance_set("table_3"))),
+    ):
+        if label:
+            rows.append((label, _aside(cache.result(setup)), "computed"))
+    rows[-1:-1] = [("paper, predicted from Table 2", PAPER_TABLE_2, "paper")]
+    rows += [
+        ("paper, predicted from its measured map", PAPER_MAP, "paper"),
+        ("paper, measured on the part (about)", PAPER_MEASURED, "measured"),
+    ]
+    bars(rows, project.view.length)
+    parts.note(
+        "Sideways error of the groove. 0.29 mm is read off a map whose raw data are not printed; "
+        "Table 3 alone cannot give it, and nothing here is tuned to."
+    )
+
+
+def bars(rows: list[tuple[str, float, str]], unit: str) -> None:
+    """Lengths side by side: label, value in m, provenance."""
+    top = max((abs(v) for _, v, _ in rows if np.isfinite(v)), default=1.0) or 1.0
+    digits = 3 if unit == "in" else 2
+    body = "".join(
+        f'<tr><td>{html.escape(label)}</td><td class="rm-barcell"><span class="rm-bar rm-{kind}" '
+        f'style="width:{abs(value) / top * 100:.1f}%"></span></td>'
+        f'<td class="n">{format_si(value, unit, digits)}</td><td>{parts.badge(kind)}</td></tr>'
+        for label, value, kind in rows
+    )
+    st.html(f'<table class="rm-facts">{body}</table>')
+
+
+def doors() -> None:
+    """Three cards, one for each kind of visitor."""
+    for column, (title, text, page, label) in zip(parts.split([1, 1, 1], "doors"), DOORS, strict=True):
+        with column, st.container(border=True):
+            st.html(f'<div class="rm-door"><b>{html.escape(title)}</b><p>{html.escape(text)}</p></div>')
+            there = (app_dir() / page).is_file()
+            st.page_link(
+                page if there else "pages/1_Robot.py", label=label if there else "Open the robot",
+                icon=":material/arrow_forward:",
+            )  # fmt: skip
+
+
+def _aside(result: Any) -> float:
+    """Sideways error at mid-cut, m."""
+    from robomill.viz.views import sample_at
+
+    i = sample_at(result, 0.5 * float(result.path.s[-1]))
+    return abs(float(result.delta[i, 1])) if i >= 0 else float("nan")

@@ -1,0 +1,160 @@
+"""Tables that are edited on the screen, to the model and back: pure functions, in display units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobotError, ToolpathError
+from robomill.robot.model import Robot
+from robomill.toolpath.source import LinesSource
+from robomill.units import from_si, to_si, unit_label
+
+PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
+GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
+LINE_COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
+
+
+def is_stiffness(unit: str) -> bool:
+    """Whether the joints are shown by stiffness rather than compliance."""
+    return unit in ("kN m/rad", "N/um")
+
+
+def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
+    """One row a joint: its compliance in ``unit`` (or stiffness; empty where a joint does not give at all)."""
+    units = _joint_units(robot, unit)
+    values = []
+    for C, u in zip(robot.C_theta_all, units, strict=True):
+        if is_stiffness(u):
+            values.append(float(f"{from_si(1.0 / C, u):.10g}") if C > 0 else None)
+        else:
+            values.append(float(f"{from_si(C, u):.10g}"))
+    return pd.DataFrame({"joint": _names(robot), "value": values})
+
+
+def with_compliance(robot: Robot, frame: pd.DataFrame, unit: str) -> Robot:
+    """``robot`` with the table's compliances. Raises RobotError naming the joint that cannot be."""
+    C = np.empty(robot.rows)
+    for i, u in enumerate(_joint_units(robot, unit)):
+        typed = frame["value"].iloc[i]
+        word = "stiffness" if is_stiffness(u) else "compliance"
+        if _empty(typed):
+            if is_stiffness(u) and robot.C_theta_all[i] == 0:
+                C[i] = 0.0
+                continue
+            raise RobotError(f"Joint {i + 1}: the {word} is missing; type a number in {unit_label(u)}.")
+        value = float(typed)
+        if is_stiffness(u):
+            if not value > 0:
+                raise RobotError(f"Joint {i + 1}: stiffness is {value:g}; it must be greater than 0 {unit_label(u)}.")
+            C[i] = 1.0 / to_si(value, u)
+        else:
+            C[i] = to_si(value, u)
+    same = [k for k, known in robot.compliance_sets.items() if np.allclose(known, C, rtol=1e-9, atol=0.0)]
+    if same:
+        return robot.with_compliance_set(same[0])
+    return robot.replace(C_theta_all=C)
+
+
+def geometry_frame(robot: Robot) -> pd.DataFrame:
+    """The D-H table in mm and degrees, one row a joint."""
+    columns: dict[str, Any] = {"joint": _names(robot)}
+    for name, label in GEOMETRY.items():
+        columns[label] = _clean(getattr(robot, name), _geometry_unit(name))
+    return pd.DataFrame(columns)
+
+
+def with_geometry(robot: Robot, frame: pd.DataFrame) -> Robot:
+    """``robot`` with the table's D-H constants. Raises RobotError naming joint and column."""
+    changes: dict[str, FloatArray] = {}
+    for name, label in GEOMETRY.items():
+        changes[name] = _column(frame, label, _geometry_unit(name))
+    return robot.replace(**changes)
+
+
+def limits_frame(robot: Robot) -> pd.DataFrame:
+    """Joint limits in degrees (mm where prismatic)."""
+    low, high = (_limit_values(robot, robot.limits_all[:, side]) for side in (0, 1))
+    return pd.DataFrame({"joint": _names(robot), "lower": low, "upper": high})
+
+
+def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
+    """``robot`` with the table's limits. Raises RobotError naming the joint."""
+    limits = np.empty((robot.rows, 2))
+    for side, label in enumerate(("lower", "upper")):
+        for i in range(robot.rows):
+            typed = frame[label].iloc[i]
+            if _empty(typed):
+                raise RobotError(f"Joint {i + 1}: the {label} limit is missing; type a number.")
+            limits[i, side] = to_si(float(typed), "mm" if robot.prismatic[i] else "deg")
+    return robot.replace(limits_all=limits)
+
+
+def lines_frame(source: LinesSource, unit: str, feed_unit: str) -> pd.DataFrame:
+    """Straight cuts as a table in display units."""
+    values = np.hstack([_clean(source.start, unit), _clean(source.end, unit), _clean(source.v_f, feed_unit)[:, None]])
+    return pd.DataFrame(values, columns=list(LINE_COLUMNS))
+
+
+def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float = 0.0) -> LinesSource:
+    """The table's straight cuts as a source. Raises ToolpathError naming row and column of an empty cell."""
+    kept = frame.dropna(how="all")
+    if len(kept) == 0:
+        raise ToolpathError("Table of lines: found no rows; add at least one line.")
+    for row in range(len(kept)):
+        for label in LINE_COLUMNS:
+            if _empty(kept[label].iloc[row]):
+                raise ToolpathError(f"Row {row + 1}: {label} is missing; type a number.")
+    numbers = kept[list(LINE_COLUMNS)].to_numpy(dtype=float)
+    return LinesSource(to_si(numbers[:, :3], unit), to_si(numbers[:, 3:6], unit), to_si(numbers[:, 6], feed_unit), n_s)
+
+
+def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
+    """``base`` with what ``st.data_editor`` says was changed (edited, added and deleted rows)."""
+    frame = base.copy()
+    for row, cells in changes.get("edited_rows", {}).items():
+        for column, value in cells.items():
+            frame.loc[frame.index[int(row)], column] = value
+    frame = frame.drop(index=[frame.index[i] for i in changes.get("deleted_rows", [])])
+    added = [{c: r.get(c) for c in frame.columns} for r in changes.get("added_rows", [])]
+    if added:
+        frame = pd.concat([frame, pd.DataFrame(added)], ignore_index=True)
+    return frame
+
+
+def _names(robot: Robot) -> list[str]:
+    return [f"{i + 1}" + (" (slides)" if robot.prismatic[i] else "") for i in range(robot.rows)]
+
+
+def _joint_units(robot: Robot, unit: str) -> list[str]:
+    return [PRISMATIC_UNITS[unit] if p else unit for p in robot.prismatic]
+
+
+def _geometry_unit(name: str) -> str:
+    return {"alpha": "deg", "theta_offset": "deg", "a": "mm", "d": "mm", "sign": "1"}[name]
+
+
+def _limit_values(robot: Robot, values: FloatArray) -> list[float]:
+    return [float(_clean(v, "mm" if p else "deg")) for v, p in zip(values, robot.prismatic, strict=True)]
+
+
+def _clean(values: Any, unit: str) -> Any:
+    """In ``unit``, without the last bits of the conversion."""
+    return np.round(from_si(np.asarray(values, dtype=float), unit), 9)
+
+
+def _empty(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and np.isnan(value)) or value is pd.NA
+
+
+def _column(frame: pd.DataFrame, label: str, unit: str) -> FloatArray:
+    numbers = np.empty(len(frame))
+    for i, typed in enumerate(frame[label]):
+        if _empty(typed):
+            raise RobotError(f"Joint {i + 1}: {label.partition(',')[0]} is missing; type a number.")
+        numbers[i] = to_si(float(typed), unit)
+    return numbers

@@ -1,0 +1,79 @@
+"""The four tiles and the one sentence that start, robot and milling page share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robomill.errors import RobomillError
+from robomill.simulation.result import SimulationResult
+from robomill.ui import cache, state
+from robomill.ui.parts import Tile
+from robomill.units import format_si
+
+WORDS = {"ok": "In tolerance", "tight": "Tight", "out": "Out of tolerance", "unreached": "Out of reach"}
+TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out"}
+
+
+def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
+    """Max, RMS, worst line and verdict, each beside its value before the last change."""
+    old = previous(result)
+    digits = 4 if unit == "in" else 3
+    verdict = result.verdict
+    i = result.worst
+
+    def shown(value: float) -> str:
+        return format_si(value, unit, digits)
+
+    parts = ""
+    if i >= 0:
+        parts = " · ".join(
+            f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
+        )
+    share = f"{verdict.share:.0%} of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
+    return [
+        Tile("Max deviation", shown(result.max_deviation), parts, shown(old.max_deviation) if old else "",
+             kind="computed"),
+        Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut",
+             shown(old.rms_deviation) if old else ""),
+        Tile("Worst line", f"Line {result.worst_block}" if i >= 0 else "none reached", _where(result, unit)),
+        Tile("Verdict", WORDS[verdict.level], share if np.isfinite(verdict.share) else "nothing reached",
+             tone=TONES[verdict.level]),
+    ]  # fmt: skip
+
+
+def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
+    """What the cut will be like, for a foreman: sideways and depth error of the groove at mid-cut."""
+    i = result.worst
+    if i < 0:
+        return result.verdict.sentence
+    digits = 3 if unit == "in" else 2
+    delta = result.setup.T_MW[:3, :3].T @ result.delta[i]
+    plane = delta[:2]
+    feed = result.path.p[i] - result.path.p[i - 1]
+    left = np.array([-feed[1], feed[0]])
+    length = float(np.linalg.norm(left))
+    if length < 1e-12:
+        return result.verdict.sentence
+    aside = float(plane @ left / length)
+    axis = "Y" if abs(left[1]) > 0.999 * length else "X" if abs(left[0]) > 0.999 * length else ""
+    name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
+    depth = float(delta[2])
+    words = "too deep" if depth < 0 else "too shallow"
+    return f"The groove is {format_si(abs(aside), unit, digits)} off {name} and {format_si(abs(depth), unit, digits)} {words}."
+
+
+def previous(result: SimulationResult) -> SimulationResult | None:
+    """The result before the last change of the project, if it is a different one that can be computed."""
+    old = state.before()
+    if old is None or old.setup.digest() == result.setup.digest():
+        return None
+    try:
+        return cache.result(old.setup)
+    except RobomillError:
+        return None
+
+
+def _where(result: SimulationResult, unit: str) -> str:
+    if result.worst < 0:
+        return ""
+    return f"after {format_si(float(result.path.s[result.worst]), unit, 1 if unit == 'mm' else 3)} of cut"

@@ -1,0 +1,208 @@
+"""The arm as a turnable figure: links as tubes, frames {M}, {W}, {T}, the part, the path, force and displacement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.viz import solids
+from robomill.viz.theme import axis3d, figure, palette, rgba
+
+
+@dataclass(frozen=True, eq=False)
+class ArmScene:
+    """What to draw, in m and in {M}; parts left at None are not drawn.
+
+    frames (n+1, 4, 4): the frame before each joint (the joint turns about its z), then {T}.
+    offset (n,): travel along each joint's z before the link goes across (the D-H d).
+    part (lower (3,), upper (3,)) in {W}; path (m, 3) with reached (m,); force, displacement (3,) at the tip.
+    """
+
+    frames: FloatArray
+    T_MW: FloatArray | None = None
+    part: tuple[FloatArray, FloatArray] | None = None
+    path: FloatArray | None = None
+    path_reached: BoolArray | None = None
+    force: FloatArray | None = None
+    displacement: FloatArray | None = None
+    force_label: str = ""
+    displacement_label: str = ""
+    cutter_radius: float = 0.004
+    ghost: FloatArray | None = None
+    bench: bool = True
+
+
+def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0) -> go.Figure:
+    """The arm with everything in ``scene``; the camera stays while ``revision`` does.
+
+    ``zoom`` below 1 suits a narrow column.
+    """
+    p = palette(dark)
+    reach = _reach(scene.frames)
+    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    if scene.ghost is not None:
+        fig.add_traces(_arm_traces(scene.ghost, reach, scene.cutter_radius, dark, ghost=True))
+    fig.add_traces(_pedestal(scene, reach, dark))
+    fig.add_traces(_arm_traces(scene.frames, reach, scene.cutter_radius, dark))
+    fig.add_traces(solids.frame(np.eye(4), "M", 0.16 * reach, dark))
+    fig.add_traces(_part_traces(scene, reach, dark))
+    tip = scene.frames[-1][:3, 3]
+    width = 0.0065 * reach
+    if scene.force is not None:
+        vector = _sized(scene.force, 0.20 * reach)
+        fig.add_traces(solids.arrow(tip - vector, vector * 0.96, p.accent, "force", "", width))
+        start = tip - 1.12 * vector
+        fig.add_trace(_word(start, scene.force_label, p.accent))
+    if scene.displacement is not None:
+        vector = _sized(scene.displacement, 0.17 * reach)
+        fig.add_traces(solids.arrow(tip, vector, p.warm, "displacement", scene.displacement_label, width))
+    fig.update_layout(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
+    return fig
+
+
+def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
+    """How many times larger than true ``arm_figure`` draws the displacement (for its caption)."""
+    size = float(np.linalg.norm(displacement))
+    return 0.17 * _reach(frames) / size if size > 0 else 1.0
+
+
+def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
+    span = np.ptp(bounds, axis=0)
+    ratio = 2.5 * zoom * span / np.linalg.norm(span)
+    axes = {
+        f"{name}axis": axis3d(f"{name.upper()}<sub>M</sub>, m", dark=dark, range=bounds[:, i].tolist())
+        for i, name in enumerate("xyz")
+    }
+    return {
+        **axes, "uirevision": revision, "dragmode": "turntable", "aspectmode": "manual",
+        "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
+        "camera": {
+            "eye": {"x": 1.30, "y": -0.95, "z": 0.62}, "center": {"x": 0, "y": 0, "z": -0.04},
+            "projection": {"type": "orthographic"},
+        },
+    }  # fmt: skip
+
+
+def _bounds(fig: go.Figure, reach: float) -> FloatArray:
+    """(2, 3): what is drawn, with a small margin; the same box while the arm moves inside it."""
+    points = [
+        np.stack([np.asarray(t.x, dtype=float), np.asarray(t.y, dtype=float), np.asarray(t.z, dtype=float)], axis=1)
+        for t in fig.data
+    ]
+    every = np.vstack(points)
+    low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
+    step = 0.08 * reach
+    return np.stack([np.floor(low / step - 0.2), np.ceil(high / step + 0.2)]) * step
+
+
+def _reach(frames: FloatArray) -> float:
+    """Sum of the link lengths, the yardstick for tube radii and arrows."""
+    steps = np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1)
+    return max(float(steps.sum()), 1e-3)
+
+
+def _arm_traces(frames: FloatArray, reach: float, cutter_radius: float, dark: bool, ghost: bool = False) -> list[Any]:
+    p = palette(dark)
+    n = len(frames) - 1
+    thick = 0.034 * reach
+    links, joints = [], []
+    for i in range(n):
+        radius = thick * (1.0 - 0.45 * i / max(n - 1, 1))
+        start, end = frames[i][:3, 3], frames[i + 1][:3, 3]
+        if i == n - 1:
+            end = end + 0.09 * reach * _tool_axis(frames)
+        axis = frames[i][:3, 2]
+        joints.append(solids.tube(start - 1.5 * radius * axis, start + 1.5 * radius * axis, 1.32 * radius))
+        corner = start + axis * float((end - start) @ axis)
+        for a, b in ((start, corner), (corner, end)):
+            if np.linalg.norm(b - a) > 0.2 * radius:
+                links.append(solids.tube(a, b, 0.92 * radius, 0.78 * radius))
+    if ghost:
+        return [solids.trace([*links, *joints], p.muted, "before", opacity=0.18)]
+    tip, k = frames[-1][:3, 3], _tool_axis(frames)
+    spindle = [solids.tube(tip + 0.035 * reach * k, tip + 0.13 * reach * k, 0.016 * reach, 0.024 * reach)]
+    cutter = [solids.tube(tip, tip + 0.04 * reach * k, max(cutter_radius, 0.004 * reach))]
+    return [
+        solids.trace(links, p.link, "links"), solids.trace(joints, p.joint, "joints"),
+        solids.trace(spindle, p.joint, "spindle"), solids.trace(cutter, p.warm, "cutter"),
+        *([] if ghost else _joint_hover(frames, p.text)),
+    ]  # fmt: skip
+
+
+def _joint_hover(frames: FloatArray, colour: str) -> list[Any]:
+    origins = frames[:-1, :3, 3]
+    names = [f"joint {i + 1}" for i in range(len(origins))]
+    tip = frames[-1][:3, 3]
+    points = np.vstack([origins, tip])
+    return [go.Scatter3d(
+        x=points[:, 0], y=points[:, 1], z=points[:, 2], mode="markers", showlegend=False,
+        marker={"size": 9, "opacity": 0.0, "color": colour}, text=[*names, "tool tip {T}"],
+        hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
+    )]  # fmt: skip
+
+
+def _tool_axis(frames: FloatArray) -> FloatArray:
+    return np.asarray(frames[-1][:3, 2])
+
+
+def _pedestal(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
+    """A foot under {M}; drawn for orientation only, no dimension of it is used."""
+    p = palette(dark)
+    axis = np.array([0.0, 0.0, 1.0])
+    base = scene.frames[0][:3, 3]
+    if abs(scene.frames[0][2, 2]) < 0.5:
+        return []
+    foot = base - 0.19 * reach * axis
+    meshes = [solids.tube(base - 0.05 * reach * axis, foot, 0.045 * reach, 0.07 * reach)]
+    meshes.append(solids.tube(foot, foot - 0.02 * reach * axis, 0.115 * reach))
+    return [solids.trace(meshes, p.link, "foot")]
+
+
+def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
+    p = palette(dark)
+    traces: list[Any] = []
+    if scene.T_MW is not None:
+        traces += solids.frame(scene.T_MW, "W", 0.075 * reach, dark, label=0)
+    if scene.part is not None and scene.T_MW is not None:
+        lower, upper = (np.asarray(corner, dtype=float) for corner in scene.part)
+        traces.append(solids.trace([solids.box(lower, upper, scene.T_MW)], p.metal, "part", opacity=0.9,
+                                   flatshading=True))  # fmt: skip
+        if scene.bench:
+            traces.append(_bench(lower, upper, scene.T_MW, reach, dark))
+    if scene.path is not None and len(scene.path) > 1:
+        reached = np.ones(len(scene.path), bool) if scene.path_reached is None else scene.path_reached
+        for mask, colour, name in ((reached, p.accent, "path"), (~reached, p.muted, "out of reach")):
+            if mask.any():
+                points = np.where(mask[:, None], scene.path, np.nan)
+                traces.append(go.Scatter3d(
+                    x=points[:, 0], y=points[:, 1], z=points[:, 2], mode="lines", name=name, showlegend=False,
+                    line={"color": colour, "width": 5, "dash": "solid" if name == "path" else "dot"},
+                    hovertemplate=name + "<br>%{x:.4f}, %{y:.4f}, %{z:.4f} m<extra></extra>",
+                ))  # fmt: skip
+    return traces
+
+
+def _bench(lower: FloatArray, upper: FloatArray, T_MW: FloatArray, reach: float, dark: bool) -> go.Mesh3d:
+    """The table under the part; drawn for orientation only."""
+    p = palette(dark)
+    centre = 0.5 * (lower + upper)
+    half = np.maximum(0.5 * (upper - lower) + 0.03 * reach, [0.16 * reach, 0.10 * reach, 0.0])
+    low, high = centre - half, centre + half
+    low[2], high[2] = lower[2] - 0.016 * reach, lower[2]
+    return solids.trace([solids.box(low, high, T_MW)], p.link, "table", opacity=0.28, flatshading=True)
+
+
+def _sized(vector: FloatArray, length: float) -> FloatArray:
+    size = float(np.linalg.norm(vector))
+    return np.asarray(vector, dtype=float) * (length / size if size > 0 else 0.0)
+
+
+def _word(at: FloatArray, text: str, colour: str) -> go.Scatter3d:
+    return go.Scatter3d(
+        x=[at[0]], y=[at[1]], z=[at[2]], mode="text", text=[text], textfont={"color": rgba(colour, 1.0), "size": 13},
+        hoverinfo="skip", showlegend=False,
+    )  # fmt: skip

@@ -1,0 +1,188 @@
+"""Figures along the path: deviation as components, shares by joint, the path seen from above coloured by a quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.viz.theme import (
+    SEQUENTIAL,
+    axis,
+    axis_colours,
+    colour_bar,
+    figure,
+    joint_colours,
+    palette,
+    rgba,
+)
+
+MAX_POINTS = 6000
+
+
+def thin(count: int, keep: Sequence[int] = ()) -> IntArray:
+    """Indices of at most about ``MAX_POINTS`` of ``count`` samples; ``keep`` are always among them."""
+    if count <= MAX_POINTS:
+        return np.arange(count)
+    chosen = np.linspace(0, count - 1, MAX_POINTS).astype(np.int64)
+    return np.unique(np.concatenate([chosen, np.asarray(keep, dtype=np.int64)]))
+
+
+def components_figure(
+    s: FloatArray,
+    delta: FloatArray,
+    block: IntArray,
+    tolerance: float,
+    unit: str,
+    *,
+    dark: bool,
+    height: int = 300,
+    station: float | None = None,
+) -> go.Figure:
+    """Deviation (m, 3) and its size against the length cut s (m,); everything already in ``unit`` (s in mm or in)."""
+    p = palette(dark)
+    length = "in" if unit == "in" else "mm"
+    i = thin(len(s), [int(np.nanargmax(np.nan_to_num(np.linalg.norm(delta, axis=1))))])
+    fig = figure(dark=dark, height=height, revision="components", hovermode="x unified",
+                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    size = np.linalg.norm(delta, axis=1)
+    fig.add_scatter(
+        x=s[i], y=size[i], name="size", mode="lines", line={"color": p.text, "width": 2.4},
+        hovertemplate="%{y:.4f} " + unit, fill="tozeroy", fillcolor=rgba(p.text, 0.05),
+    )  # fmt: skip
+    for column, (name, colour) in enumerate(axis_colours(dark).items()):
+        fig.add_scatter(
+            x=s[i], y=delta[i, column], name=f"δ<sub>{name.upper()}</sub>", mode="lines",
+            line={"color": colour, "width": 2, "dash": ("dot", "solid", "dash")[column]},
+            hovertemplate="%{y:+.4f} " + unit, customdata=block[i],
+        )  # fmt: skip
+    for side in (1, -1) if np.nanmin(delta, initial=0.0) < -0.6 * tolerance else (1,):
+        fig.add_hline(y=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
+    fig.add_annotation(
+        x=1, xref="paper", y=tolerance, yshift=9, xanchor="right", text=f"tolerance {tolerance:g} {unit}",
+        showarrow=False, font={"size": 12, "color": p.bad},
+    )  # fmt: skip
+    fig.add_hline(y=0, line={"color": p.line, "width": 1})
+    _mark_station(fig, station, dark)
+    fig.update_layout(
+        xaxis=axis(f"Length cut, {length}", dark=dark), yaxis=axis(f"Deviation in {{M}}, {unit}", dark=dark)
+    )
+    return fig
+
+
+def shares_figure(
+    s: FloatArray,
+    shares: FloatArray,
+    names: Sequence[str],
+    total: FloatArray,
+    component: str,
+    unit: str,
+    *,
+    dark: bool,
+    height: int = 300,
+    station: float | None = None,
+) -> go.Figure:
+    """Joint shares (m, n) of one component, stacked: what pushes the tip up above zero, what pulls it back below."""
+    p = palette(dark)
+    length = "in" if unit == "in" else "mm"
+    i = thin(len(s))
+    fig = figure(dark=dark, height=height, revision=f"shares-{component}", hovermode="x unified",
+                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    colours = joint_colours(7, dark)
+    for j, name in enumerate(names):
+        colour = colours[j % 7]
+        for sign in (1, -1):
+            part = np.where(np.sign(np.nan_to_num(shares[i, j])) == sign, shares[i, j], 0.0)
+            if not np.any(part):
+                continue
+            fig.add_scatter(
+                x=s[i], y=part, name=name, stackgroup="up" if sign > 0 else "down", mode="lines",
+                line={"width": 0.6, "color": colour}, fillcolor=rgba(colour, 0.78), legendgroup=name,
+                hovertemplate="%{y:+.4f} " + unit,
+            )  # fmt: skip
+    fig.add_scatter(
+        x=s[i], y=total[i], name="total", mode="lines", line={"color": p.text, "width": 2.2},
+        hovertemplate="%{y:+.4f} " + unit,
+    )  # fmt: skip
+    fig.add_hline(y=0, line={"color": p.line, "width": 1})
+    _mark_station(fig, station, dark)
+    fig.update_layout(
+        xaxis=axis(f"Length cut, {length}", dark=dark),
+        yaxis=axis(f"Share of δ<sub>{component.upper()}</sub>, {unit}", dark=dark),
+    )
+    return fig
+
+
+def plan_figure(
+    points: FloatArray,
+    cutting: BoolArray,
+    reached: BoolArray,
+    value: FloatArray,
+    title: str,
+    unit: str,
+    block: IntArray,
+    *,
+    dark: bool,
+    limit: float | None = None,
+    length_unit: str = "mm",
+    height: int = 420,
+    stock: tuple[FloatArray, FloatArray] | None = None,
+    revision: str = "plan",
+) -> go.Figure:
+    """The path from above in {W}, in mm or in: rapids dotted, cuts coloured by ``value``, what is out of reach grey."""
+    p = palette(dark)
+    i = thin(len(points))
+    x, y = points[i, 0], points[i, 1]
+    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 34, "b": 8})
+    if stock is not None:
+        (x0, y0), (x1, y1) = stock[0][:2], stock[1][:2]
+        fig.add_scatter(
+            x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", fill="toself",
+            fillcolor=rgba(p.metal, 0.28), line={"color": p.line, "width": 1}, hoverinfo="skip",
+        )  # fmt: skip
+    rapid = ~cutting[i]
+    rapid_y = np.where(rapid | np.append(rapid[1:], False), y, np.nan)
+    fig.add_scatter(
+        x=x, y=rapid_y, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip"
+    )
+    fig.add_scatter(
+        x=x, y=np.where(cutting[i] | np.append(cutting[i][1:], False), y, np.nan), mode="lines", name="cut",
+        line={"color": rgba(p.text, 0.25), "width": 5}, hoverinfo="skip", showlegend=False,
+    )  # fmt: skip
+    good = cutting[i] & reached[i] & np.isfinite(value[i])
+    top = float(np.max(value[i][good])) if good.any() else 1.0
+    text = [f"line {b}" for b in block[i][good]]
+    fig.add_scatter(
+        x=x[good], y=y[good], mode="markers", name=title, text=text, showlegend=False,
+        marker={
+            "size": 6, "color": value[i][good], "colorscale": SEQUENTIAL, "cmin": 0, "cmax": limit or top,
+            "colorbar": colour_bar(f"{title}, {unit}" if unit else title, dark=dark),
+        },
+        hovertemplate="%{text}<br>x %{x:.2f}, y %{y:.2f}<br>" + title + " %{marker.color:.4f} " + unit + "<extra></extra>",
+        customdata=block[i][good],
+    )  # fmt: skip
+    lost = cutting[i] & ~reached[i]
+    if lost.any():
+        fig.add_scatter(
+            x=x[lost], y=y[lost], mode="markers", name=f"out of reach ({int((cutting & ~reached).sum())} points)",
+            marker={"size": 7, "symbol": "x-thin", "line": {"width": 1.6, "color": p.bad}},
+            text=[f"line {b}" for b in block[i][lost]], hovertemplate="%{text}: out of reach<extra></extra>",
+        )  # fmt: skip
+    fig.update_layout(
+        xaxis=axis(f"x<sub>W</sub>, {length_unit}", dark=dark),
+        yaxis=axis(f"y<sub>W</sub>, {length_unit}", dark=dark, scaleanchor="x", scaleratio=1),
+    )
+    return fig
+
+
+def _mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:
+    if station is not None:
+        style: dict[str, Any] = {"color": palette(dark).accent, "width": 1.6}
+        fig.add_vline(x=station, line=style)
+        fig.add_annotation(
+            x=station, y=1, yref="paper", yshift=8, text="station", showarrow=False,
+            font={"size": 12, "color": palette(dark).accent},
+        )  # fmt: skip

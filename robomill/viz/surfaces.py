@@ -1,0 +1,56 @@
+"""The machined surface as a turnable figure, coloured by its signed error."""
+
+from __future__ import annotations
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import FloatArray
+from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
+
+MAX_CELLS = 60_000
+
+
+def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArray, ...]:
+    """Every k-th cell, so that at most ``MAX_CELLS`` are sent to the screen; the result itself stays whole."""
+    step = max(1, int(np.ceil(np.sqrt(len(x) * len(y) / MAX_CELLS))))
+    return (x[::step], y[::step], *[f[::step, ::step] for f in fields])
+
+
+def surface_figure(
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    error_um: FloatArray,
+    limit_um: float,
+    *,
+    dark: bool,
+    height: int = 460,
+    revision: str = "surface",
+    unit: str = "mm",
+) -> go.Figure:
+    """Heights z (nx, ny) over x, y in ``unit``, coloured by error_um (NaN: untouched); turn it with the mouse."""
+    x, y, z, error_um = thinned(x, y, z, error_um)
+    p = palette(dark)
+    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    colour = np.nan_to_num(error_um.T).astype(np.float32)
+    fig.add_surface(
+        x=x.astype(np.float32), y=y.astype(np.float32), z=z.T.astype(np.float32), surfacecolor=colour,
+        cmin=-limit_um, cmax=limit_um, colorscale=DIVERGING,
+        lighting={"ambient": 0.62, "diffuse": 0.5, "specular": 0.08, "roughness": 0.8, "fresnel": 0.05},
+        lightposition={"x": -400, "y": -800, "z": 1500}, contours={a: {"highlight": False} for a in "xyz"},
+        colorbar=colour_bar("Error, µm (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
+        customdata=colour, name="machined",
+        hovertemplate="x %{x:.2f}, y %{y:.2f}, z %{z:.3f} " + unit + "<br>error %{customdata:+.0f} µm<extra></extra>",
+    )  # fmt: skip
+    height_span = max(float(np.nanmax(z) - np.nanmin(z)), 1e-9)
+    span = max(float(np.ptp(x)), float(np.ptp(y)))
+    stretch = min(max(0.10 * span / height_span, 1.0), 4.0)
+    fig.update_layout(scene={
+        "xaxis": axis3d(f"x<sub>W</sub>, {unit}", dark=dark), "yaxis": axis3d(f"y<sub>W</sub>, {unit}", dark=dark),
+        "zaxis": axis3d(f"z<sub>W</sub>, {unit}", dark=dark, nticks=3), "uirevision": revision, "dragmode": "turntable",
+        "aspectmode": "manual",
+        "aspectratio": {"x": 1.7 * np.ptp(x) / span, "y": 1.7 * np.ptp(y) / span, "z": 1.7 * stretch * height_span / span},
+        "camera": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "projection": {"type": "orthographic"}},
+    }, font={"color": p.text})  # fmt: skip
+    return fig

@@ -1,0 +1,138 @@
+"""Colours and layout shared by every picture, one set for light and one for dark.
+
+All figures take ``dark: bool``; none asks the screen. Joints keep one colour everywhere (Okabe and Ito), signed
+errors are blue (below the ideal, gouge) to orange (material left), sizes run through cividis: each is
+readable with any colour vision, and words stand beside the colours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import plotly.graph_objects as go
+
+FONT = '"Source Sans", "Source Sans 3", "Source Sans Pro", sans-serif'
+
+JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#8C7A00")
+JOINT_COLOURS_DARK = ("#4BA3DB", "#F0B73E", "#33BE95", "#DD98BE", "#F0803C", "#86CDF3", "#C9B437")
+
+AXIS_COLOURS = {"x": "#D55E00", "y": "#009E73", "z": "#0072B2"}
+AXIS_COLOURS_DARK = {"x": "#F0803C", "y": "#33BE95", "z": "#4BA3DB"}
+
+DIVERGING = [[0.0, "#08457E"], [0.25, "#4E93C8"], [0.5, "#ECECE8"], [0.75, "#E8954A"], [1.0, "#A33E00"]]
+DIVERGING_DARK = [[0.0, "#6FC1FF"], [0.25, "#2F7DB5"], [0.5, "#3A444B"], [0.75, "#D07A2C"], [1.0, "#FFB368"]]
+SEQUENTIAL = "Cividis"
+
+
+@dataclass(frozen=True)
+class Palette:
+    """The colours of one theme; hex strings."""
+
+    background: str
+    panel: str
+    text: str
+    muted: str
+    grid: str
+    line: str
+    accent: str
+    warm: str
+    metal: str
+    metal_edge: str
+    link: str
+    joint: str
+    good: str
+    caution: str
+    bad: str
+
+
+LIGHT = Palette(
+    background="#FFFFFF", panel="#F5F7F8", text="#17222B", muted="#5A6872", grid="#E6EAED", line="#B8C2C9",
+    accent="#0B6285", warm="#B85C00", metal="#D3D9DD", metal_edge="#7D8A93", link="#C9D2D8", joint="#3D4E5A",
+    good="#0072B2", caution="#B07400", bad="#B3400A",
+)  # fmt: skip
+DARK = Palette(
+    background="#11181D", panel="#1A242B", text="#E4EAEE", muted="#9BA9B3", grid="#26323A", line="#4A5963",
+    accent="#5CB6DA", warm="#F0A04B", metal="#5B6871", metal_edge="#A9B5BD", link="#6C7B86", joint="#C9D4DB",
+    good="#5CB6DA", caution="#E9B949", bad="#F0803C",
+)  # fmt: skip
+
+
+def palette(dark: bool) -> Palette:
+    """The colours of the theme in force."""
+    return DARK if dark else LIGHT
+
+
+def joint_colours(n: int, dark: bool) -> tuple[str, ...]:
+    """One colour per joint, the same in every figure; n <= 7."""
+    return (JOINT_COLOURS_DARK if dark else JOINT_COLOURS)[:n]
+
+
+def axis_colours(dark: bool) -> dict[str, str]:
+    """Colours of the x, y and z components."""
+    return AXIS_COLOURS_DARK if dark else AXIS_COLOURS
+
+
+def diverging(dark: bool) -> list[list[Any]]:
+    """Colour scale for signed quantities; use it with a range symmetric about zero."""
+    return DIVERGING_DARK if dark else DIVERGING
+
+
+def rgba(colour: str, alpha: float) -> str:
+    """A hex colour with opacity, as plotly reads it."""
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return f"rgba({red},{green},{blue},{alpha:g})"
+
+
+def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) -> go.Figure:
+    """An empty figure in the house style; ``revision`` keeps zoom and camera while it stays the same."""
+    p = palette(dark)
+    base: dict[str, Any] = {
+        "height": height,
+        "uirevision": revision,
+        "template": "none",
+        "font": {"family": FONT, "size": 13, "color": p.text},
+        "paper_bgcolor": "rgba(0,0,0,0)",
+        "plot_bgcolor": "rgba(0,0,0,0)",
+        "margin": {"l": 8, "r": 8, "t": 8, "b": 8},
+        "hoverlabel": {
+            "bgcolor": p.panel, "bordercolor": p.line, "font": {"family": FONT, "size": 13, "color": p.text},
+        },
+        "legend": {
+            "orientation": "h", "x": 0, "xanchor": "left", "y": 1.02, "yanchor": "bottom",
+            "font": {"size": 12.5, "color": p.text}, "bgcolor": "rgba(0,0,0,0)",
+        },
+        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": p.muted, "activecolor": p.accent},
+    }  # fmt: skip
+    base.update(layout)
+    return go.Figure(layout=base)
+
+
+def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
+    """A plane axis with its title (quantity and unit) and quiet grid lines."""
+    p = palette(dark)
+    return {
+        "title": {"text": title, "standoff": 8, "font": {"size": 13, "color": p.muted}},
+        "gridcolor": p.grid, "linecolor": p.line, "showline": True, "zeroline": False, "ticks": "outside",
+        "ticklen": 4, "tickcolor": p.line, "tickfont": {"size": 12, "color": p.muted}, "automargin": True, **more,
+    }  # fmt: skip
+
+
+def axis3d(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
+    """A scene axis with its title (quantity and unit)."""
+    p = palette(dark)
+    return {
+        "title": {"text": title, "font": {"size": 12, "color": p.muted}},
+        "gridcolor": p.grid, "linecolor": p.line, "zeroline": False, "showbackground": False,
+        "tickfont": {"size": 11, "color": p.muted}, "nticks": 5, **more,
+    }  # fmt: skip
+
+
+def colour_bar(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
+    """A slim colour bar with its quantity and unit."""
+    p = palette(dark)
+    return {
+        "title": {"text": title, "side": "right", "font": {"size": 12, "color": p.muted}},
+        "thickness": 10, "outlinewidth": 0, "tickfont": {"size": 11, "color": p.muted}, "ticklen": 3,
+        "tickcolor": p.line, "x": 1.01, "xpad": 4, **more,
+    }  # fmt: skip

@@ -1,0 +1,158 @@
+"""From a result to what the figures need: plain arrays in the frame and unit of the picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.kinematics.forward import joint_frames
+from robomill.simulation.result import SimulationResult
+from robomill.surface.groove import GrooveSection
+from robomill.surface.zmap import ZMap, cut
+from robomill.units import format_si, from_si
+from robomill.viz.arm import ArmScene
+from robomill.viz.scene import Camera, SurfacePicture
+from robomill.viz.sections import SectionDrawing
+
+PICTURE_CELLS = 220_000
+
+
+@dataclass(frozen=True, eq=False)
+class Exaggerated:
+    """The machined surface with the deflection enlarged ``times`` times, beside the ideal one, on a grid for pictures.
+
+    ``error`` (nx, ny) m is the *true* signed error at each cell of the true machined surface, moved to the enlarged
+    picture by enlarging height differences; NaN where nothing was cut.
+    """
+
+    ideal: ZMap
+    drawn: ZMap
+    error: FloatArray
+    times: float
+
+
+def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
+    """Cut again with the tip ``times`` times as far off its path; ``times`` = 1 is the machined surface itself."""
+    setup, path = result.setup, result.path
+    size = setup.stock_block.upper - setup.stock_block.lower
+    cell = max(setup.cell, float(np.sqrt(size[0] * size[1] / PICTURE_CELLS)))
+
+    def at(factor: float) -> ZMap:
+        p = path.p + factor * (result.p_machined - path.p)
+        return cut(setup.stock_block, cell, setup.cutter, p, path.k, result.removes, must_touch=False)
+
+    ideal, drawn = at(0.0), at(times)
+    error = (drawn.z - ideal.z) / (times if times > 0 else 1.0)
+    # Beside a wall the height differs by the whole depth: that is no error of height, the colour just saturates.
+    error = np.where(drawn.cut_mask | ideal.cut_mask, error, np.nan)
+    return Exaggerated(ideal, drawn, error, times)
+
+
+def surface_picture(
+    result: SimulationResult,
+    shown: Exaggerated,
+    *,
+    camera: Camera,
+    dark: bool,
+    station: float | None,
+    size: tuple[int, int] = (1280, 720),
+    words: bool = True,
+) -> SurfacePicture:
+    """What the drawing process needs for the machined surface; ``station`` (m of length cut) marks the section.
+
+    ``words=False`` leaves the captions out, where they stand beside the picture.
+    """
+    setup = result.setup
+    where, along = place(result, station if station is not None else 0.5 * float(result.path.s[-1]))
+    direction = along[:2] / (np.linalg.norm(along[:2]) or 1.0)
+    captions = [
+        f"Displacement shown x {shown.times:g}" if shown.times != 1 else "True displacement",
+        "Thin line: the ideal cut. Parallel projection.",
+    ]
+    return SurfacePicture(
+        x=from_si(shown.drawn.x, "mm"), y=from_si(shown.drawn.y, "mm"), z=from_si(shown.drawn.z, "mm"),
+        ideal=from_si(shown.ideal.z, "mm"), error_um=from_si(shown.error, "um"),
+        limit_um=float(from_si(setup.tolerance, "um")), bottom=float(from_si(setup.stock_block.lower[2], "mm")),
+        camera=camera, dark=dark, size=size, direction=(float(direction[0]), float(direction[1])),
+        station=None if station is None else tuple(from_si(where, "mm").tolist()), captions=tuple(captions) if words else (),
+    )  # fmt: skip
+
+
+def place(result: SimulationResult, station: float) -> tuple[FloatArray, FloatArray]:
+    """Point and unit direction (3,), (3,) in {W} of the commanded path at ``station`` (m of length cut)."""
+    path = result.path
+    i = int(np.clip(np.searchsorted(path.s, station - 1e-12), 1, len(path) - 1))
+    while i < len(path) - 1 and not path.cutting[i]:
+        i += 1
+    step = path.p[i] - path.p[i - 1]
+    length = float(np.linalg.norm(step))
+    share = 1.0 - (float(path.s[i]) - station) / length if length > 0 else 1.0
+    return path.p[i - 1] + np.clip(share, 0.0, 1.0) * step, step / length if length > 0 else np.array([1.0, 0.0, 0.0])
+
+
+def sample_at(result: SimulationResult, station: float) -> int:
+    """Index of the sample nearest to ``station`` (m of length cut) among those judged; the worst one where none is."""
+    judged = np.flatnonzero(result.judged)
+    if len(judged) == 0:
+        return result.worst
+    return int(judged[np.argmin(np.abs(result.path.s[judged] - station))])
+
+
+def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
+    """The arm at sample ``index`` of the run, with part, path, force and displacement."""
+    setup = result.setup
+    R, t = setup.T_MW[:3, :3], setup.T_MW[:3, 3]
+    path = result.path
+    keep = path.cutting | np.append(path.cutting[1:], False)
+    F, delta = result.F[index], result.delta[index]
+    return ArmScene(
+        frames=joint_frames(setup.robot, result.theta[index]), T_MW=setup.T_MW,
+        part=(setup.stock_block.lower, setup.stock_block.upper), path=path.p[keep] @ R.T + t,
+        path_reached=result.reached[keep], force=F if np.isfinite(F).all() else None,
+        displacement=delta if np.isfinite(delta).all() else None,
+        force_label=format_si(float(np.linalg.norm(F)), "N", 0),
+        displacement_label=format_si(float(np.linalg.norm(delta)), "mm", 2),
+        cutter_radius=setup.cutter.radius, **more,
+    )  # fmt: skip
+
+
+def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
+    """A measured section in display units; the drawing shows the groove and a few millimetres beside it."""
+
+    def shown(value: Any) -> Any:
+        return from_si(value, unit)
+
+    walls = np.array([section.wall_left, section.wall_right, section.wall_left_ideal, section.wall_right_ideal])
+    w = section.w
+    if np.isfinite(walls).all():
+        beside = 0.45 * float(np.ptp(walls))
+        w = np.clip(w, walls.min() - beside, walls.max() + beside)
+    keep = w == section.w
+    return SectionDrawing(
+        u=shown(section.w[keep]), machined=shown(section.z_machined[keep]), ideal=shown(section.z_ideal[keep]),
+        wall_left=shown(section.wall_left), wall_right=shown(section.wall_right), width=shown(section.width),
+        depth=shown(section.depth), centre_offset=shown(section.centre_offset),
+        floor_error=shown(section.floor_error), top=shown(section.floor + section.depth), floor=shown(section.floor),
+        unit=unit,
+    )  # fmt: skip
+
+
+def plan_view(result: SimulationResult, quantity: str, unit: str) -> dict[str, Any]:
+    """Arguments of ``plan_figure``: the path from above coloured by "deviation" or by room to the joint "limits"."""
+    path, setup = result.path, result.setup
+    if quantity == "limits":
+        limits = setup.robot.limits
+        room = np.minimum(result.theta - limits[:, 0], limits[:, 1] - result.theta).min(axis=1)
+        value, title, shown_unit, limit = from_si(room, "deg"), "Room to the nearest limit", "°", None
+    else:
+        value, title, shown_unit = from_si(result.deviation, unit), "Deviation", unit
+        limit = float(from_si(setup.tolerance, unit))
+    stock = setup.stock_block
+    return {
+        "points": from_si(path.p, unit), "cutting": path.cutting, "reached": result.reached, "value": value,
+        "title": title, "unit": shown_unit, "block": path.block, "limit": limit, "length_unit": unit,
+        "stock": (from_si(stock.lower, unit), from_si(stock.upper, unit)),
+    }  # fmt: skip

@@ -1,0 +1,114 @@
+"""Pictures of every page, light and dark, wide and narrow: ``python tests/browser/screenshots.py FOLDER [URL] [PAGE ...]``.
+
+Without a URL the app is started for the time it takes. Look at the pictures; nothing here judges them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM = "/usr/bin/chromium"
+ARGUMENTS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+WIDTHS = {"wide": 1440, "narrow": 800}
+TAB_PAGES = {"Robot": ("D-H table", "Limits", "Tool")}
+
+
+def page_paths() -> dict[str, str]:
+    """Name -> path of every page."""
+    names = [p.stem.partition("_")[2] for p in sorted((ROOT / "pages").glob("[0-9]*_*.py"))]
+    return {"Start": "/", **{name: f"/{name}" for name in names}}
+
+
+@contextlib.contextmanager
+def served() -> Iterator[str]:
+    """The app on a free port of this machine."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [
+        sys.executable, "-m", "streamlit", "run", "app.py", "--server.port", str(port), "--server.address", "127.0.0.1",
+        "--server.headless", "true", "--server.fileWatcherType", "none",
+    ]  # fmt: skip
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    url = f"http://127.0.0.1:{port}"
+    try:
+        for _ in range(150):
+            with contextlib.suppress(OSError), urllib.request.urlopen(f"{url}/_stcore/health", timeout=1):
+                break
+            time.sleep(0.2)
+        yield url
+    finally:
+        process.terminate()
+        process.wait(timeout=20)
+
+
+def settle(page: object, timeout_ms: int = 60_000) -> None:
+    """Wait until the script has run and the pictures are drawn."""
+    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=timeout_ms)  # type: ignore[attr-defined]
+    page.wait_for_selector(".rm-tiles, [data-testid='stAlert']", timeout=timeout_ms)  # type: ignore[attr-defined]
+    page.wait_for_timeout(1800)  # type: ignore[attr-defined]
+
+
+def take(folder: Path, url: str, wanted: list[str]) -> None:
+    """Save ``<page>-<theme>-<width>.png`` of the whole page."""
+    from playwright.sync_api import sync_playwright
+
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {k: v for k, v in page_paths().items() if not wanted or k.lower() in wanted}
+    with sync_playwright() as playwright:
+        for theme in ("light", "dark"):
+            for size, width in WIDTHS.items():
+                with tempfile.TemporaryDirectory() as home:
+                    context = playwright.chromium.launch_persistent_context(
+                        home, executable_path=CHROMIUM, args=ARGUMENTS, color_scheme=theme,
+                        viewport={"width": width, "height": 1000},
+                    )  # fmt: skip
+                    page = context.new_page()
+                    for name, path in pages.items():
+                        page.goto(url + path)
+                        settle(page)
+                        _whole(page, width)
+                        page.screenshot(path=folder / f"{name}-{theme}-{size}.png")
+                        if size == "wide":
+                            for tab in TAB_PAGES.get(name, ()):
+                                page.get_by_role("tab", name=tab).click()
+                                page.wait_for_timeout(1200)
+                                page.screenshot(path=folder / f"{name}-{theme}-{tab.split()[0]}.png")
+                    context.close()
+
+
+def _whole(page: object, width: int) -> None:
+    """Make the window as tall as the page, so that one picture holds all of it."""
+    height = page.evaluate("document.querySelector('[data-testid=\"stMain\"]').scrollHeight")  # type: ignore[attr-defined]
+    page.set_viewport_size({"width": width, "height": min(max(int(height) + 20, 700), 2600)})  # type: ignore[attr-defined]
+    page.wait_for_timeout(900)  # type: ignore[attr-defined]
+
+
+def main() -> None:
+    """Command line."""
+    if len(sys.argv) < 2:
+        raise SystemExit(__doc__)
+    folder, rest = Path(sys.argv[1]), sys.argv[2:]
+    wanted = [name.lower() for name in rest if not name.startswith("http")]
+    urls = [name for name in rest if name.startswith("http")]
+    if urls:
+        take(folder, urls[0].rstrip("/"), wanted)
+        return
+    with served() as url:
+        take(folder, url, wanted)
+
+
+if __name__ == "__main__":
+    main()
