@@ -76,6 +76,7 @@ class Interpreter:
         self.percent = False
         self.ended = False
         self.others: dict[str, File] = {}
+        self.broke = self.continued = False
 
     def run(self, fast: Any = None) -> None:
         """Execute until the program ends. ``fast`` may take over stretches of plain lines."""
@@ -286,10 +287,15 @@ class Interpreter:
         holds = self._condition(entry, argument) != 0.0
         assert entry.node is not None
         if entry.node.kind == "do":
-            if holds:
+            if holds and not self.broke:
                 self.pc = entry.node.start + 1
+                return
+            if holds:
+                self._left_over(index, entry, "break in an earlier while")
+            self.broke = False
         elif not holds:
             self.pc = self._end_of(entry, argument) + 1
+            self.continued = False
 
     def _do_endwhile(self, entry: flow.OLine, argument: Reader, index: int) -> None:
         assert entry.node is not None
@@ -305,6 +311,9 @@ class Interpreter:
         if counters[index] <= 0:
             del counters[index]
             self.pc = self._end_of(entry, argument) + 1
+            if self.continued:
+                self._left_over(index, entry, "continue in an earlier do")
+                self.pc, self.continued = index, False
         else:
             counters[index] -= 1
 
@@ -317,10 +326,22 @@ class Interpreter:
         end = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
         self.frames[-1].counters.pop(entry.node.start, None)
         self.pc = end + 1
+        if entry.node.kind == "while":
+            self.broke = True
+            if self.continued:
+                self._left_over(index, entry, "continue in an earlier do")
+                self.pc, self.continued = entry.node.start, False
 
     def _do_continue(self, entry: flow.OLine, argument: Reader, index: int) -> None:
         assert entry.node is not None
         self.pc = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
+        self.continued = entry.node.kind == "do"
+
+    def _left_over(self, index: int, entry: flow.OLine, cause: str) -> None:
+        """LinuxCNC keeps one flag each for break and continue; the reference's quirk is followed and said."""
+        self.machine.findings.add(
+            "warning", index + 1, f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop"
+        )
 
     # --- subroutines
     def _call(self, label: str, argument: Reader, index: int) -> None:
