@@ -172,7 +172,7 @@ def row_interval(move: Move, R: float, x: FloatArray) -> tuple[FloatArray, Float
 
 
 def covered_share(d: FloatArray, nx: FloatArray, ny: FloatArray, dx: float, dy: float) -> FloatArray:
-    """Share of a dx x dy cell on the inner side of a straight edge; d: how far its centre lies inside, n: unit normal."""
+    """Share of a dx x dy cell inside a straight edge: d, how far its centre lies inside; n, the edge's unit normal."""
     a, b = np.abs(nx) * dx, np.abs(ny) * dy
     a, b = np.maximum(a, b), np.minimum(a, b)
     p = np.clip(d + 0.5 * (a + b), 0.0, a + b)

@@ -120,7 +120,7 @@ def cut(
     ends, axes, skipped = feed_moves(p, k, cutting)
     shape = cutter_shape(cutter)
     module = kernels(engine, len(ends))
-    x, y = grid.x0 + np.arange(nx) * dx, grid.y0 + np.arange(ny) * dy
+    x, y = frozen(grid.x0 + np.arange(nx) * dx), frozen(grid.y0 + np.arange(ny) * dy)
     z_stock = stock_heights(stock, x, y)
     z = np.empty((nx, ny))
     z[...] = z_stock
@@ -140,7 +140,7 @@ def cut(
         np.maximum(z, bottom, out=z)
     edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)))
     z.flags.writeable = False
-    result = ZMap(frozen(x), frozen(y), cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
+    result = ZMap(x, y, cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
     if must_touch and result.removed_volume <= 0.0:
         raise SurfaceError(_misses(stock, ends))
     return result

@@ -108,7 +108,7 @@ def test_a_path_that_misses_the_stock_says_where_both_are():
         cut(STOCK, 5e-4, FLAT, above)
     assert cut(STOCK, 5e-4, FLAT, above, must_touch=False).removed_volume == 0.0
     with pytest.raises(SurfaceError, match="never touches"):
-        cut(STOCK, 5e-4, FLAT, above + [1.0, 0.0, -0.01])
+        cut(STOCK, 5e-4, FLAT, above + np.array([1.0, 0.0, -0.01]))
 
 
 def test_too_many_cells_are_refused_with_the_size_that_fits():

@@ -5,8 +5,9 @@ import pytest
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
-from robomill.surface.groove import feed_length, groove_section, groove_sections
+from robomill.surface.groove import groove_section, groove_sections
 from robomill.surface.stock import Stock
+from robomill.surface.swept import feed_length
 
 FLAT = Cutter("flat", 0.008, flutes=3)
 DELTA = np.array([0.0, 0.2295e-3, -0.1024e-3])  # the paper's slot with Table 2, in feed, feed-normal, axial
@@ -18,7 +19,7 @@ def slot(angle_deg, step=1e-3):
     left = np.array([-feed[1], feed[0], 0.0])
     p = np.arange(-0.05, 0.05 + 0.5 * step, step)[:, None] * feed
     cutting = np.arange(len(p)) > 0
-    stock = Stock(p.min(axis=0) - [0.012, 0.012, 0.008], p.max(axis=0) + [0.012, 0.012, 0.002])
+    stock = Stock(p.min(axis=0) - [0.012, 0.012, 0.008], p.max(axis=0) + np.array([0.012, 0.012, 0.002]))
     return stock, p, cutting, np.stack([feed, left, [0.0, 0.0, 1.0]], axis=1)
 
 
@@ -82,7 +83,7 @@ def test_merged_passes_share_one_groove():
     p = np.array([[0, 0, -0.002], [0.05, 0, -0.002], [0.05, 0.006, -0.002], [0, 0.006, -0.002]])
     stock = Stock((-0.01, -0.01, -0.01), (0.06, 0.02, 0.0))
     cutting = np.array([False, True, True, True])
-    section = groove_section(stock, FLAT, p, p + [0, 1e-4, 0], cutting, [1, 2, 3, 4], 0.025)
+    section = groove_section(stock, FLAT, p, p + np.array([0, 1e-4, 0]), cutting, [1, 2, 3, 4], 0.025)
     assert (section.wall_left, section.wall_right) == pytest.approx((0.0101, -0.0039), abs=1e-9)
     assert section.centre_offset == pytest.approx(1e-4, abs=1e-9)
     assert section.block == 2
@@ -91,7 +92,7 @@ def test_merged_passes_share_one_groove():
 def test_side_cut_has_one_wall():
     p = np.array([[0, 0, -0.002], [0.05, 0, -0.002]])
     stock = Stock((-0.01, -0.03, -0.01), (0.06, 0.001, 0.0))
-    section = groove_section(stock, FLAT, p, p + [0, 1e-4, -2e-5], [False, True], None, 0.025)
+    section = groove_section(stock, FLAT, p, p + np.array([0, 1e-4, -2e-5]), [False, True], None, 0.025)
     assert section.open_left
     assert np.isnan(section.wall_left)
     assert np.isnan(section.centre_offset)
@@ -104,7 +105,7 @@ def test_what_cannot_be_measured_says_why():
     p = np.array([[0, 0, 0.005], [0, 0, -0.002], [0.05, 0, -0.002], [0.2, 0, -0.002]])
     stock = Stock((-0.01, -0.02, -0.01), (0.1, 0.02, 0.0))
     cutting = [False, True, True, True]
-    moved = p + [0, 1e-4, 0]
+    moved = p + np.array([0, 1e-4, 0])
     plunge, slot_, outside = groove_sections(stock, FLAT, p, moved, cutting, None, [0.003, 0.03, 0.2])
     assert "along the tool axis" in plunge.note
     assert np.isnan(plunge.width)

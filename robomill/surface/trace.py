@@ -1,0 +1,88 @@
+"""Following one groove in a section plane: where its walls stand, how they lean, how its floor lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.surface.swept import Heights
+
+WALL_LEVELS = 9
+FLOOR_POINTS = 21
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One groove in a section plane: wall positions and angles, floor, and its height function."""
+
+    left: float
+    right: float
+    left_angle: float
+    right_angle: float
+    left_straightness: float
+    right_straightness: float
+    floor: float
+    floor_tilt: float
+    top: float
+    height: Heights
+
+
+def trace_groove(height: Heights, middle: float, low: float, high: float, radius: float, top: float) -> Trace | None:
+    """Follow the cut region from the tool axis at ``middle`` to the first material on either side.
+
+    Walls are NaN where the region runs out of the stock (low, high). None if nothing is cut at the tool axis.
+    """
+    floor = float(height(np.array([middle]))[0])
+    if not floor < top - 1e-12:
+        return None
+    levels = top - (top - floor) * np.concatenate([[1e-9], np.linspace(0.02, 0.6, WALL_LEVELS)])
+    walls = {side: _wall(height, middle, end, levels, radius) for side, end in ((1, high), (-1, low))}
+    left, left_angle, left_bow = _wall_form(walls[1], levels, 1)
+    right, right_angle, right_bow = _wall_form(walls[-1], levels, -1)
+    inner = [0.5 * ((limit if np.isnan(edge) else edge) - middle) for edge, limit in ((right, low), (left, high))]
+    across = np.linspace(max(inner[0], -0.5 * radius), min(inner[1], 0.5 * radius), FLOOR_POINTS)
+    slope = float(np.polyfit(across, height(middle + across) - floor, 1)[0])
+    return Trace(left, right, left_angle, right_angle, left_bow, right_bow, floor, slope, top, height)
+
+
+def _wall(height: Heights, middle: float, end: float, levels: FloatArray, radius: float) -> FloatArray:
+    """Position w of the first material above each level, from ``middle`` towards ``end``; NaN if there is none.
+
+    Found on a fine line of points, then by bisection; material narrower than a fiftieth of the radius may be missed.
+    """
+    side = 1.0 if end > middle else -1.0
+    reach, step = abs(end - middle), radius / 50
+    start, found = 0.0, np.full((len(levels), 2), np.nan)
+    while start < reach and np.isnan(found[:, 0]).any():
+        ahead = np.minimum(start + step * np.arange(151), reach)
+        z = height(middle + side * ahead)
+        for n in np.flatnonzero(np.isnan(found[:, 0])):
+            hits = np.flatnonzero(z[1:] >= levels[n])
+            if len(hits):
+                found[n] = ahead[hits[0]], ahead[hits[0] + 1]
+        start = float(ahead[-1])
+    a, b = found[:, 0], found[:, 1]
+    known = np.isfinite(a)
+    if not known.any():
+        return a
+    a, b, level = a[known], b[known], levels[known]
+    for _ in range(36):
+        c = 0.5 * (a + b)
+        solid = height(middle + side * c) >= level
+        a, b = np.where(solid, a, c), np.where(solid, c, b)
+    result = np.full(len(levels), np.nan)
+    result[known] = middle + side * 0.5 * (a + b)
+    return result
+
+
+def _wall_form(wall: FloatArray, levels: FloatArray, side: int) -> tuple[float, float, float]:
+    """Position at the top, angle and straightness of a wall from its positions at the levels."""
+    known = np.isfinite(wall[1:])
+    if np.isnan(wall[0]) or known.sum() < 3:
+        return float(wall[0]), float("nan"), float("nan")
+    z, w = levels[1:][known], wall[1:][known]
+    slope, offset = np.polyfit(z, w, 1)
+    off_line = (w - (slope * z + offset)) / np.sqrt(1 + slope * slope)
+    return float(wall[0]), float(np.pi / 2 + np.arctan(side * slope)), float(np.ptp(off_line))
