@@ -77,13 +77,20 @@ def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
     }
 
 
-def groove_record(section: GrooveSection) -> dict[str, Any]:
+def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str, Any]:
+    """A section's dimensions, and the deviation and force at the path's sample nearest to it."""
+    i = result.sample_at(section.station)
     return {
         "station_mm": float(from_si(section.station, "mm")),
         "width_mm": float(from_si(section.width, "mm")),
         "depth_mm": float(from_si(section.depth, "mm")),
         "centre_offset_mm": float(from_si(section.centre_offset, "mm")),
         "floor_error_mm": float(from_si(section.floor_error, "mm")),
+        "block": section.block,
+        "deviation_mm": shown(result.delta[i], "mm"),
+        "force_N": shown(result.F[i], "N"),
+        "force_share_mm": {name: shown(result.delta_component[i, c], "mm") for c, name in enumerate(COMPONENTS)},
+        "note": section.note,
     }
 
 
@@ -110,6 +117,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "force_share_mm": {
             name: shown(result.delta_component[i, c] if i >= 0 else nan3, "mm") for c, name in enumerate(COMPONENTS)
         },
+        **_uncertain(result, i),
         "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {
@@ -118,13 +126,34 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
             "unreached_blocks": missed,
             "reason": _first_reason(result),
         },
-        "groove": [groove_record(section) for section in result.sections],
+        "groove": [groove_record(result, section) for section in result.sections],
         "verdict": verdict.level,
         "verdict_sentence": verdict.sentence,
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
         "notes": list(result.notes),
         "findings": [finding_record(f) for f in result.setup.toolpath.findings],
         "digest": result.setup.digest(),
+    }
+
+
+def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
+    """Peak of a revolution and the range of the alloy's coefficient sets, where the force comes from a material."""
+    peak, spread = result.peak_force, result.alloy_spread
+    if peak is None or spread is None or i < 0:
+        return {}
+    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
+    return {
+        "force_peak_N": {"low": shown(peak.low[i], "N"), "high": shown(peak.high[i], "N"), "frame": list(COMPONENTS)},
+        "alloy_spread": [
+            {
+                "material": title,
+                "max_deviation_mm": float(from_si(float(value), "mm")),
+                "force_N": shown(F[i], "N"),
+                "deviation_mm": shown(delta[i], "mm"),
+                "axial_known": known,
+            }
+            for title, known, value, F, delta in zip(spread.titles, spread.axial, largest, spread.F, spread.delta)
+        ],
     }
 
 

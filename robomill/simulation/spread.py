@@ -1,0 +1,57 @@
+"""How far the answer moves with what is not known for sure: the alloy's other coefficients, the peak of a turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.cutting.milling import ForceSpread, ProcessForce
+
+if TYPE_CHECKING:
+    from robomill.simulation.result import SimulationResult
+
+
+@dataclass(frozen=True, eq=False)
+class AlloySpread:
+    """The same run with every coefficient row of the alloy, the one in force first.
+
+    titles (r,) of the rows; F (r, m, 3) N and delta (r, m, 3) m in {M}; axial (r,) whether a row knows the
+    axial force.
+    """
+
+    titles: tuple[str, ...]
+    axial: tuple[bool, ...]
+    F: FloatArray
+    delta: FloatArray
+
+    @property
+    def deviation(self) -> FloatArray:
+        """(r, m) m: size of the path deviation."""
+        return np.asarray(np.linalg.norm(self.delta, axis=-1))
+
+
+def alloy_spread(result: SimulationResult) -> AlloySpread | None:
+    """The run's one-pass deflection for each row of the alloy; None where the force is not computed from a material.
+
+    The part of delta that the force does not cause (sag) stays; coupling is not iterated anew.
+    """
+    force = result.setup.force
+    if not isinstance(force, ProcessForce):
+        return None
+    rows = force.by_material(result.conditions)
+    at_feed = result.conditions.cutting[:, None]
+    C = result.C_joint.sum(axis=-3) + result.C_spring.sum(axis=-3)
+    F = np.stack([np.where(at_feed, np.einsum("mij,mj->mi", result.R_MF, f), 0.0) for _, f in rows])
+    rest = result.delta - np.einsum("mij,mj->mi", C, result.F)
+    delta = np.einsum("mij,rmj->rmi", C, F) + rest
+    titles = tuple(material.title for material, _ in rows)
+    return AlloySpread(titles, tuple(m.Kac is not None or m.axial_ratio is not None for m, _ in rows), F, delta)
+
+
+def peak_force(result: SimulationResult) -> ForceSpread | None:
+    """Extremes of the force over a revolution, feed frame, (m, 3) N; None where only a mean is known."""
+    force = result.setup.force
+    return force.peak(result.conditions) if isinstance(force, ProcessForce) else None
