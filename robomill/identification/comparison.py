@@ -18,6 +18,8 @@ from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 
+OVERFIT = 1.3  # cross-validated over in-sample error from which a model is said to over-fit
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -48,7 +50,7 @@ class Comparison:
                 remark.append("predicts best")
             if result is self.simplest_good:
                 remark.append("simplest that predicts as well")
-            if result.cv_relative_error > 1.5 * inside:
+            if result.cv_relative_error > OVERFIT * inside:
                 remark.append("over-fits: far better on its own data than on poses left out")
             if result.active_bounds:
                 remark.append(f"held at zero: {', '.join(result.active_bounds)}")
@@ -67,8 +69,8 @@ class Comparison:
     def absorbed(self) -> str:
         """What joint-only values mean when a richer model predicts better; empty when they stand as they are."""
         joints = next((r for r in self.results if r.model == "joints"), None)
-        richer = self.best
-        if joints is None or richer.model in ("joints", "constant") or self.simplest_good.model == "joints":
+        richer = self.simplest_good
+        if joints is None or richer.model in ("joints", "constant"):
             return ""
         with np.errstate(invalid="ignore", divide="ignore"):
             grown = joints.C_theta / richer.C_theta - 1.0

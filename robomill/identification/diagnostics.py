@@ -111,8 +111,8 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
     half = half_share(fit, k)
     if half >= 1.0 and alike >= ALIKE:
         return (
-            f"{name} cannot be told from {other}: at these poses both move the tool alike (correlation {table[j]:+.2f}), "
-            f"so only a mix of the two is known; measure where they move it differently."
+            f"{name} cannot be told from {other}: at these poses both move the tool alike (correlation "
+            f"{table[j]:+.2f}), so only a mix of the two is known; measure where they move it differently."
         )
     known = f"is known to ±{format_si(half, '%', 0)}" if half < 1.0 else "cannot be told from a rigid one"
     text = f"{name} {known}: it makes {part} of the measured displacement"
@@ -138,8 +138,9 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
         text = f"{label.capitalize()} turns about the same line as {other} at these poses: one spring, counted there."
         found.append(Finding("info", 0, text))
     if len(fit.null):
-        names = _listed(tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k]))
-        text = f"These poses do not tell {names} apart or do not move them; predictions near the poses still hold."
+        labels = tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k])
+        what = f"tell {_listed(labels)} apart" if len(labels) > 1 else f"make {labels[0]} yield, so it stays unknown"
+        text = f"These poses do not {what}; predictions near the measured poses still hold."
         found.append(Finding("warning", 0, text))
     elif fit.condition[1] > CONDITION_WARNING:
         text = (

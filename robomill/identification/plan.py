@@ -129,14 +129,15 @@ def next_best(
     if not (np.isfinite(sigma) and sigma > 0):
         raise LoadTestError("Plan: the noise is not known (no residuals to judge by); state it in mm.")
     system = build_system(robot, tests.without(result.excluded), result.choice)
-    scale = np.linalg.norm(system.A, axis=0)
+    D = result.choice.tip_regressor(robot, candidates.theta, candidates.F)
+    scale = np.sqrt((system.A**2).sum(axis=0) + (D**2).mean(axis=(0, 1)))  # above zero wherever either sees anything
     scale[scale == 0] = max(float(scale.max()), 1e-300)
     relative = system.noise / np.median(system.noise)
     A = system.A / scale / (sigma * relative)[:, None]
     M = A.T @ A
     prior = PRIOR * float(np.trace(M)) * np.eye(len(M))
     P = np.linalg.inv(M + prior)
-    blocks = result.choice.tip_regressor(robot, candidates.theta, candidates.F) / scale / sigma
+    blocks = D / scale / sigma
     live = np.array([parameter.label not in result.lumped for parameter in system.parameters])
     blocks = blocks * live
     weight, words = _goal(robot, result, goal, scale)

@@ -49,9 +49,10 @@ class IdentificationResult:
     ci95 (n, 2), cut at zero; correlation and covariance (p, p) of the parameters, NaN where not seen;
     parameters (p,) with which predictions are made; condition before and after column scaling;
     residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints);
-    explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise: standard deviation of one measured
-    number, m (rad), as the residuals say; cv_relative_error: mean over poses of |predicted - measured| / |measured|,
-    each pose predicted without itself: the headline; cv_by_pose and in_sample_by_pose (poses,), the latter flatters.
+    explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise:
+    standard deviation of one measured number, m (rad), as the residuals say; cv_relative_error: mean over poses of
+    |predicted - measured| / |measured|, each pose predicted without itself: the headline; cv_by_pose and
+    in_sample_by_pose (poses,), of which the latter flatters.
     outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
     exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
     """

@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtri, stdtrit
 
 from robomill.arrays import FloatArray, as_floats, frozen
-from robomill.compliance.cartesian import cartesian_compliance
 from robomill.errors import RobomillError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
+from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
@@ -178,13 +178,14 @@ def monte_carlo(
     push = np.zeros((draws, 3)) if sources.F is None else _normal(rng, sources.F, draws)
     lengths = np.zeros(2 * robot.rows) if sources.lengths is None else np.asarray(sources.lengths)
     drawn = np.empty((draws, *np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3))
+    J_v = geometric_jacobian(robot, theta)[..., :3, :]
     for k in range(draws):
-        change = lengths * rng.standard_normal(2 * robot.rows)
-        arm = robot
-        if change.any():
+        if lengths.any():
+            change = lengths * rng.standard_normal(2 * robot.rows)
             arm = robot.replace(a=robot.a + change[: robot.rows], d=robot.d + change[robot.rows :])
-        C = cartesian_compliance(arm.replace(C_theta=C_theta[k]), theta)
-        drawn[k] = np.einsum("...ij,...j->...i", C, F + push[k])
+            J_v = geometric_jacobian(arm, theta)[..., :3, :]
+        torque = np.einsum("...ij,...i->...j", J_v, F + push[k])
+        drawn[k] = np.einsum("...ij,...j->...i", J_v, C_theta[k] * torque)
     return drawn
 
 

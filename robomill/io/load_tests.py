@@ -31,7 +31,7 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Finding
-from robomill.units import UNITS, to_si
+from robomill.units import UNITS, from_si, to_si
 
 NOMINAL_LOAD = 250.0  # N, the paper's dead weight: residuals of measured compliances are stated for it
 
@@ -96,12 +96,24 @@ def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> Loa
         tests = _displacements(table, name)
     if isinstance(tests, LoadTests) and robot is not None:
         tests = tests.with_joints(robot)
-    return replace(tests, findings=table.findings + tests.findings)
+    return replace(tests, findings=table.findings + tests.findings + _pose_suspicions(table))
 
 
 def read_findings(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
     """Everything worth saying about the tests before a fit: from reading them, and suspicions of sign, unit, copies."""
     return (*tests.findings, *suspicions(tests, robot))
+
+
+def _pose_suspicions(table: _Table) -> tuple[Finding, ...]:
+    """Angles that look like radians under deg, places that look like metres under mm."""
+    found: list[Finding] = []
+    for start, unit, most, other in (("theta", "deg", 6.3, "rad"), ("x", "mm", 10.0, "m"), ("y", "mm", 10.0, "m")):
+        columns = [key for key in table.columns if key.startswith(start) and table.header[key].endswith(f"_{unit}")]
+        largest = max((float(np.abs(from_si(table.columns[key], unit)).max()) for key in columns), default=0.0)
+        if 0.0 < largest < most and not found:
+            text = f"No {table.header[columns[0]]} is larger than {largest:.3g}: are these poses in {other}?"
+            found.append(Finding("suspicious", 0, text))
+    return tuple(found)
 
 
 # ---- the three protocols -------------------------------------------------------------------------------------------
@@ -227,7 +239,9 @@ def _table(text: str) -> _Table:
     separator = next((mark for mark in "\t;" if mark in head), ",")
     names = [cell.strip().strip('"') for cell in head.split(separator)]
     if all(_is_number(cell) for cell in names):
-        raise LoadTestError(f"Row {number}: found numbers, expected a header that names columns and units, e.g. Fx_N.")
+        raise LoadTestError(
+            f"Row {number}: found numbers, expected a header that names columns and units, such as Fx_N."
+        )
     if not body:
         raise LoadTestError(f"Load tests: only a header (row {number}) and no test below it; add one row a test.")
     known, header, findings = _header(names, number)
@@ -324,7 +338,5 @@ def read_measured_map(path_or_text: str | Path, robot: Robot) -> MeasuredField:
     """The paper's second method: a grid of measured compliances (or displacements in three directions) as a map."""
     tests = read_load_tests(path_or_text)
     if isinstance(tests, JointTests):
-        raise LoadTestError(
-            "Measured map: this file has tests of single joints; give compliances Cxx_um_N ... at poses."
-        )
+        raise LoadTestError("Measured map: found tests of single joints; give compliances Cxx_um_N ... at poses.")
     return MeasuredField.from_tests(robot, tests)

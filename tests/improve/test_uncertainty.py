@@ -1,0 +1,149 @@
+"""Propagated bands against Monte Carlo, against the closed form at the milling test, and source by source."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.identification.estimate import identify
+from robomill.identification.models import Model
+from robomill.identification.synthesis import simulated_tests
+from robomill.improve.uncertainty import (
+    Sources,
+    compliance_uncertainty,
+    deflection_uncertainty,
+    length_derivative,
+    monte_carlo,
+    quantile,
+    with_band,
+)
+from robomill.io.samples import samples_dir
+
+ROBOT = rm.load_robot("slavkovic_5r")
+PATH = np.stack([np.linspace(-0.12, 0.12, 5), np.full(5, -1.3), *np.zeros((3, 5))], axis=-1)
+THETA = rm.inverse_kinematics(ROBOT, rm.pose_from_world(PATH)).theta
+F = np.tile([0.0, 100.0, -20.0], (5, 1))
+RESULT = identify(ROBOT, rm.read_load_tests(samples_dir() / "load_tests" / "nine_points.csv"))
+
+
+def close(found, drawn, within):
+    """Within ``within`` of Monte Carlo wherever the band is more than a thousandth of the widest one."""
+    spread = drawn.std(axis=0, ddof=1)
+    big = spread > 1e-3 * spread.max()
+    np.testing.assert_allclose(found[big], spread[big], rtol=within)
+
+
+@pytest.mark.parametrize(
+    "sources",
+    [
+        Sources.relative(ROBOT, compliance=0.1),
+        Sources.relative(ROBOT, force=[5.0, 10.0, 3.0]),
+        Sources.relative(ROBOT, compliance=[0.05, 0.1, 0.02, 0.3, 0.08], force=[5.0, 10.0, 3.0]),
+        Sources.of(RESULT, ROBOT),
+    ],
+    ids=["compliance", "force", "both", "identified"],
+)
+def test_bands_agree_with_monte_carlo(sources):
+    """5 % is the bar; 8000 draws leave 0.8 % of sampling error on a standard deviation."""
+    arm = RESULT.applied_to(ROBOT)
+    found = deflection_uncertainty(arm, THETA, F, sources)
+    close(found.std, monte_carlo(arm, THETA, F, sources, draws=8000, seed=1), 0.05)
+
+
+def test_bands_from_lengths_agree_with_monte_carlo():
+    sources = Sources.relative(ROBOT, compliance=0.08, force=[5.0, 8.0, 3.0], length=5e-3)
+    found = deflection_uncertainty(ROBOT, THETA[:2], F[:2], sources)
+    close(found.std, monte_carlo(ROBOT, THETA[:2], F[:2], sources, draws=3000, seed=2), 0.05)
+
+
+def test_identification_repeated_scatters_as_the_band_says():
+    """The whole chain: measure again and again, identify, predict the slot; its scatter is the propagated band."""
+    arm = ROBOT.with_compliance_set("table_3")
+    tests = rm.read_load_tests(samples_dir() / "load_tests" / "nine_points.csv")
+    D = Model().tip_regressor(arm, THETA, F)
+    predicted = []
+    for seed in range(200):
+        again = simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=seed)
+        predicted.append(D @ identify(arm, again).parameters)
+    once = identify(arm, simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=0))
+    band = deflection_uncertainty(arm, THETA, F, Sources.of(once, arm)).std * (1e-6 / once.noise)
+    scatter = np.std(predicted, axis=0, ddof=1)
+    np.testing.assert_allclose(
+        band, scatter, rtol=0.2, atol=1e-9
+    )  # 200 repetitions leave 5 % of sampling error, the one band 8 %
+
+
+def test_closed_form_at_the_milling_test():
+    """At X = 0, tool vertical: C_yy = C_3 h^2 + C_5 a_5^2, so 10 % of each joint gives 10 % of each share."""
+    theta = rm.inverse_kinematics(ROBOT, rm.pose_from_world([0, -1.3, 0, 0, 0])).theta
+    found = deflection_uncertainty(ROBOT, theta, [0, 100.0, 0], Sources.relative(ROBOT, compliance=0.1))
+    J_v = rm.geometric_jacobian(ROBOT, theta)[:3]
+    shares = ROBOT.C_theta * J_v[1] ** 2 * 100.0
+    assert found.delta[1] == pytest.approx(shares.sum())
+    assert found.delta[1] == pytest.approx(0.2295e-3, abs=1e-7)
+    assert found.std[1] == pytest.approx(0.1 * np.linalg.norm(shares))
+    value, std = found.along([0, 1.0, 0])
+    assert (value, std) == (pytest.approx(found.delta[1]), pytest.approx(found.std[1]))
+    size, spread = found.magnitude()
+    assert size == pytest.approx(np.linalg.norm(found.delta))
+    assert 0 < spread < 0.1 * size
+
+
+def test_sources_add_in_squares_and_batch_is_loop():
+    sources = Sources.relative(ROBOT, compliance=0.1, force=[5.0, 10.0, 3.0], length=2e-3)
+    found = deflection_uncertainty(ROBOT, THETA, F, sources)
+    total = found.by_compliance**2 + found.by_force**2 + found.by_lengths**2
+    np.testing.assert_allclose(found.std**2, total, rtol=1e-12)
+    for k in range(5):
+        one = deflection_uncertainty(ROBOT, THETA[k], F[k], sources)
+        np.testing.assert_allclose(one.covariance, found.covariance[k], rtol=1e-9, atol=1e-20)
+    nothing = deflection_uncertainty(ROBOT, THETA, F, Sources())
+    assert (nothing.std == 0).all()
+
+
+def test_length_derivative_is_of_second_order():
+    L = length_derivative(ROBOT, THETA, F, Model(), ROBOT.C_theta)
+    assert L.shape == (5, 3, 10)
+    delta = Model().tip_regressor(ROBOT, THETA, F) @ ROBOT.C_theta
+    errors = []
+    for step in (4e-3, 2e-3):
+        longer = ROBOT.replace(a=ROBOT.a + step * np.array([0, 1, 0, 0, 0]))
+        moved = Model().tip_regressor(longer, THETA, F) @ ROBOT.C_theta
+        errors.append(np.abs(moved - delta - step * L[..., 1]).max())
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+
+
+def test_map_entries_agree_with_monte_carlo():
+    covariance = np.diag((0.1 * ROBOT.C_theta) ** 2)
+    found = compliance_uncertainty(ROBOT, THETA, covariance)
+    rng = np.random.default_rng(0)
+    drawn = ROBOT.C_theta * (1 + 0.1 * rng.standard_normal((6000, 5)))
+    J_v = rm.geometric_jacobian(ROBOT, THETA)[..., :3, :]
+    C = np.einsum("mik,dk,mjk->dmij", J_v, drawn, J_v)
+    close(found, C, 0.05)
+
+
+def test_unseen_joints_widen_the_band_rather_than_narrow_it():
+    theta = rm.read_load_tests(samples_dir() / "load_tests" / "nine_points.csv").theta[::3]
+    blind = identify(ROBOT, simulated_tests(ROBOT, theta, np.tile([0.0, 0.0, -250.0], (9, 1)), noise=1e-6))
+    sources = Sources.of(blind, ROBOT)
+    assert sources.covariance[0, 0] == pytest.approx(ROBOT.C_theta[0] ** 2)
+    push = deflection_uncertainty(blind.applied_to(ROBOT), THETA, [100.0, 0, 0], sources)
+    assert (push.std[:, 0] > 0.3 * push.delta[:, 0]).all()
+
+
+def test_unreached_points_are_nan():
+    theta = THETA.copy()
+    theta[2] = np.nan
+    found = deflection_uncertainty(ROBOT, theta, F, Sources.relative(ROBOT, compliance=0.1))
+    assert np.isnan(found.std[2]).all()
+    assert np.isfinite(found.std[[0, 1, 3, 4]]).all()
+
+
+def test_quantiles_and_words():
+    assert quantile(0.95) == pytest.approx(1.959964, abs=1e-6)
+    assert quantile(0.95, 76) == pytest.approx(1.9917, abs=1e-4)
+    assert with_band(2.3e-4, 2e-5) == "0.23 ± 0.02 mm"
+    found = deflection_uncertainty(ROBOT, THETA, F, Sources.of(RESULT, ROBOT))
+    np.testing.assert_allclose(found.half_width(), quantile(0.95, RESULT.dof) * found.std)
