@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from robomill.toolpath.gcode import compensation as _compensation  # noqa: F401  (keeps the import order explicit)
-from robomill.toolpath.gcode import cycles, motion, offsets
+from robomill.toolpath.gcode import cycles, motion, offsets, splines, threads
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.modal import (
     ARC_DISTANCE, COMPENSATION, CONTROL, COORDINATES, COOLANT, CYCLES, DIAMETER, DISTANCE, FEED_MODE, IO, LENGTH,
@@ -31,7 +30,7 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
             machine.feed = 0.0
     if "f" in words and machine.feed_mode != 930:
         machine.feed = words["f"]
-        if UNITS in g and offsets_unit_changes(machine, g[UNITS]):
+        if UNITS in g and g[UNITS] != machine.unit_code:
             machine.findings.add(
                 "suspicious", block.line, f"F and {g_name(g[UNITS])} on one line: F counts in the units before it"
             )
@@ -43,13 +42,12 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     _execute_m(machine, block, saved)
     _execute_g(machine, block)
     if TOOL in block.m or block.m.get(IO) == 66:
+        if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
+            machine.findings.add(
+                "warning", block.line, "after the tool change, axes without a word go on from the last straight move"
+            )
         machine.p = list(machine.sent)
     return STOP in block.m and _stop(machine, block)
-
-
-def offsets_unit_changes(machine: Machine, code: int) -> bool:
-    """True if G20 or G21 changes the unit in force."""
-    return code != machine.unit_code
 
 
 def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
@@ -157,7 +155,9 @@ def _set_plane(machine: Machine, block: Block, code: int) -> None:
 
 
 def _non_modal(machine: Machine, block: Block, code: int) -> None:
-    if code == 100:
+    if code == 53:
+        splines.finish(machine, block)
+    elif code == 100:
         offsets.set_data(machine, block)
     elif code in (280, 300):
         motion.home(machine, block, code)
@@ -181,6 +181,10 @@ def _move(machine: Machine, block: Block) -> None:
         cycles.cycle(machine, block)
     elif code in PROBES:
         _probe(machine, block)
+    elif code in (50, 51, 52):
+        splines.spline(machine, block)
+    elif code == 760:
+        threads.thread(machine, block)
     else:
         raise block.refuse(f"{g_name(code)} is not supported; write the motion with G1, G2 and G3.")
 
@@ -198,7 +202,7 @@ def _probe(machine: Machine, block: Block) -> None:
     machine.probe_to(block.line, end)
     machine.findings.add("warning", block.line, "probing: the probe is taken to travel its whole way")
     machine.store.numbered[5061:5067] = end
-    machine.store.numbered[5070] = 1.0
+    machine.store.numbered[5070] = 0.0
     machine.p = end
     machine.motion = block.motion
 

@@ -14,7 +14,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.parameters import Parameters
 
 MAX_DEPTH = 60
-EQUAL = 1e-6
+EQUAL = 1e-4
 """Two numbers are EQ if they differ by less than this."""
 
 _NUMBER = re.compile(r"[+-]*[0-9.]+")
@@ -205,8 +205,8 @@ _BINARY: dict[str, Callable[[float, float], float]] = {
     "xor": lambda a, b: _truth((a != 0) != (b != 0)),
     "eq": lambda a, b: _truth(abs(a - b) < EQUAL),
     "ne": lambda a, b: _truth(abs(a - b) >= EQUAL),
-    "ge": lambda a, b: _truth(a >= b or abs(a - b) < EQUAL),
-    "le": lambda a, b: _truth(a <= b or abs(a - b) < EQUAL),
+    "ge": lambda a, b: _truth(a >= b),
+    "le": lambda a, b: _truth(a <= b),
     "gt": lambda a, b: _truth(a > b),
     "lt": lambda a, b: _truth(a < b),
 }

@@ -29,8 +29,8 @@ XYZABC = "xyzabc"
 class Machine:
     """State that lines change. ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system.
 
-    ``sent`` is the end of the last move that was recorded. After a tool change or an input the machine is asked
-    where it stands and answers with that, as LinuxCNC's preview does.
+    ``sent`` is the end of the last straight move that was recorded. After a tool change or an input the machine is
+    asked where it stands and answers with that, as LinuxCNC's preview does.
     """
 
     def __init__(self, tools: ToolTable | None) -> None:
@@ -55,6 +55,8 @@ class Machine:
         self.initial_level: float | None = None
         self.compensation: Any = None
         self.arc_not_allowed = False
+        self.spline: list[tuple[float, float, float]] = []
+        self.spline_order = 3
         self.line = 0
         self.return_value, self.value_returned = 0.0, 0.0
         self.dwells, self.dwell_time = 0, 0.0
@@ -125,7 +127,6 @@ class Machine:
 
     def go_arc(self, line: int, end: list[float], plane: int, centre: Point, turn: int, v_f: float) -> None:
         """Record an arc in ``plane`` about ``centre`` (x, y, z in the current system)."""
-        self.sent = list(end)
         self.recorder.n_s = self.spindle_speed if self.spindle else 0.0
         self.recorder.arc(line, self.point(*end[:3]), self.angles(*end[3:]), plane, self.point(*centre), turn, v_f)
 
