@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.kinematics.jacobian import geometric_jacobian, pose_jacobian_gram
 from robomill.robot.model import Robot
 
 
@@ -25,8 +25,12 @@ def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
 
 def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
     """C (..., 3, 3) m/N of the tip in {M} at theta (..., n): the translational block of J C_theta J^T. Eqs. (11), (12)."""
-    J_v = geometric_jacobian(robot, theta)[..., :3, :]
-    return (J_v * robot.C_theta) @ np.swapaxes(J_v, -1, -2)
+    return pose_jacobian_compliance(robot, theta)[2]
+
+
+def pose_jacobian_compliance(robot: Robot, theta: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(T_MT (..., 4, 4), J (..., 6, n), C (..., 3, 3) m/N) in one pass over theta (..., n)."""
+    return pose_jacobian_gram(robot, theta, robot.C_theta)
 
 
 def full_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:

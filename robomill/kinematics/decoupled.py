@@ -12,7 +12,7 @@ A rotation about y by phi turns the complex number x - i z by exp(i phi), which 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -52,6 +52,15 @@ class Decoupled:
     c_g: FloatArray
     c_w: FloatArray
     direction: FloatArray
+
+    @cached_property
+    def packed(self) -> FloatArray:
+        """All constants in one row, in the order the compiled kernel reads them."""
+        parts = (
+            self.S.ravel(), self.W.ravel(), self.origin, [self.a_1, self.h], self.l_2, self.l_3,
+            self.u, self.g, self.gn, self.c_u, self.c_g, self.c_w, self.direction,
+        )  # fmt: skip
+        return frozen(np.concatenate(parts))
 
     @property
     def spindle_on_last_axis(self) -> bool:
@@ -155,7 +164,7 @@ def unit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.where(some, x * scale, 1.0), y * scale
 
 
-def solutions(arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
+def solution_columns(arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
     """(theta (m, 8, n), possible (m, 8)) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, each +, -; angles in (-pi, pi].
 
     Where the geometry has no solution the nearest attempt is given and ``possible`` is False; a check by forward

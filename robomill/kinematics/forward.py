@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats
+from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.kinematics.compiled import Kernels
 from robomill.robot.dh import Chain
 from robomill.robot.model import Robot
 
 # Configurations handled at a time: the columns of a block stay in the second-level cache.
 BLOCK = 4096
+SMALL = 32  # below this many, NumPy is as quick as a compiled call
+kernels = Kernels("robomill.kinematics.kernels")
 
 
 def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
@@ -25,6 +28,11 @@ def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
     """T_MT (..., 4, 4) of the configurations theta (..., n) rad (m where prismatic). Eqs. (4), (5), (7)."""
     theta = joint_angles(robot, theta)
     flat = theta.reshape(-1, robot.n)
+    compiled = kernels.get(len(flat)) if len(flat) >= SMALL else None
+    if compiled is not None:
+        T_MT = np.empty((len(flat), 4, 4))
+        compiled.forward(np.ascontiguousarray(flat), *chain_arguments(robot.chain), T_MT)
+        return T_MT.reshape(*theta.shape[:-1], 4, 4)
     T_MT = np.zeros((len(flat), 4, 4))
     T_MT[:, 3, 3] = 1.0
     for start in range(0, len(flat), BLOCK):
@@ -44,6 +52,11 @@ def joint_frames(robot: Robot, theta: ArrayLike) -> FloatArray:
         for i, frame in enumerate(columns):
             frames[start : start + BLOCK, i, :3, :] = frame.transpose(2, 0, 1)
     return frames.reshape(*theta.shape[:-1], robot.n + 1, 4, 4)
+
+
+def chain_arguments(chain: Chain) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """A chain as the compiled kernels take it."""
+    return chain.T_0, chain.E, chain.sign, chain.offset, chain.prismatic
 
 
 def frame_columns(chain: Chain, theta: FloatArray) -> list[FloatArray]:

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.kinematics.choice import choose, choose_spin, join_path, spun
-from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled, solutions
+from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.numeric import solve_numerically
-from robomill.kinematics.result import IKResult, Mode, check, task_mode
+from robomill.kinematics.result import RESIDUAL, IKResult, Mode, check, task_mode
+from robomill.kinematics.solutions import compiled_solutions, solutions
 from robomill.robot.model import Robot
 
 Spin = float | Literal["least motion", "fixed"]
@@ -100,13 +101,16 @@ def all_branches(robot: Robot, T_MT: ArrayLike) -> tuple[FloatArray, BoolArray]:
             f"{robot.name}: its wrist axes do not cross as a closed form needs; use inverse_kinematics."
         )
     flat = T_MT.reshape(-1, 4, 4)
+    lead = T_MT.shape[:-2]
+    found = compiled_solutions(robot, arm, flat, RESIDUAL)
+    if found is not None:
+        return found[0].reshape(*lead, 8, robot.n), found[1].reshape(*lead, 8)
     theta = np.empty((len(flat), 8, robot.n))
     sound = np.empty((len(flat), 8), dtype=bool)
     for start in range(0, len(flat), BLOCK):
         block = slice(start, start + BLOCK)
-        theta[block], possible = solutions(arm, flat[block])
+        theta[block], possible = solutions(robot, arm, flat[block])
         sound[block] = possible & check(robot, theta[block], flat[block, None], task_mode(robot))[0]
-    lead = T_MT.shape[:-2]
     return theta.reshape(*lead, 8, robot.n), sound.reshape(*lead, 8)
 
 
@@ -145,10 +149,10 @@ def _pose_by_pose(
         block = slice(start, start + BLOCK)
         target = (goal if len(goal) == 1 else goal[block])[:, None, :]
         if free_spin and not arm.spindle_on_last_axis:
-            found = choose_spin(robot, partial(solutions, arm), flat[block], target, wanted, arm_first)
+            found = choose_spin(robot, partial(solutions, robot, arm), flat[block], target, wanted, arm_first)
             theta[block], index[block], turn[block] = found  # type: ignore[index]
             continue
-        every, possible = solutions(arm, flat[block])
+        every, possible = solutions(robot, arm, flat[block])
         if free_spin:
             every[..., 5] = target[..., 5]
         theta[block], index[block], _ = choose(robot, every, possible & wanted, target, arm_first)
@@ -167,7 +171,7 @@ def _along_path(
         run = slice(start, start + length)
         best: tuple[float, float] | None = None
         for angle in spins:
-            every, possible = solutions(arm, spun(flat[run], float(angle)))
+            every, possible = solutions(robot, arm, spun(flat[run], float(angle)))
             if free_spin and arm.spindle_on_last_axis:
                 every[..., 5] = robot.home[5]
             found, which, motion = join_path(robot, every, possible & wanted, robot.home)

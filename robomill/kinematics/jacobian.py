@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
-from robomill.kinematics.forward import BLOCK, frame_columns, joint_angles
+from robomill.kinematics.forward import BLOCK, SMALL, chain_arguments, frame_columns, joint_angles, kernels
 from robomill.kinematics.transforms import rotation_x, rotation_y, tilt_from_axis
 from robomill.robot.dh import Chain
 from robomill.robot.model import Robot
@@ -26,6 +28,10 @@ def pose_and_jacobian(robot: Robot, theta: ArrayLike) -> tuple[FloatArray, Float
     theta = joint_angles(robot, theta)
     flat = theta.reshape(-1, robot.n)
     m = len(flat)
+    compiled = kernels.get(m) if m >= SMALL else None
+    if compiled is not None:
+        T_MT, J, _ = compiled_pose_jacobian(compiled, robot, flat, None)
+        return T_MT.reshape(*theta.shape[:-1], 4, 4), J.reshape(*theta.shape[:-1], 6, robot.n)
     T_MT = np.zeros((m, 4, 4))
     T_MT[:, 3, 3] = 1.0
     J = np.empty((m, 6, robot.n))
@@ -36,6 +42,32 @@ def pose_and_jacobian(robot: Robot, theta: ArrayLike) -> tuple[FloatArray, Float
         J[block] = jacobian_columns(robot.chain, frames).transpose(2, 0, 1)
     lead = theta.shape[:-1]
     return T_MT.reshape(*lead, 4, 4), J.reshape(*lead, 6, robot.n)
+
+
+def pose_jacobian_gram(robot: Robot, theta: ArrayLike, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(T_MT (..., 4, 4), J (..., 6, n), J_v diag(weight) J_v^T (..., 3, 3)) in one pass; weight (n,)."""
+    theta = joint_angles(robot, theta)
+    flat = theta.reshape(-1, robot.n)
+    lead = theta.shape[:-1]
+    compiled = kernels.get(len(flat)) if len(flat) >= SMALL else None
+    if compiled is not None:
+        T_MT, J, G = compiled_pose_jacobian(compiled, robot, flat, weight)
+        return T_MT.reshape(*lead, 4, 4), J.reshape(*lead, 6, robot.n), G.reshape(*lead, 3, 3)
+    T_MT, J = pose_and_jacobian(robot, theta)
+    J_v = J[..., :3, :]
+    return T_MT, J, (J_v * weight) @ np.swapaxes(J_v, -1, -2)
+
+
+def compiled_pose_jacobian(
+    compiled: ModuleType, robot: Robot, flat: FloatArray, weight: FloatArray | None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(T_MT, J, G) of theta (m, n) by the compiled kernel; G is empty without ``weight``."""
+    m, n = flat.shape
+    T_MT, J = np.empty((m, 4, 4)), np.empty((m, 6, n))
+    G = np.empty((0 if weight is None else m, 3, 3))
+    weight = np.ones(n) if weight is None else weight
+    compiled.forward_jacobian(np.ascontiguousarray(flat), *chain_arguments(robot.chain), weight, T_MT, J, G)
+    return T_MT, J, G
 
 
 def jacobian_columns(chain: Chain, frames: list[FloatArray]) -> FloatArray:

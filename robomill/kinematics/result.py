@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
-from robomill.kinematics.decoupled import decoupled, shortfall, solutions
+from robomill.kinematics.decoupled import decoupled, shortfall, solution_columns
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.robot.model import Robot
@@ -70,7 +70,7 @@ def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
         missing = [shortfall(arm, T_MT)]
         if missing[0]:
             return missing[0]
-    every, possible = solutions(arm, spun)
+    every, possible = solution_columns(arm, spun)
     candidates = every.reshape(-1, robot.n)
     poses = np.repeat(spun, 8, axis=0)
     if result.free_spin and arm.spindle_on_last_axis:
