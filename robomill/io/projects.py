@@ -13,12 +13,13 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import links_from_table, links_to_table, spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
-from robomill.toolpath.source import GCodeSource, LinesSource, PathSource
+from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.units import from_si, to_si
 
 FORMAT = "robomill-setup"
@@ -90,14 +91,18 @@ def _robot(table: Table, folder: Path | None) -> Robot:
 
 
 def _source(table: Table, folder: Path | None) -> PathSource:
-    kinds = [key for key in ("program", "program_text", "lines_mm") if table.has(key)]
+    kinds = [key for key in ("program", "program_text", "lines_mm", "sketch") if table.has(key)]
     if len(kinds) != 1:
-        raise table.refuse("program", f"expected one of program, program_text or lines_mm, found {kinds or 'none'}.")
+        raise table.refuse(
+            "program", f"expected one of program, program_text, lines_mm or sketch, found {kinds or 'none'}."
+        )
     source: PathSource
     if kinds == ["lines_mm"]:
         rows = table.rows("lines_mm", 6, "mm")
         feeds = table.numbers("feed_mm_min", len(rows), "mm/min")
         source = LinesSource(rows[:, :3], rows[:, 3:], np.array(feeds), table.number("spindle_1_min", "1/min", 0.0))
+    elif kinds == ["sketch"]:
+        source = SketchSource(sketch_from_table(table.table("sketch")))
     elif kinds == ["program"]:
         name = table.text("program")
         source = read_program((folder or Path()) / name, table.text("dialect", "auto"))
@@ -253,6 +258,8 @@ def _robot_table(robot: Robot) -> dict[str, Any]:
 def _source_table(source: PathSource) -> dict[str, Any]:
     if isinstance(source, GCodeSource):
         return {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
+    if isinstance(source, SketchSource):
+        return {"sketch": sketch_to_table(source.sketch, _shown)}
     rows = np.hstack([source.start, source.end])
     return {
         "lines_mm": [[_shown(v, "mm") for v in row] for row in rows],

@@ -1,4 +1,4 @@
-"""Where a toolpath comes from: a program's text or a table of lines. Sources are values; ``read`` gives the path."""
+"""Where a toolpath comes from: a program, a table of lines or a sketch. Sources are values; ``read`` gives the path."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
+from robomill.toolpath.sketch import Sketch
 
 
 @dataclass(frozen=True)
@@ -44,4 +45,16 @@ class LinesSource:
         return toolpath_from_lines(self.start, self.end, self.v_f, self.n_s)
 
 
-PathSource = GCodeSource | LinesSource
+@dataclass(frozen=True)
+class SketchSource:
+    """A path drawn by hand."""
+
+    sketch: Sketch
+    name: str = field(default="sketch", compare=False)
+
+    def read(self) -> Toolpath:
+        """The path; raises ToolpathError where nothing is drawn."""
+        return self.sketch.toolpath()
+
+
+PathSource = GCodeSource | LinesSource | SketchSource

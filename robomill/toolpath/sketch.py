@@ -1,0 +1,230 @@
+"""A path drawn by hand: shapes in the top face of the part, each with its feed and depth, and the path they make.
+
+The part zero {W} lies on the top face, z up; shapes are drawn in x, y. The tool waits at ``clearance`` above the face,
+goes down to ``APPROACH`` above it as a rapid, plunges at the plunge feed, cuts the shape and goes up again as a rapid.
+A shape that begins where the one before it ended is cut without lifting.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.errors import ToolpathError
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_si, from_si, to_si
+
+Shape = Literal["line", "polyline", "polygon", "rectangle", "arc", "circle"]
+SHAPES: tuple[Shape, ...] = get_args(Shape)
+
+# Fewest and most points of each shape; 0 means any number.
+POINTS: dict[str, tuple[int, int]] = {
+    "line": (2, 2), "polyline": (2, 0), "polygon": (3, 0), "rectangle": (2, 2), "arc": (3, 3), "circle": (2, 2),
+}  # fmt: skip
+CLOSED = ("polygon", "rectangle", "circle")
+
+APPROACH = 0.5e-3
+SAME = 1e-9
+MAX_ELEMENTS = 5_000
+MAX_POINTS = 100_000
+MAX_COORDINATE = 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class Element:
+    """One shape: ``points`` (r, 2) m in {W}, cut ``depth`` m below the top face at ``v_f`` m/s.
+
+    line        start, end                      rectangle   two opposite corners
+    polyline    two or more points              arc         start, a point on the way, end
+    polygon     three or more, closed           circle      centre, a point on it (where the cut begins)
+    """
+
+    shape: Shape
+    points: FloatArray
+    depth: float
+    v_f: float
+
+    def __post_init__(self) -> None:
+        if self.shape not in POINTS:
+            raise ToolpathError(f"Sketch: {self.shape!r} is not a shape; known are {', '.join(SHAPES)}.")
+        points = tidy(as_floats(self.points, f"Sketch, {self.shape}", (None, 2), error=ToolpathError), "mm")
+        fewest, most = POINTS[self.shape]
+        if points.ndim != 2 or len(points) < fewest or (most and len(points) > most):
+            wanted = f"{fewest}" if most == fewest else f"{fewest} or more"
+            raise ToolpathError(f"Sketch: a {self.shape} needs {wanted} points, found {len(points)}.")
+        if np.abs(points).max() > MAX_COORDINATE:
+            raise ToolpathError(
+                f"Sketch: a point of the {self.shape} is {format_si(float(np.abs(points).max()), 'm', 0)} from the "
+                f"part zero; at most {format_si(MAX_COORDINATE, 'm', 0)} is drawn."
+            )
+        for field, name, unit in (("depth", "depth", "mm"), ("v_f", "feed", "mm/min")):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value > 0):
+                found = format_si(value, unit) if math.isfinite(value) else "not a number"
+                raise ToolpathError(f"Sketch: the {self.shape} has {name} {found}; a cut needs more than 0.")
+            object.__setattr__(self, field, float(tidy(value, unit)))
+        object.__setattr__(self, "points", frozen(points))
+        _check_extent(self.shape, points)
+
+    def replace(self, **changes: Any) -> Element:
+        """A changed copy, checked again."""
+        return dataclasses.replace(self, **changes)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the cut ends where it begins."""
+        return self.shape in CLOSED
+
+    def outline(self) -> FloatArray:
+        """(q, 2) m: the corners of the cut in order, arcs as chords within the chord error of the G-code reader."""
+        if self.shape == "polygon":
+            return np.vstack([self.points, self.points[:1]])
+        if self.shape == "rectangle":
+            (x0, y0), (x1, y1) = self.points
+            return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
+        if self.shape == "circle":
+            centre, rim = self.points
+            return _chords(rim, rim, centre, clockwise=False)
+        if self.shape == "arc":
+            start, way, end = self.points
+            side = _cross(end - start, way - start)
+            middle = _centre(start, way, end)
+            if middle is None:
+                return np.array(self.points)
+            return _chords(start, end, middle, clockwise=side > 0)
+        return np.array(self.points)
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """Shapes in the order in which they are cut, and what they share; SI units, {W}.
+
+    v_plunge    m/s  feed of plunges            n_s    1/s  spindle speed
+    clearance   m    height of rapids above the top face
+    v_f, depth  what the next shape gets; grid (m) what points snap to, 0 for none: the path does not depend on them
+    """
+
+    elements: tuple[Element, ...] = ()
+    v_plunge: float = 5e-3
+    clearance: float = 5e-3
+    n_s: float = 0.0
+    v_f: float = dataclasses.field(default=30e-3, compare=False)
+    depth: float = dataclasses.field(default=2e-3, compare=False)
+    grid: float = dataclasses.field(default=5e-3, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "elements", tuple(self.elements))
+        count = sum(len(e.points) for e in self.elements)
+        if len(self.elements) > MAX_ELEMENTS or count > MAX_POINTS:
+            raise ToolpathError(
+                f"Sketch: {len(self.elements)} shapes with {count} points; at most {MAX_ELEMENTS} shapes and "
+                f"{MAX_POINTS} points are kept. Write a program for more."
+            )
+        for field, name, unit, least in (
+            ("v_plunge", "plunge feed", "mm/min", 1e-9), ("clearance", "clearance", "mm", APPROACH),
+            ("v_f", "feed", "mm/min", 1e-9), ("depth", "depth", "mm", 1e-9), ("n_s", "spindle", "1/min", 0.0),
+            ("grid", "snap", "mm", 0.0),
+        ):  # fmt: skip
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value >= least):
+                found = format_si(value, unit) if math.isfinite(value) else "not a number"
+                wanted = "more than 0" if 0 < least < 1e-6 else f"at least {format_si(least, unit, 1)}"
+                raise ToolpathError(f"Sketch: the {name} is {found}; expected {wanted}.")
+            object.__setattr__(self, field, float(tidy(value, unit)))
+
+    def replace(self, **changes: Any) -> Sketch:
+        """A changed copy, checked again."""
+        return dataclasses.replace(self, **changes)
+
+    def toolpath(self) -> Toolpath:
+        """The path in {W}; ``block`` is the 1-based number of the shape.
+
+        Raises ToolpathError where nothing is drawn.
+        """
+        if not self.elements:
+            raise ToolpathError("The sketch is empty: draw a line, or take one of the ready-made sketches.")
+        rows = list(self._moves())
+        columns = [np.array(column) for column in zip(*rows, strict=True)]
+        return Toolpath(
+            p=columns[0], k=np.array([0.0, 0.0, 1.0]), v_f=columns[1], cutting=columns[1] > 0, block=columns[2],
+            n_s=np.full(len(rows), self.n_s), tool=np.zeros(len(rows), dtype=np.int64),
+        )  # fmt: skip
+
+    def _moves(self) -> Iterator[tuple[list[float], float, int]]:
+        """Point, feed (0 for a rapid) and number of the shape, move by move."""
+        at: list[float] | None = None
+        for number, element in enumerate(self.elements, start=1):
+            outline = element.outline()
+            x, y = (float(v) for v in outline[0])
+            z = -element.depth
+            if at is None or math.hypot(at[0] - x, at[1] - y) > SAME:
+                if at is not None:
+                    yield [at[0], at[1], self.clearance], 0.0, number - 1
+                yield [x, y, self.clearance], 0.0, number
+                yield [x, y, APPROACH], 0.0, number
+                yield [x, y, z], self.v_plunge, number
+            elif abs(at[2] - z) > SAME:
+                yield [x, y, z], self.v_plunge, number
+            for u, v in outline[1:].tolist():
+                yield [u, v, z], element.v_f, number
+            at = [*outline[-1].tolist(), z]
+        if at is not None:
+            yield [at[0], at[1], self.clearance], 0.0, len(self.elements)
+
+
+def snap(points: ArrayLike, grid: float) -> FloatArray:
+    """Points (..., 2) m moved to the nearest node of a grid (m); as they are for a grid of 0."""
+    p = as_floats(points, "points", (2,), error=ToolpathError)
+    return np.asarray(np.round(p / grid) * grid) if grid > 0 else p
+
+
+def tidy(value: Any, unit: str) -> Any:
+    """An SI value cut to nine decimals in ``unit``, so that files and the screen read it back exactly."""
+    return to_si(np.round(from_si(np.asarray(value, dtype=float), unit), 9), unit)
+
+
+def _check_extent(shape: str, points: FloatArray) -> None:
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    if (steps < SAME).any():
+        i = int(np.argmax(steps < SAME)) + 1
+        raise ToolpathError(f"Sketch: points {i} and {i + 1} of the {shape} are the same; move or remove one of them.")
+    if shape in ("polygon", "arc") and np.linalg.norm(points[-1] - points[0]) < SAME:
+        what = "draw a circle for a full turn" if shape == "arc" else "it closes by itself, so remove the last point"
+        raise ToolpathError(f"Sketch: the {shape} ends where it begins; {what}.")
+    if shape == "rectangle" and (np.abs(points[1] - points[0]) < SAME).any():
+        raise ToolpathError("Sketch: the corners of the rectangle are on one line; draw a line, or move a corner.")
+
+
+def _cross(a: FloatArray, b: FloatArray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def _centre(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
+    """Centre of the circle through three points; None where they are on a line."""
+    ab, ac = b - a, c - a
+    twice = 2.0 * _cross(ab, ac)
+    if abs(twice) < 1e-9 * float(np.linalg.norm(ab) * np.linalg.norm(ac)):
+        return None
+    u, v = float(ab @ ab), float(ac @ ac)
+    return np.asarray(a + np.array([ac[1] * u - ab[1] * v, ab[0] * v - ac[0] * u]) / twice)
+
+
+def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise: bool) -> FloatArray:
+    from robomill.toolpath.gcode import arcs  # the one place where arcs become chords; loads the reader with it
+
+    def lifted(point: FloatArray) -> FloatArray:
+        return np.array([[point[0], point[1], 0.0]])
+
+    geometry = (
+        lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([1]), np.array([clockwise]),
+    )  # fmt: skip
+    _, sweep, radius, _ = arcs.sweeps(*geometry)
+    counts = arcs.chord_counts(sweep, radius, arcs.CHORD_ERROR)
+    return np.vstack([lifted(start), arcs.chord_points(*geometry, counts)])[:, :2]
