@@ -13,7 +13,6 @@ from robomill.viz.views import arm_scene, sample_at
 HEIGHT = 430
 
 
-
 def _round(times: float) -> int:
     """A scale to two digits, as a caption says it."""
     return int(float(f"{times:.2g}"))

@@ -7,7 +7,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.ui import robot_panel
-from robomill.ui.pose import pose_now, pose_sliders, poses_compared
+from robomill.ui.pose import pose_now, pose_sliders, poses_compared, tip_words
 from robomill.units import format_si
 from robomill.viz.arm import ArmScene, arm_figure
 
@@ -37,15 +37,15 @@ ui.tiles([
 left, right = ui.split([5, 9], "page", gap="large")
 with left:
     robot_panel.editors(project)
+    pose_sliders(project, theta, result)
 with right:
     pose, numbers = st.columns([2.3, 1], gap="medium")
     with pose, st.container(border=True):
         scene = ArmScene(frames=now.frames, ghost=old.frames if old and old.moved else None)
         ui.figure(
-            arm_figure(scene, dark=dark, height=440, revision="robot-arm", zoom=0.9), "robot-arm",
+            arm_figure(scene, dark=dark, height=540, revision="robot-arm", zoom=0.88), "robot-arm",
             alt="The arm at the chosen joint angles.",
-            caption="Turn it with the mouse. Foot and tube sizes are for the eye only.",
+            caption=f"{tip_words(robot, theta, view.length)}. Foot and tube sizes are for the eye only.",
         )  # fmt: skip
     with numbers:
         robot_panel.compliance_matrix(now, old)
-    pose_sliders(project, theta, result)

@@ -47,7 +47,7 @@ with right:
 
 st.subheader("Deviation along the path")
 s, at = from_si(result.path.s, unit), float(from_si(station, unit))
-delta = from_si(result.delta, unit)
+delta = from_si(panel.at_feed(result, result.delta), unit)
 whole, shares = ui.split([1, 1], "along")
 with whole, st.container(border=True, height="stretch"):
     st.markdown("**Where the tip goes**")
@@ -61,9 +61,9 @@ with whole, st.container(border=True, height="stretch"):
 with shares, st.container(border=True, height="stretch"):
     axis = panel.share_axis(view)
     column = "xyz".index(axis)
+    parts = from_si(panel.at_feed(result, panel.shares(result, column)), unit)
     ui.figure(
-        shares_figure(s, from_si(panel.shares(result, column), unit), panel.share_names(result), delta[:, column], axis,
-                      unit, dark=dark, station=at),
+        shares_figure(s, parts, panel.share_names(result), delta[:, column], axis, unit, dark=dark, station=at),
         f"shares-{axis}", name=f"joint-shares-{axis}", table=lambda: deviation_columns(result),
         caption="Which joint gives: shares stack to the total line.",
         alt="Deviation along the path stacked by joint.",

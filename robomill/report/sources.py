@@ -32,7 +32,7 @@ def sources(setup: SimulationSetup) -> list[Source]:
     set_source = given.get(f"compliance.{robot.compliance_set}", Provenance("user", "entered by hand"))
     lengths = ", ".join(f"{from_si(v, 'mm'):g}" for v in _lengths(setup))
     path = setup.toolpath
-    rows = [
+    return [
         Source("Joint compliances", f"{name}: {compliances} {unit_label(unit)}", set_source),
         Source("D-H table", f"{robot.rows} joints, {robot.convention}", given.get("geometry", NOT_STATED)),
         Source("Link lengths", f"{lengths} mm", given.get("lengths", given.get("geometry", NOT_STATED))),
@@ -42,9 +42,8 @@ def sources(setup: SimulationSetup) -> list[Source]:
         Source("Force", _force(setup), given.get("force", setup.force.provenance)),
         Source("Stock", _stock(setup), given.get("stock", NOT_STATED)),
         Source("Tolerance", format_si(setup.tolerance, "mm", 2), given.get("tolerance", NOT_STATED)),
-        Source("Model", "C = J Cθ Jᵀ, δ = C F", MODEL),
+        Source("Model", "C = J C_θ Jᵀ, δ = C F", MODEL),
     ]
-    return rows
 
 
 def _lengths(setup: SimulationSetup) -> list[float]:

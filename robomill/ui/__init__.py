@@ -58,6 +58,6 @@ from robomill.ui.verdict import verdict_sentence, verdict_tiles
 __all__ = [
     "Project", "Tile", "View", "accept", "attempt", "badge", "before", "begin", "change", "choice", "dark",
     "download", "error", "facts", "figure", "groove", "headline", "look", "matrix", "note", "number", "picture",
-    "pictured", "project", "redo", "refuse", "replace", "result", "seed", "sentence", "slider", "split", "store", "table_editor", "table_twin",
-    "thirds", "tiles", "undo", "verdict_sentence", "verdict_tiles", "whole",
+    "pictured", "project", "redo", "refuse", "replace", "result", "seed", "sentence", "slider", "split", "store",
+    "table_editor", "table_twin", "thirds", "tiles", "undo", "verdict_sentence", "verdict_tiles", "whole",
 ]  # fmt: skip

@@ -22,7 +22,7 @@ def number(
     *,
     step: float | None = None,
     digits: int | None = None,
-    help: str | None = None,
+    hint: str | None = None,
     disabled: bool = False,
 ) -> None:
     """A number box for the set-up's field at ``path`` (see ``fields``), shown in ``unit``."""
@@ -37,17 +37,17 @@ def number(
     decimals = UNITS[unit].digits if digits is None else digits
     name = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
     st.number_input(
-        name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=help, disabled=disabled
+        name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, disabled=disabled
     )  # fmt: skip
     sentence(key)
 
 
-def whole(label: str, path: str, *, help: str | None = None) -> None:
+def whole(label: str, path: str, *, hint: str | None = None) -> None:
     """A box for a whole number of the set-up."""
     key = f"in:{path}"
     seed(key, int(fields.read(state.project().setup, path)))
     st.number_input(
-        label, key=key, step=1, help=help,
+        label, key=key, step=1, help=hint,
         on_change=lambda: attempt(
             key, st.session_state[key], lambda: _put(path, int(st.session_state[key]), key)
         ),
@@ -63,7 +63,7 @@ def choice(
     write: Callable[[Any], None],
     *,
     horizontal: bool = True,
-    help: str | None = None,
+    hint: str | None = None,
     label_visibility: Any = "visible",
 ) -> None:
     """A choice between a few (``horizontal``) or many options; ``write`` gets the chosen key."""
@@ -76,12 +76,12 @@ def choice(
 
     if horizontal:
         st.segmented_control(
-            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=help,
+            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=hint,
             label_visibility=label_visibility, required=True, width="stretch",
         )  # fmt: skip
     else:
         st.selectbox(
-            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=help,
+            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=hint,
             label_visibility=label_visibility,
         )  # fmt: skip
     sentence(key)
@@ -96,14 +96,14 @@ def slider(
     write: Callable[[float], None],
     *,
     step: float,
-    format: str | None = None,
-    help: str | None = None,
+    form: str | None = None,
+    hint: str | None = None,
     label_visibility: Any = "visible",
 ) -> None:
     """A slider over a number of the view or the set-up, in display units."""
     seed(key, float(min(max(current, low), high)))
     st.slider(
-        label, float(low), float(high), key=key, step=step, format=format, help=help,
+        label, float(low), float(high), key=key, step=step, format=form, help=hint,
         label_visibility=label_visibility,
         on_change=lambda: attempt(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
     )  # fmt: skip

@@ -50,12 +50,11 @@ def _force() -> None:
     provenance = state.project().setup.provenance.get("force", force.provenance)
     st.markdown("**Force on the tool**")
     inputs.choice("Force on the tool", "force.kind", options, kind, _switch_force, label_visibility="collapsed")
+    fields: tuple[tuple[str, str], ...] = ()
     if isinstance(force, PathForce):
         fields = (("Feed", "force.feed"), ("Feed-normal", "force.feed_normal"), ("Axial", "force.axial"))
     elif isinstance(force, ConstantForce):
         fields = tuple((f"F {a}", f"force.vector_M[{i}]") for i, a in enumerate("XYZ"))
-    else:
-        fields = ()
     for column, (label, path) in zip(st.columns(3), fields, strict=False):
         with column:
             inputs.number(label, path, "N", step=10.0, digits=1)
@@ -135,7 +134,7 @@ def surface(result: SimulationResult, view: state.View, station: float, dark: bo
         options = EXAGGERATIONS if view.exaggeration in EXAGGERATIONS else {
             **EXAGGERATIONS, view.exaggeration: f"× {view.exaggeration:g}"}  # fmt: skip
         inputs.choice(
-            "Displacement shown", "view.exaggeration", options, view.exaggeration,
+            "Exaggeration", "view.exaggeration", options, view.exaggeration,
             lambda v: state.look(exaggeration=float(v)), horizontal=False,
         )  # fmt: skip
     shown = parts.attempt(cache.pictured, result.setup, view.exaggeration)
@@ -149,7 +148,8 @@ def surface(result: SimulationResult, view: state.View, station: float, dark: bo
         parts.figure(
             surface_figure(
                 from_si(shown.drawn.x, unit), from_si(shown.drawn.y, unit), from_si(shown.drawn.z, unit),
-                from_si(shown.error, "um"), float(from_si(result.setup.tolerance, "um")), dark=dark, height=520, unit=unit,
+                from_si(shown.error, "um"), float(from_si(result.setup.tolerance, "um")), dark=dark, height=520,
+                unit=unit,
             ), "surface", alt="The machined surface, to be turned with the mouse.",
         )  # fmt: skip
     parts.note(
@@ -170,7 +170,7 @@ def station_slider(view: state.View, length: float, unit: str) -> None:
     top = max(float(from_si(length, unit)), 1e-9)
     inputs.slider(
         f"Station, {unit} of cut", "view.station", 0.0, round(top, 3), round(view.station * top, 3),
-        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)), step=round(top / 200, 4) or 0.001, format="%.2f",
+        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)), step=round(top / 200, 4) or 0.001, form="%.2f",
     )  # fmt: skip
 
 
@@ -189,6 +189,11 @@ def share_axis(view: state.View) -> str:
 def shares(result: SimulationResult, column: int) -> FloatArray:
     """(m, n + springs) m: shares of one component, joints first."""
     return np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
+
+
+def at_feed(result: SimulationResult, values: FloatArray) -> FloatArray:
+    """``values`` (m, k) with NaN where nothing is cut, so that lines break there."""
+    return np.where(result.path.cutting[:, None], values, np.nan)
 
 
 def share_names(result: SimulationResult) -> list[str]:

@@ -24,6 +24,7 @@ SHOWN_ROWS = 1500
 class Tile:
     """One number: ``value`` as formatted text with its unit after a space, ``was`` the value before the last change.
 
+    ``change`` says by how much it moved; both take the place of ``note`` while they are there.
     ``tone`` is "", "ok", "tight" or "out" (a coloured edge; the words carry the meaning), ``kind`` a provenance.
     """
 
@@ -31,6 +32,7 @@ class Tile:
     value: str
     note: str = ""
     was: str = ""
+    change: str = ""
     tone: str = ""
     kind: str = ""
 
@@ -46,17 +48,18 @@ def _tile(tile: Tile) -> str:
     value = f"{html.escape(number)}<small>{html.escape(unit)}</small>" if split else html.escape(tile.value)
     note = html.escape(tile.note)
     if tile.was and tile.was != tile.value:
-        note = f'was <span class="rm-was">{html.escape(tile.was)}</span>' + (f" · {note}" if note else "")
+        moved = f" · {html.escape(tile.change)}" if tile.change else ""
+        note = f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}'
     mark = badge(tile.kind) if tile.kind else ""
     return (
-        f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label"><span>{_label(tile.label)}</span>'
+        f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label"><span>{subscripts(tile.label)}</span>'
         f'{mark}</div><div class="rm-value">{value}</div><div class="rm-sub">{note}</div></div>'
     )
 
 
-def _label(text: str) -> str:
-    """``C_yy`` with its index set low."""
-    return re.sub(r"\b([A-Zδθ])_(\w+)", r"\1<sub>\2</sub>", html.escape(text))
+def subscripts(text: str) -> str:
+    """Text as HTML, with the indices of symbols like ``C_yy`` and ``a_2`` set low."""
+    return re.sub(r"\b([A-Za-zδθ])_(\w+)", r"\1<sub>\2</sub>", html.escape(text))
 
 
 def badge(kind: str, text: str = "") -> str:

@@ -14,6 +14,7 @@ from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, state
+from robomill.ui.tables import slides
 from robomill.units import format_si, from_si, to_si
 
 
@@ -66,14 +67,9 @@ def pose_sliders(project: state.Project, theta: FloatArray, result: SimulationRe
                   icon=":material/my_location:", disabled=result is None or result.worst < 0)  # fmt: skip
         st.button("Home", on_click=lambda: state.look(theta=tuple(robot.home.tolist())), type="tertiary",
                   key="pose:home", icon=":material/home:")  # fmt: skip
-        p = tool_pose(robot, theta)[:3, 3]
-        where = ", ".join(format_si(float(v), project.view.length, 1).partition(" ")[0] for v in p)
-        st.caption(f"Tip at ({where}) {project.view.length} in {{M}}")
-    prismatic = robot.prismatic[robot.free]
-    columns = st.columns(2, gap="large") if robot.n > 3 else [st.container()]
+    prismatic = slides(robot)[robot.free]
     for i, number in enumerate(robot.joint_numbers):
-        with columns[i % len(columns)]:
-            _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, "mm" if prismatic[i] else "deg", robot)
+        _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, "mm" if prismatic[i] else "deg", robot)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
@@ -88,9 +84,15 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
 
     for key in keys:
         inputs.seed(key, min(max(shown, low), high))
-    name, slider, box = st.columns([0.22, 1, 0.62], vertical_alignment="center")
+    name, slider, box = st.columns([0.14, 1, 0.5], vertical_alignment="center")
     name.markdown(f"**{label}**")
     slider.slider(label, low, high, key=keys[0], step=0.5, format="%.1f°" if unit == "deg" else "%.1f mm",
                   label_visibility="collapsed", on_change=take, args=(keys[0],))  # fmt: skip
     box.number_input(label, low, high, key=keys[1], step=1.0, format="%.2f", label_visibility="collapsed",
                      on_change=take, args=(keys[1],))  # fmt: skip
+
+
+def tip_words(robot: Robot, theta: FloatArray, unit: str) -> str:
+    """Where the tool tip is, in {M}."""
+    p = tool_pose(robot, theta)[:3, 3]
+    return f"Tip at ({', '.join(format_si(float(v), unit, 1).partition(' ')[0] for v in p)}) {unit} in {{M}}"

@@ -11,8 +11,10 @@ from robomill.viz.worker import RenderWorker
 
 @st.cache_resource(show_spinner=False)
 def worker() -> RenderWorker:
-    """The drawing process of this server."""
-    return RenderWorker()
+    """The drawing process of this server, on its way up."""
+    made = RenderWorker()
+    made.start()
+    return made
 
 
 @st.cache_resource(max_entries=64, show_spinner=False)

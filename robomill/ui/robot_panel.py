@@ -7,15 +7,12 @@ import pandas as pd
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import RobomillError
 from robomill.io.robots import load_robot, robot_names
-from robomill.robot.model import USER_SET, Provenance, Robot
+from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, parts, state, tables
 from robomill.ui.editors import table_editor
 from robomill.ui.pose import PoseNumbers
 from robomill.units import from_si, unit_label
-
-EDITED = Provenance("user", "entered in the app")
 
 
 def editors(project: state.Project) -> None:
@@ -28,8 +25,8 @@ def editors(project: state.Project) -> None:
     with geometry:
         table_editor(
             "geometry", lambda: tables.geometry_frame(state.project().setup.robot), _write_geometry,
-            columns={"joint": st.column_config.TextColumn("Joint", width="small"),
-                     **{label: st.column_config.NumberColumn(label, format="%.6g", width="small")
+            columns={"joint": st.column_config.TextColumn("#", width=34),
+                     **{label: st.column_config.NumberColumn(label, format="%.6g", width=56)
                         for label in tables.GEOMETRY.values()}},
             locked=("joint",),
         )  # fmt: skip
@@ -37,7 +34,7 @@ def editors(project: state.Project) -> None:
         _said(robot, "geometry")
         _said(robot, "lengths")
     with limits:
-        prismatic = bool(robot.prismatic.any())
+        prismatic = bool(tables.slides(robot).any())
         unit = "° (mm where it slides)" if prismatic else "°"
         table_editor(
             "limits", lambda: tables.limits_frame(state.project().setup.robot), _write_limits,
@@ -52,10 +49,15 @@ def editors(project: state.Project) -> None:
 
 
 def _which_robot(robot: Robot) -> None:
-    names = {name: name.replace("_", " ") for name in robot_names()}
+    names = {name: _title(name) for name in robot_names()}
     if robot.name not in names:
         names = {robot.name: robot.name, **names}
     inputs.choice("Robot", "robot.name", names, robot.name, _take_robot, horizontal=False)
+
+
+@st.cache_resource(max_entries=64, show_spinner=False)
+def _title(name: str) -> str:
+    return load_robot(name).title or name.replace("_", " ")
 
 
 def _take_robot(name: str) -> None:
@@ -91,13 +93,13 @@ def _compliances(robot: Robot, unit: str) -> None:
 
 def _write_geometry(frame: pd.DataFrame) -> None:
     robot = tables.with_geometry(state.project().setup.robot, frame)
-    marked = {**robot.provenance, "geometry": EDITED, "lengths": EDITED}
+    marked = {**robot.provenance, "geometry": state.EDITED, "lengths": state.EDITED}
     state.change(robot=robot.replace(provenance=marked), from_editor=True)
 
 
 def _write_limits(frame: pd.DataFrame) -> None:
     robot = tables.with_limits(state.project().setup.robot, frame)
-    state.change(robot=robot.replace(provenance={**robot.provenance, "limits": EDITED}), from_editor=True)
+    state.change(robot=robot.replace(provenance={**robot.provenance, "limits": state.EDITED}), from_editor=True)
 
 
 def _tool(robot: Robot) -> None:
@@ -112,7 +114,7 @@ def _tool(robot: Robot) -> None:
 def _said(robot: Robot, block: str) -> None:
     found = robot.provenance.get(block)
     if found is not None:
-        parts.note(f"{parts.badge(found.kind)} {found.source}")
+        parts.note(f"{parts.badge(found.kind)} {parts.subscripts(found.source)}")
 
 
 def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
@@ -142,8 +144,3 @@ def det_words(now: PoseNumbers) -> str:
     if not np.isfinite(now.det):
         return "the task Jacobian of this arm is not square"
     return "singular here" if abs(now.det) < 1e-6 else "0 at a singularity"
-
-
-def refuse_unknown(exc: RobomillError) -> None:
-    """Show a refusal of the panel."""
-    parts.error(exc)

@@ -9,16 +9,22 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.robot.model import Provenance
 from robomill.simulation.setup import SimulationSetup
 
 KEY = "robomill"
+EDITED = Provenance("user", "entered in the app")
+# Blocks of a set-up whose numbers become the user's own when their field is changed.
+BLOCKS = {
+    "source": "path", "T_MW": "part", "cutter": "cutter", "force": "force", "stock": "stock", "tolerance": "tolerance",
+}  # fmt: skip
 DEFAULT_PRESET = "paper_flute"
 MAX_HISTORY = 60
 
@@ -87,9 +93,7 @@ def store() -> Store:
     """The session's store; the first call opens the paper's milling test."""
     if KEY not in st.session_state:
         st.session_state[KEY] = Store(Project(preset_setup(DEFAULT_PRESET)))
-    found = st.session_state[KEY]
-    assert isinstance(found, Store) or type(found).__name__ == "Store"
-    return found  # type: ignore[no-any-return]
+    return cast(Store, st.session_state[KEY])
 
 
 def project() -> Project:
@@ -109,7 +113,11 @@ def change(*, label: str = "", from_editor: bool = False, **fields: Any) -> None
     Raises the RobomillError of the field that refuses; the project then stays as it was.
     """
     kept = store()
-    replace(dataclasses.replace(kept.project, setup=kept.project.setup.replace(**fields)), label, from_editor)
+    given = kept.project.setup
+    marked = dict(given.provenance) | {BLOCKS[name]: EDITED for name in fields if name in BLOCKS}
+    new = given.replace(**{"provenance": marked, **fields})
+    if new.digest() != given.digest():
+        replace(dataclasses.replace(kept.project, setup=new), label, from_editor)
 
 
 def replace(new: Project, label: str = "", from_editor: bool = False) -> None:

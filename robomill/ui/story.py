@@ -43,7 +43,7 @@ def cause(result: SimulationResult, unit: str) -> str:
     share = result.delta_joint[i] @ along / (np.linalg.norm(result.delta[i]) or 1.0)
     main = [j for j in order if share[j] > 0.08][:3]
     numbers = result.setup.robot.joint_numbers
-    blame = " and ".join(f"joint {numbers[j]} ({share[j]:.0%})" for j in main)
+    blame = " and ".join(f"joint {numbers[j]} ({100 * share[j]:.0f} %)" for j in main)
     force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
     digits = 4 if unit == "in" else 3
     moved = ", ".join(
@@ -61,7 +61,7 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         parts.error(exc)
         return
     scene = surface_picture(
-        result, shown, camera="iso", dark=dark, station=None, size=(1120, round(1120 * height / 560)), words=False,
+        result, shown, camera="iso", dark=dark, station=None, size=(940, round(940 * height / 560)), words=False,
     )  # fmt: skip
     png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
     alt = "The machined groove coloured by its signed error against the ideal one."
@@ -84,10 +84,12 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
 def where_from(setup: SimulationSetup) -> None:
     """Each block of numbers with its badge and its source."""
     rows = [
-        (s.what, html.escape(s.value), f"{parts.badge(s.provenance.kind)} {html.escape(s.provenance.source)}")
+        (s.what, parts.subscripts(s.value), f"{parts.badge(s.provenance.kind)} {parts.subscripts(s.provenance.source)}")
         for s in sources(setup)
     ]
-    body = "".join(f'<tr><td class="q">{html.escape(a)}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
+    body = "".join(
+        f'<tr><td class="q">{html.escape(a)}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows
+    )
     st.html(f'<table class="rm-facts">{body}</table>')
 
 

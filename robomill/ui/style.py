@@ -15,12 +15,15 @@ textarea { font-family: "Source Code Pro", "Source Code", monospace !important; 
 @media (max-width: 1080px) {
   [class*="st-key-split-"] > [data-testid="stLayoutWrapper"] > [data-testid="stHorizontalBlock"],
   [class*="st-key-split-"] > [data-testid="stHorizontalBlock"] { flex-wrap: wrap; }
-  [class*="st-key-split-"] > [data-testid="stLayoutWrapper"] > [data-testid="stHorizontalBlock"] > [data-testid="stColumn"],
-  [class*="st-key-split-"] > [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] { flex: 1 1 100%; min-width: 100%; }
+  [class*="st-key-split-"] > [data-testid="stLayoutWrapper"] > [data-testid="stHorizontalBlock"]
+    > [data-testid="stColumn"],
+  [class*="st-key-split-"] > [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
+    flex: 1 1 100%; min-width: 100%; }
 }
 [data-testid="stHeader"] { background: transparent; }
 h1, h2, h3 { letter-spacing: -0.012em; }
 h3 { margin-top: .35rem; }
+sub { line-height: 0; }
 [data-testid="stMetricValue"], .rm-value, .rm-num { font-variant-numeric: tabular-nums; }
 [data-testid="stSidebarNav"] a span { font-size: .95rem; }
 
@@ -33,8 +36,8 @@ h3 { margin-top: .35rem; }
 .rm-tiles { display: grid; grid-template-columns: repeat(4, minmax(0, 1fr)); gap: .8rem; margin: .2rem 0 .3rem 0; }
 @media (max-width: 900px) { .rm-tiles { grid-template-columns: repeat(2, minmax(0, 1fr)); } }
 .rm-tile { border: 1px solid color-mix(in srgb, currentColor 14%, transparent); border-radius: 8px;
-  padding: .75rem .95rem .7rem .95rem; background: color-mix(in srgb, currentColor 2.2%, transparent); position: relative;
-  overflow: hidden; min-height: 6.4rem; }
+  padding: .75rem .95rem .7rem .95rem; background: color-mix(in srgb, currentColor 2.2%, transparent);
+  position: relative; overflow: hidden; min-height: 6.4rem; }
 .rm-tile.ok::before, .rm-tile.tight::before, .rm-tile.out::before { content: ""; position: absolute; inset: 0 auto 0 0;
   width: 4px; background: var(--rm-tone); }
 .rm-tile.ok { --rm-tone: #0A84B5; } .rm-tile.tight { --rm-tone: #D69100; } .rm-tile.out { --rm-tone: #D2500F; }
@@ -63,7 +66,8 @@ h3 { margin-top: .35rem; }
 .rm-facts .v { min-width: 9.5rem; font-variant-numeric: tabular-nums; }
 
 .rm-barcell { width: 32%; min-width: 5rem; vertical-align: middle !important; }
-.rm-bar { display: block; height: .55rem; border-radius: 2px; background: color-mix(in srgb, var(--rm-hue) 72%, transparent); }
+.rm-bar { display: block; height: .55rem; border-radius: 2px;
+  background: color-mix(in srgb, var(--rm-hue) 72%, transparent); }
 
 .rm-matrix { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .95rem; margin: .1rem 0; }
 .rm-matrix td, .rm-matrix th { border: 0; padding: .28rem .8rem .28rem 0; text-align: right; font-weight: 400; }
@@ -79,6 +83,7 @@ h3 { margin-top: .35rem; }
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
 <g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">
 <path d="M6 30 L10 11 L25 8 L28 20"/></g>
-<g fill="{accent}"><circle cx="10" cy="11" r="3.6"/><circle cx="25" cy="8" r="3.2"/><path d="M25.6 20 h4.8 v7 l-2.4 3 -2.4 -3 z"/></g>
+<g fill="{accent}"><circle cx="10" cy="11" r="3.6"/><circle cx="25" cy="8" r="3.2"/>
+<path d="M25.6 20 h4.8 v7 l-2.4 3 -2.4 -3 z"/></g>
 <text x="42" y="25" font-family="Source Sans, Source Sans Pro, Helvetica, Arial, sans-serif" font-size="22"
  font-weight="600" letter-spacing="-0.4" fill="{text}">robomill</text></svg>"""

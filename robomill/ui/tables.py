@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError, ToolpathError
 from robomill.robot.model import Robot
 from robomill.toolpath.source import LinesSource
@@ -17,6 +17,11 @@ from robomill.units import from_si, to_si, unit_label
 PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
 GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
 LINE_COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
+
+
+def slides(robot: Robot) -> BoolArray:
+    """(rows,) True for prismatic joints."""
+    return np.asarray(robot.prismatic, dtype=bool)
 
 
 def is_stiffness(unit: str) -> bool:
@@ -90,7 +95,7 @@ def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
             typed = frame[label].iloc[i]
             if _empty(typed):
                 raise RobotError(f"Joint {i + 1}: the {label} limit is missing; type a number.")
-            limits[i, side] = to_si(float(typed), "mm" if robot.prismatic[i] else "deg")
+            limits[i, side] = to_si(float(typed), "mm" if slides(robot)[i] else "deg")
     return robot.replace(limits_all=limits)
 
 
@@ -127,11 +132,11 @@ def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def _names(robot: Robot) -> list[str]:
-    return [f"{i + 1}" + (" (slides)" if robot.prismatic[i] else "") for i in range(robot.rows)]
+    return [f"{i + 1}" + (" (slides)" if slides(robot)[i] else "") for i in range(robot.rows)]
 
 
 def _joint_units(robot: Robot, unit: str) -> list[str]:
-    return [PRISMATIC_UNITS[unit] if p else unit for p in robot.prismatic]
+    return [PRISMATIC_UNITS[unit] if p else unit for p in slides(robot)]
 
 
 def _geometry_unit(name: str) -> str:
@@ -139,7 +144,7 @@ def _geometry_unit(name: str) -> str:
 
 
 def _limit_values(robot: Robot, values: FloatArray) -> list[float]:
-    return [float(_clean(v, "mm" if p else "deg")) for v, p in zip(values, robot.prismatic, strict=True)]
+    return [float(_clean(v, "mm" if p else "deg")) for v, p in zip(values, slides(robot), strict=True)]
 
 
 def _clean(values: Any, unit: str) -> Any:

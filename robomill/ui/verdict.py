@@ -24,17 +24,21 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     def shown(value: float) -> str:
         return format_si(value, unit, digits)
 
+    def was(name: str) -> tuple[str, str]:
+        if old is None:
+            return "", ""
+        before = float(getattr(old, name))
+        return shown(before), format_si(float(getattr(result, name)) - before, unit, digits, sign=True)
+
     parts = ""
     if i >= 0:
         parts = " · ".join(
             f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
         )
-    share = f"{verdict.share:.0%} of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
+    share = f"{100 * verdict.share:.0f} % of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
     return [
-        Tile("Max deviation", shown(result.max_deviation), parts, shown(old.max_deviation) if old else "",
-             kind="computed"),
-        Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut",
-             shown(old.rms_deviation) if old else ""),
+        Tile("Max deviation", shown(result.max_deviation), parts, *was("max_deviation"), kind="computed"),
+        Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut", *was("rms_deviation")),
         Tile("Worst line", f"Line {result.worst_block}" if i >= 0 else "none reached", _where(result, unit)),
         Tile("Verdict", WORDS[verdict.level], share if np.isfinite(verdict.share) else "nothing reached",
              tone=TONES[verdict.level]),
@@ -59,7 +63,8 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
     depth = float(delta[2])
     words = "too deep" if depth < 0 else "too shallow"
-    return f"The groove is {format_si(abs(aside), unit, digits)} off {name} and {format_si(abs(depth), unit, digits)} {words}."
+    sideways, down = (format_si(abs(v), unit, digits) for v in (aside, depth))
+    return f"The groove is {sideways} off {name} and {down} {words}."
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

@@ -36,7 +36,9 @@ class ArmScene:
     bench: bool = True
 
 
-def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0) -> go.Figure:
+def arm_figure(
+    scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0
+) -> go.Figure:
     """The arm with everything in ``scene``; the camera stays while ``revision`` does.
 
     ``zoom`` below 1 suits a narrow column.
@@ -166,7 +168,7 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
     p = palette(dark)
     traces: list[Any] = []
     if scene.T_MW is not None:
-        traces += solids.frame(scene.T_MW, "W", 0.075 * reach, dark, label=0)
+        traces += solids.frame(scene.T_MW, "W", 0.075 * reach, dark, label=(-1.7, -0.6, 0.0))
     if scene.part is not None and scene.T_MW is not None:
         lower, upper = (np.asarray(corner, dtype=float) for corner in scene.part)
         traces.append(solids.trace([solids.box(lower, upper, scene.T_MW)], p.metal, "part", opacity=0.9,

@@ -92,8 +92,9 @@ def shares_figure(
     fig = figure(dark=dark, height=height, revision=f"shares-{component}", hovermode="x unified",
                  margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
     colours = joint_colours(7, dark)
+    shares, names, order = _without_the_small(shares, names)
     for j, name in enumerate(names):
-        colour = colours[j % 7]
+        colour = colours[order[j] % 7] if order[j] >= 0 else p.muted
         for sign in (1, -1):
             part = np.where(np.sign(np.nan_to_num(shares[i, j])) == sign, shares[i, j], 0.0)
             if not np.any(part):
@@ -114,6 +115,19 @@ def shares_figure(
         yaxis=axis(f"Share of δ<sub>{component.upper()}</sub>, {unit}", dark=dark),
     )
     return fig
+
+
+def _without_the_small(shares: FloatArray, names: Sequence[str]) -> tuple[FloatArray, list[str], list[int]]:
+    """Shares under 1 % of the largest as one "others"; the third value keeps each joint's own colour."""
+    size = np.nanmax(np.abs(shares), axis=0, initial=0.0, where=np.isfinite(shares))
+    large = size >= 0.01 * max(float(size.max(initial=0.0)), 1e-300)
+    kept = np.flatnonzero(large)
+    if large.all() or not large.any():
+        return shares, list(names), list(range(len(names)))
+    rest = shares[:, ~large].sum(axis=1, keepdims=True)
+    small = [name.removeprefix("joint ") for name, big in zip(names, large, strict=True) if not big]
+    label = f"joints {', '.join(small)} (under 1 %)"
+    return np.hstack([shares[:, large], rest]), [*(names[int(j)] for j in kept), label], [*kept.tolist(), -1]
 
 
 def plan_figure(
@@ -161,7 +175,7 @@ def plan_figure(
             "size": 6, "color": value[i][good], "colorscale": SEQUENTIAL, "cmin": 0, "cmax": limit or top,
             "colorbar": colour_bar(f"{title}, {unit}" if unit else title, dark=dark),
         },
-        hovertemplate="%{text}<br>x %{x:.2f}, y %{y:.2f}<br>" + title + " %{marker.color:.4f} " + unit + "<extra></extra>",
+        hovertemplate=f"%{{text}}<br>x %{{x:.2f}}, y %{{y:.2f}}<br>{title} %{{marker.color:.4f}} {unit}<extra></extra>",
         customdata=block[i][good],
     )  # fmt: skip
     lost = cutting[i] & ~reached[i]
@@ -183,6 +197,6 @@ def _mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:
         style: dict[str, Any] = {"color": palette(dark).accent, "width": 1.6}
         fig.add_vline(x=station, line=style)
         fig.add_annotation(
-            x=station, y=1, yref="paper", yshift=8, text="station", showarrow=False,
+            x=station, y=0, yref="paper", yshift=10, xshift=4, xanchor="left", text="station", showarrow=False,
             font={"size": 12, "color": palette(dark).accent},
         )  # fmt: skip

@@ -43,6 +43,12 @@ class SurfacePicture:
     captions: tuple[str, ...] = field(default=())
 
 
+def load() -> None:
+    """Import the graphics library ahead of the first picture."""
+    import matplotlib.colors  # noqa: F401
+    import pyvista  # noqa: F401
+
+
 def draw(picture: SurfacePicture) -> bytes:
     """PNG bytes of the picture. Needs a working OpenGL library; without one the process ends."""
     import io
@@ -170,7 +176,6 @@ def _colour_bar(plotter: Any, picture: SurfacePicture, colours: Any) -> None:
 def _words(plotter: Any, picture: SurfacePicture) -> None:
     p = palette(picture.dark)
     size = _font(picture, 11)
-    # VTK's own font has no Greek letters in every build: "um" would be wrong, so the unit is spelled with a sign it has.
     plotter.add_text("Error, \u00b5m", position=(0.835, 0.885), viewport=True, font_size=size, color=p.text)
     plotter.add_text("+ material left", position=(0.835, 0.815), viewport=True, font_size=size - 2, color=p.muted)
     plotter.add_text("\u2212 cut too deep", position=(0.835, 0.145), viewport=True, font_size=size - 2, color=p.muted)
@@ -185,6 +190,23 @@ def _words(plotter: Any, picture: SurfacePicture) -> None:
     )  # fmt: skip
 
 
+def _best_angle(picture: SurfacePicture, along: FloatArray, across: FloatArray, up: FloatArray) -> FloatArray:
+    """The angled view from the front left under which the block fills the picture best."""
+    size = np.array([np.ptp(picture.x), np.ptp(picture.y), float(np.nanmax(picture.z)) - picture.bottom])
+    aspect = picture.size[0] / picture.size[1]
+    views = []
+    for degrees in range(25, 70, 5):
+        turn = np.radians(degrees)
+        view = -np.cos(turn) * along - np.sin(turn) * across + 0.72 * up
+        view /= np.linalg.norm(view)
+        right = np.cross(up, view)
+        right /= np.linalg.norm(right)
+        upward = np.cross(view, right)
+        need = max(float(np.abs(upward) @ size) / 0.84, float(np.abs(right) @ size) / aspect / 0.79)
+        views.append((need, degrees, view))
+    return min(views, key=lambda v: (round(v[0], 6), v[1]))[2]
+
+
 def _font(picture: SurfacePicture, size: int) -> int:
     return max(9, round(size * picture.size[0] / 1150))
 
@@ -195,7 +217,7 @@ def _look(plotter: Any, picture: SurfacePicture) -> None:
     across = np.array([-along[1], along[0], 0.0])
     up = np.array([0.0, 0.0, 1.0])
     view = {
-        "iso": -0.55 * along - 0.75 * across + 0.62 * up,
+        "iso": _best_angle(picture, along, across, up),
         "along": -1.0 * along + 0.32 * up - 0.0 * across,
         "top": up,
         "front": -across + 0.02 * up,
@@ -217,8 +239,11 @@ def _look(plotter: Any, picture: SurfacePicture) -> None:
     aspect = picture.size[0] / picture.size[1]
     # 0.80 of the width is for the block, the rest for the colour bar; 0.86 of the height leaves room for words.
     scale = max(half_h / 0.84, half_w / aspect / 0.79)
-    plotter.camera.parallel_scale = scale
     shift = 0.105 * scale * aspect * right
+    if picture.captions:
+        scale *= 1.07
+        shift = shift - 0.07 * scale * upward  # the block moves up to make room for the words below it
+    plotter.camera.parallel_scale = scale
     plotter.camera.focal_point = centre + shift
     plotter.camera.position = centre + shift + distance * view
     plotter.camera.clipping_range = (0.1 * distance, 3.0 * distance)

@@ -16,12 +16,13 @@ from robomill.viz.theme import axis, figure, palette, rgba
 class SectionDrawing:
     """A section across the cut, everything in ``unit`` (mm or in).
 
-    u (k,): across the cut, + to the left of the feed, 0 on the commanded centre line; machined, ideal (k,): heights
-    in {W}. The dimensions are the measured ones, not read off the drawing; NaN where there is no groove.
+    u, u_ideal (k,): across the cut, + to the left of the feed, 0 on the commanded centre line; machined, ideal (k,):
+    heights in {W} there. The dimensions are the measured ones, not read off the drawing; NaN where there is no groove.
     """
 
     u: FloatArray
     machined: FloatArray
+    u_ideal: FloatArray
     ideal: FloatArray
     wall_left: float
     wall_right: float
@@ -48,7 +49,8 @@ def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, re
     fig.add_scatter(
         x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], mode="none", fill="toself", name="material",
         fillcolor=rgba(p.metal, 0.30), hoverinfo="skip",
-        fillpattern={"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge, "bgcolor": rgba(p.metal, 0.22)},
+        fillpattern={"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge,
+                     "bgcolor": rgba(p.metal, 0.22)},
     )  # fmt: skip
     fig.add_scatter(
         x=u, y=z, mode="lines", name="machined", line={"color": p.text, "width": 2.6},
@@ -56,17 +58,18 @@ def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, re
     )  # fmt: skip
     keep = np.isfinite(d.ideal)
     fig.add_scatter(
-        x=d.u[keep], y=d.ideal[keep], mode="lines", name="ideal", line={"color": p.accent, "width": 1.8, "dash": "dash"},
+        x=d.u_ideal[keep], y=d.ideal[keep], mode="lines", name="ideal",
+        line={"color": p.accent, "width": 1.8, "dash": "dash"},
         hovertemplate=f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>ideal</extra>",
     )  # fmt: skip
     if np.isfinite([d.wall_left, d.wall_right, d.depth]).all():
         _dimensions(fig, d, step, dark)
     # Left of the feed is +u; looking along the feed it lies on the left, so the axis runs backwards.
     fig.update_layout(
-        xaxis=axis(f"Across the cut, {d.unit} (+ is left of the feed)", dark=dark, showgrid=False,
+        xaxis=axis(f"Across the cut, {d.unit} (+ is left of the feed)", dark=dark, showgrid=False, constrain="domain",
                    range=[float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])]),
         yaxis=axis(f"Height z<sub>W</sub>, {d.unit}", dark=dark, scaleanchor="x", scaleratio=1, showgrid=False,
-                   range=[bottom, d.top + 1.45 * step]),
+                   constrain="domain", range=[bottom, d.top + 1.45 * step]),
     )  # fmt: skip
     return fig
 
@@ -100,10 +103,9 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
         fig, centre + side * reach, under, f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}",
         p.warm, p.background, xanchor="right" if side > 0 else "left",
     )  # fmt: skip
-    away = max(d.wall_left, d.wall_right) + 0.55 * step
+    away = 0.5 * (max(d.wall_left, d.wall_right) + float(np.nanmax(d.u)))
     _text(
         fig, away, d.floor, f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}", p.warm, p.background,
-        xanchor="right",
     )  # fmt: skip
 
 

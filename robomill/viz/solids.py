@@ -83,17 +83,19 @@ def arrow(start: ArrayLike, vector: ArrayLike, colour: str, name: str, label: st
     return [trace(meshes, colour, name), word]
 
 
-def frame(T: FloatArray, name: str, size: float, dark: bool, label: int = 2) -> list[Any]:
-    """The axes of a coordinate frame with its name at the end of axis ``label``."""
+def frame(
+    T: FloatArray, name: str, size: float, dark: bool, label: tuple[float, float, float] = (0, 0, 1.3)
+) -> list[Any]:
+    """The axes of a coordinate frame with its name at ``label`` (in axis lengths, in the frame itself)."""
     colours = axis_colours(dark)
     origin = T[:3, 3]
     traces: list[Any] = []
     for column, axis in enumerate("xyz"):
         end = origin + size * T[:3, column]
         traces.append(trace([tube(origin, end, 0.035 * size, sides=10)], colours[axis], name))
-    at = origin + 1.3 * size * T[:3, label]
+    at = origin + size * T[:3, :3] @ np.asarray(label, dtype=float)
     traces.append(go.Scatter3d(
         x=[at[0]], y=[at[1]], z=[at[2]], mode="text", text=[f"{{{name}}}"], hoverinfo="skip", showlegend=False,
-        textfont={"size": 13, "color": colours["xyz"[label]]}, name=name,
+        textfont={"size": 13, "color": colours["z"]}, name=name,
     ))  # fmt: skip
     return traces

@@ -50,7 +50,9 @@ def surface_figure(
         "xaxis": axis3d(f"x<sub>W</sub>, {unit}", dark=dark), "yaxis": axis3d(f"y<sub>W</sub>, {unit}", dark=dark),
         "zaxis": axis3d(f"z<sub>W</sub>, {unit}", dark=dark, nticks=3), "uirevision": revision, "dragmode": "turntable",
         "aspectmode": "manual",
-        "aspectratio": {"x": 1.7 * np.ptp(x) / span, "y": 1.7 * np.ptp(y) / span, "z": 1.7 * stretch * height_span / span},
+        "aspectratio": {
+            "x": 1.7 * np.ptp(x) / span, "y": 1.7 * np.ptp(y) / span, "z": 1.7 * stretch * height_span / span,
+        },
         "camera": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "projection": {"type": "orthographic"}},
     }, font={"color": p.text})  # fmt: skip
     return fig

@@ -77,7 +77,8 @@ def surface_picture(
         ideal=from_si(shown.ideal.z, "mm"), error_um=from_si(shown.error, "um"),
         limit_um=float(from_si(setup.tolerance, "um")), bottom=float(from_si(setup.stock_block.lower[2], "mm")),
         camera=camera, dark=dark, size=size, direction=(float(direction[0]), float(direction[1])),
-        station=None if station is None else tuple(from_si(where, "mm").tolist()), captions=tuple(captions) if words else (),
+        station=None if station is None else tuple(from_si(where, "mm").tolist()),
+        captions=tuple(captions) if words else (),
     )  # fmt: skip
 
 
@@ -131,13 +132,26 @@ def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
         beside = 0.45 * float(np.ptp(walls))
         w = np.clip(w, walls.min() - beside, walls.max() + beside)
     keep = w == section.w
+    w_machined = _upright(section.w, section.z_machined, (section.wall_left, section.wall_right), section.depth)
+    w_ideal = _upright(section.w, section.z_ideal, (section.wall_left_ideal, section.wall_right_ideal), section.depth)
     return SectionDrawing(
-        u=shown(section.w[keep]), machined=shown(section.z_machined[keep]), ideal=shown(section.z_ideal[keep]),
+        u=shown(w_machined[keep]), machined=shown(section.z_machined[keep]),
+        u_ideal=shown(w_ideal[keep]), ideal=shown(section.z_ideal[keep]),
         wall_left=shown(section.wall_left), wall_right=shown(section.wall_right), width=shown(section.width),
         depth=shown(section.depth), centre_offset=shown(section.centre_offset),
         floor_error=shown(section.floor_error), top=shown(section.floor + section.depth), floor=shown(section.floor),
         unit=unit,
     )  # fmt: skip
+
+
+def _upright(w: FloatArray, z: FloatArray, walls: tuple[float, float], depth: float) -> FloatArray:
+    """Positions with the two samples beside an upright wall put on the wall itself, where it was measured."""
+    placed = w.copy()
+    for wall in walls:
+        i = int(np.searchsorted(w, wall)) if np.isfinite(wall) else 0
+        if 0 < i < len(w) and abs(z[i] - z[i - 1]) > 0.6 * depth:
+            placed[i - 1 : i + 1] = wall
+    return placed
 
 
 def plan_view(result: SimulationResult, quantity: str, unit: str) -> dict[str, Any]:

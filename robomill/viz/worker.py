@@ -7,6 +7,7 @@ messages; it is killed when it takes too long and started again on the next call
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import select
@@ -27,8 +28,8 @@ _LENGTH = struct.Struct("<Q")
 class RenderWorker:
     """A handle on the drawing process. Calls from several threads wait for each other.
 
-    ``render(picture)`` returns PNG bytes (``picture`` is a dataclass of ``scene.py``). Raises RenderError with a sentence
-    and the command that mends it; after two deaths in a row the worker stays down until ``reset()``.
+    ``render(picture)`` returns PNG bytes (``picture`` is a dataclass of ``scene.py``). Raises RenderError with a
+    sentence and the command that mends it; after two deaths in a row the worker stays down until ``reset()``.
     """
 
     def __init__(self, timeout_s: float = TIMEOUT_S, command: tuple[str, ...] | None = None) -> None:
@@ -70,6 +71,13 @@ class RenderWorker:
             f"Rendered pictures need an OpenGL library that this machine lacks; as root, run: {MEND}. "
             "Everything else works without it."
         )
+
+    def start(self) -> None:
+        """Start the process without waiting for it, so that the first picture comes sooner."""
+        with self._lock:
+            if self._process is None and not self.down:
+                with contextlib.suppress(OSError):
+                    self._process = self._start()
 
     def close(self) -> None:
         """Stop the process; the next call starts it again."""
@@ -139,6 +147,7 @@ def main() -> None:
     stdin = sys.stdin.buffer
     from robomill.viz import scene
 
+    scene.load()
     while header := stdin.read(_LENGTH.size):
         message = stdin.read(_LENGTH.unpack(header)[0])
         answer: tuple[str, Any]

@@ -1,4 +1,6 @@
-"""Pictures of every page, light and dark, wide and narrow: ``python tests/browser/screenshots.py FOLDER [URL] [PAGE ...]``.
+"""Pictures of every page, light and dark, wide and narrow.
+
+Usage: ``python tests/browser/screenshots.py FOLDER [URL] [PAGE ...]``.
 
 Without a URL the app is started for the time it takes. Look at the pictures; nothing here judges them.
 """
@@ -18,8 +20,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync",
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ]  # fmt: skip
 WIDTHS = {"wide": 1440, "narrow": 800}
 TAB_PAGES = {"Robot": ("D-H table", "Limits", "Tool")}
@@ -77,6 +79,7 @@ def take(folder: Path, url: str, wanted: list[str]) -> None:
                     )  # fmt: skip
                     page = context.new_page()
                     for name, path in pages.items():
+                        page.set_viewport_size({"width": width, "height": 1000})
                         page.goto(url + path)
                         settle(page)
                         _whole(page, width)

@@ -1,0 +1,55 @@
+"""Compliance at a point as a body: where the tip goes under the same force in every direction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import FloatArray
+from robomill.compliance.deflection import soft_direction
+from robomill.viz import solids
+from robomill.viz.theme import palette
+
+
+def ellipsoid_mesh(C: FloatArray, centre: FloatArray, times: float, count: int = 28) -> solids.Mesh:
+    """Points centre + times * C u for unit vectors u: the ellipsoid with the principal compliances as half axes.
+
+    C (3, 3) m/N, centre (3,) m, ``times`` m per m/N.
+    """
+    v = np.linspace(0.0, np.pi, count)
+    u = np.linspace(0.0, 2.0 * np.pi, 2 * count, endpoint=False)
+    sphere = np.stack(
+        [np.outer(np.sin(v), np.cos(u)), np.outer(np.sin(v), np.sin(u)), np.outer(np.cos(v), np.ones_like(u))], axis=-1
+    )
+    points = np.asarray(centre) + times * sphere.reshape(-1, 3) @ np.asarray(C).T
+    columns = 2 * count
+    i, j = np.meshgrid(np.arange(count - 1), np.arange(columns), indexing="ij")
+    a, b = i * columns + j, i * columns + (j + 1) % columns
+    c, d = a + columns, b + columns
+    faces = np.concatenate([np.stack([a, c, b], axis=-1).reshape(-1, 3), np.stack([b, c, d], axis=-1).reshape(-1, 3)])
+    return points, faces.astype(float)
+
+
+def ellipsoid_scale(C: FloatArray, size: float) -> float:
+    """m per m/N so that the longest half axis is ``size`` m."""
+    top = float(soft_direction(C)[0][-1])
+    return size / top if top > 0 else 0.0
+
+
+def ellipsoid_traces(C: FloatArray, centre: FloatArray, times: float, *, dark: bool, width: float) -> list[Any]:
+    """The ellipsoid, half transparent, and its soft direction as a line through the tip with its word."""
+    p = palette(dark)
+    values, axes = soft_direction(C)
+    if values[-1] <= 0:
+        return []
+    soft = axes[:, -1] * times * values[-1]
+    end = np.asarray(centre) + 1.25 * soft
+    return [
+        solids.trace([ellipsoid_mesh(C, centre, times)], p.caution, "compliance ellipsoid", opacity=0.32),
+        solids.trace([solids.tube(centre - 1.12 * soft, centre + 1.12 * soft, 0.55 * width, sides=12)], p.caution,
+                     "soft direction"),
+        go.Scatter3d(x=[end[0]], y=[end[1]], z=[end[2]], mode="text", text=["softest"], hoverinfo="skip",
+                     textfont={"color": p.caution, "size": 13}, showlegend=False),
+    ]  # fmt: skip

@@ -1,0 +1,223 @@
+"""Figures of an identification: intervals beside reference values, correlations, residuals by test, models, plans.
+
+Arrays come in display units; nothing here converts. Joints keep their colours, words stand beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba
+
+MAX_TESTS = 3000
+REFERENCE_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open", "circle-open")
+_ROW = 46
+
+
+@dataclass(frozen=True, eq=False)
+class Intervals:
+    """Values (p,) with intervals low, high (p,) and their words; NaN values are not known.
+
+    references: name -> (p,), drawn as open symbols; ``truth`` (p,) as crosses; ``logarithmic`` for positive values.
+    """
+
+    labels: tuple[str, ...]
+    value: FloatArray
+    low: FloatArray
+    high: FloatArray
+    words: tuple[str, ...]
+    unit: str
+    references: Mapping[str, FloatArray] = field(default_factory=dict)
+    truth: FloatArray | None = None
+    logarithmic: bool = True
+
+
+def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
+    """Each parameter as a point on its 95 % interval, the numbers written at the right."""
+    p = palette(dark)
+    low, high = _clipped(shown)
+    fig = figure(dark=dark, height=84 + _ROW * len(shown.labels), revision=f"intervals-{shown.unit}",
+                 margin={"l": 8, "r": 156, "t": 34, "b": 8})  # fmt: skip
+    colours = joint_colours(7, dark)
+    y = np.arange(len(shown.labels))
+    for k in y:
+        if not np.isfinite(shown.value[k]):
+            fig.add_annotation(x=0.02, xref="paper", y=k, xanchor="left", text="not seen by these tests",
+                               showarrow=False, font={"size": 12.5, "color": p.muted})  # fmt: skip
+            continue
+        fig.add_scatter(
+            x=[low[k], high[k]], y=[k, k], mode="lines", showlegend=False, hoverinfo="skip",
+            line={"color": rgba(colours[k % 7], 0.42), "width": 11},
+        )  # fmt: skip
+    known = np.isfinite(shown.value)
+    fig.add_scatter(
+        x=shown.value[known], y=y[known], mode="markers", name="fitted, with its 95 % interval",
+        marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
+        text=[shown.words[k] for k in y[known]], hovertemplate="%{text}<extra></extra>",
+    )  # fmt: skip
+    for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
+        fig.add_scatter(
+            x=values, y=y - 0.3, mode="markers", name=name, marker={"size": 9, "symbol": symbol, "color": p.text,
+            "line": {"width": 1.6}}, hovertemplate=f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>",
+        )  # fmt: skip
+    if shown.truth is not None:
+        fig.add_scatter(
+            x=shown.truth, y=y, mode="markers", name="truth", hovertemplate="truth: %{x:.2f}<extra></extra>",
+            marker={"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": p.text}},
+        )  # fmt: skip
+    for k in y:
+        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", align="left", text=shown.words[k],
+                           showarrow=False, font={"size": 12.5, "color": p.text})  # fmt: skip
+    more = _log_axis(shown, low, high) if shown.logarithmic else {}
+    fig.update_layout(
+        xaxis=axis(shown.unit, dark=dark, **more),
+        yaxis=axis("", dark=dark, tickvals=y.tolist(), ticktext=list(shown.labels), range=[len(y) - 0.4, -0.62],
+                   showgrid=False, ticks=""),
+    )  # fmt: skip
+    return fig
+
+
+def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool, height: int = 330) -> go.Figure:
+    """Correlations (p, p) of the fitted parameters with their numbers; grey where one is not known."""
+    p = palette(dark)
+    text = [["" if np.isnan(v) else f"{v:+.2f}" if i != j else "1" for j, v in enumerate(row)]
+            for i, row in enumerate(correlation)]  # fmt: skip
+    fig = figure(dark=dark, height=height, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
+    fig.add_heatmap(
+        z=correlation, x=list(names), y=list(names), zmin=-1, zmax=1, colorscale=diverging(dark), xgap=2, ygap=2,
+        text=text, texttemplate="%{text}" if len(names) <= 8 else None, textfont={"size": 12},
+        colorbar=colour_bar("correlation", dark=dark, tickvals=[-1, -0.5, 0, 0.5, 1]),
+        hovertemplate="%{y} with %{x}: %{z:+.2f}<extra></extra>",
+    )  # fmt: skip
+    fig.update_layout(
+        plot_bgcolor=rgba(p.muted, 0.10),
+        xaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False),
+        yaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False, autorange="reversed"),
+    )
+    return fig
+
+
+def residuals_figure(
+    row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, *, dark: bool, height: int = 330
+) -> go.Figure:
+    """Residuals (m, k) of each test against its row (m,); ``outlier`` (m,) are ringed and named.
+
+    k = 3 components x, y, z, or 1. At most ``MAX_TESTS`` tests are drawn, outliers among them.
+    """
+    p = palette(dark)
+    chosen = np.arange(len(row))
+    if len(row) > MAX_TESTS:
+        spread = np.linspace(0, len(row) - 1, MAX_TESTS).astype(int)
+        chosen = np.unique(np.concatenate([spread, np.flatnonzero(outlier)[:MAX_TESTS]]))
+    fig = figure(dark=dark, height=height, revision=f"residuals-{unit}", margin={"l": 8, "r": 16, "t": 34, "b": 8})
+    colours = list(axis_colours(dark).items()) if residual.shape[1] == 3 else [("", p.accent)]
+    symbols = ("circle", "square", "diamond")
+    for k, (name, colour) in enumerate(colours):
+        fig.add_scatter(
+            x=row[chosen], y=residual[chosen, k], mode="markers", name=name or "residual",
+            marker={"size": 6, "color": colour, "symbol": symbols[k], "opacity": 0.85},
+            hovertemplate="row %{x}<br>%{y:+.4f} " + unit + f"<extra>{name}</extra>",
+        )  # fmt: skip
+    fig.add_hline(y=0, line={"color": p.line, "width": 1})
+    marked = np.flatnonzero(outlier)
+    if len(marked):
+        worst = np.nanargmax(np.where(np.isnan(residual[marked]), -1, np.abs(residual[marked])), axis=1)
+        fig.add_scatter(
+            x=row[marked], y=residual[marked, worst], mode="markers+text" if len(marked) <= 12 else "markers",
+            name="does not fit", text=[f"row {r}" for r in row[marked]], textposition="top center",
+            textfont={"size": 12, "color": p.bad}, hoverinfo="skip", cliponaxis=False,
+            marker={"size": 15, "symbol": "circle-open", "color": p.bad, "line": {"width": 2}},
+        )  # fmt: skip
+    fig.update_layout(
+        xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark)
+    )
+    return fig
+
+
+def models_figure(
+    names: Sequence[str], in_sample: FloatArray, left_out: FloatArray, chosen: int, *, dark: bool
+) -> go.Figure:
+    """Errors in % of each model on its own data and on poses left out; the gap between the two is the over-fitting."""
+    p = palette(dark)
+    y = np.arange(len(names))
+    fig = figure(dark=dark, height=84 + _ROW * len(names), revision="models",
+                 margin={"l": 8, "r": 96, "t": 34, "b": 8})  # fmt: skip
+    for k in y:
+        fig.add_scatter(x=[in_sample[k], left_out[k]], y=[k, k], mode="lines", showlegend=False, hoverinfo="skip",
+                        line={"color": rgba(p.warm, 0.55), "width": 6})  # fmt: skip
+        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", text=f"{left_out[k]:.3g} %",
+                           showarrow=False, font={"size": 13, "color": p.text})  # fmt: skip
+    fig.add_scatter(x=in_sample, y=y, mode="markers", name="on its own data", hovertemplate="%{x:.2f} %<extra></extra>",
+                    marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}})  # fmt: skip
+    fig.add_scatter(x=left_out, y=y, mode="markers", name="on poses left out",
+                    hovertemplate="%{x:.2f} %<extra></extra>", marker={"size": 11, "color": p.accent})  # fmt: skip
+    values = np.concatenate([in_sample, left_out])
+    values = values[np.isfinite(values) & (values > 0)]
+    ends = (values.min() / 1.6, values.max() * 1.6) if len(values) else (0.1, 100.0)
+    labels = [f"<b>{name}</b>" if k == chosen else name for k, name in enumerate(names)]
+    fig.update_layout(
+        xaxis=axis("Error, % of the measured displacement", dark=dark, type="log", range=np.log10(ends).tolist(),
+                   tickvals=_ticks(*ends), ticktext=[f"{t:g}" for t in _ticks(*ends)]),
+        yaxis=axis("", dark=dark, tickvals=y.tolist(), ticktext=labels, range=[len(y) - 0.4, -0.6], showgrid=False,
+                   ticks=""),
+    )  # fmt: skip
+    return fig
+
+
+def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, dark: bool) -> go.Figure:
+    """Half widths of the 95 % intervals in % of the value, as they are and as the planned tests should make them."""
+    p = palette(dark)
+    top = float(np.max(before[np.isfinite(before)], initial=float(np.max(after[np.isfinite(after)], initial=1.0))))
+    shown = np.where(np.isfinite(before), before, 1.15 * top)
+    fig = figure(dark=dark, height=84 + 42 * len(names), revision="gain", barmode="group", bargap=0.34, bargroupgap=0.06,
+                 margin={"l": 8, "r": 64, "t": 34, "b": 8})  # fmt: skip
+    words = [f"± {v:.2g} %" if np.isfinite(v) else "not seen" for v in before]
+    for name, values, text, colour in (
+        ("now", shown, words, rgba(p.muted, 0.55)),
+        ("after these tests", after, [f"± {v:.2g} %" for v in after], p.accent),
+    ):
+        fig.add_bar(
+            y=list(names), x=values, name=name, orientation="h", marker={"color": colour}, text=text,
+            textposition="outside", textfont={"size": 12, "color": p.text}, cliponaxis=False,
+            hovertemplate="%{y}: %{text}<extra>" + name + "</extra>",
+        )  # fmt: skip
+    fig.update_layout(
+        xaxis=axis("Half the 95 % interval, % of the value", dark=dark, rangemode="tozero"),
+        yaxis=axis("", dark=dark, autorange="reversed", showgrid=False, ticks=""),
+    )
+    return fig
+
+
+def _clipped(shown: Intervals) -> tuple[FloatArray, FloatArray]:
+    """The ends that can be drawn: on a logarithmic axis nothing at or below zero, and nothing infinite."""
+    low, high = shown.low.copy(), shown.high.copy()
+    if shown.logarithmic:
+        sizes = [shown.value, high, *shown.references.values()]
+        flat = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in sizes])
+        bottom, top = (float(flat.min()), float(flat.max())) if len(flat) else (1.0, 10.0)
+        low = np.where(low > bottom / 5, low, bottom / 5)
+        high = np.where(np.isfinite(high), high, top * 2)
+    return low, high
+
+
+def _log_axis(shown: Intervals, low: FloatArray, high: FloatArray) -> dict[str, object]:
+    known = np.isfinite(shown.value)
+    more = [v[np.isfinite(v) & (v > 0)] for v in shown.references.values()]
+    ends = np.concatenate([low[known], high[known], shown.value[known & (shown.value > 0)], *more])
+    ends = ends[np.isfinite(ends) & (ends > 0)]
+    bottom, top = (float(ends.min()), float(ends.max())) if len(ends) else (1.0, 10.0)
+    bottom, top = bottom / 1.25, top * 1.25
+    ticks = _ticks(bottom, top)
+    return {"type": "log", "range": [float(np.log10(bottom)), float(np.log10(top))], "tickvals": ticks,
+            "ticktext": [f"{t:g}" for t in ticks]}  # fmt: skip
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """1, 2, 5 and their tens between two positive numbers."""
+    decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    return [m * 10.0**d for d in decades for m in (1, 2, 5) if low <= m * 10.0**d <= high]

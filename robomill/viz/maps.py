@@ -1,0 +1,234 @@
+"""Maps over planes: any number of heat maps in one figure on common scales, with points to pick and the point in hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import FloatArray
+from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette
+
+PICKED_PER_MAP = 420  # points that can be clicked; each is an element of the page
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A colour scale that one or more maps share, in display units.
+
+    kind: "diverging" is symmetric about zero (signed values), "sequential" runs from low to high (sizes), "joints" has
+    one colour a joint, "reach" one for what is reached.
+    """
+
+    title: str
+    low: float
+    high: float
+    kind: Literal["diverging", "sequential", "joints", "reach"] = "sequential"
+    joints: tuple[int, ...] = ()
+    digits: int = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """One panel: values (nu, nv) in display units, NaN where not reached; ``scale`` names one of the figure's scales."""
+
+    title: str
+    values: FloatArray
+    scale: str = "main"
+    unit: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class MapSheet:
+    """Panels in rows over the same plane: u (nu,) across and v (nv,) upwards, in display units.
+
+    ``point`` (u, v) is marked in every panel; ``outline`` (lower, upper) is drawn as a dashed box.
+    """
+
+    rows: Sequence[Sequence[Map | None]]
+    u: FloatArray
+    v: FloatArray
+    u_title: str
+    v_title: str
+    scales: dict[str, Scale] = field(default_factory=dict)
+    point: tuple[float, float] | None = None
+    on_plane: bool = True
+    outline: tuple[tuple[float, float], tuple[float, float]] | None = None
+
+
+def symmetric_limit(values: Sequence[FloatArray]) -> float:
+    """The largest size over several maps, for a scale centred on zero; 1 where nothing is reached."""
+    tops = [float(np.nanmax(np.abs(v))) for v in values if np.isfinite(v).any()]
+    return max(tops, default=1.0) or 1.0
+
+
+def sheet_figure(
+    sheet: MapSheet, *, dark: bool, panel_height: int, revision: str, gap_x: float = 0.05, gap_y: int = 46
+) -> go.Figure:
+    """All panels of ``sheet`` in one figure; panning and zooming one moves all."""
+    n_rows, n_columns = len(sheet.rows), max(len(row) for row in sheet.rows)
+    top, bottom = 26, 44
+    height = top + n_rows * panel_height + (n_rows - 1) * gap_y + bottom
+    fig = figure(
+        dark=dark, height=height, revision=revision, dragmode="pan", hovermode="closest", hoverdistance=-1,
+        clickmode="event+select", showlegend=False, margin={"l": 8, "r": 8, "t": top, "b": bottom},
+    )  # fmt: skip
+    inner = height - top - bottom
+    width = (1.0 - gap_x * (n_columns - 1)) / n_columns
+    used = list(dict.fromkeys(m.scale for row in sheet.rows for m in row if m is not None))
+    for name in used:
+        fig.update_layout({f"coloraxis{_number(used.index(name))}": _colour_axis(sheet, name, used, dark)})
+    index = 0
+    for r, row in enumerate(sheet.rows):
+        y1 = 1.0 - r * (panel_height + gap_y) / inner
+        y0 = max(y1 - panel_height / inner, 0.0)
+        for c, panel in enumerate(row):
+            if panel is None:
+                continue
+            place = ((c * (width + gap_x), min(c * (width + gap_x) + width, 1.0)), (y0, min(y1, 1.0)))
+            _panel(fig, sheet, panel, index, place, used, (r == n_rows - 1 or _below_empty(sheet, r, c), c == 0), dark)
+            index += 1
+    return fig
+
+
+def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, event: Any) -> tuple[float, float] | None:
+    """(u, v) of the point clicked, from what the screen returns; None where nothing was picked."""
+    try:
+        points = event["selection"]["points"]
+    except (KeyError, TypeError):
+        return None
+    if not points:
+        return None
+    u, v = float(points[0]["x"]), float(points[0]["y"])
+    return float(sheet_u[np.abs(sheet_u - u).argmin()]), float(sheet_v[np.abs(sheet_v - v).argmin()])
+
+
+def _number(index: int) -> str:
+    return "" if index == 0 else str(index + 1)
+
+
+def _below_empty(sheet: MapSheet, r: int, c: int) -> bool:
+    return all(c >= len(row) or row[c] is None for row in sheet.rows[r + 1 :])
+
+
+def _colour_axis(sheet: MapSheet, name: str, used: list[str], dark: bool) -> dict[str, Any]:
+    scale = sheet.scales[name]
+    place = used.index(name)
+    bar = colour_bar(scale.title, dark=dark, x=1.005 + 0.075 * place)
+    if scale.kind == "joints":
+        count = len(scale.joints)
+        colours = joint_colours(count, dark)
+        steps = [[(i + side) / count, colours[i]] for i in range(count) for side in (0, 1)]
+        bar.update(tickvals=list(range(count)), ticktext=[f"joint {j}" for j in scale.joints])
+        return {"colorscale": steps, "cmin": -0.5, "cmax": count - 0.5, "colorbar": bar}
+    if scale.kind == "reach":
+        p = palette(dark)
+        return {"colorscale": [[0, p.panel], [1, p.accent]], "cmin": 0, "cmax": 1, "showscale": False}
+    if scale.kind == "diverging":
+        top = max(abs(scale.low), abs(scale.high)) or 1.0
+        return {"colorscale": diverging(dark), "cmin": -top, "cmax": top, "colorbar": bar}
+    high = scale.high if scale.high > scale.low else scale.low + 1e-9
+    return {"colorscale": SEQUENTIAL, "cmin": scale.low, "cmax": high, "colorbar": bar}
+
+
+def _panel(
+    fig: go.Figure,
+    sheet: MapSheet,
+    panel: Map,
+    index: int,
+    place: tuple[tuple[float, float], tuple[float, float]],
+    used: list[str],
+    titled: tuple[bool, bool],
+    dark: bool,
+) -> None:
+    p = palette(dark)
+    name = _number(index)
+    scale = sheet.scales[panel.scale]
+    fig.add_trace(go.Heatmap(
+        x=sheet.u, y=sheet.v, z=np.asarray(panel.values, dtype=np.float32).T, coloraxis=f"coloraxis{_number(used.index(panel.scale))}",
+        xaxis=f"x{name}", yaxis=f"y{name}", hoverinfo="skip", name=panel.title,
+    ))  # fmt: skip
+    _pick_layer(fig, sheet, panel, name, scale, dark)
+    if sheet.point is not None:
+        fig.add_trace(go.Scatter(
+            x=[sheet.point[0]], y=[sheet.point[1]], mode="markers", xaxis=f"x{name}", yaxis=f"y{name}", hoverinfo="skip",
+            marker={"symbol": "circle" if sheet.on_plane else "circle-open", "size": 9, "color": p.text,
+                    "line": {"color": p.background, "width": 1.6 if sheet.on_plane else 2}},
+            selected={"marker": {"opacity": 1}}, unselected={"marker": {"opacity": 1}},
+        ))  # fmt: skip
+    if sheet.outline is not None:
+        (u0, v0), (u1, v1) = sheet.outline
+        fig.add_shape(type="rect", x0=u0, y0=v0, x1=u1, y1=v1, xref=f"x{name}", yref=f"y{name}",
+                      line={"color": p.text, "width": 1.4, "dash": "dash"})  # fmt: skip
+    _axes(fig, sheet, panel, index, place, titled, dark)
+
+
+def _pick_layer(fig: go.Figure, sheet: MapSheet, panel: Map, name: str, scale: Scale, dark: bool) -> None:
+    """Unseen points over the map: a heat map alone returns no clicks. They carry the hover text, too."""
+    every = max(1, int(np.ceil(np.sqrt(len(sheet.u) * len(sheet.v) / PICKED_PER_MAP))))
+    iu, iv = _thin(len(sheet.u), every), _thin(len(sheet.v), every)
+    U, V = np.meshgrid(sheet.u[iu], sheet.v[iv], indexing="ij")
+    values = np.asarray(panel.values)[np.ix_(iu, iv)].ravel()
+    text = [hover_text(value, panel.unit, scale) for value in values]
+    fig.add_trace(go.Scatter(
+        x=U.ravel().astype(np.float32), y=V.ravel().astype(np.float32), mode="markers", text=text, name=panel.title,
+        xaxis=f"x{name}", yaxis=f"y{name}", marker={"size": 7, "opacity": 0, "color": palette(dark).text},
+        selected={"marker": {"opacity": 0}}, unselected={"marker": {"opacity": 0}},
+        hovertemplate=f"<b>{panel.title} %{{text}}</b><br>{sheet.u_title.partition(',')[0]} %{{x:.4g}}, "
+                      f"{sheet.v_title.partition(',')[0]} %{{y:.4g}}<extra></extra>",
+    ))  # fmt: skip
+
+
+def hover_text(value: float, unit: str, scale: Scale) -> str:
+    """A value of a map in words, as its hover text says it."""
+    if not np.isfinite(value):
+        return "not reached"
+    if scale.kind == "joints":
+        return f"joint {scale.joints[int(value)]}"
+    if scale.kind == "reach":
+        return "reached" if value > 0.5 else "not reached"
+    return f"{value:.{scale.digits}f} {unit}".strip().replace("-", "−")
+
+
+def _thin(count: int, every: int) -> FloatArray:
+    """Indices 0, every, ... so that the last one is the last point wherever that divides."""
+    start = ((count - 1) % every) // 2
+    return np.arange(start, count, every)
+
+
+def _axes(
+    fig: go.Figure, sheet: MapSheet, panel: Map, index: int,
+    place: tuple[tuple[float, float], tuple[float, float]], titled: tuple[bool, bool], dark: bool,
+) -> None:  # fmt: skip
+    p = palette(dark)
+    name = _number(index)
+    (x0, x1), (y0, y1) = place
+    lowest, leftmost = titled
+    link: dict[str, Any] = {} if index == 0 else {"matches": "x"}
+    link_y: dict[str, Any] = {} if index == 0 else {"matches": "y"}
+    half_u, half_v = _half_step(sheet.u), _half_step(sheet.v)
+    common = {"showgrid": False, "nticks": 5, "title": None, "automargin": False}
+    across = axis("", dark=dark, **common, **link) | {
+        "domain": [x0, x1], "anchor": f"y{name}", "showticklabels": lowest,
+        "range": [float(sheet.u[0] - half_u), float(sheet.u[-1] + half_u)],
+    }  # fmt: skip
+    upwards = axis("", dark=dark, **common, **link_y) | {
+        "domain": [y0, y1], "anchor": f"x{name}", "showticklabels": leftmost,
+        "range": [float(sheet.v[0] - half_v), float(sheet.v[-1] + half_v)], "automargin": leftmost,
+    }  # fmt: skip
+    if lowest:
+        across["title"] = {"text": sheet.u_title, "standoff": 4, "font": {"size": 12, "color": p.muted}}
+    if leftmost:
+        upwards["title"] = {"text": sheet.v_title, "standoff": 4, "font": {"size": 12, "color": p.muted}}
+    fig.update_layout({f"xaxis{name}": across, f"yaxis{name}": upwards})
+    fig.add_annotation(
+        x=x0, y=y1, xref="paper", yref="paper", xanchor="left", yanchor="bottom", yshift=2, text=panel.title,
+        showarrow=False, align="left", font={"size": 13, "color": p.text},
+    )  # fmt: skip
+
+
+def _half_step(points: FloatArray) -> float:
+    return 0.5 * float(np.diff(points).min()) if len(points) > 1 else 0.5

@@ -1,0 +1,106 @@
+"""The workspace in three dimensions: cells as voxels with only their outer faces, boxes as wires, beside the arm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.viz.solids import LIGHTING
+from robomill.viz.theme import SEQUENTIAL, colour_bar, diverging, palette
+
+# The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
+_CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+_FACES = {
+    (0, 0): (0, 1, 3, 2), (0, 1): (4, 6, 7, 5), (1, 0): (0, 4, 5, 1),
+    (1, 1): (2, 3, 7, 6), (2, 0): (0, 2, 6, 4), (2, 1): (1, 5, 7, 3),
+}  # fmt: skip
+
+
+def outer_faces(mask: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """(cell (f, 3), corners (f, 4, 3)): faces between a True cell of ``mask`` (nx, ny, nz) and one that is not.
+
+    Cells by index, corners in units of cells (cell i spans i - 1/2 to i + 1/2).
+    """
+    padded = np.pad(mask, 1)
+    cells, corners = [], []
+    for (axis, side), order in _FACES.items():
+        neighbour = np.roll(padded, -1 if side else 1, axis=axis)
+        found = np.argwhere((padded & ~neighbour)[1:-1, 1:-1, 1:-1]).astype(float)
+        cells.append(found)
+        corners.append(found[:, None, :] + _CORNERS[list(order)][None] - 0.5)
+    return np.concatenate(cells), np.concatenate(corners)
+
+
+def voxel_trace(
+    mask: BoolArray,
+    axes: tuple[FloatArray, FloatArray, FloatArray],
+    *,
+    dark: bool,
+    values: FloatArray | None = None,
+    limits: tuple[float, float] | None = None,
+    signed: bool = False,
+    title: str = "",
+    opacity: float = 0.35,
+) -> go.Mesh3d:
+    """Voxels of ``mask`` at the points of ``axes`` (m), in one colour, or coloured by ``values`` (nx, ny, nz)."""
+    cells, corners = outer_faces(mask)
+    points = np.stack([_place(axes[i], corners[..., i]) for i in range(3)], axis=-1).reshape(-1, 3)
+    first = 4 * np.arange(len(cells))
+    faces = np.concatenate([first[:, None] + [0, 1, 2], first[:, None] + [0, 2, 3]])
+    x, y, z = points.astype(np.float32).T
+    more: dict[str, Any] = {"color": palette(dark).accent}
+    if values is not None:
+        i, j, k = cells.astype(int).T
+        shown = values[i, j, k].astype(np.float32)
+        low, high = limits or (float(np.nanmin(shown)), float(np.nanmax(shown)))
+        more = {
+            "intensity": np.concatenate([shown, shown]), "intensitymode": "cell", "cmin": low, "cmax": high,
+            "colorscale": diverging(dark) if signed else SEQUENTIAL,
+            "colorbar": colour_bar(title, dark=dark, len=0.7),
+        }  # fmt: skip
+    return go.Mesh3d(
+        x=x, y=y, z=z, i=faces[:, 0].astype(np.int32), j=faces[:, 1].astype(np.int32), k=faces[:, 2].astype(np.int32),
+        opacity=opacity, flatshading=True, hoverinfo="skip", name="reach", showlegend=False, lighting=LIGHTING, **more,
+    )  # fmt: skip
+
+
+def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash: str = "solid") -> list[go.Scatter3d]:
+    """The edges of a box (m) with a word at its highest corner."""
+    c = np.where(_CORNERS.astype(bool), upper, lower)
+    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(_CORNERS[a] - _CORNERS[b]).sum() == 1]
+    gap = np.full(3, np.nan)
+    line = np.array([point for a, b in edges for point in (c[a], c[b], gap)])
+    return [
+        go.Scatter3d(
+            x=line[:, 0], y=line[:, 1], z=line[:, 2], mode="lines", line={"color": colour, "width": 5, "dash": dash},
+            name=label, hoverinfo="name", showlegend=False,
+        ),
+        go.Scatter3d(
+            x=[upper[0]], y=[lower[1]], z=[upper[2]], mode="text", text=[label], textposition="top center",
+            textfont={"color": colour, "size": 13}, hoverinfo="skip", showlegend=False,
+        ),
+    ]  # fmt: skip
+
+
+def widen(fig: go.Figure, lower: FloatArray, upper: FloatArray, room: float = 2.4) -> None:
+    """Stretch the ranges of a scene of ``arm_figure`` so that the box lower .. upper (m) is inside, and keep it true."""
+    scene = fig.layout.scene
+    low = np.array([scene[f"{a}axis"].range[0] for a in "xyz"], dtype=float)
+    high = np.array([scene[f"{a}axis"].range[1] for a in "xyz"], dtype=float)
+    low, high = np.minimum(low, lower), np.maximum(high, upper)
+    span = high - low
+    ratio = room * span / np.linalg.norm(span)
+    for i, name in enumerate("xyz"):
+        scene[f"{name}axis"].range = [float(low[i]), float(high[i])]
+    scene.aspectratio = dict(zip("xyz", ratio.tolist(), strict=True))
+
+
+def _place(axis: FloatArray, index: FloatArray) -> FloatArray:
+    """Coordinates at fractional indices; half a cell beyond the ends."""
+    if len(axis) == 1:
+        return axis[0] + index * 0.01
+    step = float(np.diff(axis).mean())
+    return np.interp(index, [-1.0, *range(len(axis)), float(len(axis))], [axis[0] - step, *axis, axis[-1] + step])
