@@ -15,7 +15,7 @@ from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
 from robomill.identification.crossvalidation import FOLDS, cross_validate, headline, relative_by_pose
-from robomill.identification.least_squares import Fit, robust_fit
+from robomill.identification.least_squares import Fit, RobustFit, robust_fit
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model
 from robomill.identification.result import Condition, IdentificationResult
@@ -51,8 +51,11 @@ def identify(
     system = build_system(robot, tests, choice)
     twins = diagnostics.twins(system)
     system = _lump(system, twins)
-    weights = _weights(system) if robust else None
+    gross = robust_fit(system.A / system.noise[:, None], system.b / system.noise) if robust else None
+    weights = None if gross is None else gross.weights
     fit = _fit(system, weights, list(twins))
+    if gross is not None:
+        fit = _robust_covariance(fit, _fit(system, None, list(twins)), gross)
     lumped = {system.parameters[k].label: system.parameters[j].label for k, j in twins.items()}
     return _result(robot, tests, choice, system, fit, weights, lumped, folds, left_out)
 
@@ -144,8 +147,11 @@ def _fit(system: System, weights: FloatArray | None, lumped: list[int]) -> Fit:
     return replace(fit, x=x, free=free, covariance=covariance, seen=seen, null=null)
 
 
-def _weights(system: System) -> FloatArray:
-    return robust_fit(system.A / system.noise[:, None], system.b / system.noise).weights
+def _robust_covariance(fit: Fit, plain: Fit, gross: RobustFit) -> Fit:
+    """Weights that were estimated: the covariance is that of an M-estimate, not of a fit with known weights."""
+    if plain.sigma == 0.0 or gross.sigma == 0.0:
+        return fit
+    return replace(fit, covariance=plain.covariance * (gross.sigma / plain.sigma) ** 2, sigma=gross.sigma)
 
 
 def _residuals(system: System, x: FloatArray, tests: int, width: int) -> FloatArray:

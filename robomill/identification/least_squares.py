@@ -124,11 +124,16 @@ def _condition(values: NDArray[Any]) -> float:
 
 @dataclass(frozen=True)
 class RobustFit:
-    """Tukey's bisquare: weights (e,), residuals (e,) of all equations, and the scale of the good ones."""
+    """Tukey's bisquare: weights (e,), residuals (e,) of all equations, and the scale of the good ones.
+
+    sigma: the standard deviation with which (A^T A)^-1 gives the covariance of this M-estimate (Huber, Robust
+    Statistics, ch. 7).
+    """
 
     weights: FloatArray
     residual: FloatArray
     scale: float
+    sigma: float = 0.0
 
 
 def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
@@ -162,4 +167,16 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
         weights = new
         if settled and not huber:
             break
-    return RobustFit(weights, residual, scale)
+    return RobustFit(weights, residual, scale, _robust_sigma(residual, scale, B.shape[1]))
+
+
+def _robust_sigma(residual: FloatArray, scale: float, p: int) -> float:
+    e = len(residual)
+    if scale == 0.0 or e <= p:
+        return 0.0
+    v = np.minimum((residual / (BISQUARE * scale)) ** 2, 1.0)
+    psi = residual * (1.0 - v) ** 2
+    slope = (1.0 - v) * (1.0 - 5.0 * v)
+    mean = float(slope.mean())
+    correction = 1.0 + p / e * float(slope.var()) / mean**2
+    return correction * float(np.sqrt((psi**2).sum() / (e - p))) / mean

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.errors import LoadTestError
 from robomill.kinematics.forward import tool_pose
+from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Finding
@@ -124,8 +125,6 @@ class LoadTests:
         if self.theta is not None:
             _check_joints(robot, self.theta, self.row)
             return self
-        from robomill.kinematics.inverse import inverse_kinematics
-
         assert self.x_M is not None
         poses, back = np.unique(self.x_M, axis=0, return_inverse=True)
         solved = inverse_kinematics(robot, pose_from_world(poses))

@@ -204,3 +204,18 @@ def parameter_rows(result: IdentificationResult) -> list[dict[str, object]]:
             }
         )
     return rows
+
+
+def residual_rows(result: IdentificationResult) -> list[dict[str, object]]:
+    """One row a test: its row in the file, residuals in m (rad for single joints), share of the measured, flagged."""
+    names = ("dx", "dy", "dz") if result.residual.shape[1] == 3 else ("angle",)
+    flagged = {outlier.row for outlier in result.outliers}
+    return [
+        {
+            "row": int(result.row[k]),
+            **{name: float(result.residual[k, i]) for i, name in enumerate(names)},
+            "share": float(result.residual_share[k]),
+            "outlier": int(result.row[k]) in flagged,
+        }
+        for k in range(len(result.row))
+    ]

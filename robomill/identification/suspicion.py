@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import cartesian_compliance
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Finding
@@ -79,8 +80,6 @@ def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
     """Typical m/N of the tests by the robot's own joint compliances, where it has any."""
     if robot is None or tests.theta is None or not np.any(robot.C_theta > 0):
         return None
-    from robomill.compliance.cartesian import cartesian_compliance
-
     chosen = np.linspace(0, len(tests) - 1, min(len(tests), 200)).astype(int)
     F = tests.wrench[chosen, :3]
     moved = np.einsum("mij,mj->mi", cartesian_compliance(robot, tests.theta[chosen]), F)

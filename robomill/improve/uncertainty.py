@@ -11,7 +11,7 @@ in F apart; their product and the lengths are of second order, which ``monte_car
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -137,6 +137,28 @@ def deflection_uncertainty(
     spread = [np.sqrt(np.clip(np.diagonal(part, axis1=-2, axis2=-1), 0.0, None)) for part in parts]
     total = frozen(parts[0] + parts[1] + parts[2])
     return Uncertain(frozen(delta), total, frozen(spread[0]), frozen(spread[1]), frozen(spread[2]), sources.dof)
+
+
+def identified_deflection(
+    robot: Robot,
+    result: IdentificationResult,
+    theta: ArrayLike,
+    F: ArrayLike,
+    *,
+    force: FloatArray | None = None,
+    lengths: FloatArray | None = None,
+) -> Uncertain:
+    """What an identification predicts at theta (..., n) under F (..., 3), extra springs included, with its band.
+
+    force (3, 3) N^2 and lengths (2 rows,) m as in Sources. A joint that was not seen keeps the robot's own value, taken
+    as unsure by all of it.
+    """
+    parameters = np.array(result.parameters)
+    if result.model != "constant":
+        unseen = ~np.isfinite(result.stderr)
+        parameters[: robot.n][unseen] = robot.C_theta[unseen]
+    sources = replace(Sources.of(result, robot), F=force, lengths=lengths)
+    return deflection_uncertainty(robot, theta, F, sources, model=result.choice, parameters=parameters)
 
 
 def length_derivative(

@@ -7,7 +7,8 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
-from robomill.units import from_si
+from robomill.identification.plan import Plan
+from robomill.units import format_si, from_si
 
 AXES = "xyz"
 WORLD = ("X", "Y", "Z", "A", "B")
@@ -36,6 +37,18 @@ def load_test_template(protocol: str = "joints", n: int = 5) -> str:
         "# The row below is an example: replace it.\n"
         f"{header}\n{row}\n"
     )
+
+
+def measuring_sheet(plan: Plan) -> str:
+    """A plan as CSV to take to the robot: poses, forces, empty dx, dy, dz; what it promises stands in the remarks."""
+    lines = [f"Next tests for {plan.goal}: {plan.sentence()}"]
+    lines.append("Fill in dx_mm, dy_mm, dz_mm: differences between loaded and unloaded readings, in {M}.")
+    for k, pose in enumerate(plan.x_M, 1):
+        place = ", ".join(format_si(float(v), "mm", 0) for v in pose[:3])
+        lines.append(
+            f"Test {k}: X, Y, Z = {place}; A, B = {', '.join(format_si(float(v), 'deg', 1) for v in pose[3:])}"
+        )
+    return load_tests_to_csv(plan.as_tests(), "\n".join(lines), blank=True)
 
 
 def load_tests_to_csv(tests: LoadTests, remarks: str = "", digits: int = 4, blank: bool = False) -> str:

@@ -227,6 +227,8 @@ def _text(path_or_text: str | Path) -> tuple[str, str]:
         raise LoadTestError(f"{path}: cannot be opened ({exc.strerror}); give the path of a CSV file.") from exc
     except UnicodeDecodeError as exc:
         raise LoadTestError(f"{path.name}: not a text file; save the table as CSV (UTF-8).") from exc
+    except ValueError as exc:
+        raise LoadTestError(f"{str(path_or_text)[:40]!r} is neither a file nor a table with a header.") from exc
 
 
 def _table(text: str) -> _Table:
@@ -316,7 +318,7 @@ def _is_number(cell: str) -> bool:
         float(cell)
     except ValueError:
         return False
-    return True
+    return "_" not in cell
 
 
 def _axes(name: str) -> tuple[str, str, str]:

@@ -10,7 +10,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
 from robomill.identification.plan import PathLoad, _best, box_candidates, next_best
 from robomill.identification.synthesis import simulated_tests
-from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
@@ -95,9 +95,11 @@ def test_an_unseen_joint_becomes_seen():
 
 def test_the_measuring_sheet_can_be_filled_in_and_read():
     plan = next_best(ROBOT, TESTS, RESULT, box_candidates(ROBOT, *BOX))
-    sheet = load_tests_to_csv(plan.as_tests(), "next tests", blank=True)
-    assert sheet.splitlines()[2].endswith(",,,")
-    filled = "\n".join(line[:-3] + ",0.5,0.1,0.2" if line.endswith(",,") else line for line in sheet.splitlines())
+    sheet = measuring_sheet(plan)
+    assert "narrow the interval" in sheet
+    rows = [line for line in sheet.splitlines() if not line.startswith("#")]
+    assert all(row.endswith(",,,") for row in rows[1:])
+    filled = "\n".join([rows[0], *(row[:-2] + "0.5,0.1,0.2" for row in rows[1:])])
     np.testing.assert_allclose(rm.read_load_tests(filled).theta, plan.theta, atol=1e-7)
 
 

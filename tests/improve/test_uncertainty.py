@@ -13,6 +13,7 @@ from robomill.improve.uncertainty import (
     Sources,
     compliance_uncertainty,
     deflection_uncertainty,
+    identified_deflection,
     length_derivative,
     monte_carlo,
     quantile,
@@ -131,6 +132,18 @@ def test_unseen_joints_widen_the_band_rather_than_narrow_it():
     assert sources.covariance[0, 0] == pytest.approx(ROBOT.C_theta[0] ** 2)
     push = deflection_uncertainty(blind.applied_to(ROBOT), THETA, [100.0, 0, 0], sources)
     assert (push.std[:, 0] > 0.3 * push.delta[:, 0]).all()
+
+
+def test_what_was_identified_is_predicted_with_its_extra_springs():
+    tests = rm.read_load_tests(samples_dir() / "load_tests" / "tilted_bending_tool.csv")
+    result = identify(ROBOT, tests, "joints+bending+tool")
+    theta, load = tests.theta[::3], tests.wrench[::3, :3]
+    found = identified_deflection(ROBOT, result, theta, load, force=np.eye(3) * 4.0)
+    gap = np.abs(found.delta - tests.displacement[::3, :3])
+    assert gap.max() < 4 * result.noise
+    assert (found.by_compliance < result.noise).all()
+    assert (found.by_force > 0).all()
+    assert found.dof == result.dof
 
 
 def test_unreached_points_are_nan():
