@@ -24,7 +24,7 @@ def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
 
 
 def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """C (..., 3, 3) m/N of the tip in {M} at theta (..., n): the translational block of J C_theta J^T. Eqs. (11), (12)."""
+    """C (..., 3, 3) m/N of the tip in {M} at theta (..., n): translational block of J C_theta J^T. Eqs. (11), (12)."""
     return pose_jacobian_compliance(robot, theta)[2]
 
 

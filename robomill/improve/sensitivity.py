@@ -22,8 +22,9 @@ STIFFER = 1.1  # the usual question: 10 % stiffer
 class Sensitivity:
     """What ``factor`` times the stiffness of each joint alone buys.
 
-    before (...,): the measure as it is (SI); gain (..., n): how much smaller it becomes with joint i stiffer (positive is
-    better); ranking (n,): joints, 0-based, by their mean gain, best first; joint_numbers names them as the robot does.
+    before (...,): the measure as it is (SI); gain (..., n): how much smaller it becomes with joint i stiffer (positive
+    is better); ranking (n,): joints, 0-based, by their mean gain, best first; joint_numbers
+    names them as the robot does.
     """
 
     factor: float

@@ -19,8 +19,8 @@ SUFFIXES = (".csv", ".parquet", ".vti")
 def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
     """Write one or more fields over the same grid; the suffix of ``path`` says the format.
 
-    CSV and Parquet: one row a cell, columns X_mm, Y_mm, Z_mm and one a quantity with its unit in the name. ``.vti``: image
-    data in m and SI, which needs evenly spaced axes. NaN marks cells that are not reached. Raises WorkspaceError.
+    CSV and Parquet: one row a cell, columns X_mm, Y_mm, Z_mm and one a quantity with its unit in the name. ``.vti``:
+    image data in m and SI, which needs evenly spaced axes. NaN marks cells that are not reached. Raises WorkspaceError.
     """
     path = Path(path)
     suffix = path.suffix.lower()

@@ -14,7 +14,7 @@ from robomill.robot.model import Provenance, Robot
 MOVING = ("revolute", "continuous", "prismatic")
 # A URDF holds no compliances: 1 um/N at a metre for every joint, marked assumed, until the user gives better ones.
 DEFAULT_COMPLIANCE = 1e-6
-PARALLEL = 1e-12
+PARALLEL = 1e-9
 
 
 def read_urdf(path: str | Path, *, base: str | None = None, tip: str | None = None, name: str | None = None) -> Robot:
@@ -114,7 +114,8 @@ def _robot(chain: list[Any], name: str, where: str) -> Robot:
             continue
         if joint.type not in MOVING:
             raise RobotError(
-                f"{where}: joint {joint.name!r} is of type {joint.type!r}; only revolute, continuous, prismatic and fixed can be read."
+                f"{where}: joint {joint.name!r} is of type {joint.type!r}; "
+                "only revolute, continuous, prismatic and fixed joints can be read."
             )
         if joint.mimic is not None:
             raise RobotError(f"{where}: joint {joint.name!r} mimics another; only independent joints can be read.")
@@ -127,7 +128,7 @@ def _robot(chain: list[Any], name: str, where: str) -> Robot:
     if not moving:
         raise RobotError(f"{where}: has no moving joints; a robot needs 2 to 7.")
     prismatic = np.array([joint.type == "prismatic" for joint in moving])
-    table = dh_from_axes(np.array(axes), np.array(points), prismatic, T_M)
+    table: dict[str, Any] = dict(dh_from_axes(np.array(axes), np.array(points), T_M))
     file = Provenance("user", f"URDF file {where}")
     return Robot(
         name=name,
@@ -153,8 +154,8 @@ def _limits(joint: Any, where: str) -> list[float]:
     return [float(limit.lower), float(limit.upper)]
 
 
-def dh_from_axes(k: FloatArray, p: FloatArray, prismatic: Any, T_MT: FloatArray) -> dict[str, FloatArray]:
-    """Columns of a modified D-H table, T_base and T_tool, from joint axes at zero: k (n, 3) unit, p (n, 3) m, tool T_MT.
+def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, FloatArray]:
+    """Columns of a modified D-H table, T_base and T_tool, from the joint axes at zero: k (n, 3) unit, p (n, 3) m.
 
     Frame i has its z along axis i and its x along the common perpendicular from axis i to axis i + 1 (any where they
     cross, as before where they are parallel). The base frame takes up where the first one stands.
@@ -163,26 +164,7 @@ def dh_from_axes(k: FloatArray, p: FloatArray, prismatic: Any, T_MT: FloatArray)
     frames = []
     x = _any_square(k[0])
     for i in range(n):
-        origin = p[i]
-        if i + 1 < n:
-            across = np.cross(k[i], k[i + 1])
-            size = np.linalg.norm(across)
-            gap = p[i + 1] - p[i]
-            if size > 1e-9:
-                origin = p[i] + k[i] * (np.cross(gap, k[i + 1]) @ across) / size**2
-                between = gap - k[i] * (gap @ k[i])
-                foot = origin + across / size * (gap @ across) / size
-                x = (
-                    across / size
-                    if np.linalg.norm(foot - origin) < PARALLEL
-                    else (foot - origin) / np.linalg.norm(foot - origin)
-                )
-            else:
-                between = gap - k[i] * (gap @ k[i])
-                size = np.linalg.norm(between)
-                x = between / size if size > 1e-9 else _square_part(x, k[i])
-        else:
-            x = _square_part(x, k[i])
+        x, origin = _common_perpendicular(k, p, i, x) if i + 1 < n else (_square_part(x, k[i]), p[i])
         T = np.eye(4)
         T[:3, :3] = np.column_stack([x, np.cross(k[i], x), k[i]])
         T[:3, 3] = origin
@@ -199,6 +181,19 @@ def dh_from_axes(k: FloatArray, p: FloatArray, prismatic: Any, T_MT: FloatArray)
         "alpha": alpha, "a": a, "d": d, "theta_offset": theta,
         "T_base": _rigid(frames[0]), "T_tool": _rigid(np.linalg.inv(frames[-1]) @ T_MT),
     }  # fmt: skip
+
+
+def _common_perpendicular(k: FloatArray, p: FloatArray, i: int, before: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(x, origin) of the frame on axis i: x from axis i to axis i + 1, origin where the perpendicular leaves axis i."""
+    across = np.cross(k[i], k[i + 1])
+    size = float(np.linalg.norm(across))
+    gap = p[i + 1] - p[i]
+    if size > PARALLEL:
+        origin = p[i] + k[i] * (np.cross(gap, k[i + 1]) @ across) / size**2
+        return across * (-1.0 if gap @ across < 0 else 1.0) / size, origin
+    between = gap - k[i] * (gap @ k[i])
+    size = float(np.linalg.norm(between))
+    return (between / size if size > PARALLEL else _square_part(before, k[i])), p[i]
 
 
 def _any_square(k: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ Solver = Callable[[FloatArray], tuple[FloatArray, BoolArray]]
 def choose(
     robot: Robot, every: FloatArray, possible: BoolArray, goal: FloatArray, arm_first: bool
 ) -> tuple[FloatArray, IntArray, FloatArray]:
-    """(theta (m, n), index (m,), cost (m,)): of the possible solutions every (m, 8, n), the one within limits nearest ``goal``.
+    """(theta (m, n), index (m,), cost (m,)): of the solutions every (m, 8, n) within limits, the nearest to ``goal``.
 
     Nearness is the sum of squared joint motions. With ``arm_first`` the order of shoulder and elbow goes before it.
     index -1 and infinite cost where none is within limits.
@@ -41,9 +41,9 @@ def choose(
 def settle(robot: Robot, theta: FloatArray, near: FloatArray) -> tuple[FloatArray, BoolArray]:
     """(theta (..., n), within (...,)): angles turned towards ``near`` and, within rounding, put inside the limits."""
     turned = wrap(theta, robot.limits, near)
-    within = (np.abs(overshoot(robot, turned)) <= LIMIT_SLACK).all(axis=-1)
+    within: BoolArray = np.all(np.abs(overshoot(robot, turned)) <= LIMIT_SLACK, axis=-1)
     clipped = np.clip(turned, robot.limits[:, 0], robot.limits[:, 1])
-    return np.where(within[..., None], clipped, turned), within
+    return np.where(np.expand_dims(within, -1), clipped, turned), within
 
 
 def choose_spin(

@@ -5,8 +5,9 @@ parallel, axis 1 square to them, axes 4, 5 (and 6) through one point, axes 4 and
 elbow offsets are free. With five axes the tip must lie on the tool axis through the wrist centre, because only the tool
 axis is commanded.
 
-Every solution is found in the arm's own frame {S}: z along axis 1, y along axis 2, origin on axis 1 at the height of axis 2.
-A rotation about y by phi turns the complex number x - i z by exp(i phi), which makes shoulder and elbow two divisions.
+Every solution is found in the arm's own frame {S}: z along axis 1, y along axis 2, origin on axis 1 at the height of
+axis 2. A rotation about y by phi turns the complex number x - i z by exp(i phi), which makes shoulder and elbow two
+divisions.
 """
 
 from __future__ import annotations
@@ -30,9 +31,9 @@ SIDES = np.array([1.0, -1.0])
 class Decoupled:
     """Constants of a decoupled arm. Lengths in m.
 
-    S (3, 3) rows are the axes of {S} in {M}, origin (3,) its origin; a_1 shoulder offset, h lateral offset; l_2, l_3 the
-    two links as (re, im) of x - i z at theta = 0; W (3, 3) rows are the wrist's axes in {S} (y along axis 5, z along
-    axis 4); u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u, its
+    S (3, 3) rows are the axes of {S} in {M}, origin (3,) its origin; a_1 shoulder offset, h lateral offset; l_2, l_3
+    the two links as (re, im) of x - i z at theta = 0; W (3, 3) rows are the wrist's axes in {S} (y along axis 5, z
+    along axis 4); u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u, its
     normal c_g (six axes), and the shift c_w from the wrist centre to the tip; g, gn (3,) the normal and u x g in wrist
     axes; direction (n,) turns the angles about S's and W's axes into theta.
     """
@@ -165,7 +166,7 @@ def unit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def solution_columns(arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """(theta (m, 8, n), possible (m, 8)) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, each +, -; angles in (-pi, pi].
+    """(theta (m, 8, n), possible (m, 8)) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, in (-pi, pi].
 
     Where the geometry has no solution the nearest attempt is given and ``possible`` is False; a check by forward
     kinematics has the last word.

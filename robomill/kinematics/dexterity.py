@@ -78,9 +78,9 @@ def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:
 def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:
     """Singular values (..., r), falling, of the task Jacobian; rows in m/rad and rad/rad as they stand."""
     J = task_matrix(robot, theta)
-    finite = np.isfinite(J).all(axis=(-1, -2))
-    values = np.linalg.svd(np.where(finite[..., None, None], J, 0.0), compute_uv=False)
-    return np.where(finite[..., None], values, np.nan)
+    finite = np.all(np.isfinite(J), axis=(-1, -2), keepdims=True)
+    values: FloatArray = np.linalg.svd(np.where(finite, J, 0.0), compute_uv=False)
+    return np.where(finite[..., 0], values, np.nan)
 
 
 def smallest_singular_value(robot: Robot, theta: ArrayLike) -> FloatArray:

@@ -89,7 +89,7 @@ def inverse_kinematics(
 
 
 def all_branches(robot: Robot, T_MT: ArrayLike) -> tuple[FloatArray, BoolArray]:
-    """(theta (..., 8, n), sound (..., 8)): every closed-form solution, limits left aside, in the order of ``branch_names()``.
+    """(theta (..., 8, n), sound (..., 8)): every closed-form solution, without limits, ordered as ``branch_names()``.
 
     ``sound`` says which meet the pose by forward kinematics to 1e-9 m and rad; angles are in (-pi, pi]. Six axes: the
     whole pose. Raises KinematicsError where the arm has no closed form.
@@ -123,7 +123,7 @@ def branch_mask(branch: str | None) -> BoolArray:
     mask = np.array([all(part in name.split(", ") for part in parts) for name in names])
     if not parts or not mask.any():
         raise KinematicsError(
-            f"branch {branch!r}: expected some of front, back, elbow up, elbow down, wrist +, wrist -, joined by commas."
+            f"branch {branch!r}: expected some of front, back, elbow up, elbow down, wrist +, wrist -."
         )
     return mask
 

@@ -104,7 +104,7 @@ def task_rows(T_MT: FloatArray, J: FloatArray) -> FloatArray:
 
 def tilt_axes(k: FloatArray) -> FloatArray:
     """The rows x', y' (..., 2, 3) of R_x(A) R_y(B) for tool axes k (..., 3); NaN in gives NaN out."""
-    finite = np.isfinite(k).all(axis=-1, keepdims=True)
+    finite = np.all(np.isfinite(k), axis=-1, keepdims=True)
     tilt = tilt_from_axis(np.where(finite, k, [0.0, 0.0, 1.0]))
     R = rotation_x(tilt[..., 0]) @ rotation_y(tilt[..., 1])
-    return np.where(finite[..., None], np.swapaxes(R, -1, -2)[..., :2, :], np.nan)
+    return np.where(np.expand_dims(finite, -1), np.swapaxes(R, -1, -2)[..., :2, :], np.nan)

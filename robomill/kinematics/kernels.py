@@ -5,6 +5,8 @@ compiler can prove the rows apart and use vector instructions. The NumPy columns
 same formulas, and a test holds the two together. Import only through ``compiled``.
 """
 
+# mypy: disable-error-code="no-untyped-def, attr-defined, call-overload"
+# numba types these functions by their signatures; Python's annotations would say nothing more.
 from __future__ import annotations
 
 import numpy as np
@@ -28,7 +30,7 @@ TOOL_ROWS = 15
 
 
 @njit(inline="always")
-def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):  # type: ignore[no-untyped-def]
+def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):
     """Run the chain over rows first .. first + n of theta: fills tool (15, LANES) and axes (6 n, LANES).
 
     axes holds, for each joint, its axis z (3 rows) and a point on it (3 rows), before the joint moves.
@@ -78,7 +80,7 @@ def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):  
 
 
 @njit(inline="always")
-def jacobian_block(tool, axes, n, sign, prismatic, J):  # type: ignore[no-untyped-def]
+def jacobian_block(tool, axes, n, sign, prismatic, J):
     """J (6 n, LANES), six rows a joint, from the buffers of ``chain_block``."""
     for i in range(n):
         k = 6 * i
@@ -99,7 +101,7 @@ def jacobian_block(tool, axes, n, sign, prismatic, J):  # type: ignore[no-untype
 
 
 @njit(inline="always")
-def load_rows(theta, start, count, block):  # type: ignore[no-untyped-def]
+def load_rows(theta, start, count, block):
     """Rows start .. start + count of theta (m, n) into block (n, LANES); spare lanes repeat the last row."""
     for lane in range(LANES):
         row = start + min(lane, count - 1)
@@ -108,7 +110,7 @@ def load_rows(theta, start, count, block):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def store_pose(tool, start, count, T_MT):  # type: ignore[no-untyped-def]
+def store_pose(tool, start, count, T_MT):
     """The tool buffer into T_MT[start : start + count]."""
     for lane in range(count):
         for r in range(3):
@@ -121,7 +123,7 @@ def store_pose(tool, start, count, T_MT):  # type: ignore[no-untyped-def]
 
 
 @njit(void(IN2, *CHAIN, OUT3), **OPTIONS)
-def forward(theta, T_0, E, sign, offset, prismatic, T_MT):  # type: ignore[no-untyped-def]
+def forward(theta, T_0, E, sign, offset, prismatic, T_MT):
     """T_MT (m, 4, 4) of theta (m, n)."""
     m, n = theta.shape
     block, tool, axes = np.empty((n, LANES)), np.empty((TOOL_ROWS, LANES)), np.empty((6 * n, LANES))
@@ -133,7 +135,7 @@ def forward(theta, T_0, E, sign, offset, prismatic, T_MT):  # type: ignore[no-un
 
 
 @njit(void(IN2, *CHAIN, IN1, OUT3, OUT3, OUT3), **OPTIONS)
-def forward_jacobian(theta, T_0, E, sign, offset, prismatic, weight, T_MT, J_out, G_out):  # type: ignore[no-untyped-def]
+def forward_jacobian(theta, T_0, E, sign, offset, prismatic, weight, T_MT, J_out, G_out):
     """T_MT (m, 4, 4), J (m, 6, n) and, where G (m, 3, 3) has rows, G = J_v diag(weight) J_v^T of theta (m, n)."""
     m, n = theta.shape
     block, tool, axes = np.empty((n, LANES)), np.empty((TOOL_ROWS, LANES)), np.empty((6 * n, LANES))

@@ -3,6 +3,8 @@
 The formulas are those of ``decoupled`` and are explained there. Import only through ``compiled``.
 """
 
+# mypy: disable-error-code="no-untyped-def, attr-defined, call-overload"
+# numba types these functions by their signatures; Python's annotations would say nothing more.
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +13,15 @@ from numba.types import float64, void
 
 from robomill.kinematics.kernel_math import arc_tangent
 from robomill.kinematics.kernels import (
-    CHAIN, FLAGS2, IN1, IN3, LANES, OPTIONS, OUT3, TOOL_ROWS, chain_block,
+    CHAIN,
+    FLAGS2,
+    IN1,
+    IN3,
+    LANES,
+    OPTIONS,
+    OUT3,
+    TOOL_ROWS,
+    chain_block,
 )  # fmt: skip
 
 ROUNDING = 1e-12
@@ -27,7 +37,7 @@ P_S, P_W, P_O, P_A1, P_H, P_L2, P_L3, P_U, P_G, P_GN, P_CU, P_CG, P_CW, P_DIR = 
 
 
 @njit(inline="always")
-def load_targets(T_MT, start, count, P, target):  # type: ignore[no-untyped-def]
+def load_targets(T_MT, start, count, P, target):
     """Poses start .. start + count of T_MT (m, 4, 4) into the target buffer (15, LANES)."""
     for lane in range(LANES):
         row = start + min(lane, count - 1)
@@ -44,7 +54,7 @@ def load_targets(T_MT, start, count, P, target):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def into_base(P, target):  # type: ignore[no-untyped-def]
+def into_base(P, target):
     """Turn rows 6 .. 14 of the target buffer from {M} into the arm's frame {S}."""
     s0, s1, s2, s3, s4, s5, s6, s7, s8 = P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[8]
     for first in range(6, 15, 3):
@@ -56,7 +66,7 @@ def into_base(P, target):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def solve_block(target, P, n, arm, theta, possible):  # type: ignore[no-untyped-def]
+def solve_block(target, P, n, arm, theta, possible):
     """theta (8 n, LANES), possible (8, LANES; 1 or 0) from the target buffer; arm (14, LANES) is room to work in."""
     a_1, h = P[P_A1], P[P_H]
     l2x, l2y, l3x, l3y = P[P_L2], P[P_L2 + 1], P[P_L3], P[P_L3 + 1]
@@ -152,7 +162,7 @@ def solve_block(target, P, n, arm, theta, possible):  # type: ignore[no-untyped-
 
 
 @njit(inline="always")
-def last_joint(target, P, arm, flip, theta, row):  # type: ignore[no-untyped-def]
+def last_joint(target, P, arm, flip, theta, row):
     """theta_6 of the wrist whose direction is in the arm buffer, into ``row`` of theta."""
     u0, u1, u2 = P[P_U], P[P_U + 1], P[P_U + 2]
     g0, g1, g2 = P[P_G], P[P_G + 1], P[P_G + 2]
@@ -183,7 +193,7 @@ def last_joint(target, P, arm, flip, theta, row):  # type: ignore[no-untyped-def
 
 
 @njit(inline="always")
-def misfit(tool, target, error):  # type: ignore[no-untyped-def]
+def misfit(tool, target, error):
     """error (2, LANES): squared distance of the tips and of the tool axes."""
     for lane in range(LANES):
         x, y, z = tool[9, lane] - target[0, lane], tool[10, lane] - target[1, lane], tool[11, lane] - target[2, lane]
@@ -193,7 +203,7 @@ def misfit(tool, target, error):  # type: ignore[no-untyped-def]
 
 
 @njit(void(IN3, IN1, *CHAIN, float64, OUT3, FLAGS2), **OPTIONS)
-def all_solutions(T_MT, P, T_0, E, sign, offset, prismatic, tolerance, theta_out, sound):  # type: ignore[no-untyped-def]
+def all_solutions(T_MT, P, T_0, E, sign, offset, prismatic, tolerance, theta_out, sound):
     """theta (m, 8, n), sound (m, 8): the eight solutions of T_MT (m, 4, 4).
 
     With ``tolerance`` >= 0 (m and rad) each is checked by forward kinematics, x axes too where n is 6; otherwise sound

@@ -1,7 +1,7 @@
 """Inverse kinematics of any arm: damped least squares on whole batches, from several starts, within the limits.
 
-The damping follows the error (Sugihara, IEEE T-RO 27 (2011) 984: half the squared error plus a small bias), so steps are
-careful far away and Newton's near the solution.
+The damping follows the error (Sugihara, IEEE T-RO 27 (2011) 984: half the squared error plus a small bias), so steps
+are careful far away and Newton's near the solution.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ LONGEST_STEP = 0.6  # rad (or m) a joint may move in one step
 def solve_numerically(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
     """(theta (m, n), found (m,)) for poses T_MT (m, 4, 4), started from ``near`` (1 or m, n) and then from near misses.
 
-    ``mode`` says what of the pose counts, as in ``result.task_mode``. Deterministic: the library of starts has a fixed seed.
+    ``mode`` says what of the pose counts, as in ``result.task_mode``. Deterministic: the starts have a fixed seed.
     """
     m = len(T_MT)
     theta = np.empty((m, robot.n))

@@ -25,7 +25,8 @@ class IKResult:
 
     theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m and
     residual_angle (...,) rad of the answer or of the best attempt; branch_index (...,) into branch_names, -1 where not
-    reached; spin (...,) rad is the turn about the tool axis that was chosen, None where the arm does not choose one. ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
+    reached; spin (...,) rad is the turn about the tool axis that was chosen, None where the arm does not choose one.
+    ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
     """
 
     robot: Robot
@@ -103,7 +104,7 @@ def task_mode(robot: Robot) -> Mode:
 
 
 def check(robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """(sound, residual m, residual_angle rad), each (...,): forward kinematics of theta (..., n) against T_MT (..., 4, 4).
+    """(sound, residual m, residual_angle rad), each (...,): theta (..., n) by forward kinematics against T_MT.
 
     residual_angle is of the whole rotation ("pose") or of the tool axis; it does not count where only position does.
     """

@@ -31,15 +31,19 @@ class Provenance:
             raise RobotError(f"Provenance: kind is {self.kind!r}; expected one of {', '.join(KINDS)}.")
 
 
+# What a block counts as until someone says more.
+UNSTATED = Provenance("user", "not stated")
+
+
 @dataclass(frozen=True, eq=False)
 class Robot:
     """A serial arm of 2 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
 
     The table has one row a joint (``rows``): alpha, theta_offset in rad, a, d in m, sign +-1, prismatic. A joint turns
     by theta_DH = sign * theta + theta_offset; a prismatic one slides by d_DH = sign * theta + d at the fixed angle
-    theta_offset. ``blocked`` (rows,) is NaN, or the coordinate (rad or m) at which an axis is held: a held axis neither
-    moves nor gives, and is no longer counted in ``n``. What is per *free* joint (``limits``, ``C_theta``, every theta and
-    Jacobian) has n entries; ``limits_all`` and ``C_theta_all`` have all rows.
+    theta_offset. ``blocked`` (rows,) is NaN, or the coordinate (rad or m) at which an axis is held: a held axis
+    neither moves nor gives, and is no longer counted in ``n``. What is per *free* joint (``limits``, ``C_theta``, every
+    theta and Jacobian) has n entries; ``limits_all`` and ``C_theta_all`` have all rows.
 
     T_base = T_M0 and T_tool = T_nT are (4, 4). C_theta_all is rad/(N m), m/N where prismatic.
     Raises RobotError with one sentence for anything that cannot be a robot.
@@ -54,11 +58,11 @@ class Robot:
     limits_all: FloatArray
     C_theta_all: FloatArray
     title: str = ""
-    sign: FloatArray | None = None  # type: ignore[assignment]
-    prismatic: BoolArray | None = None  # type: ignore[assignment]
-    T_base: FloatArray | None = None  # type: ignore[assignment]
-    T_tool: FloatArray | None = None  # type: ignore[assignment]
-    blocked: FloatArray | None = None  # type: ignore[assignment]
+    sign: FloatArray = None  # type: ignore[assignment]
+    prismatic: BoolArray = None  # type: ignore[assignment]
+    T_base: FloatArray = None  # type: ignore[assignment]
+    T_tool: FloatArray = None  # type: ignore[assignment]
+    blocked: FloatArray = None  # type: ignore[assignment]
     compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
     compliance_set: str = USER_SET
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
@@ -87,7 +91,8 @@ class Robot:
         self._check_limits(rows, where)
         self._check_blocked(rows, where)
         self._check_compliance(rows, where)
-        put("provenance", MappingProxyType(dict(self.provenance)))
+        blocks = ["geometry", "limits", "base", "tool", *(f"compliance.{key}" for key in self.compliance_sets)]
+        put("provenance", MappingProxyType({**{block: UNSTATED for block in blocks}, **self.provenance}))
 
     def _check_limits(self, rows: int, where: str) -> None:
         try:

@@ -41,8 +41,8 @@ class Field:
 class ComplianceField:
     """Every cell of a grid at the tool tilt A, B: joints, Jacobian, joint shares, determinant; NaN where not reached.
 
-    theta (nx, ny, nz, n), reached (nx, ny, nz), J (nx, ny, nz, 6, n), shares (nx, ny, nz, n, 6) m/N: each joint's part of
-    C_xx, C_yy, C_zz, C_xy, C_xz, C_yz; det_J (nx, ny, nz).
+    theta (nx, ny, nz, n), reached (nx, ny, nz), J (nx, ny, nz, 6, n), shares (nx, ny, nz, n, 6) m/N: each joint's part
+    of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz; det_J (nx, ny, nz).
     """
 
     robot: Robot
@@ -113,7 +113,8 @@ def _evaluate(field: ComplianceField, what: Quantity) -> FloatArray:
         return _at_reached(field, _OF_CONFIGURATION[what.name])
     if what.name in ("C_soft", "C_stiff"):
         pick = -1 if what.name == "C_soft" else 0
-        return _where_reached(field, np.linalg.eigvalsh(field.C()[field.reached])[:, pick])
+        values: FloatArray = np.linalg.eigvalsh(field.C()[field.reached]).astype(np.float64)
+        return _where_reached(field, values[:, pick])
     if what.name == "dominant":
         return _dominant(field, field.shares[..., :3].sum(axis=-1))
     index = COMPONENTS.index(what.component)

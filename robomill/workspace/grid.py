@@ -20,7 +20,7 @@ LARGEST_AXIS = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Points x (nx,), y (ny,), z (nz,) m in {M}; fields over it have shape (nx, ny, nz). A plane has one axis of length 1."""
+    """Points x (nx,), y (ny,), z (nz,) m in {M}; fields over it are (nx, ny, nz). A plane has one axis of one."""
 
     x: FloatArray
     y: FloatArray
@@ -61,7 +61,8 @@ class Grid:
         axes = sum(size > 1 for size in self.shape)
         step = self.step * (self.cells / fits) ** (1.0 / axes)
         raise WorkspaceError(
-            f"Grid of {' x '.join(map(str, self.shape))} = {self.cells:,} cells needs {self.cells * bytes_per_cell / 2**30:.1f} GiB; "
+            f"Grid of {' x '.join(map(str, self.shape))} = {self.cells:,} cells needs "
+            f"{self.cells * bytes_per_cell / 2**30:.1f} GiB; "
             f"{fits:,} cells fit, so use a step of {format_si(np.ceil(step * 1e4) / 1e4, 'mm', 1)} or more."
         )
 
@@ -95,4 +96,4 @@ def axis_points(low: float, high: float, step: float, name: str = "") -> FloatAr
         raise WorkspaceError(
             f"Grid: axis {name} would have {count:,} points; at most {LARGEST_AXIS:,}, so use a larger step."
         )
-    return low + step * np.arange(count)
+    return low + step * np.arange(count, dtype=np.float64)

@@ -4,17 +4,38 @@ One configuration's laws are those of ``kinematics`` and ``compliance``; here th
 going through memory in between. Import only through ``kinematics.compiled``.
 """
 
+# mypy: disable-error-code="no-untyped-def, attr-defined, call-overload"
+# numba types these functions by their signatures; Python's annotations would say nothing more.
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numba.types import boolean, float64, void
+from numba.types import boolean, void
 
 from robomill.kinematics.kernels import (
-    CHAIN, FLAGS, IN1, IN2, LANES, OPTIONS, OUT1, OUT2, OUT3, TOOL_ROWS, chain_block, jacobian_block,
+    CHAIN,
+    FLAGS,
+    IN1,
+    IN2,
+    LANES,
+    OPTIONS,
+    OUT1,
+    OUT2,
+    OUT3,
+    TOOL_ROWS,
+    chain_block,
+    jacobian_block,
 )  # fmt: skip
 from robomill.kinematics.kernels_inverse import (
-    ARM_ROWS, P_CG, P_CU, P_CW, P_O, TARGET_ROWS, into_base, misfit, solve_block,
+    ARM_ROWS,
+    P_CG,
+    P_CU,
+    P_CW,
+    P_O,
+    TARGET_ROWS,
+    into_base,
+    misfit,
+    solve_block,
 )  # fmt: skip
 
 TURN = 2.0 * np.pi
@@ -25,7 +46,7 @@ NOWHERE = 1e300
 
 
 @njit(inline="always")
-def choose_block(theta, possible, n, limits, home, last_free, trial, best, cost):  # type: ignore[no-untyped-def]
+def choose_block(theta, possible, n, limits, home, last_free, trial, best, cost):
     """best (n, LANES): of the eight solutions the one within limits, shoulder and elbow first, then nearest home.
 
     cost (3, LANES): least cost (NOWHERE: none), cost at hand, limit overshoot at hand. trial (n, LANES) is room.
@@ -62,7 +83,7 @@ def choose_block(theta, possible, n, limits, home, last_free, trial, best, cost)
 
 
 @njit(inline="always")
-def determinant_block(J, n, tilt, det):  # type: ignore[no-untyped-def]
+def determinant_block(J, n, tilt, det):
     """det (LANES): of the 5 x 5 task Jacobian (omega rows on tilt (2, 3)) or of the 6 x 6 Jacobian, by 3 x 3 minors."""
     for lane in range(LANES):
         det[lane] = 0.0
@@ -111,7 +132,7 @@ def determinant_block(J, n, tilt, det):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def shares_block(J, n, weight, shares):  # type: ignore[no-untyped-def]
+def shares_block(J, n, weight, shares):
     """shares (6 n, LANES): each joint's part of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
     for i in range(n):
         k, w = 6 * i, weight[i]
@@ -126,7 +147,7 @@ def shares_block(J, n, weight, shares):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def load_points(points, R, start, count, P, target):  # type: ignore[no-untyped-def]
+def load_points(points, R, start, count, P, target):
     """Points start .. start + count (m, 3), all at the orientation R (3, 3), into the target buffer."""
     for r in range(3):
         u = R[r, 0] * P[P_CU] + R[r, 1] * P[P_CU + 1] + R[r, 2] * P[P_CU + 2]
@@ -149,8 +170,8 @@ def load_points(points, R, start, count, P, target):  # type: ignore[no-untyped-
 def solve_points(
     points, R, P, T_0, E, sign, offset, prismatic, limits, home, last_free, weight, tilt,
     theta_out, reached, J_out, shares_out, det_out,
-):  # type: ignore[no-untyped-def]  # fmt: skip
-    """Everything at points (m, 3) with orientation R (3, 3): theta (m, n), reached (m,), J (m, 6, n), shares (m, n, 6), det (m,).
+):  # fmt: skip
+    """theta (m, n), reached (m,), J (m, 6, n), shares (m, n, 6), det (m,) at points (m, 3), all oriented as R (3, 3).
 
     P: ``Decoupled.packed``; limits (n, 2), home (n,); last_free: joint 6 only spins the tool and stays at home; weight
     (n,) joint compliances; tilt (2, 3) the axes x', y'. NaN where not reached.

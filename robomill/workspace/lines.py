@@ -15,6 +15,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import axis_from_tilt, pose_from_world
 from robomill.robot.model import Robot
+from robomill.units import format_si
 from robomill.workspace.grid import PAPER_BOX
 
 
@@ -59,7 +60,7 @@ def line_deviation(
     B: float = 0.0,
     name: str = "",
 ) -> LineDeviation:
-    """Deviation along start (3,) to end (3,) m under ``force`` N on the tool, feed-normal (z_T x feed, left of the feed).
+    """Deviation along start (3,) to end (3,) m under ``force`` N on the tool, feed-normal: z_T x feed, to its left.
 
     ``points`` equidistant points, tool tilt A, B rad.
     """
@@ -93,21 +94,20 @@ def border_and_middle_lines(
     force: float = 100.0,
     points: int = 61,
 ) -> list[LineDeviation]:
-    """The six lines of Fig. 8: on two borders and through the middle of the plane, three along X_M and three along Y_M."""
+    """The six lines of Fig. 8: three along X_M and three along Y_M, on the borders and through the middle."""
     low = as_floats(lower, "Plane, lower corner", (2,), error=WorkspaceError)
     high = as_floats(upper, "Plane, upper corner", (2,), error=WorkspaceError)
     middle = 0.5 * (low + high)
-    lines = []
-    for y in (low[1], middle[1], high[1]):
-        lines.append(
-            line_deviation(
-                robot, [low[0], y, z], [high[0], y, z], force, points, name=f"along X_M at Y_M = {y * 1e3:g} mm"
-            )
-        )
-    for x in (low[0], middle[0], high[0]):
-        lines.append(
-            line_deviation(
-                robot, [x, low[1], z], [x, high[1], z], force, points, name=f"along Y_M at X_M = {x * 1e3:g} mm"
-            )
-        )
-    return lines
+    across = [
+        line_deviation(robot, [low[0], y, z], [high[0], y, z], force, points, name=f"along X_M at Y_M = {_mm(y)}")
+        for y in (low[1], middle[1], high[1])
+    ]
+    along = [
+        line_deviation(robot, [x, low[1], z], [x, high[1], z], force, points, name=f"along Y_M at X_M = {_mm(x)}")
+        for x in (low[0], middle[0], high[0])
+    ]
+    return across + along
+
+
+def _mm(value: float) -> str:
+    return format_si(value, "mm", 0)

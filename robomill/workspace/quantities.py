@@ -13,7 +13,7 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a map shows: ``unit`` is a key of ``units.UNITS``; ``joint`` (0-based) and ``component`` where they apply."""
+    """What a map shows; ``unit`` is a key of ``UNITS``, ``joint`` (0-based) and ``component`` where they apply."""
 
     name: str
     title: str
@@ -48,16 +48,16 @@ def quantity(robot: Robot, name: str) -> Quantity:
     if len(parts) >= 2 and parts[0] == "C" and parts[1] in COMPONENTS:
         c = parts[1]
         if dominant and len(parts) == 2:
-            return Quantity(
-                key, f"joint that gives most in C_{c}", "1", f"argmax_i |C_i,{c}|", "Where to stiffen first.", c
-            )
+            formula = f"argmax_i |C_i,{c}|"
+            return Quantity(key, f"joint that gives most in C_{c}", "1", formula, "Where to stiffen first.", c)
         if len(parts) == 2 and not share:
             return _component(key, c)
         if len(parts) == 3 and parts[2].isdigit() and 1 <= int(parts[2]) <= robot.n and not dominant:
             return _of_joint(robot, key, c, int(parts[2]) - 1, share)
     raise WorkspaceError(
         f"Quantity {name!r}: expected reach, det_J, manipulability, inverse_condition, smallest_singular_value, "
-        f"limit_distance, C_xx ... C_yz, C_soft, C_stiff, dominant, dominant_C_xx, C_xx_1 ... C_yz_{robot.n} or share_C_xx_1 ..."
+        f"limit_distance, C_xx ... C_yz, C_soft, C_stiff, dominant, dominant_C_xx, C_xx_1 ... C_yz_{robot.n} "
+        "or share_C_xx_1 ..."
     )
 
 
@@ -88,14 +88,41 @@ def _plain(robot: Robot) -> dict[str, Quantity]:
     powers = sum(row.startswith("v") for row in square_rows(robot))
     unit = {1: "m", 2: "m2", 3: "m3"}.get(powers, "1")
     entries = (
-        Quantity("reach", "reach WS", "1", "WS = 1 where θ exists within the limits  (eq. 10)", "Where the tool can be brought at this tilt."),
-        Quantity("det_J", "det(J)", unit, f"det of the rows {rows}", "Zero is a singularity: a direction in which the tool cannot be moved."),
-        Quantity("manipulability", "manipulability", unit, f"√det(J Jᵀ), rows {rows}", "Yoshikawa's measure: the size of what unit joint speeds can do."),
-        Quantity("inverse_condition", "inverse condition", "1", f"σ_min / σ_max, rows {rows}", "1 is equally able in every direction, 0 is singular."),
-        Quantity("smallest_singular_value", "smallest singular value", "1", f"σ_min(J), rows {rows}", "How fast the tool moves in its worst direction at unit joint speed."),
-        Quantity("limit_distance", "distance to joint limits", "%", "min_i (distance to the nearer limit) / (half range)", "100 % is mid-range in every joint, 0 is at a limit."),
-        Quantity("C_soft", "softest direction", "um/N", "largest eigenvalue of C", "How far 1 N moves the tip in the direction in which it gives most."),
-        Quantity("C_stiff", "stiffest direction", "um/N", "smallest eigenvalue of C", "How far 1 N moves the tip in the direction in which it gives least."),
-        Quantity("dominant", "joint that gives most", "1", "argmax_i trace C_i", "The joint with the largest part of C_xx + C_yy + C_zz."),
+        Quantity(
+            "reach", "reach WS", "1", "WS = 1 where θ exists within the limits  (eq. 10)",
+            "Where the tool can be brought at this tilt.",
+        ),
+        Quantity(
+            "det_J", "det(J)", unit, f"det of the rows {rows}",
+            "Zero is a singularity: a direction in which the tool cannot be moved.",
+        ),
+        Quantity(
+            "manipulability", "manipulability", unit, f"√det(J Jᵀ), rows {rows}",
+            "Yoshikawa's measure: the size of what unit joint speeds can do.",
+        ),
+        Quantity(
+            "inverse_condition", "inverse condition", "1", f"σ_min / σ_max, rows {rows}",
+            "1 is equally able in every direction, 0 is singular.",
+        ),
+        Quantity(
+            "smallest_singular_value", "smallest singular value", "1", f"σ_min(J), rows {rows}",
+            "How fast the tool moves in its worst direction at unit joint speed.",
+        ),
+        Quantity(
+            "limit_distance", "distance to joint limits", "%", "min_i (distance to the nearer limit) / (half range)",
+            "100 % is mid-range in every joint, 0 is at a limit.",
+        ),
+        Quantity(
+            "C_soft", "softest direction", "um/N", "largest eigenvalue of C",
+            "How far 1 N moves the tip in the direction in which it gives most.",
+        ),
+        Quantity(
+            "C_stiff", "stiffest direction", "um/N", "smallest eigenvalue of C",
+            "How far 1 N moves the tip in the direction in which it gives least.",
+        ),
+        Quantity(
+            "dominant", "joint that gives most", "1", "argmax_i trace C_i",
+            "The joint with the largest part of C_xx + C_yy + C_zz.",
+        ),
     )  # fmt: skip
     return {entry.name: entry for entry in entries}

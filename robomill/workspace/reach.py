@@ -90,11 +90,11 @@ def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
 
 
 def machining_box(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> Box:
-    """The largest machining box inside the reach over ``grid`` for all ``tilts``. Raises WorkspaceError if there is none."""
+    """The largest box inside the reach over ``grid`` for all ``tilts``. Raises WorkspaceError if there is none."""
     box = largest_box(reach(robot, grid, tilts), grid)
     if box is None:
         raise WorkspaceError(
-            f"{robot.name} reaches no point of this grid at this tilt; move the grid nearer to the arm or change the tilt."
+            f"{robot.name} reaches no point of this grid at this tilt; move the grid to the arm or change the tilt."
         )
     return box
 
@@ -112,7 +112,7 @@ def _extents(axis: FloatArray, count: int) -> FloatArray:
 
 
 def _longest_run(slabs: BoolArray, y: FloatArray, section: FloatArray) -> tuple[float, tuple[int, int, int, int]]:
-    """(volume, (k, i, j, j_end)): the best run of True along y in slabs (nk, ni, ny), weighed by ``section`` (nk, ni) m^2."""
+    """(volume, (k, i, j, j_end)): the best run along y in slabs (nk, ni, ny), times ``section`` (nk, ni) m^2."""
     places = np.arange(len(y))
     last_gap = np.maximum.accumulate(np.where(slabs, -1, places), axis=-1)
     first = np.minimum(last_gap + 1, places)

@@ -8,7 +8,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.compiled import Kernels
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import square_matrix
-from robomill.kinematics.forward import BLOCK
+from robomill.kinematics.forward import BLOCK, chain_arguments
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import pose_and_jacobian, tilt_axes
 from robomill.kinematics.transforms import pose_from_world
@@ -35,11 +35,19 @@ def solve_grid(robot: Robot, grid: Grid, A: float, B: float) -> Solved:
     compiled = _kernels.get(m)
     if compiled is not None and arm is not None and (n == 5 or arm.spindle_on_last_axis):
         R = np.ascontiguousarray(pose[:3, :3])
-        chain = robot.chain
+        tilt = np.ascontiguousarray(tilt_axes(R[:, 2]))
         compiled.solve_points(
-            points, R, arm.packed, chain.T_0, chain.E, chain.sign, chain.offset, chain.prismatic, robot.limits, robot.home,
-            n == 6, robot.C_theta, np.ascontiguousarray(tilt_axes(R[:, 2])), *out,
-        )  # fmt: skip
+            points,
+            R,
+            arm.packed,
+            *chain_arguments(robot.chain),
+            robot.limits,
+            robot.home,
+            n == 6,
+            robot.C_theta,
+            tilt,
+            *out,
+        )
     else:
         _solve_in_blocks(robot, points, pose, *out)
     theta, reached, J, shares, det_J = out

@@ -55,7 +55,8 @@ def _write(tmp_path, body):
 
 
 def _joint(name, parent, child, kind="revolute", limit='<limit lower="-1" upper="1" effort="1" velocity="1"/>'):
-    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/>{limit}</joint>'
+    ends = f'<parent link="{parent}"/><child link="{child}"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}<axis xyz="0 0 1"/>{limit}</joint>'
 
 
 LINKS = "".join(f'<link name="{c}"/>' for c in "abcd")

@@ -1,0 +1,82 @@
+"""The robot as a value: replacement, blocked axes, conventions, digest."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import RobotError
+
+
+def test_replace_checks_and_keeps_the_original():
+    robot = rm.load_robot("slavkovic_5r")
+    softer = robot.replace(C_theta=robot.C_theta * 2)
+    assert softer.compliance_set == "user"
+    assert robot.compliance_set == "table_2"
+    assert softer != robot
+    assert softer.with_compliance_set("table_2") == robot
+    with pytest.raises(RobotError, match="no field 'colour'"):
+        robot.replace(colour="red")
+    with pytest.raises(ValueError, match="read-only"):
+        robot.C_theta[0] = 1.0
+
+
+def test_digest_and_pickle():
+    robot = rm.load_robot("slavkovic_5r")
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    assert robot.digest() == rm.load_robot("slavkovic_5r").digest()
+    assert hash(robot) == hash(pickle.loads(pickle.dumps(robot)))
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic", "planar_3r"])
+def test_conversion_between_conventions_keeps_every_pose(name):
+    robot = rm.load_robot(name)
+    theta = np.random.default_rng(0).uniform(-3, 3, (200, robot.n))
+    for convention in ("standard", "modified"):
+        other = robot.with_convention(convention)
+        np.testing.assert_allclose(rm.tool_pose(other, theta), rm.tool_pose(robot, theta), atol=1e-12)
+        back = other.with_convention(robot.convention)
+        np.testing.assert_allclose(rm.tool_pose(back, theta), rm.tool_pose(robot, theta), atol=1e-12)
+
+
+def test_a_modified_table_read_as_standard_shows_in_the_pose():
+    robot = rm.load_robot("kuka_kr500")
+    wrong = robot.replace(convention="standard")
+    assert np.abs(rm.tool_pose(wrong, robot.home) - rm.tool_pose(robot, robot.home)).max() > 0.1
+
+
+@pytest.mark.parametrize("row", [1, 3, 6])
+def test_a_blocked_axis_neither_moves_nor_gives(row):
+    robot = rm.load_robot("kuka_kr500")
+    held = robot.with_blocked(row, 0.3)
+    theta = np.random.default_rng(row).uniform(-1, 1, (20, 6))
+    theta[:, row - 1] = 0.3
+    free = np.delete(theta, row - 1, axis=1)
+    assert held.n == 5
+    assert row not in held.joint_numbers
+    np.testing.assert_allclose(rm.tool_pose(held, free), rm.tool_pose(robot, theta), atol=1e-12)
+    np.testing.assert_allclose(
+        rm.geometric_jacobian(held, free), np.delete(rm.geometric_jacobian(robot, theta), row - 1, axis=2), atol=1e-12
+    )
+    rigid = robot.replace(C_theta=np.where(np.arange(6) == row - 1, 0.0, robot.C_theta))
+    np.testing.assert_allclose(rm.cartesian_compliance(held, free), rm.cartesian_compliance(rigid, theta), atol=1e-18)
+    assert held.with_blocked(row, None) == robot
+
+
+def test_replace_takes_free_or_all_rows_of_a_blocked_arm():
+    held = rm.load_robot("kuka_kr500").with_blocked(6, 0.0)
+    changed = held.replace(C_theta=held.C_theta * 3)
+    assert changed.C_theta_all[5] == held.C_theta_all[5]
+    np.testing.assert_array_equal(changed.C_theta, held.C_theta * 3)
+    assert held.replace(C_theta=held.C_theta_all * 3).C_theta_all[5] == held.C_theta_all[5] * 3
+
+
+def test_table_1_of_the_paper_at_zero():
+    robot = rm.load_robot("slavkovic_5r")
+    # PAPER: the tip at (0, -d_4, a_2 - a_5), the tool pointing down: the axes of {T} are those of {M}.
+    np.testing.assert_allclose(
+        rm.tool_pose(robot, np.zeros(5)),
+        [[1, 0, 0, 0], [0, 1, 0, -1.1], [0, 0, 1, 1.22 - 0.3], [0, 0, 0, 1]],
+        atol=1e-15,
+    )

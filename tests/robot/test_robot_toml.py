@@ -1,0 +1,123 @@
+"""Robots as TOML: exact round trip, and one clear sentence for each bad input."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import RobotError
+from robomill.io.robots import robot_folder, robot_from_toml, robot_names, robot_to_toml
+
+SAMPLE = (robot_folder() / "slavkovic_5r.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_presets_round_trip_exactly(name):
+    robot = rm.load_robot(name)
+    assert robot_from_toml(robot_to_toml(robot)) == robot
+
+
+def test_round_trip_of_awkward_numbers():
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        n = int(rng.integers(2, 8))
+        robot = rm.Robot(
+            name='a "quoted" name \\ with ü',
+            convention=str(rng.choice(["standard", "modified"])),
+            alpha=rng.normal(size=n),
+            a=rng.normal(size=n) / 3,
+            d=rng.normal(size=n) * 1e-7,
+            theta_offset=rng.normal(size=n),
+            sign=rng.choice([-1, 1], n),
+            prismatic=rng.random(n) < 0.3,
+            limits_all=np.sort(rng.normal(size=(n, 2)), axis=1),
+            C_theta_all=rng.random(n) * 1e-6,
+            blocked=np.where(np.arange(n) == 1, rng.normal(), np.nan),
+            compliance_sets={"odd name.1": rng.random(n)},
+        )
+        assert robot_from_toml(robot_to_toml(robot)).digest() == robot.digest()
+
+
+@pytest.mark.parametrize("name", robot_names())
+def test_every_block_of_a_preset_says_where_it_comes_from(name):
+    robot = rm.load_robot(name)
+    blocks = {"geometry", "limits", "base", "tool", *(f"compliance.{key}" for key in robot.compliance_sets)}
+    assert blocks <= set(robot.provenance)
+    assert all(robot.provenance[block].source != "not stated" for block in blocks)
+
+
+def test_what_the_paper_does_not_print_is_marked_assumed():
+    robot = rm.load_robot("slavkovic_5r")
+    assert robot.provenance["lengths"].kind == "assumed"
+    assert robot.provenance["limits"].kind == "assumed"
+    assert robot.provenance["compliance.table_2"].kind == "paper"
+    assert robot.compliance_set == "table_2"
+
+
+BAD = [
+    ("a_mm = 1220", "a_mm = nan", "joint 2.*a_mm.*nan"),
+    ("a_mm = 1220", "a_mm = inf", "joint 2.*a_mm.*inf"),
+    ("a_mm = 1220", 'a_mm = "long"', "joint 2.*a_mm.*expected a number.*long"),
+    ("a_mm = 1220\n", "", "joint 2.*a is missing"),
+    ("a_mm = 1220", "a_cm = 122", "joint 2.*a_cm"),
+    ("a_mm = 1220", "a_mm = 1220\na_m = 1.22", "joint 2.*given twice"),
+    ("limits_deg = [-120, 120]\n\n[[joint]]\nalpha_deg = 0", "limits_deg = [120, -120]\n\n[[joint]]\nalpha_deg = 0",
+     "joint 1.*lower limit 120° is not below the upper limit -120°"),
+    ("limits_deg = [-110, 70]", "limits_deg = [-110]", "joint 2.*expected .lower, upper."),
+    ("limits_deg = [-110, 70]", "limits_deg = [-110, nan]", "joint 2.*nan"),
+    ("7.14, 10.12", "-7.14, 10.12", "joint 1.*cannot be negative"),
+    ("7.14, 10.12", "10.12", "expected 5 numbers.*found 4"),
+    ('use = "table_2"', 'use = "table_9"', "table_9.*table_2, table_3"),
+    ("sign = -1", "sign = 0", "joint 4: sign is 0"),
+    ("sign = -1", "sign = true", "joint 4.*sign.*True"),
+    ('convention = "standard"', 'convention = "craig"', "craig.*standard.*modified"),
+    ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]", "tool frame is not a rotation"),
+    ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]", "mirror"),
+    ("xyz_mm = [0, 0, 0]\n\n# z_T", "xyz_mm = [0, 0]\n\n# z_T", "base.*three numbers"),
+    ("version = 1", "version = 2", "version"),
+    ("alpha_deg = 90\na_mm", "alpha_deg 90\na_mm", "not valid TOML"),
+    ('kind = "paper", source = "{M}', 'kind = "hearsay", source = "{M}', "hearsay"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("find", "replace", "words"), BAD, ids=[row[2][:30] for row in BAD])
+def test_bad_input_gets_one_clear_sentence(find, replace, words):
+    assert SAMPLE.count(find) >= 1
+    with pytest.raises(RobotError, match=f"(?s){words}") as error:
+        robot_from_toml(SAMPLE.replace(find, replace, 1), "mine.toml")
+    message = str(error.value)
+    assert message.endswith((".", ")."))
+    assert "\n" not in message
+    assert "mine.toml" in message or "hearsay" in message
+
+
+def test_zero_joints_and_too_many():
+    head = SAMPLE[: SAMPLE.index("# Table 1")]
+    tail = SAMPLE[SAMPLE.index("[base]") :]
+    with pytest.raises(RobotError, match="no joints"):
+        robot_from_toml(head + tail)
+    joint = "[[joint]]\nalpha_deg = 0\na_mm = 1\nd_mm = 0\ntheta_offset_deg = 0\nlimits_deg = [-1, 1]\n"
+    row = tail.replace("[7.14, 10.12, 12.30, 17.32, 91.35]", str([1] * 8)).replace(
+        "[9.03, 11.17, 14.74, 27.65, 97.58]", str([1] * 8)
+    )
+    with pytest.raises(RobotError, match="2 to 7 joints, found 8"):
+        robot_from_toml(head + joint * 8 + row)
+
+
+def test_all_axes_blocked():
+    robot = rm.load_robot("planar_2r")
+    with pytest.raises(RobotError, match="every axis is blocked"):
+        robot.replace(blocked=[0.0, 0.0])
+
+
+def test_unknown_name_lists_the_presets(tmp_path):
+    with pytest.raises(RobotError, match="slavkovic_5r"):
+        rm.load_robot("slavkowic")
+    binary = tmp_path / "robot.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(RobotError, match="not a text file"):
+        rm.load_robot(binary)
+
+
+def test_stiffness_reads_as_compliance():
+    robot = rm.load_robot("kuka_kr500")
+    np.testing.assert_allclose(1 / robot.C_theta, [6.5e6, 7.6e6, 3.08e6, 5e5, 6e5, 4e5], rtol=1e-14)
