@@ -39,13 +39,16 @@ def cross_validate(system: System, weights: FloatArray | None = None, folds: int
         inside = fold == k
         needed = np.abs(system.A[inside]) @ (seen & ~fit.seen) > 0
         missed[inside] = np.where(needed, np.nan, system.A[inside] @ fit.x - system.b[inside])
-    return relative_by_pose(system, missed)
+    return relative_by_pose(system, missed, weights)
 
 
-def relative_by_pose(system: System, missed: FloatArray) -> FloatArray:
-    """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved."""
+def relative_by_pose(system: System, missed: FloatArray, weights: FloatArray | None = None) -> FloatArray:
+    """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved.
+
+    What robust weights have switched off as gross is not counted: it is no measure of the model.
+    """
     poses = int(system.pose.max()) + 1
-    linear = system.linear
+    linear = system.linear if weights is None else system.linear & (weights > 0.0)
     error = np.bincount(system.pose[linear], missed[linear] ** 2, minlength=poses)
     size = np.bincount(system.pose[linear], system.b[linear] ** 2, minlength=poses)
     with np.errstate(invalid="ignore", divide="ignore"):

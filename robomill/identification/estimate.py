@@ -95,7 +95,7 @@ def _result(
         equations=len(system.b),
         dof=fit.dof,
         cv_by_pose=frozen(cv),
-        in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b)),
+        in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b, weights)),
         cv_relative_error=headline(cv),
         row=tests.row,
         share=frozen(share),

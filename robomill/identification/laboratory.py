@@ -26,7 +26,7 @@ SPREAD = 0.35  # standard deviation of the logarithm of a hidden compliance agai
 MAX_LOAD = 400.0  # N a student can hang on
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Score:
     """How near the fit came. error (n,): |estimate - truth| / truth, NaN where a joint was not seen; covered (n,):
     the 95 % interval holds the truth; points 0 to 100; sentence for the class."""
@@ -57,8 +57,10 @@ class Laboratory:
             hidden = self.robot.C_theta * np.exp(SPREAD * rng.standard_normal(self.robot.n))
             object.__setattr__(self, "_truth", self.robot.replace(C_theta=hidden))
 
-    def measure(self, theta: ArrayLike, F: ArrayLike) -> Laboratory:
+    def measure(self, theta: ArrayLike, F: ArrayLike, gauges: str = "xyz") -> Laboratory:
         """The laboratory after the tests at theta (k, n) or (n,) under F (k, 3) or (3,) N in {M}.
+
+        gauges: the axes of {M} along which a dial gauge stands, e.g. "y" for a single one.
 
         Raises LoadTestError when the budget, a joint limit or the greatest load does not allow them.
         """
@@ -76,18 +78,19 @@ class Laboratory:
         done = 0 if self.tests is None else len(self.tests)
         rng = np.random.default_rng([self.seed, 1, done])
         new = simulated_tests(self._truth, theta, F, noise=self.noise, resolution=self.resolution, seed=rng)
-        new = new.with_joints(self.robot)
+        read = np.where([axis in gauges for axis in "xyz"], new.displacement[:, :3], np.nan)
+        new = replace(new, displacement=read).with_joints(self.robot)
         tests = new if self.tests is None else self.tests.joined(new)
         return replace(self, tests=tests, budget=self.budget - m)
 
-    def measure_at(self, x_M: ArrayLike, F: ArrayLike) -> Laboratory:
+    def measure_at(self, x_M: ArrayLike, F: ArrayLike, gauges: str = "xyz") -> Laboratory:
         """The same at world coordinates X, Y, Z, A, B (k, 5) or (5,) m, rad."""
         x_M = as_floats(x_M, "x_M", (5,), error=LoadTestError)
         solved = inverse_kinematics(self.robot, pose_from_world(x_M))
         if not solved.reached.all():
             index = tuple(int(i) for i in np.argwhere(~solved.reached)[0])
             raise LoadTestError(f"Laboratory: that pose is not reached ({solved.reason(index)}).")
-        return self.measure(solved.theta, F)
+        return self.measure(solved.theta, F, gauges)
 
     def fit(self) -> IdentificationResult:
         """What the readings so far say."""

@@ -29,7 +29,7 @@ MAD = 0.6744897501960817  # median |x| of the standard normal
 ROUNDS = 30
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fit:
     """A bounded fit of A x = b.
 
@@ -122,7 +122,7 @@ def _condition(values: NDArray[Any]) -> float:
     return high / low if low > NULL * 1e-3 * high else np.inf
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RobustFit:
     """Tukey's bisquare: weights (e,), residuals (e,) of all equations, and the scale of the good ones.
 
@@ -149,6 +149,7 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
     spare = np.sqrt(len(b) / max(len(b) - B.shape[1], 1))
     tiny = 1e-12 * float(np.abs(b).max(initial=0.0))
     weights, scale, residual = np.ones(len(b)), 0.0, b
+    huber = True
     for k in range(ROUNDS):
         weighted = B * weights[:, None]
         residual = b - B @ np.linalg.lstsq(weighted.T @ B, weighted.T @ b, rcond=None)[0]
@@ -157,16 +158,13 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
         if scale == 0.0:
             break
         u = size / scale
-        huber = k < ROUNDS // 3
-        new = (
-            np.minimum(1.0, HUBER / np.maximum(u, 1e-12))
-            if huber
-            else np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
-        )
+        bisquare = np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
+        new = np.minimum(1.0, HUBER / np.maximum(u, 1e-12)) if huber else bisquare
         settled = float(np.abs(new - weights).max()) < 1e-3
         weights = new
         if settled and not huber:
             break
+        huber = huber and not settled and k < ROUNDS // 3
     return RobustFit(weights, residual, scale, _robust_sigma(residual, scale, B.shape[1]))
 
 

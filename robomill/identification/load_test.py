@@ -24,11 +24,11 @@ from robomill.robot.model import Robot
 from robomill.toolpath.path import Finding
 from robomill.units import format_si
 
-LIMIT_SLACK = 1e-9  # rad (m): rounding allowed beyond a joint limit
+LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit
 POSE_DIGITS = 9  # configurations equal to 1e-9 rad (m) are one pose
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LoadTests:
     """Loads on the tool and the displacements they caused, one entry a test.
 
@@ -156,7 +156,7 @@ class LoadTests:
         return tool_pose(robot, self.theta)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class JointTests:
     """One joint loaded at a time, the joints below it blocked: the paper's Table 2.
 

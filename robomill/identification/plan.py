@@ -60,6 +60,20 @@ class Plan:
         """The plan as a measuring sheet: displacements zero, to be filled in."""
         return LoadTests(self.F, np.zeros_like(self.F), theta=self.theta, source=f"plan: {self.goal}")
 
+    def rows(self) -> list[dict[str, object]]:
+        """One row a parameter: standard error and half 95 % interval before and after, SI, and the gain as a share."""
+        return [
+            {
+                "parameter": parameter.label,
+                "stderr_before": float(self.before[k]),
+                "stderr_after": float(self.after[k]),
+                "half_before": float(self.half_before[k]),
+                "half_after": float(self.half_after[k]),
+                "gain": 1.0 - float(self.half_after[k] / self.half_before[k]) if self.half_before[k] > 0 else 0.0,
+            }
+            for k, parameter in enumerate(self.labels)
+        ]
+
     def sentence(self) -> str:
         """What the plan promises, in words."""
         with np.errstate(invalid="ignore", divide="ignore"):

@@ -16,7 +16,7 @@ from robomill.robot.model import Robot
 KIND_ROUNDS = 6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class System:
     """Equations A x = b, unweighted. ``noise`` (e,) is the relative standard deviation each is divided by.
 

@@ -29,7 +29,7 @@ STEP = 1e-6  # m, for the derivative with respect to a length
 DRAWS = 4000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sources:
     """What is not known exactly.
 

@@ -254,6 +254,7 @@ def test_outliers_are_flagged_with_their_row_and_left_out_on_request():
     assert ((again.ci95[:, 0] <= ROBOT.C_theta) & (ROBOT.C_theta <= again.ci95[:, 1])).all()
     robust = identify(ROBOT, bad, robust=True)
     np.testing.assert_allclose(robust.C_theta, again.C_theta, atol=1.0 * again.stderr.max())
+    assert robust.cv_relative_error < 2 * again.cv_relative_error  # the gross rows are not held against the model
     assert np.abs(result.C_theta - ROBOT.C_theta).max() > 10 * np.abs(robust.C_theta - ROBOT.C_theta).max()
 
 

@@ -31,6 +31,7 @@ def test_three_more_tests_shrink_the_named_joints_interval_by_a_third(joint):
     width = np.ptp(measured.ci95[joint - 1]) / np.ptp(RESULT.ci95[joint - 1])
     assert width < 2 / 3
     assert f"joint {joint}" in plan.sentence()
+    assert plan.rows()[joint - 1]["gain"] > 1 / 3
 
 
 @pytest.mark.parametrize("joint", [2, 3, 5])

@@ -42,6 +42,15 @@ def test_good_poses_score_better_than_poor_ones():
     assert lab.score(lab.reveal()).points == pytest.approx(100.0)
 
 
+def test_a_single_gauge_sees_one_direction():
+    theta, F = some(6)
+    lab = Laboratory(ROBOT, seed=3).measure(theta, F, gauges="y")
+    assert np.isnan(lab.tests.displacement[:, [0, 2]]).all()
+    assert lab.fit().equations == 6
+    with pytest.raises(LoadTestError, match="no displacement"):
+        Laboratory(ROBOT).measure(theta, F, gauges="")
+
+
 def test_the_truth_is_covered_and_not_the_known_robot():
     hits = []
     for seed in range(12):

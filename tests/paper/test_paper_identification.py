@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import curve_fit
 
 import robomill as rm
 from robomill.identification.estimate import identify
@@ -38,6 +39,18 @@ def test_the_nine_points_make_81_equations(tests, result):
 def test_table_3_lies_inside_the_intervals(result):
     assert ((result.ci95[:, 0] <= TABLE_3) & (TABLE_3 <= result.ci95[:, 1])).all(), result.ci95 * 1e7
     assert result.cv_relative_error < 0.02
+
+
+def test_the_papers_general_curve_fit_comes_to_the_same(tests, result):
+    """The paper used Matlab's lsqcurvefit; scipy's trust-region twin gives the same values and covariance, slower."""
+    system = build_system(ROBOT, tests, result.choice)
+    scale = 1e-7
+    found, covariance = curve_fit(
+        lambda A, *c: A @ (np.array(c) * scale), system.A, system.b, p0=np.full(5, 10.0), bounds=(0, np.inf),
+        ftol=1e-14, xtol=1e-14, gtol=1e-14,
+    )  # fmt: skip
+    np.testing.assert_allclose(found * scale, result.C_theta, rtol=1e-6)
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)) * scale, result.stderr, rtol=1e-4)
 
 
 def test_joint_4_is_known_least_and_the_sentence_says_why(result):
