@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import threading
-from types import ModuleType
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -13,7 +12,16 @@ Engine = Literal["auto", "compiled", "numpy"]
 # From this much work on (moves times steps) waiting for the compiler is quicker than NumPy.
 WORTH_WAITING = 3_000
 
-_ready: ModuleType | None = None
+
+class Kernels(NamedTuple):
+    """The compiled functions the surface calls."""
+
+    cut_moves: Any
+    cut_tilted: Any
+    engage_moves: Any
+
+
+_ready: Kernels | None = None
 _failed: BaseException | None = None
 _thread: threading.Thread | None = None
 _lock = threading.Lock()
@@ -32,7 +40,7 @@ def warm_up(wait: bool = False) -> bool:
     return _ready is not None
 
 
-def kernels(engine: Engine = "auto", work: int = 0) -> ModuleType | None:
+def kernels(engine: Engine = "auto", work: int = 0) -> Kernels | None:
     """The kernels, or None where NumPy is to be used. ``work`` is the number of moves ahead."""
     if engine == "numpy":
         return None
@@ -45,15 +53,16 @@ def kernels(engine: Engine = "auto", work: int = 0) -> ModuleType | None:
 def _load() -> None:
     global _ready, _failed
     try:
-        from robomill.surface import kernels as module
+        from robomill.surface import engagement_kernels, kernels
 
-        _exercise(module)
-        _ready = module
+        found = Kernels(kernels.cut_moves, kernels.cut_tilted, engagement_kernels.engage_moves)
+        _exercise(found)
+        _ready = found
     except Exception as exc:
         _failed = exc
 
 
-def _exercise(module: ModuleType) -> None:
+def _exercise(module: Kernels) -> None:
     """Call every kernel once on a few cells, which compiles it or loads it from the cache on disk."""
     z = np.ones((4, 4))
     tile = (z, z.copy(), z.copy(), np.zeros((4, 4, 4)), np.zeros(16, dtype=np.int64), np.zeros(1, dtype=np.int64))
@@ -61,3 +70,5 @@ def _exercise(module: ModuleType) -> None:
     module.cut_moves(shape, np.zeros((1, 6)), chosen, grid, tile)
     moves, frames, boxes = np.zeros((1, 7)), np.ones((1, 8)), np.zeros((1, 4))
     module.cut_tilted(shape, moves, frames, boxes, chosen, grid, z, z.copy(), z.copy())
+    p, used = np.zeros((2, 3)), np.ones(2, dtype=bool)
+    module.engage_moves(shape, p, np.tile([0.0, 0.0, 1.0], (2, 1)), used, grid, z, 0.0, 4, np.zeros((2, 5)), 0, 2)

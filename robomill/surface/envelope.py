@@ -216,7 +216,7 @@ class Tilt(NamedTuple):
 def tilt_of(k: FloatArray) -> Tilt:
     """Frame of a tool axis k (3,) that is not vertical."""
     sine = math.hypot(k[0], k[1])
-    e1 = np.array([k[1], -k[0], 0.0]) / sine
+    e1 = np.array([-k[1], k[0], 0.0]) / sine
     return Tilt(e1, np.cross(k, e1), k, sine, float(k[2]))
 
 

@@ -59,15 +59,17 @@ def contact_lag(shape, m, v2):  # type: ignore[no-untyped-def]
         return min(max(math.sqrt(v2) * (m / math.sqrt(slope * slope - m * m)), kink), widest)
     # Regula falsi (Illinois): the height is stationary at the root, so a rough root is exact enough.
     low, high = kink, widest
-    f_low, f_high = lag_residual(shape, m, v2, low), lag_residual(shape, m, v2, high)
+    r = math.sqrt(kink * kink + v2)
+    e = max(r - r0, 0.0)
+    f_low, f_high = e * kink - m * r * math.sqrt(max(rc * rc - e * e, 0.0)), rc * widest
     side = 0
     w = low
     for _ in range(40):
-        if high - low < 1e-9 * R or f_high <= f_low:
+        if high - low < 1e-7 * R or f_high <= f_low:
             break
         w = (low * f_high - high * f_low) / (f_high - f_low)
         f = lag_residual(shape, m, v2, w)
-        if abs(f) < 1e-9 * R * R * m:
+        if abs(f) < 1e-7 * R * R * m:
             break
         if f < 0.0:
             low, f_low = w, f
@@ -226,7 +228,6 @@ def cut_upright(shape, move, grid, tile):  # type: ignore[no-untyped-def]
     nx, ny = z.shape
     R = shape[1]
     half = 0.5 * math.sqrt(dx * dx + dy * dy)
-    level = m == 0.0 and shape[0] == FLAT
     reach_low, reach_high = min(0.0, length * ux) - R - half, max(0.0, length * ux) + R + half
     first = max(0, math.ceil((ax + reach_low - x0) / dx))
     last = min(nx - 1, math.floor((ax + reach_high - x0) / dx))
@@ -243,15 +244,38 @@ def cut_upright(shape, move, grid, tile):  # type: ignore[no-untyped-def]
             full_from = min(max(j_low, math.ceil((full_low - y0) / dy)), j_high + 1)
             full_to = max(min(j_high, math.floor((full_high - y0) / dy)) + 1, full_from)
         cut_edge_cells(shape, move, grid, i, (j_low, full_from, full_to, j_high + 1), tile)
-        if level:
-            row = z[i, full_from:full_to]
-            for j in range(row.size):
-                now = row[j]
-                row[j] = az if az < now else now
-        else:
-            for j in range(full_from, full_to):
-                if z[i, j] > az:
-                    z[i, j] = min(z[i, j], swept_height(shape, move, x, y0 + j * dy))
+        cut_full_cells(shape, move, x, y0 + full_from * dy, dy, z[i, full_from:full_to])
+
+
+@njit(cache=True, nogil=True)
+def cut_full_cells(shape, move, x, y, dy, row):  # type: ignore[no-untyped-def]
+    """Cells of a row that lie wholly inside the track; the first two loops are plain so that they vectorise."""
+    kind, R, _, _, _ = shape
+    ax, ay, az, ux, uy, length, m = move
+    X = x - ax
+    R2 = R * R
+    if kind == FLAT and m == 0.0:
+        for j in range(row.size):
+            now = row[j]
+            row[j] = az if az < now else now
+    elif kind <= BALL:
+        lag = 1.0 if kind == FLAT else m / math.sqrt(1.0 + m * m)
+        nose = 0.0 if kind == FLAT else 1.0
+        for j in range(row.size):
+            Y = y + j * dy - ay
+            s, v = X * ux + Y * uy, Y * ux - X * uy
+            left = R2 - v * v
+            t = s - lag * math.sqrt(left if left > 0.0 else 0.0)
+            t = t if t > 0.0 else 0.0
+            t = t if t < length else length
+            left -= (s - t) * (s - t)
+            height = az + m * t + nose * (R - math.sqrt(left if left > 0.0 else 0.0))
+            now = row[j]
+            row[j] = height if height < now else now
+    else:
+        for j in range(row.size):
+            if row[j] > az:
+                row[j] = min(row[j], swept_height(shape, move, x, y + j * dy))
 
 
 @njit(cache=True, nogil=True)

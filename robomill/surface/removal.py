@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SurfaceError
 from robomill.surface import envelope
+from robomill.surface.compiler import Kernels
 from robomill.surface.envelope import Shape
 
 TILE_CELLS = 250_000
@@ -61,7 +61,7 @@ class Watch:
 
 
 def cut_upright(
-    z: FloatArray, grid: Grid, shape: Shape, ends: FloatArray, module: ModuleType | None,
+    z: FloatArray, grid: Grid, shape: Shape, ends: FloatArray, module: Kernels | None,
     progress: Progress | None = None, cancel: Cancel | None = None,
 ) -> EdgeCells:  # fmt: skip
     """Cut moves ``ends`` (n, 6) m (start, end) of an upright cutter into ``z`` (nx, ny), in place."""
@@ -127,7 +127,7 @@ def _cut_move(shape: Shape, move: envelope.Move, grid: Grid, tile: Tile) -> None
     """One move into a tile, with NumPy; the compiled twin is ``kernels.cut_upright``."""
     z, z_centre, z_low, share, edges, count = tile
     half = 0.5 * float(np.hypot(grid.dx, grid.dy))
-    box = _box(z.shape, grid, move, shape.R + half)
+    box = box_of(z.shape, grid, move, shape.R + half)
     if box is None:
         return
     rows, columns = box
@@ -172,7 +172,7 @@ def _outward(move: envelope.Move, x: FloatArray, y: FloatArray) -> tuple[FloatAr
     return np.where(away, ex / safe, 1.0), np.where(away, ey / safe, 0.0)
 
 
-def _box(shape: tuple[int, ...], grid: Grid, move: envelope.Move, reach: float) -> tuple[slice, slice] | None:
+def box_of(shape: tuple[int, ...], grid: Grid, move: envelope.Move, reach: float) -> tuple[slice, slice] | None:
     """Rows and columns of the cells within ``reach`` of a move's bounds; None if there are none."""
     ranges = []
     for n, start, span, origin, step in (

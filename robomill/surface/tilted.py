@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import SurfaceError
 from robomill.surface import envelope
+from robomill.surface.compiler import Kernels
 from robomill.surface.envelope import Shape
 from robomill.surface.removal import Cancel, Grid, Progress, Watch, rows_of_tile, tiles_of
 
@@ -53,7 +53,7 @@ def tilted_moves(shape: Shape, ends: FloatArray, axes: FloatArray, top: float) -
     """Moves ``ends`` (n, 6) with one axis (n, 3) each; ``top`` is the stock's highest point, above which nothing is."""
     sine = np.hypot(axes[:, 0], axes[:, 1])
     k = axes
-    e1 = np.stack([k[:, 1], -k[:, 0], np.zeros(len(k))], axis=1) / sine[:, None]
+    e1 = np.stack([-k[:, 1], k[:, 0], np.zeros(len(k))], axis=1) / sine[:, None]
     e2 = np.cross(k, e1)
     frame = np.stack([e1, e2, k], axis=1)
     a, b = np.einsum("nij,nj->ni", frame, ends[:, :3]), np.einsum("nij,nj->ni", frame, ends[:, 3:])
@@ -76,7 +76,7 @@ def tilted_moves(shape: Shape, ends: FloatArray, axes: FloatArray, top: float) -
 
 
 def cut_tilted(
-    z: FloatArray, grid: Grid, shape: Shape, tilted: TiltedMoves, module: ModuleType | None,
+    z: FloatArray, grid: Grid, shape: Shape, tilted: TiltedMoves, module: Kernels | None,
     progress: Progress | None = None, cancel: Cancel | None = None,
 ) -> BoolArray:  # fmt: skip
     """Cut moves of a tilted cutter into ``z`` in place; returns the cells (nx, ny) left with an overhang."""
@@ -95,7 +95,7 @@ def cut_tilted(
                 module.cut_tilted(tuple(shape), *tilted, chunk, tuple(place), part, hidden_low, hidden_high)
             else:
                 for n in chunk:
-                    _cut_tilted_move(shape, tilted, n, place, part, hidden_low, hidden_high)
+                    cut_tilted_move(shape, tilted, n, place, part, hidden_low, hidden_high)
             watch.advance(len(chunk))
         joined = hidden_high >= part
         part[joined] = np.minimum(part, hidden_low)[joined]
@@ -103,7 +103,7 @@ def cut_tilted(
     return overhang
 
 
-def _cut_tilted_move(
+def cut_tilted_move(
     shape: Shape,
     tilted: TiltedMoves,
     n: int,

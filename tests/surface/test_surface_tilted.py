@@ -1,0 +1,131 @@
+"""A tilted cutter: against stamps of its surface, against a solid modeller, and what a height map cannot hold."""
+
+import manifold3d
+import numpy as np
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.surface.stock import Stock
+from robomill.surface.zmap import cut
+
+STOCK = Stock((0.0, -0.02, -0.01), (0.04, 0.02, 0.0))
+CUTTERS = {
+    "flat": Cutter("flat", 0.008),
+    "ball": Cutter("ball", 0.008),
+    "bull": Cutter("bull", 0.008, corner_radius=0.0015),
+    "chamfer": Cutter("chamfer", 0.008, tip_angle=np.radians(90.0), tip_diameter=0.001),
+}
+
+
+def axis(A, B):
+    return np.array([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)])
+
+
+def solid(cutter, p, k, length=0.05, facets=400):
+    """manifold3d solid swept by a tilted cutter along one straight move: the hull of its two end places."""
+    r = np.linspace(0, cutter.radius, 60)
+    outline = [(0.0, length), *[(float(q), float(cutter.profile(q))) for q in r], (cutter.radius, length)]
+    outline = [outline[0], *outline[1:]]
+    section = manifold3d.CrossSection([[(x, y) for x, y in outline]])
+    if section.area() < 0 or section.is_empty():
+        section = manifold3d.CrossSection([[(x, y) for x, y in outline[::-1]]])
+    tool = section.revolve(facets)
+    x = np.cross([0.3, 0.9, 0.1], k)
+    x /= np.linalg.norm(x)
+    frame = np.column_stack([x, np.cross(k, x), k])
+    return manifold3d.Manifold.batch_hull([tool.transform(np.column_stack([frame, q])) for q in p])
+
+
+@pytest.mark.parametrize("kind", CUTTERS)
+@pytest.mark.parametrize("angles", [(0.1, 0.0), (-0.15, 0.25), (0.0, 0.6)])
+def test_heights_against_a_cloud_of_cutter_points(kind, angles):
+    """Points of the body in small steps: at each cell the lowest body point agrees to the step's size."""
+    cutter, k = CUTTERS[kind], axis(*angles)
+    p = np.array([[0.012, -0.004, -0.002], [0.025, 0.003, -0.0035]])
+    surface = cut(STOCK, 5e-4, cutter, p, k, engine="numpy")
+    body = solid(cutter, p, k).to_mesh()
+    vertices, faces = np.asarray(body.vert_properties)[:, :3], np.asarray(body.tri_verts)
+    low, high = crossing(vertices[faces], surface.x, surface.y)
+    expected = np.where((low < 0) & (high >= 0), low, 0.0)
+    overhang = (low < 0) & (high < 0)
+    # the body's facets lie inside the true one, most of all where a line grazes it
+    missing = (expected - surface.z)[~overhang]
+    assert missing.min() > -5e-9  # the oracle looks 1 nm beside the cell
+    assert (missing > 3e-6).mean() < 0.015
+    assert missing.max() < 2e-4
+    assert surface.overhang == pytest.approx(overhang.sum(), abs=0.06 * overhang.sum() + 3)
+    assert (expected < -0.001).sum() > 300
+
+
+def crossing(triangles, x, y):
+    """Lowest and highest crossing of vertical lines with a closed convex mesh; (inf, -inf) outside."""
+    low, high = np.full((len(x), len(y)), np.inf), np.full((len(x), len(y)), -np.inf)
+    x, y = x + 1e-9, y + 1.3e-9
+    for t in triangles.astype(float):
+        i = slice(*np.searchsorted(x, [t[:, 0].min(), t[:, 0].max()]))
+        j = slice(*np.searchsorted(y, [t[:, 1].min(), t[:, 1].max()]))
+        (ax, ay, az), b, c = t[0], t[1] - t[0], t[2] - t[0]
+        area = b[0] * c[1] - b[1] * c[0]
+        if area == 0 or i.start == i.stop or j.start == j.stop:
+            continue
+        X, Y = (x[i] - ax)[:, None], (y[j] - ay)[None, :]
+        u, v = (X * c[1] - Y * c[0]) / area, (Y * b[0] - X * b[1]) / area
+        hit = (u >= 0) & (v >= 0) & (u + v <= 1)
+        z = az + u * b[2] + v * c[2]
+        low[i, j] = np.where(hit, np.minimum(low[i, j], z), low[i, j])
+        high[i, j] = np.where(hit, np.maximum(high[i, j], z), high[i, j])
+    return low, high
+
+
+@pytest.mark.parametrize("kind", CUTTERS)
+def test_compiled_equals_numpy(kind):
+    rng = np.random.default_rng(2)
+    p = np.column_stack([rng.uniform(0, 0.04, 5), rng.uniform(-0.02, 0.02, 5), rng.uniform(-0.004, -0.001, 5)])
+    k = np.array([axis(0.1 * n, 0.2 - 0.1 * n) for n in range(5)])
+    a, b = (cut(STOCK, 1e-3, CUTTERS[kind], p, k, engine=engine) for engine in ("numpy", "compiled"))
+    np.testing.assert_allclose(a.z, b.z, atol=1e-11)
+    assert a.overhang == b.overhang
+
+
+def test_a_slight_tilt_is_the_upright_cut_in_the_limit():
+    p = np.array([[0.01, 0.0, -0.002], [0.03, 0.005, -0.002]])
+    upright = cut(STOCK, 5e-4, CUTTERS["ball"], p, engine="numpy")
+    slight = cut(STOCK, 5e-4, CUTTERS["ball"], p, axis(1e-7, 0.0), engine="numpy")
+    np.testing.assert_allclose(slight.z, upright.z, atol=1e-8)
+
+
+def test_ball_centre_decides_where_a_tilted_ball_cuts():
+    """Below its centre a ball nose cuts the same wherever its axis leans, if its centre runs the same way."""
+    centre = np.array([[0.01, 0.0, 0.002], [0.03, 0.005, 0.002]])
+    heights = [
+        cut(STOCK, 5e-4, CUTTERS["ball"], centre - 0.004 * axis(*angles), axis(*angles), engine="numpy").z
+        for angles in ((0.0, 0.0), (0.2, 0.0), (0.1, -0.3))
+    ]
+    for other in heights[1:]:
+        np.testing.assert_allclose(other, heights[0], atol=1e-9)
+
+
+def test_undercut_is_reported():
+    p = np.array([[0.0, 0.0, -0.006], [0.04, 0.0, -0.006]])
+    surface = cut(STOCK, 5e-4, CUTTERS["flat"], p, axis(0.4, 0.0), engine="numpy")
+    assert surface.overhang > 50
+    assert "undercut" in surface.notes()[0]
+    # seen from above the overhanging wall stays: nothing lower than the top beyond the lip
+    assert surface.z.max() == 0.0
+
+
+def test_an_axis_near_level_is_refused():
+    with pytest.raises(SurfaceError, match="tilt the tool less"):
+        cut(STOCK, 5e-4, CUTTERS["flat"], np.array([[0, 0, -0.002], [0.02, 0, -0.002]]), axis(1.5, 0.0))
+
+
+def test_a_turning_axis_converges_with_its_pieces():
+    p = np.array([[0.01, -0.005, -0.002], [0.03, 0.005, -0.002]])
+    k = np.array([axis(-0.1, 0.1), axis(0.2, 0.0)])
+    t = np.linspace(0, 1, 200)[:, None]
+    fine_k = k[0] + t * (k[1] - k[0])
+    fine_k /= np.linalg.norm(fine_k, axis=1, keepdims=True)
+    coarse = cut(STOCK, 5e-4, CUTTERS["ball"], p, k, engine="compiled")
+    fine = cut(STOCK, 5e-4, CUTTERS["ball"], p[0] + t * (p[1] - p[0]), fine_k, engine="compiled")
+    assert np.abs(coarse.z - fine.z).max() < 0.3 * 5e-4
