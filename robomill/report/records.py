@@ -17,6 +17,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.surface.groove import GrooveSection
 from robomill.units import from_si
 from robomill.workspace.fields import Field
@@ -138,7 +139,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
 
 def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
     """Peak of a revolution and the range of the alloy's coefficient sets, where the force comes from a material."""
-    peak, spread = result.peak_force, result.alloy_spread
+    peak, spread = peak_force(result), alloy_spread(result)
     if peak is None or spread is None or i < 0:
         return {}
     largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)

@@ -11,12 +11,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.milling import ForceSpread
 from robomill.kinematics.inverse import IKResult
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
@@ -77,16 +75,6 @@ class SimulationResult:
         """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
         C = self.C_joint.sum(axis=-3) + self.C_spring.sum(axis=-3)
         return np.einsum("mij,mjc,mc->mci", C, self.R_MF, self.force_components)
-
-    @cached_property
-    def alloy_spread(self) -> AlloySpread | None:
-        """The same run with every coefficient row of the alloy; None where the force has no material."""
-        return alloy_spread(self)
-
-    @cached_property
-    def peak_force(self) -> ForceSpread | None:
-        """Extremes over a revolution beside the mean, feed frame; None where only a mean is known."""
-        return peak_force(self)
 
     @property
     def theta(self) -> FloatArray:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.cutting.milling import ForceSpread, ProcessForce
-
-if TYPE_CHECKING:
-    from robomill.simulation.result import SimulationResult
+from robomill.simulation.result import SimulationResult
 
 
 @dataclass(frozen=True, eq=False)
