@@ -1,0 +1,105 @@
+"""Meshes in and out: the part as STL, PLY, GLB or VTP, a stock from an STL; in millimetres, as CAM expects."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import SurfaceError
+from robomill.surface.mesh import Mesh, kept_cells, to_mesh
+from robomill.surface.stock import Stock
+from robomill.surface.zmap import ZMap
+from robomill.units import format_value, from_si, to_si
+
+FORMATS = ("stl", "ply", "glb", "vtp")
+NOTE = "robomill surface, millimetres"
+
+
+def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> bytes:
+    """The part as a closed solid in a file's bytes; ``kind`` is one of FORMATS.
+
+    ``error`` (nx, ny) m, if given, goes along as a field in um: as scalars in VTP, ignored by the other formats.
+    Raises SurfaceError for a format that is not known.
+    """
+    name = kind.lower().lstrip(".")
+    if name not in FORMATS:
+        raise SurfaceError(f"Mesh format {kind!r} is not known: use {', '.join(FORMATS)}.")
+    mesh = to_mesh(zmap, max_faces=max_faces)
+    if name == "vtp":
+        return _vtp(zmap, mesh, error, max_faces)
+    import trimesh
+
+    solid = trimesh.Trimesh(from_si(mesh.vertices, "mm"), mesh.faces, process=False)
+    data = solid.export(file_type=name)
+    return data if isinstance(data, bytes) else str(data).encode()
+
+
+def write_mesh(path: str | Path, zmap: ZMap, *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> Path:
+    """Write the part to a file whose suffix names the format; returns the path."""
+    target = Path(path)
+    target.write_bytes(mesh_bytes(zmap, target.suffix, error=error, max_faces=max_faces))
+    return target
+
+
+def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> bytes:
+    import tempfile
+
+    import pyvista
+
+    faces = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
+    surface = pyvista.PolyData(from_si(mesh.vertices, "mm"), faces)
+    if error is not None:
+        field = np.full(len(mesh.vertices), np.nan)
+        field[: mesh.skin] = from_si(error[np.ix_(*kept_cells(zmap.z.shape, max_faces))], "um").ravel()
+        surface.point_data["error_um"] = field
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "part.vtp"
+        surface.save(target)
+        return target.read_bytes()
+
+
+def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = "") -> tuple[Stock, tuple[str, ...]]:
+    """A stock from an STL file (path or bytes), and one sentence for each thing odd about it.
+
+    STL carries no unit: ``unit`` ("mm", "in" or "m") is what its numbers are taken as. Raises SurfaceError for a
+    file that is empty, not STL, flat, or not watertight.
+    """
+    import trimesh
+
+    label = name or (Path(source).name if isinstance(source, str | Path) else "STL")
+    data = source if isinstance(source, bytes) else Path(source).read_bytes()
+    if not data.strip():
+        raise SurfaceError(f"{label}: the file is empty; export the stock again as STL.")
+    try:
+        solid = trimesh.load_mesh(io.BytesIO(data), file_type="stl")
+        empty = len(solid.faces) == 0
+    except Exception as exc:
+        raise SurfaceError(f"{label}: this is not an STL file that can be read ({type(exc).__name__}).") from exc
+    if empty:
+        raise SurfaceError(f"{label}: the STL holds no triangles; export the stock as a closed solid.")
+    if not np.isfinite(solid.vertices).all():
+        raise SurfaceError(f"{label}: the STL has corners that are not numbers; export it again.")
+    if not solid.is_watertight:
+        edges = int((np.bincount(solid.edges_unique_inverse) != 2).sum())
+        raise SurfaceError(
+            f"{label}: the mesh is not watertight ({edges} open edges); close it in CAD before using it as a stock."
+        )
+    triangles = to_si(np.asarray(solid.triangles, dtype=float), unit)
+    corners = triangles.reshape(-1, 3)
+    return Stock(corners.min(axis=0), corners.max(axis=0), triangles), _size_findings(label, solid.extents, unit)
+
+
+def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[str, ...]:
+    largest = float(np.max(extents))
+    if unit == "mm" and largest < 2.0:
+        return (
+            f"{label}: the part is only {format_value(largest, 'mm')} long if its numbers are millimetres; it looks"
+            " like metres, so choose metres if that is what was meant.",
+        )
+    if from_si(to_si(largest, unit), "mm") > 5000.0:
+        size = format_value(float(from_si(to_si(largest, unit), "mm")), "mm", 0)
+        return (f"{label}: the part is {size} long if its numbers are {unit}; check the unit of the file.",)
+    return ()

@@ -1,0 +1,41 @@
+"""Measured groove profiles from CSV."""
+
+import numpy as np
+import pytest
+
+from robomill.errors import SurfaceError
+from robomill.io.profiles import read_profile
+
+
+def test_units_order_comments_and_separators(tmp_path):
+    text = "# measured on the CMM\nstation_mm;offset_um\n20;230\n10;220\n"
+    found = read_profile(text)
+    np.testing.assert_allclose(found.station, [0.01, 0.02])
+    np.testing.assert_allclose(found.offset, [220e-6, 230e-6])
+    path = tmp_path / "measured.csv"
+    path.write_text("offset_mm,Station_in\n0.2,1\n0.3,2\n", encoding="utf-8")
+    found = read_profile(path)
+    assert found.name == "measured.csv"
+    np.testing.assert_allclose(found.station, [0.0254, 0.0508])
+    assert found.findings == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no rows"),
+        ("station,offset\n1,2\n2,3\n", "no column station_mm"),
+        ("station_mm,offset_mm\n1,2\n", "at least two"),
+        ("station_mm,offset_mm\n1,2\n2,\n", "line 3: expected a number, found an empty cell"),
+        ("station_mm,offset_mm\n1,2\n2,wide\n", "line 3: expected a number, found 'wide'"),
+        ("station_mm,offset_mm\n1,2\n2,nan\n", "line 3"),
+        ("station_mm,offset_mm\n1,2\n2,1\n1,3\n", "line 4: the station 1.000 mm is there twice"),
+    ],
+)
+def test_refusals(text, message):
+    with pytest.raises(SurfaceError, match=message):
+        read_profile(text)
+
+
+def test_a_wrong_unit_is_suspected():
+    assert "check the unit" in read_profile("station_mm,offset_mm\n1,230\n2,231\n").findings[0]
