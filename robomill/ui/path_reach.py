@@ -1,0 +1,92 @@
+"""Whether the arm can follow a path, and where on the board it reaches: quick answers, kept by fingerprint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import BoolArray, FloatArray, digest
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import translation
+from robomill.robot.model import Robot
+from robomill.simulation.run import tool_frames
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sampling import resample
+from robomill.units import from_si, to_si
+
+MAX_SAMPLES = 400_000
+BOARD_CELLS = (72, 48)
+
+
+@dataclass(frozen=True, eq=False)
+class PathReach:
+    """The sampled path, which samples (m,) are reached, and the room (m,) rad or m to the nearest joint limit."""
+
+    path: Toolpath
+    reached: BoolArray
+    room: FloatArray
+    reason: str
+
+    @property
+    def missed(self) -> BoolArray:
+        """(m,) samples at feed that cannot be reached."""
+        return np.asarray(self.path.cutting & ~self.reached)
+
+
+def path_reach(setup: SimulationSetup) -> PathReach:
+    """Inverse kinematics along the path; raises the refusal of reading it."""
+    path = setup.toolpath
+    return _path_reach(digest((setup.robot.digest(), setup.T_MW, setup.step, path.digest())), setup)
+
+
+@st.cache_resource(max_entries=12, show_spinner=False)
+def _path_reach(key: str, _setup: SimulationSetup) -> PathReach:
+    whole = _setup.toolpath
+    length = float(whole.s[-1])
+    path = resample(whole, max(_setup.step, length / MAX_SAMPLES, 1e-6))
+    ik = inverse_kinematics(_setup.robot, _setup.T_MW @ tool_frames(path))
+    limits = _setup.robot.limits
+    room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
+    lost = np.flatnonzero(path.cutting & ~ik.reached)
+    return PathReach(path, ik.reached, room, str(ik.reason(int(lost[0]))) if len(lost) else "")
+
+
+def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] | None:
+    """Cells of the board (the plane z m in {W}, around the part zero) that the tool cannot reach, for the pad."""
+    low, high = -0.2, 0.2
+    source = getattr(setup.source, "sketch", None)
+    if source is not None and source.elements:
+        points = np.vstack([e.outline() for e in source.elements])
+        extent = float(np.abs(points).max())
+        # A board that grows in steps, so that drawing does not move the grid.
+        low, high = (side * 0.2 * 2.0 ** max(0.0, np.ceil(np.log2(1.6 * extent / 0.2))) for side in (-1.0, 1.0))
+    key = digest((setup.robot.digest(), setup.T_MW, low, high, round(z, 6)))
+    runs = _board_runs(key, setup.robot, setup.T_MW, low, high, z)
+    nx, ny = BOARD_CELLS
+    return {
+        "x": float(from_si(low, unit)), "y": float(from_si(low, unit)),
+        "dx": float(from_si((high - low) / nx, unit)), "dy": float(from_si((high - low) / ny, unit)), "runs": runs,
+    }  # fmt: skip
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _board_runs(key: str, _robot: Robot, _T_MW: FloatArray, low: float, high: float, z: float) -> list[list[int]]:
+    nx, ny = BOARD_CELLS
+    x = low + (np.arange(nx) + 0.5) * (high - low) / nx
+    y = low + (np.arange(ny) + 0.5) * (high - low) / ny
+    X, Y = np.meshgrid(x, y)
+    T_WT = translation(np.stack([X, Y, np.full_like(X, z)], axis=-1))
+    far = ~inverse_kinematics(_robot, _T_MW @ T_WT).reached
+    edges = np.diff(np.pad(far.astype(np.int8), ((0, 0), (1, 1))), axis=1)
+    rows, starts = np.nonzero(edges == 1)
+    ends = np.nonzero(edges == -1)[1]
+    return np.column_stack([rows, starts, ends]).tolist()
+
+
+def snap_default(unit: str) -> float:
+    """m: what a new board snaps to."""
+    return float(to_si(0.1, "in") if unit == "in" else to_si(5.0, "mm"))

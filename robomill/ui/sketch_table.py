@@ -1,0 +1,111 @@
+"""A sketch as the table and the pad show it, in display units, and back: pure functions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from robomill.errors import ToolpathError
+from robomill.toolpath.sketch import SHAPES, Element, Sketch
+from robomill.units import from_si, to_si, unit_label
+
+COLUMNS = ("line", "shape", "points", "depth", "feed")
+MAX_SHOWN_POINTS = 60
+_NUMBER = re.compile(r"[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_LONG = re.compile(r"\d+ points$")
+
+
+def sketch_frame(sketch: Sketch, unit: str, feed_unit: str) -> pd.DataFrame:
+    """One row a shape; ``points`` reads "x, y; x, y", or "1253 points" where there are too many to type."""
+    rows = [
+        (number, e.shape, points_text(e, unit), _clean(e.depth, unit), _clean(e.v_f, feed_unit))
+        for number, e in enumerate(sketch.elements, start=1)
+    ]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str, feed_unit: str) -> Sketch:
+    """``sketch`` with the table's shapes. Raises ToolpathError naming row and column of what cannot be read."""
+    kept = frame.dropna(how="all", subset=["shape", "points"])
+    found = []
+    for row, (_, entry) in enumerate(kept.iterrows(), start=1):
+        old = None if _empty(entry["line"]) else sketch.elements[int(entry["line"]) - 1]
+        shape = "line" if _empty(entry["shape"]) else str(entry["shape"])
+        if shape not in SHAPES:
+            raise ToolpathError(f"Row {row}: {shape!r} is not a shape; choose one of {', '.join(SHAPES)}.")
+        depth = sketch.depth if _empty(entry["depth"]) else to_si(float(entry["depth"]), unit)
+        v_f = sketch.v_f if _empty(entry["feed"]) else to_si(float(entry["feed"]), feed_unit)
+        try:
+            found.append(Element(shape, _points(entry["points"], old, row, unit), depth, v_f))  # type: ignore[arg-type]
+        except ToolpathError as exc:
+            text = str(exc)
+            raise ToolpathError(text if text.startswith("Row") else f"Row {row}: {text}", where=f"row {row}") from None
+    return sketch.replace(elements=tuple(found))
+
+
+def points_text(element: Element, unit: str) -> str:
+    """The points as people type them."""
+    if len(element.points) > MAX_SHOWN_POINTS:
+        return f"{len(element.points)} points"
+    return "; ".join(f"{_clean(x, unit):.10g}, {_clean(y, unit):.10g}" for x, y in element.points)
+
+
+def pad_elements(sketch: Sketch, unit: str, feed_unit: str) -> list[dict[str, Any]]:
+    """The shapes as the pad keeps them."""
+    return [
+        {
+            "shape": e.shape, "points": _clean(e.points, unit).tolist(), "depth": _clean(e.depth, unit),
+            "feed": _clean(e.v_f, feed_unit),
+        }
+        for e in sketch.elements
+    ]  # fmt: skip
+
+
+def sketch_from_pad(sent: Mapping[str, Any], sketch: Sketch, unit: str, feed_unit: str) -> Sketch:
+    """``sketch`` with the shapes and the snap that the pad sent. Raises ToolpathError naming the shape."""
+    found = []
+    for number, e in enumerate(sent["elements"], start=1):
+        try:
+            found.append(
+                Element(
+                    e["shape"], to_si(np.array(e["points"], dtype=float), unit), to_si(float(e["depth"]), unit),
+                    to_si(float(e["feed"]), feed_unit),
+                )
+            )  # fmt: skip
+        except ToolpathError as exc:
+            raise ToolpathError(f"Shape {number}: {exc}", where=f"shape {number}") from None
+    return sketch.replace(elements=tuple(found), grid=to_si(float(sent["grid"]), unit))
+
+
+def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
+    text = "" if _empty(typed) else str(typed).strip()
+    if not text:
+        raise ToolpathError(f"Row {row}: points are missing; type them as x, y; x, y in {unit_label(unit)}.")
+    if _LONG.match(text) and old is not None:
+        return old.points
+    pairs = [part for part in re.split(r"[;\n]", text) if part.strip()]
+    found = []
+    for pair in pairs:
+        numbers = _NUMBER.findall(pair)
+        if len(numbers) != 2 or _NUMBER.sub("", pair).strip(" ,()\t"):
+            raise ToolpathError(
+                f"Row {row}: {pair.strip()!r:.40} is not a point; type x, y with a point as decimal mark, "
+                "and a semicolon between points."
+            )
+        found.append([float(n.replace("−", "-")) for n in numbers])
+    if old is not None and points_text(old, unit) == text:
+        return old.points
+    return to_si(np.array(found), unit)
+
+
+def _clean(value: Any, unit: str) -> Any:
+    shown = np.round(from_si(np.asarray(value, dtype=float), unit), 6)
+    return shown if shown.ndim else float(shown)
+
+
+def _empty(value: Any) -> bool:
+    return value is None or value is pd.NA or (isinstance(value, float) and np.isnan(value))
