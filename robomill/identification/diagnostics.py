@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.identification.least_squares import Fit, robust_fit
+from robomill.identification.least_squares import Fit, robust_fit, triangle
 from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.identification.system import System
@@ -35,14 +35,15 @@ def shares(system: System, x: FloatArray) -> FloatArray:
 def twins(system: System) -> dict[int, int]:
     """Extra springs whose column is that of an earlier parameter: {column: earlier column}."""
     found: dict[int, int] = {}
-    norms = np.linalg.norm(system.A, axis=0)
+    A = triangle(system.A, system.b)[:, :-1]  # same lengths and angles between columns, a handful of rows
+    norms = np.linalg.norm(A, axis=0)
     for k, parameter in enumerate(system.parameters):
         if parameter.joint is not None or parameter.signed or norms[k] == 0:
             continue
         for j in range(k):
             if j in found or norms[j] == 0:
                 continue
-            gap = system.A[:, k] / norms[k] - system.A[:, j] / norms[j]
+            gap = A[:, k] / norms[k] - A[:, j] / norms[j]
             if 0.5 * float(gap @ gap) < COLLINEAR:
                 found[k] = j
                 break

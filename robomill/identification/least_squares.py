@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr, solve_triangular
+from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 from scipy.special import stdtrit
 
@@ -27,6 +27,7 @@ BISQUARE = 4.685  # Tukey's constant: 95 % efficient on normal noise
 HUBER = 1.345
 MAD = 0.6744897501960817  # median |x| of the standard normal
 ROUNDS = 30
+BLOCK = 256  # equations factored at a time; well above the number of parameters
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +63,24 @@ class Fit:
 
 
 def triangle(A: FloatArray, b: FloatArray) -> FloatArray:
-    """(k, p + 1) triangular factor of [A b], k <= p + 1: same normal equations, a handful of rows."""
+    """(k, p + 1) triangular factor of [A b], k <= p + 1: same normal equations, a handful of rows.
+
+    Blocks that stay in the cache are factored first and their factors stacked: several times quicker on long columns.
+    """
     whole = np.concatenate([A, b[:, None]], axis=1)
-    return np.asarray(qr(whole, mode="r", overwrite_a=True, check_finite=False)[0][: whole.shape[1]])
+    while len(whole) > 4 * BLOCK:
+        count = len(whole) // BLOCK
+        blocks = whole[: count * BLOCK].reshape(count, BLOCK, -1)
+        factors = np.asarray(np.linalg.qr(blocks, mode="r"))
+        whole = np.concatenate([factors.reshape(-1, whole.shape[1]), whole[count * BLOCK :]])
+    return np.asarray(np.linalg.qr(whole, mode="r"))
 
 
 def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma: float | None = None) -> Fit:
     """Bounded least squares from the factor of [A b] with ``equations`` rows behind it."""
     p = R.shape[1] - 1
+    if len(R) > p + 1:  # stacked factors
+        R = np.asarray(np.linalg.qr(R, mode="r"))
     A, b = R[:, :p], R[:, p]
     norms = np.linalg.norm(A, axis=0)
     top = norms.max(initial=0.0)
@@ -160,7 +171,7 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
         u = size / scale
         bisquare = np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
         new = np.minimum(1.0, HUBER / np.maximum(u, 1e-12)) if huber else bisquare
-        settled = float(np.abs(new - weights).max()) < 1e-3
+        settled = float(np.sqrt(np.mean((new - weights) ** 2))) < 1e-4
         weights = new
         if settled and not huber:
             break

