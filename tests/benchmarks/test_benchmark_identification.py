@@ -1,0 +1,36 @@
+"""Speed of the linear estimate against the general curve fit of the paper (scipy's trust-region twin of lsqcurvefit)."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from scipy.optimize import curve_fit
+
+import robomill as rm
+from robomill.identification.models import Model
+from robomill.identification.system import build_system
+from robomill.io.samples import samples_dir
+
+pytestmark = pytest.mark.benchmark
+
+
+def fastest(call, times=7):
+    best = np.inf
+    for _ in range(times):
+        start = time.perf_counter()
+        call()
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def test_linear_least_squares_is_quicker_than_a_general_curve_fit():
+    robot = rm.load_robot("slavkovic_5r")
+    tests = rm.read_load_tests(samples_dir() / "load_tests" / "grid_45x6.csv", robot)
+    system = build_system(robot, tests, Model())
+    model = lambda A, *c: A @ (np.array(c) * 1e-7)  # noqa: E731
+    ours = fastest(system.fit)
+    theirs = fastest(lambda: curve_fit(model, system.A, system.b, p0=np.full(5, 10.0), bounds=(0, np.inf)))
+    print(f"identification of {len(system.b)} equations: {ours * 1e3:.2f} ms, curve_fit {theirs * 1e3:.2f} ms")
+    assert ours < 0.5 * theirs
