@@ -33,9 +33,9 @@ class Decoupled:
 
     S (3, 3) rows are the axes of {S} in {M}, origin (3,) its origin; a_1 shoulder offset, h lateral offset; l_2, l_3
     the two links as (re, im) of x - i z at theta = 0; W (3, 3) rows are the wrist's axes in {S} (y along axis 5, z
-    along axis 4); u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u, its
-    normal c_g (six axes), and the shift c_w from the wrist centre to the tip; g, gn (3,) the normal and u x g in wrist
-    axes; direction (n,) turns the angles about S's and W's axes into theta.
+    along axis 4); u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u,
+    its normal c_g (six axes), and the shift c_w from the wrist centre to the tip; g, gn (3,) the normal and u x g in
+    wrist axes; direction (n,) turns the angles about S's and W's axes into theta.
     """
 
     n: int

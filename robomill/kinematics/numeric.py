@@ -14,13 +14,14 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.forward import BLOCK, tool_pose
 from robomill.kinematics.jacobian import pose_and_jacobian
-from robomill.kinematics.result import Mode
+from robomill.kinematics.result import RESIDUAL, Mode
 from robomill.robot.model import Robot
 
 STARTS = 64  # starts a pose is given before it counts as not found
 LIBRARY = 8192  # random configurations from which the nearest serve as starts
 STEPS = 40
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
+PATIENCE = 6  # steps in which the error must have halved
 LONGEST_STEP = 0.6  # rad (or m) a joint may move in one step
 
 
@@ -59,17 +60,31 @@ def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -
 
 
 def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
-    """(m,) False where the tip is further from the first frame than all links in a line could bring it."""
+    """(m,) False where the tip is further out than all links in a line, or off the plane of a planar arm."""
     chain = robot.chain
     travel = np.abs(robot.limits).max(axis=1) + np.abs(chain.offset)
     stretch = np.linalg.norm(chain.E[:, :3, 3], axis=1).sum() + travel[chain.prismatic].sum()
-    return np.linalg.norm(T_MT[:, :3, 3] - chain.T_0[:3, 3], axis=1) <= stretch + 1e-9
+    near = np.linalg.norm(T_MT[:, :3, 3] - chain.T_0[:3, 3], axis=1) <= stretch + RESIDUAL
+    normal, offset = _plane(robot)
+    return near & (np.abs(T_MT[:, :3, 3] @ normal - offset) <= RESIDUAL).all(axis=1)
+
+
+@lru_cache(maxsize=16)
+def _plane(robot: Robot) -> tuple[FloatArray, FloatArray]:
+    """(normals (3, k), offsets (k,)): directions in which the tip cannot move; k is 1 for a planar arm, else 0."""
+    rng = np.random.default_rng(0)
+    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (32, robot.n))
+    pose, J = pose_and_jacobian(robot, theta)
+    u, size, _ = np.linalg.svd(J[:, :3].transpose(1, 0, 2).reshape(3, -1))
+    normal = u[:, size < 1e-9]
+    return normal, pose[0, :3, 3] @ normal
 
 
 def descend(robot: Robot, T_MT: FloatArray, theta: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:
     """(theta (m, n), error (m,)) after damped least squares from theta (m, n); coordinates stay within the limits."""
     theta = np.clip(theta, robot.limits[:, 0], robot.limits[:, 1])
     error = np.full(len(theta), np.inf)
+    before = error.copy()
     active = np.arange(len(theta))
     for step in range(STEPS + 1):
         pose, J = pose_and_jacobian(robot, theta[active])
@@ -77,15 +92,30 @@ def descend(robot: Robot, T_MT: FloatArray, theta: FloatArray, mode: Mode) -> tu
         size = np.abs(e).max(axis=1)
         error[active] = size
         going = size > TIGHT
+        if step % PATIENCE == 0:
+            # A descent that is stuck at a limit or in a dip does not get better by waiting.
+            going &= size < 0.5 * before[active]
+            before[active] = size
         if step == STEPS or not going.any():
             break
         active, e, J = active[going], e[going], J[going]
-        damping = 0.5 * (e**2).sum(axis=1) + 1e-13
-        JJt = J @ np.swapaxes(J, 1, 2) + damping[:, None, None] * np.eye(J.shape[1])
-        move = np.einsum("mkn,mk->mn", J, np.linalg.solve(JJt, e[..., None])[..., 0])
+        move = _damped_step(J, e)
+        at = theta[active]
+        stuck = ((at <= robot.limits[:, 0]) & (move < 0)) | ((at >= robot.limits[:, 1]) & (move > 0))
+        again = np.flatnonzero(stuck.any(axis=1))
+        if again.size:
+            # Joints pressed against a limit cannot help: let the others do the work.
+            move[again] = _damped_step(np.where(stuck[again, None, :], 0.0, J[again]), e[again])
         move *= np.minimum(1.0, LONGEST_STEP / np.maximum(np.abs(move).max(axis=1), 1e-300))[:, None]
         theta[active] = np.clip(theta[active] + move, robot.limits[:, 0], robot.limits[:, 1])
     return theta, error
+
+
+def _damped_step(J: FloatArray, e: FloatArray) -> FloatArray:
+    """Joint motions (m, n) that reduce the errors e (m, k): J^T (J J^T + damping)^-1 e."""
+    damping = 0.5 * (e**2).sum(axis=1) + 1e-13
+    JJt = J @ np.swapaxes(J, 1, 2) + damping[:, None, None] * np.eye(J.shape[1])
+    return np.einsum("mkn,mk->mn", J, np.linalg.solve(JJt, e[..., None])[..., 0])
 
 
 def _task(pose: FloatArray, J: FloatArray, T_MT: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:

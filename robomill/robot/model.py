@@ -92,7 +92,7 @@ class Robot:
         self._check_blocked(rows, where)
         self._check_compliance(rows, where)
         blocks = ["geometry", "limits", "base", "tool", *(f"compliance.{key}" for key in self.compliance_sets)]
-        put("provenance", MappingProxyType({**{block: UNSTATED for block in blocks}, **self.provenance}))
+        put("provenance", MappingProxyType(dict.fromkeys(blocks, UNSTATED) | dict(self.provenance)))
 
     def _check_limits(self, rows: int, where: str) -> None:
         try:

@@ -77,6 +77,7 @@ def _solve_in_blocks(
         result = inverse_kinematics(robot, poses)
         theta[block], reached[block] = result.theta, result.reached
         found, J_block = pose_and_jacobian(robot, result.theta)
+        J_block[~result.reached] = np.nan  # the first axes stand still whatever theta is
         J[block] = J_block
         for c, (i, j) in enumerate(PAIRS):
             shares[block, :, c] = robot.C_theta * J_block[:, i] * J_block[:, j]

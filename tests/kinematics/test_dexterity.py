@@ -1,0 +1,63 @@
+"""Determinant, manipulability, condition, limits: against closed forms and each other."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.kinematics import dexterity
+from robomill.kinematics.transforms import axis_from_tilt, invert, tilt_from_axis
+
+
+def test_planar_2r_determinant_is_l1_l2_sin_theta_2():
+    robot = rm.load_robot("planar_2r")
+    theta = np.random.default_rng(0).uniform(-2, 2, (50, 2))
+    np.testing.assert_allclose(dexterity.determinant(robot, theta), 0.5 * 0.4 * np.sin(theta[:, 1]), atol=1e-15)
+    assert dexterity.square_rows(robot) == ("v_x", "v_y")
+    assert dexterity.square_rows(rm.load_robot("planar_3r")) == ("v_x", "v_y", "omega_z")
+
+
+def test_five_axis_rows_are_those_of_the_paper_at_a_vertical_tool():
+    robot = rm.load_robot("slavkovic_5r")
+    theta = rm.inverse_kinematics(robot, rm.pose_from_world([0.2, -1.3, 0.0, 0, 0])).theta
+    np.testing.assert_allclose(rm.task_jacobian(robot, theta), rm.geometric_jacobian(robot, theta)[:5], atol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "planar_3r"])
+def test_measures_agree_with_each_other(name):
+    robot = rm.load_robot(name)
+    theta = np.random.default_rng(1).uniform(robot.limits[:, 0], robot.limits[:, 1], (4, 25, robot.n))
+    det = dexterity.determinant(robot, theta)
+    values = dexterity.singular_values(robot, theta)
+    np.testing.assert_allclose(np.abs(det), dexterity.manipulability(robot, theta), atol=1e-7)
+    np.testing.assert_allclose(np.abs(det), values.prod(axis=-1), atol=1e-12)
+    np.testing.assert_allclose(dexterity.inverse_condition(robot, theta), values[..., -1] / values[..., 0])
+    np.testing.assert_allclose(
+        dexterity.condition_number(robot, theta) * dexterity.inverse_condition(robot, theta), 1.0, rtol=1e-12
+    )
+
+
+def test_singular_configurations_show():
+    straight = [0.3, 0.0]
+    robot = rm.load_robot("planar_2r")
+    assert dexterity.determinant(robot, straight) == pytest.approx(0, abs=1e-15)
+    assert dexterity.smallest_singular_value(robot, straight) == pytest.approx(0, abs=1e-15)
+    assert dexterity.condition_number(robot, straight) > 1e12
+
+
+def test_limit_distance():
+    robot = rm.load_robot("planar_2r")
+    middle = robot.limits.mean(axis=1)
+    assert dexterity.limit_distance(robot, middle) == 1.0
+    assert dexterity.limit_distance(robot, robot.limits[:, 1]) == pytest.approx(0, abs=1e-15)
+    assert dexterity.limit_distance(robot, robot.limits[:, 1] + 0.1) < 0
+
+
+def test_world_coordinates_round_trip():
+    rng = np.random.default_rng(2)
+    x_M = rng.uniform([-1, -1, -1, -3, -1.5], [1, 1, 1, 3, 1.5], (100, 5))
+    T_MT = rm.pose_from_world(x_M)
+    np.testing.assert_allclose(rm.world_from_pose(T_MT), x_M, atol=1e-12)
+    np.testing.assert_allclose(T_MT[:, :3, 2], axis_from_tilt(x_M[:, 3], x_M[:, 4]), atol=1e-15)
+    np.testing.assert_allclose(T_MT @ invert(T_MT), np.broadcast_to(np.eye(4), (100, 4, 4)), atol=1e-14)
+    # Along X_M the tilt A is undetermined: 0 is given.
+    np.testing.assert_allclose(tilt_from_axis([1.0, 0.0, 0.0]), [0.0, np.pi / 2])

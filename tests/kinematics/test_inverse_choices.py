@@ -1,0 +1,120 @@
+"""Which solution is taken: spin, continuity along a path, home, arms with fewer axes."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import KinematicsError
+from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.transforms import rotation_z, transform
+
+
+def test_structures_recognised_from_the_table():
+    assert decoupled(rm.load_robot("slavkovic_5r")).n == 5
+    assert decoupled(rm.load_robot("kuka_kr500")).spindle_on_last_axis
+    assert not decoupled(rm.load_robot("fanuc_r2000ic")).spindle_on_last_axis
+    assert decoupled(rm.load_robot("planar_3r")) is None
+    # The paper's machine: a six-axis robot with axis 6 blocked.
+    assert decoupled(rm.load_robot("kuka_kr500").with_blocked(6, 0.0)).n == 5
+
+
+def _box(robot, count=200):
+    rng = np.random.default_rng(0)
+    x_M = rng.uniform([1.4, -0.5, 0.2, -0.3, -0.3], [2.0, 0.5, 1.0, 0.3, 0.3], (count, 5))
+    return rm.pose_from_world(x_M)
+
+
+@pytest.mark.parametrize("name", ["kuka_kr500", "fanuc_r2000ic"])
+def test_free_spin_keeps_tip_and_axis_and_moves_least(name):
+    robot = rm.load_robot(name)
+    T_MT = _box(robot)
+    free = rm.inverse_kinematics(robot, T_MT)
+    assert free.reached.all()
+    found = rm.tool_pose(robot, free.theta)
+    np.testing.assert_allclose(found[:, :3, 2:], T_MT[:, :3, 2:], atol=1e-9)
+    motion = ((free.theta - robot.home) ** 2).sum(axis=1)
+    for angle in np.radians([0, 40, 123, 250]):
+        fixed = rm.inverse_kinematics(robot, T_MT, spin=angle)
+        both = fixed.reached & [a[:8] == b[:8] for a, b in zip(fixed.branch, free.branch, strict=True)]
+        assert (((fixed.theta[both] - robot.home) ** 2).sum(axis=1) >= motion[both] - 1e-3).all()
+
+
+def test_fixed_and_given_spin_are_whole_poses():
+    robot = rm.load_robot("fanuc_r2000ic")
+    T_MT = _box(robot, 50)
+    fixed = rm.inverse_kinematics(robot, T_MT, spin="fixed")
+    np.testing.assert_allclose(rm.tool_pose(robot, fixed.theta[fixed.reached]), T_MT[fixed.reached], atol=1e-9)
+    turned = rm.inverse_kinematics(robot, T_MT, spin=0.5)
+    expected = T_MT @ transform(rotation_z(0.5), np.zeros(3))
+    np.testing.assert_allclose(rm.tool_pose(robot, turned.theta[turned.reached]), expected[turned.reached], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
+def test_a_path_is_followed_without_jumps(name):
+    robot = rm.load_robot(name)
+    s = np.linspace(0, 1, 200)
+    start = [-0.4, -1.3, 0.0, 0.0, 0.0] if name == "slavkovic_5r" else [1.6, -0.4, 0.6, 0.0, 0.0]
+    x_M = np.array(start) + s[:, None] * [0.8, 0.1, 0, 0.2, 0.1] + np.sin(7 * s)[:, None] * [0, 0.05, 0.05, 0.2, 0.2]
+    result = rm.inverse_kinematics(robot, rm.pose_from_world(x_M), near="path")
+    assert result.reached.all()
+    assert np.abs(np.diff(result.theta, axis=0)).max() < 0.1
+    assert len(set(result.branch)) == 1
+    if result.spin is not None:
+        assert np.ptp(result.spin) == 0
+
+
+def test_a_path_with_a_gap_goes_on_after_it():
+    robot = rm.load_robot("slavkovic_5r")
+    x_M = np.zeros((60, 5))
+    x_M[:, 1] = np.linspace(-1.3, -3.5, 60)
+    x_M = np.concatenate([x_M, x_M[::-1]])
+    result = rm.inverse_kinematics(robot, rm.pose_from_world(x_M), near="path")
+    assert result.reached[0]
+    assert result.reached[-1]
+    assert 0 < (~result.reached).sum() < 120
+    np.testing.assert_allclose(result.theta[0], result.theta[-1], atol=1e-9)
+
+
+def test_near_takes_the_solution_asked_for():
+    robot = rm.load_robot("kuka_kr500")
+    theta = np.random.default_rng(2).uniform(robot.limits[:, 0], robot.limits[:, 1], (300, 6))
+    result = rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near=theta, spin="fixed")
+    assert result.reached.all()
+    assert np.abs(result.theta - theta).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "planar_3r"])
+def test_planar_arms_reach_points_of_their_plane(name):
+    robot = rm.load_robot(name)
+    x_M = np.zeros((40, 5))
+    x_M[:, :2] = np.random.default_rng(0).uniform([0.3, 0.1], [0.5, 0.6], (40, 2))
+    result = rm.inverse_kinematics(robot, rm.pose_from_world(x_M))
+    assert result.reached.all()
+    np.testing.assert_allclose(rm.tool_pose(robot, result.theta)[:, :3, 3], x_M[:, :3], atol=1e-9)
+    x_M[:, 2] = 0.05
+    above = rm.inverse_kinematics(robot, rm.pose_from_world(x_M))
+    assert not above.reached.any()
+    assert "50.000 mm" in above.reason(0)
+
+
+def test_six_axis_reasons():
+    robot = rm.load_robot("kuka_kr500")
+    far = rm.inverse_kinematics(robot, rm.pose_from_world([5.0, 0, 0.5, 0, 0]))
+    assert "beyond reach" in far.reason()
+    behind = rm.inverse_kinematics(
+        robot.replace(limits=np.tile([-0.4, 0.4], (6, 1))), rm.pose_from_world([-2, 0, 1, 0, 0])
+    )
+    assert "past its limit" in behind.reason()
+
+
+def test_refusals():
+    robot = rm.load_robot("slavkovic_5r")
+    T_MT = rm.pose_from_world([0, -1.3, 0, 0, 0])
+    with pytest.raises(KinematicsError, match="spin"):
+        rm.inverse_kinematics(robot, T_MT, spin="any")
+    with pytest.raises(KinematicsError, match="'path'"):
+        rm.inverse_kinematics(robot, T_MT, near="path")
+    with pytest.raises(KinematicsError, match="named branches"):
+        rm.inverse_kinematics(rm.load_robot("planar_2r"), T_MT, branch="elbow up")
+    with pytest.raises(KinematicsError, match="one entry a free joint"):
+        rm.tool_pose(robot, np.zeros(6))

@@ -1,0 +1,104 @@
+"""Maps: every quantity against the law at one configuration, NaN where unreachable, budgets, names."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import WorkspaceError
+from robomill.kinematics import dexterity
+from robomill.workspace.fields import compliance_field, compute_field
+from robomill.workspace.grid import PAPER_BOX, Grid, axis_points, box_grid, plane_grid
+from robomill.workspace.quantities import quantity, quantity_names
+
+MEASURES = {
+    "det_J": dexterity.determinant,
+    "manipulability": dexterity.manipulability,
+    "inverse_condition": dexterity.inverse_condition,
+    "smallest_singular_value": dexterity.smallest_singular_value,
+    "limit_distance": dexterity.limit_distance,
+}
+
+
+@pytest.mark.parametrize(("name", "A", "B"), [("slavkovic_5r", 0.2, -0.3), ("fanuc_r2000ic", 0.0, 0.0)])
+def test_every_quantity_is_the_law_at_its_configuration(name, A, B):
+    robot = rm.load_robot(name)
+    grid = (
+        box_grid([-0.5, -2.4, -0.2], [0.5, -1.0, 0.0], 0.2) if robot.n == 5 else box_grid([1, -1, 0], [3, 1, 0.4], 0.4)
+    )
+    field = compliance_field(robot, grid, A, B)
+    assert 0 < (~field.reached).sum() < grid.cells
+    for index in np.argwhere(field.reached)[::5]:
+        cell = tuple(index)
+        theta = field.theta[cell]
+        np.testing.assert_allclose(
+            rm.world_from_pose(rm.tool_pose(robot, theta)), [*grid.points()[cell], A, B], atol=1e-9
+        )
+        C_joint = rm.joint_contributions(rm.geometric_jacobian(robot, theta)[:3], robot.C_theta)
+        np.testing.assert_allclose(field.C_joint()[cell], C_joint, atol=1e-18)
+        np.testing.assert_allclose(field.C()[cell], C_joint.sum(axis=0), atol=1e-18)
+        for key, law in MEASURES.items():
+            assert field.values(key)[cell] == pytest.approx(float(law(robot, theta)), rel=1e-9, abs=1e-9)
+        assert field.values("C_xz")[cell] == pytest.approx(C_joint.sum(axis=0)[0, 2], abs=1e-18)
+        assert field.values("C_zx_2")[cell] == pytest.approx(C_joint[1, 0, 2], abs=1e-18)
+        assert field.values("dominant_C_xx")[cell] == 1 + np.argmax(C_joint[:, 0, 0])
+        shares = [field.values(f"share_C_yy_{j}")[cell] for j in range(1, robot.n + 1)]
+        assert sum(shares) == pytest.approx(1)
+        soft, stiff = field.values("C_soft")[cell], field.values("C_stiff")[cell]
+        np.testing.assert_allclose([stiff, soft], np.linalg.eigvalsh(C_joint.sum(axis=0))[[0, 2]], rtol=1e-9)
+
+
+def test_unreachable_is_nan_and_counted_for_every_name():
+    robot = rm.load_robot("slavkovic_5r")
+    grid = plane_grid("z", 0.0, [-1, -3, 0], [1, -1, 0], 0.25)
+    field = compliance_field(robot, grid)
+    for name in quantity_names(robot):
+        values = field.values(name)
+        assert values.shape == grid.shape
+        if name == "reach":
+            assert set(np.unique(values)) == {0.0, 1.0}
+        else:
+            np.testing.assert_array_equal(np.isnan(values), ~field.reached, err_msg=name)
+        assert quantity(robot, name).formula
+        assert field.field(name).reached == field.reached.sum()
+
+
+def test_a_grid_out_of_reach_is_all_nan():
+    robot = rm.load_robot("slavkovic_5r")
+    field = compute_field(robot, plane_grid("z", 9.0, *PAPER_BOX, 0.3), "smallest_singular_value")
+    assert field.reached == 0
+    assert np.isnan(field.values).all()
+
+
+def test_a_singular_arm_gives_zero_not_an_error():
+    robot = rm.load_robot("planar_3r").replace(C_theta=np.zeros(3))
+    field = compliance_field(robot, plane_grid("z", 0.0, [0.3, 0, 0], [0.9, 0.4, 0], 0.2))
+    assert field.reached.all()
+    np.testing.assert_array_equal(field.values("C_xx"), 0.0)
+    np.testing.assert_array_equal(field.values("share_C_xx_1"), 0.0)
+
+
+def test_budget_names_the_step_that_fits():
+    robot = rm.load_robot("slavkovic_5r")
+    with pytest.raises(WorkspaceError, match="GiB.*step of") as error:
+        compliance_field(robot, box_grid(*PAPER_BOX, 0.001))
+    step = float(str(error.value).split("step of ")[1].split(" mm")[0]) * 1e-3
+    box_grid(*PAPER_BOX, step).check_budget(8 * (13 * 5 + 8) + 1)
+
+
+@pytest.mark.parametrize("name", ["C_qq", "share_C_xx", "C_xx_6", "share_det_J", "dominant_C_xx_1", "", "stiffness"])
+def test_unknown_quantities_are_refused(name):
+    with pytest.raises(WorkspaceError, match="Quantity"):
+        compute_field(rm.load_robot("slavkovic_5r"), plane_grid("z", 0.0, *PAPER_BOX, 0.3), name)
+
+
+def test_grids():
+    np.testing.assert_allclose(axis_points(-0.6, 0.6, 0.01), np.linspace(-0.6, 0.6, 121), atol=1e-15)
+    assert box_grid(*PAPER_BOX, 0.01).shape == (121, 61, 51)
+    assert plane_grid("x", 0.1, *PAPER_BOX, 0.1).shape == (1, 7, 6)
+    for bad in ((0, 1, 0), (0, 1, -1), (1, 0, 0.1), (0, np.nan, 0.1), (0, 1, 1e-9)):
+        with pytest.raises(WorkspaceError):
+            axis_points(*bad)
+    with pytest.raises(WorkspaceError, match="must rise"):
+        Grid(x=[0, 0], y=[0], z=[0])
+    with pytest.raises(WorkspaceError, match="normal"):
+        plane_grid("w", 0.0, *PAPER_BOX, 0.1)
