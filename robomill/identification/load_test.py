@@ -136,7 +136,8 @@ class LoadTests:
                 "check the coordinates, the tool or the robot's limits.",
                 where=f"row {row}",
             )
-        return replace(self, theta=solved.theta[back.ravel()], x_M=None)
+        found = (*self.findings, _solved_finding(robot))
+        return replace(self, theta=solved.theta[back.ravel()], x_M=None, findings=found)
 
     def pose_index(self) -> IntArray:
         """(m,) number of the pose of each test: equal configurations share a number, from 0."""
@@ -261,6 +262,20 @@ def _check_joints(robot: Robot, theta: FloatArray, row: IntArray) -> None:
         "check the angle, its sign, or the robot's limits.",
         where=f"row {row[k]}",
     )
+
+
+def _solved_finding(robot: Robot) -> Finding:
+    """World poses do not say how the arm stood; which way was taken for granted is said."""
+    if robot.n >= 6:
+        text = (
+            "Poses as X, Y, Z, A, B leave the turn about the tool axis open: it was taken as near home as the limits "
+            "allow; give joints if the robot stood otherwise, since its compliance depends on it."
+        )
+        return Finding("warning", 0, text)
+    text = (
+        "Joints were solved from X, Y, Z, A, B with shoulder and elbow as at home; give joints if they stood otherwise."
+    )
+    return Finding("info", 0, text)
 
 
 def _mm(p: FloatArray) -> str:

@@ -1,4 +1,4 @@
-"""Speed of the linear estimate against the general curve fit of the paper (scipy's trust-region twin of lsqcurvefit)."""
+"""Speed of the linear estimate against a general curve fit (scipy's trust-region twin of the paper's lsqcurvefit)."""
 
 from __future__ import annotations
 

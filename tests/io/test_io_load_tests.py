@@ -69,6 +69,11 @@ def test_world_poses_are_solved_with_the_robot():
     np.testing.assert_allclose(
         rm.world_from_pose(solved.tool_poses(ROBOT))[0], [0.1, -1.3, 0, np.deg2rad(5), np.deg2rad(-10)], atol=1e-9
     )
+    assert any("as at home" in f.message for f in solved.findings)
+    arm = rm.load_robot("kuka_kr270")
+    x = rm.world_from_pose(rm.tool_pose(arm, arm.home)) * [1e3, 1e3, 1e3, *np.rad2deg([1, 1])]
+    six = read_load_tests(text.replace("100,-1300,0,5,-10", ",".join(f"{v:.9f}" for v in x)), arm)
+    assert any("turn about the tool axis" in f.message for f in six.findings)
     with pytest.raises(LoadTestError, match="Row 2: the pose .* is not reached"):
         read_load_tests(text.replace("-1300", "-9300"), ROBOT)
     with pytest.raises(LoadTestError, match=r"Row 2, theta2: 150.* outside joint 2's limits"):
