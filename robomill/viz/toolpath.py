@@ -1,0 +1,323 @@
+"""The whole toolpath as a picture, from above or turnable: coloured by a quantity, thinned for the screen in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.colors import sample_colorscale
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, rgba
+
+BUDGET = 20_000
+VECTOR_LINES = 5_000
+MAX_PICKS = 3_000
+CLASSES = 16
+
+
+@dataclass(frozen=True, eq=False)
+class PathPicture:
+    """A path in {W} and display units: points (m, 3), move i ends at point i; cutting, reached (m,) bool; block (m,).
+
+    value (m,) colours the cuts (None: reached or not), on 0 to ``limit`` where one is given; above it is marked.
+    ``selected`` is the source line that is pointed at (0: none), ``worst`` the index of the largest value (-1: none).
+    """
+
+    points: FloatArray
+    cutting: BoolArray
+    reached: BoolArray
+    block: IntArray
+    value: FloatArray | None = None
+    title: str = ""
+    unit: str = ""
+    digits: int = 3
+    limit: float | None = None
+    length_unit: str = "mm"
+    stock: tuple[FloatArray, FloatArray] | None = None
+    selected: int = 0
+    worst: int = -1
+    total: int = 0
+
+    @cached_property
+    def kept(self) -> IntArray:
+        """Indices of the points that are drawn."""
+        must = [self.worst] if self.worst >= 0 else []
+        return decimate(self.points, self.cutting, self.reached, BUDGET, must)
+
+    @property
+    def caption(self) -> str:
+        """How much of the path is drawn, in words; "" where it is all of it."""
+        segments = max(self.total, len(self.points) - 1)
+        drawn = len(self.kept) - 1
+        if drawn >= len(self.points) - 1:
+            return ""
+        return f"Showing {short(drawn)} of {short(segments)} segments; results use all of them."
+
+
+def short(count: int) -> str:
+    """A count as people say it: 812k, 1.2M."""
+    if count < 10_000:
+        return f"{count:,}"
+    return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
+
+
+def decimate(
+    points: FloatArray, cutting: BoolArray, reached: BoolArray, budget: int, must: list[int] | None = None
+) -> IntArray:
+    """Indices of at most about ``budget`` points (m, 3) that look like all of them.
+
+    A point is left out only while the path stays inside one cell of a grid that is as fine as the budget allows;
+    where cutting or reach changes both ends are kept, and so are the indices in ``must``.
+    """
+    m = len(points)
+    if m <= budget:
+        return np.arange(m)
+    corner = np.zeros(m, dtype=bool)
+    corner[[0, m - 1, *(must or [])]] = True
+    for flag in (cutting, reached):
+        change = np.flatnonzero(flag[1:] != flag[:-1])
+        # A path that changes all the time has no ends worth keeping before its shape.
+        if len(change) < budget // 4:
+            corner[change] = corner[change + 1] = True
+    low, high = points.min(axis=0), points.max(axis=0)
+    cell = max(float((high - low).max()), 1e-12) / 4000.0
+    while True:
+        where = np.floor((points - low) / cell).astype(np.int64)
+        moved = np.ones(m, dtype=bool)
+        moved[1:] = (where[1:] != where[:-1]).any(axis=1)
+        kept = moved | corner
+        if int(kept.sum()) <= budget:
+            return np.flatnonzero(kept)
+        cell *= 1.5
+
+
+def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revision: str = "path-plan") -> go.Figure:
+    """The path from above: rapids dotted, cuts coloured, what is out of reach crossed, the selected line marked."""
+    p = palette(dark)
+    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 30, "b": 8})
+    if picture.stock is not None:
+        (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
+        fig.add_scatter(
+            x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", fill="toself",
+            fillcolor=rgba(p.metal, 0.26), line={"color": p.line, "width": 1}, hoverinfo="skip",
+        )  # fmt: skip
+    kept = picture.kept
+    ends = _ends(picture)
+    cut, lost = picture.cutting[kept], picture.cutting[kept] & ~picture.reached[kept]
+    make = go.Scattergl if len(kept) > VECTOR_LINES else go.Scatter
+    flat = (0, 1)
+    xy = _lines(picture, ends, ~cut & (np.arange(len(kept)) > 0), flat)
+    fig.add_trace(
+        make(**xy, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip")
+    )
+    fig.add_trace(
+        make(
+            **_lines(picture, ends, cut, flat), mode="lines", line={"color": rgba(p.text, 0.18), "width": 6},
+            hoverinfo="skip", showlegend=False,
+        )
+    )  # fmt: skip
+    for name, colour, chosen, legend in _classes(picture, dark):
+        fig.add_trace(
+            make(
+                **_lines(picture, ends, chosen, flat), mode="lines", name=name, line={"color": colour, "width": 3},
+                hoverinfo="skip", showlegend=legend,
+            )
+        )  # fmt: skip
+    if lost.any():
+        at = picture.points[kept][lost]
+        at = at[:: max(1, len(at) // 400)]
+        fig.add_scatter(
+            x=at[:, 0], y=at[:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            marker={"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}},
+        )  # fmt: skip
+    _marks(fig, picture, dark)
+    _picks(fig, picture, dark)
+    unit = picture.length_unit
+    fig.update_layout(
+        xaxis=axis(f"x<sub>W</sub>, {unit}", dark=dark), clickmode="event+select", dragmode="pan",
+        yaxis=axis(f"y<sub>W</sub>, {unit}", dark=dark, scaleanchor="x", scaleratio=1),
+    )  # fmt: skip
+    return fig
+
+
+def turnable_picture(
+    picture: PathPicture, *, dark: bool, height: int = 430, revision: str = "path-turn"
+) -> tuple[go.Figure, float]:
+    """The path to be turned, and how many times heights are enlarged in it."""
+    p = palette(dark)
+    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    kept, ends = picture.kept, _ends(picture)
+    cut = picture.cutting[kept]
+    rapid = ~cut & (np.arange(len(kept)) > 0)
+    fig.add_scatter3d(
+        **_lines(picture, ends, rapid, (0, 1, 2)), mode="lines", name="rapid", hoverinfo="skip",
+        line={"color": p.muted, "width": 1.5, "dash": "dot"},
+    )  # fmt: skip
+    for name, colour, chosen, legend in _classes(picture, dark):
+        fig.add_scatter3d(
+            **_lines(picture, ends, chosen, (0, 1, 2)), mode="lines", name=name, showlegend=legend, hoverinfo="skip",
+            line={"color": colour, "width": 5},
+        )  # fmt: skip
+    here = _selected(picture)
+    if len(here):
+        q = picture.points[here]
+        fig.add_scatter3d(
+            x=q[:, 0], y=q[:, 1], z=q[:, 2], mode="lines", showlegend=False, hoverinfo="skip",
+            line={"color": p.warm, "width": 9},
+        )  # fmt: skip
+    if picture.value is not None:
+        fig.add_scatter3d(
+            x=[None],
+            y=[None],
+            z=[None],
+            mode="markers",
+            showlegend=False,
+            hoverinfo="skip",
+            marker=_scale(picture, dark),
+        )
+    size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
+    largest = float(size.max())
+    times = float(np.clip(round(0.22 * largest / max(float(size[2]), 1e-9)), 1, 50))
+    x, y, z = (max(float(v), 0.12) for v in size * [1.0, 1.0, times] / largest)
+    unit = picture.length_unit
+    fig.update_layout(
+        scene={
+            "xaxis": axis3d(f"x_W, {unit}", dark=dark), "yaxis": axis3d(f"y_W, {unit}", dark=dark),
+            "zaxis": axis3d(f"z_W, {unit}", dark=dark), "aspectmode": "manual",
+            "aspectratio": {"x": x, "y": y, "z": z},
+            "camera": {"projection": {"type": "orthographic"}, "eye": {"x": -0.9, "y": -1.5, "z": 0.95}},
+            "uirevision": revision,
+        }
+    )  # fmt: skip
+    return fig, times
+
+
+def _ends(picture: PathPicture) -> tuple[FloatArray, FloatArray]:
+    """Start and end (q, 3) of the drawn segments; the first has no length."""
+    q = picture.points[picture.kept]
+    return np.concatenate([q[:1], q[:-1]]), q
+
+
+def _lines(
+    picture: PathPicture, ends: tuple[FloatArray, FloatArray], chosen: BoolArray, columns: tuple[int, ...]
+) -> dict[str, Any]:
+    """Coordinates of the chosen segments as one line with gaps; segments that follow each other are joined."""
+    i = np.flatnonzero(chosen)
+    if len(i) == 0:
+        return {name: [] for name in "xyz"[: len(columns)]}
+    begins = np.append(True, np.diff(i) > 1)
+    before = np.cumsum(begins)
+    # Each run: a gap (but for the first), its start, then the end of every segment.
+    at = np.arange(len(i)) + 2 * before - 1
+    out = np.full((at[-1] + 1, 3), np.nan, dtype=np.float32)
+    out[at] = ends[1][i]
+    out[at[begins] - 1] = ends[0][i[begins]]
+    return {"xyz"[c]: out[:, c] for c in columns}
+
+
+def _classes(picture: PathPicture, dark: bool) -> list[tuple[str, str, BoolArray, bool]]:
+    """Name, colour, chosen segments and whether it is named in the legend."""
+    p = palette(dark)
+    kept = picture.kept
+    cut, reached = picture.cutting[kept], picture.reached[kept]
+    lost = cut & ~reached
+    missed = int((picture.cutting & ~picture.reached).sum())
+    found = [(f"out of reach ({missed} points)", p.bad, lost, True)] if missed else []
+    if picture.value is None:
+        return [("in reach", p.good, cut & reached, True), *found]
+    # The value of a segment is the largest since the segment before: thinning must not hide a peak.
+    value = np.maximum.reduceat(np.nan_to_num(picture.value, nan=-np.inf), np.append(0, kept[:-1] + 1))
+    known = cut & reached & np.isfinite(value)
+    top = _top(picture)
+    share = np.clip(np.nan_to_num(value, neginf=0.0) / top, 0.0, 1.0)
+    index = np.minimum((share * CLASSES).astype(int), CLASSES - 1)
+    over = known & (value > picture.limit) if picture.limit is not None else np.zeros(len(kept), dtype=bool)
+    colours = sample_colorscale(SEQUENTIAL, list((np.arange(CLASSES) + 0.5) / CLASSES))
+    made = [("", colours[c], known & ~over & (index == c), False) for c in range(CLASSES)]
+    made = [entry for entry in made if entry[2].any()]
+    if over.any():
+        made.append((f"above {picture.limit:g} {picture.unit}", p.bad, over, True))
+    return made + found
+
+
+def _top(picture: PathPicture) -> float:
+    if picture.limit is not None:
+        return picture.limit
+    assert picture.value is not None
+    good = picture.value[picture.cutting & np.isfinite(picture.value)]
+    return float(good.max()) if len(good) and good.max() > 0 else 1.0
+
+
+def _scale(picture: PathPicture, dark: bool) -> dict[str, Any]:
+    """A marker that shows nothing but the colour bar."""
+    title = f"{picture.title}, {picture.unit}" if picture.unit else picture.title
+    return {
+        "size": 0.1, "color": [0.0], "cmin": 0.0, "cmax": _top(picture), "colorscale": SEQUENTIAL, "showscale": True,
+        "colorbar": colour_bar(title, dark=dark),
+    }  # fmt: skip
+
+
+def _selected(picture: PathPicture) -> IntArray:
+    """Indices of the points of the selected line, with the point where it begins."""
+    i = np.flatnonzero(picture.block == picture.selected) if picture.selected else np.empty(0, dtype=np.int64)
+    if len(i) == 0:
+        return i
+    i = i[: 4 * MAX_PICKS]
+    return np.append(max(int(i[0]) - 1, 0), i)
+
+
+def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+    """Where the path begins, where the value is largest, and the line that is pointed at."""
+    p = palette(dark)
+    here = _selected(picture)
+    if len(here):
+        q = picture.points[here]
+        fig.add_scatter(
+            x=q[:, 0], y=q[:, 1], mode="lines", name=f"line {picture.selected}", hoverinfo="skip",
+            line={"color": p.warm, "width": 5},
+        )  # fmt: skip
+        fig.add_scatter(
+            x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            marker={"size": 13, "color": rgba(p.warm, 0.25), "line": {"color": p.warm, "width": 2.2}},
+        )  # fmt: skip
+    start = picture.points[0]
+    fig.add_scatter(
+        x=[start[0]], y=[start[1]], mode="markers", name="start", hoverinfo="skip",
+        marker={"size": 9, "symbol": "circle-open", "color": p.text, "line": {"width": 2}},
+    )  # fmt: skip
+    if picture.worst >= 0:
+        w = picture.points[picture.worst]
+        fig.add_scatter(
+            x=[w[0]], y=[w[1]], mode="markers", name="worst", hoverinfo="skip",
+            marker={"size": 12, "symbol": "diamond-open", "color": p.text, "line": {"width": 2}},
+        )  # fmt: skip
+    if picture.value is not None:
+        fig.add_scatter(
+            x=[None], y=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=_scale(picture, dark)
+        )
+
+
+def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+    """Faint points to hover over and to click: a click on a bare line tells nobody anything."""
+    kept = picture.kept[:: max(1, len(picture.kept) // MAX_PICKS)]
+    q, block = picture.points[kept], picture.block[kept]
+    words = [f"line {b}" + ("" if c else ", rapid") for b, c in zip(block, picture.cutting[kept], strict=True)]
+    hover = "%{text}<br>x %{x:.2f}, y %{y:.2f}, z %{customdata[1]:.2f} " + picture.length_unit
+    data: list[FloatArray] = [block.astype(float), q[:, 2]]
+    if picture.value is not None:
+        value = picture.value[kept]
+        data.append(value)
+        words = [
+            w + (f"<br>{picture.title.lower()} {v:.{picture.digits}f} {picture.unit}" if np.isfinite(v) else "")
+            for w, v in zip(words, value, strict=True)
+        ]
+    fig.add_scatter(
+        x=q[:, 0], y=q[:, 1], mode="markers", name="points", showlegend=False, text=words,
+        customdata=np.column_stack(data), hovertemplate=hover + "<extra></extra>",
+        marker={"size": 9, "color": palette(dark).accent, "opacity": 0.01},
+        selected={"marker": {"opacity": 0.01}}, unselected={"marker": {"opacity": 0.01}},
+    )  # fmt: skip
