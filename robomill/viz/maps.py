@@ -1,4 +1,4 @@
-"""Maps over planes: any number of heat maps in one figure on common scales, with points to pick and the point in hand."""
+"""Maps over planes: heat maps in one figure on common scales, with points to pick and the point in hand."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Scale:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """One panel: values (nu, nv) in display units, NaN where not reached; ``scale`` names one of the figure's scales."""
+    """One panel: values (nu, nv) in display units, NaN where not reached; ``scale`` is one of the sheet's."""
 
     title: str
     values: FloatArray
@@ -43,7 +43,7 @@ class Map:
 
 @dataclass(frozen=True, eq=False)
 class MapSheet:
-    """Panels in rows over the same plane: u (nu,) across and v (nv,) upwards, in display units.
+    """Panels in rows over one plane: u (nu,) across and v (nv,) upwards, in display units.
 
     ``point`` (u, v) is marked in every panel; ``outline`` (lower, upper) is drawn as a dashed box.
     """
@@ -148,13 +148,15 @@ def _panel(
     name = _number(index)
     scale = sheet.scales[panel.scale]
     fig.add_trace(go.Heatmap(
-        x=sheet.u, y=sheet.v, z=np.asarray(panel.values, dtype=np.float32).T, coloraxis=f"coloraxis{_number(used.index(panel.scale))}",
+        x=sheet.u, y=sheet.v, z=np.asarray(panel.values, dtype=np.float32).T,
+        coloraxis=f"coloraxis{_number(used.index(panel.scale))}",
         xaxis=f"x{name}", yaxis=f"y{name}", hoverinfo="skip", name=panel.title,
     ))  # fmt: skip
     _pick_layer(fig, sheet, panel, name, scale, dark)
     if sheet.point is not None:
         fig.add_trace(go.Scatter(
-            x=[sheet.point[0]], y=[sheet.point[1]], mode="markers", xaxis=f"x{name}", yaxis=f"y{name}", hoverinfo="skip",
+            x=[sheet.point[0]], y=[sheet.point[1]], mode="markers", xaxis=f"x{name}", yaxis=f"y{name}",
+            hoverinfo="skip",
             marker={"symbol": "circle" if sheet.on_plane else "circle-open", "size": 9, "color": p.text,
                     "line": {"color": p.background, "width": 1.6 if sheet.on_plane else 2}},
             selected={"marker": {"opacity": 1}}, unselected={"marker": {"opacity": 1}},
@@ -210,13 +212,13 @@ def _axes(
     link: dict[str, Any] = {} if index == 0 else {"matches": "x"}
     link_y: dict[str, Any] = {} if index == 0 else {"matches": "y"}
     half_u, half_v = _half_step(sheet.u), _half_step(sheet.v)
-    common = {"showgrid": False, "nticks": 5, "title": None, "automargin": False}
+    common: dict[str, Any] = {"showgrid": False, "nticks": 5}
     across = axis("", dark=dark, **common, **link) | {
-        "domain": [x0, x1], "anchor": f"y{name}", "showticklabels": lowest,
+        "domain": [x0, x1], "anchor": f"y{name}", "showticklabels": lowest, "title": None, "automargin": False,
         "range": [float(sheet.u[0] - half_u), float(sheet.u[-1] + half_u)],
     }  # fmt: skip
     upwards = axis("", dark=dark, **common, **link_y) | {
-        "domain": [y0, y1], "anchor": f"x{name}", "showticklabels": leftmost,
+        "domain": [y0, y1], "anchor": f"x{name}", "showticklabels": leftmost, "title": None,
         "range": [float(sheet.v[0] - half_v), float(sheet.v[-1] + half_v)], "automargin": leftmost,
     }  # fmt: skip
     if lowest:

@@ -1,0 +1,34 @@
+"""The workspace: where the tool can be brought, how able the arm is there, and the largest box to machine in."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill import ui
+from robomill.ui import maps_fields
+from robomill.ui import workspace_panel as panel
+from robomill.ui.maps_state import maps
+
+project = ui.begin("Workspace")
+robot, unit = project.setup.robot, project.view.length
+view = maps(robot)
+
+box = ui.attempt(maps_fields.region, robot, view)
+known = None
+if box is not None:
+    grid = ui.attempt(maps_fields.solid, robot, box)
+    known = ui.attempt(maps_fields.field, robot, grid, view.A, view.B) if grid is not None else None
+
+ui.headline(f"Workspace · {robot.title or robot.name}", panel.sentence(robot, known))
+if known is not None and box is not None:
+    ui.tiles(panel.tiles(robot, view, box, known, unit))
+else:
+    ui.tiles([ui.Tile(label, "none") for label in ("Region in reach", "Least |det(J)|", "Room to joint limits",
+                                                   "Largest box in reach")])  # fmt: skip
+
+left, right = ui.thirds()
+with left:
+    panel.controls(robot, view, unit)
+    panel.box_card(robot, view, unit)
+with right, st.container(border=True):
+    panel.picture()

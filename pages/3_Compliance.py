@@ -1,0 +1,46 @@
+"""Compliance: the nine maps, the joints' shares, what a stiffer joint would buy, and the full report of any pose."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill import ui
+from robomill.improve.sensitivity import stiffened
+from robomill.ui import compliance_panel as panel
+from robomill.ui import compliance_sheets as sheets
+from robomill.ui import maps_fields, maps_inputs, point_panel
+from robomill.ui.maps_state import factors, maps
+
+project = ui.begin("Compliance")
+robot, unit = project.setup.robot, project.view.length
+view = maps(robot)
+title = f"Compliance · {robot.title or robot.name}"
+
+box = ui.attempt(maps_fields.region, robot, view)
+known = ui.attempt(sheets.overview, robot, view, box) if box is not None else None
+if box is None or known is None:
+    ui.headline(title, "There is nothing to map: mend what is named above.")
+    ui.tiles([ui.Tile(label, "none") for label in ("At the point", "Softest direction", "Softest place", "Pays most")])
+    left, _ = ui.thirds()
+    with left:
+        maps_inputs.where(robot, view, unit)
+    st.stop()
+
+now = panel.fields(robot, view, known)
+point = point_panel.default_point(view, box, known)
+old = point_panel.report(robot, point, view.A, view.B)
+found = point_panel.report(stiffened(robot, factors(view, robot)), point, view.A, view.B)
+
+ui.headline(title, point_panel.headline(found, unit))
+ui.tiles(panel.tiles(found, old, now, known, view, unit))
+
+left, right = ui.thirds()
+with left:
+    panel.controls(robot, view, found, unit)
+    panel.what_if(robot, view)
+with right, st.container(border=True):
+    sheets.picture()
+
+point_panel.show(found, old, view.component, unit)
+st.subheader("Where does stiffness pay?")
+panel.where_it_pays(found, now, panel.quiet_result(project), view, unit)

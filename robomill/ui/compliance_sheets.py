@@ -1,0 +1,285 @@
+"""The pictures of the compliance page: nine maps, joint shares, dominant joint, six lines, comparison."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError, WorkspaceError
+from robomill.kinematics.decoupled import decoupled
+from robomill.robot.model import Robot
+from robomill.ui import compare_panel, inputs, maps_fields, maps_inputs, parts, shell, state
+from robomill.ui.maps_state import MapView, factors, maps, see
+from robomill.ui.point_panel import default_point
+from robomill.units import from_si, to_si, unit_label
+from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
+from robomill.viz.shares import LinePanel, line_panels
+from robomill.workspace.fields import ComplianceField
+from robomill.workspace.grid import Grid
+from robomill.workspace.quantities import COMPONENTS
+from robomill.workspace.reach import Box
+
+SHEETS = {
+    "nine": "3 × 3 maps",
+    "shares": "By joint",
+    "dominant": "Who gives most",
+    "lines": "Path lines",
+    "compare": "Compare",
+}
+MATRIX = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
+SHARES = {"direct": "Direct (Fig. 6)", "cross": "Cross (Fig. 7)"}
+ROWS = {"direct": ("xx", "yy", "zz"), "cross": ("xy", "xz", "yz")}
+UM = "um/N"
+
+
+@st.fragment
+def picture() -> None:
+    """The picture with its own controls; a slider step redraws this part alone, a click opens the point's report."""
+    project = state.project()
+    robot, unit = project.setup.robot, project.view.length
+    view = maps(robot)
+    inputs.choice("Picture", "maps:sheet", SHEETS, view.sheet, lambda s: see(sheet=s), label_visibility="collapsed")
+    view = maps(robot)
+    try:
+        box = maps_fields.region(robot, view)
+        if view.sheet == "lines":
+            _lines(robot, view, box, unit)
+            return
+        normal, at = maps_fields.plane_at(robot, view, box)
+        maps_inputs.plane_slider(robot, box, normal, at, unit)
+        normal, at = maps_fields.plane_at(robot, maps(robot), box)
+        grid = maps_fields.plane(robot, view, box, normal, at)
+        known = maps_fields.field(robot, grid, view.A, view.B)
+        if view.sheet != "compare" and not known.reached.any():
+            st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
+            return
+        _SHEETS[view.sheet](robot, view, box, known, normal, at, unit)
+    except RobomillError as exc:
+        parts.error(exc)
+
+
+def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
+    """A coarse field over the whole region, for scales that stay while the plane moves."""
+    grid = maps_fields.solid(robot, box, 700 if decoupled(robot) is not None else 150)
+    return maps_fields.field(robot, grid, view.A, view.B)
+
+
+def slab(values: FloatArray, normal: str) -> FloatArray:
+    """(nu, nv) from a plane's (nx, ny, nz)."""
+    return values.squeeze(axis="xyz".index(normal))
+
+
+def sheet(
+    rows: list[list[Map | None]], grid: Grid, normal: str, at: float, unit: str, scales: dict[str, Scale],
+    view: MapView, box: Box, known: ComplianceField,
+) -> MapSheet:  # fmt: skip
+    """Panels over a plane with the point in hand marked."""
+    i = "xyz".index(normal)
+    u_name, v_name = (a for a in "xyz" if a != normal)
+    point = default_point(view, box, known)
+    u, v = (float(from_si(point["xyz".index(a)], unit)) for a in (u_name, v_name))
+    return MapSheet(
+        rows, from_si(getattr(grid, u_name), unit), from_si(getattr(grid, v_name), unit),
+        *maps_inputs.axes_titles(normal, unit), scales, point=(u, v), on_plane=abs(point[i] - at) < 1e-6,
+    )  # fmt: skip
+
+
+def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, caption: str, alt: str, table: Any) -> None:
+    """Show a sheet; a click in it makes its cell the point in hand and runs the page again."""
+    ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
+    panel = int(min(max(700 / columns * ratio, 88), 900 / max(len(drawn.rows), 2)))
+    fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=f"{key}-{normal}", gap_x=0.03, gap_y=34)
+    widget = f"sheet-{key}"
+
+    def take() -> None:
+        found = picked_point(drawn.u, drawn.v, st.session_state.get(widget))
+        if found is not None:
+            st.session_state["maps:clicked"] = (normal, at, found)
+
+    parts.figure(fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take)
+    clicked = st.session_state.pop("maps:clicked", None)
+    if clicked is not None:
+        _open(clicked)
+
+
+def _open(clicked: tuple[str, float, tuple[float, float]]) -> None:
+    normal, at, (u, v) = clicked
+    unit = state.project().view.length
+    point = {normal: at}
+    for name, shown in zip((a for a in "xyz" if a != normal), (u, v), strict=True):
+        point[name] = float(to_si(shown, unit))
+    see(point=(point["x"], point["y"], point["z"]))
+    st.rerun(scope="app")
+
+
+def _columns(known: ComplianceField, names: list[str]) -> Any:
+    from robomill.io.maps import map_columns
+
+    return map_columns([known.field(name) for name in names])
+
+
+def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    scale = factors(view, robot)
+    now = maps_fields.stiffer(known, scale)
+    whole = from_si(overview(robot, view, box).total, UM)
+    direct, cross = whole[..., :3], whole[..., 3:]
+    label = f"C, {unit_label(UM)}"
+    if view.common:
+        top = symmetric_limit([whole])
+        scales = {"main": Scale(label, -top, top, "diverging"), "cross": Scale(label, -top, top, "diverging")}
+    else:
+        high, low = symmetric_limit([direct]), float(np.nanmin(direct)) if np.isfinite(direct).any() else 0.0
+        side = symmetric_limit([cross])
+        scales = {
+            "main": Scale(f"direct, {unit_label(UM)}", low, high),
+            "cross": Scale(f"cross, {unit_label(UM)}", -side, side, "diverging"),
+        }
+    rows: list[list[Map | None]] = []
+    for i, names in enumerate(MATRIX):
+        row: list[Map | None] = []
+        for j, c in enumerate(names):
+            k = COMPONENTS.index(c)
+            shown = slab(from_si(now.total[..., k], UM), normal)
+            change = shown - slab(from_si(known.total[..., k], UM), normal)
+            title = f"<b>C<sub>{'xyz'[i]}{'xyz'[j]}</sub></b>  {span(shown)}" + _moved(change)
+            row.append(Map(title, shown, "main" if view.common or i == j else "cross", unit_label(UM)))
+        rows.append(row)
+    about = (
+        "One scale for all nine, centred on zero: the robot's own largest value over the region, so colours stay while the "
+        "plane moves." if view.common else "Direct terms on a scale of sizes, cross terms on one centred on zero."
+    )  # fmt: skip
+    draw(
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known), "nine", 3, normal, at,
+        f"{about} Click a cell for the report of that pose.",
+        "The nine components of the compliance matrix over the plane.",
+        lambda: _columns(now, [f"C_{c}" for c in COMPONENTS]),
+    )  # fmt: skip
+
+
+def span(values: FloatArray) -> str:
+    """The range of a map in words."""
+    if not np.isfinite(values).any():
+        return "not reached"
+    return f"{np.nanmin(values):.2f} … {np.nanmax(values):.2f}".replace("-", "−")
+
+
+def _moved(change: FloatArray) -> str:
+    if not np.isfinite(change).any() or np.nanmax(np.abs(change)) < 5e-4:
+        return ""
+    return f"  <i>({np.nanmean(change):+.2f} mean)</i>".replace("-", "−")
+
+
+def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    inputs.choice(
+        "Components", "maps:shares", SHARES, view.shares, lambda s: see(shares=s), label_visibility="collapsed"
+    )
+    kind = maps(robot).shares
+    now = maps_fields.stiffer(known, factors(view, robot))
+    index = [COMPONENTS.index(c) for c in ROWS[kind]]
+    whole = from_si(overview(robot, view, box).shares[..., index], UM)
+    top = symmetric_limit([whole])
+    label = f"share, {unit_label(UM)}"
+    scale = Scale(label, 0.0, top) if kind == "direct" else Scale(label, -top, top, "diverging")
+    rows: list[list[Map | None]] = []
+    for c, k in zip(ROWS[kind], index, strict=True):
+        values = from_si(now.shares[..., k], UM)
+        rows.append([
+            Map(f"C<sub>{c}</sub> joint {number}  {_mean(values[..., j])}", slab(values[..., j], normal), unit=unit_label(UM))
+            for j, number in enumerate(robot.joint_numbers)
+        ])  # fmt: skip
+    words = "sizes, from zero" if kind == "direct" else "signed, centred on zero"
+    draw(
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known), f"shares-{kind}", robot.n, normal, at,
+        f"Each joint's summand of eq. (16), mean beside its name; one scale, {words}. Joints in a row add up to the map.",
+        "Shares of each joint in the compliance over the plane.",
+        lambda: _columns(now, [f"C_{c}_{j}" for c in ROWS[kind] for j in range(1, robot.n + 1)]),
+    )  # fmt: skip
+
+
+def _mean(values: FloatArray) -> str:
+    return f"{np.nanmean(values):.2f}".replace("-", "−") if np.isfinite(values).any() else "none"
+
+
+def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    now = maps_fields.stiffer(known, factors(view, robot))
+    position = {number: i for i, number in enumerate(robot.joint_numbers)}
+
+    def panel(title: str, name: str) -> Map:
+        values = slab(now.values(name), normal)
+        return Map(
+            title, np.vectorize(lambda v: position.get(int(v), np.nan) if v == v else np.nan)(values).astype(float)
+        )
+
+    rows: list[list[Map | None]] = [
+        [panel("<b>all three directions</b>", "dominant"), *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["direct"])],
+        [None, *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["cross"])],
+    ]  # fmt: skip
+    scale = Scale("", 0, 1, "joints", joints=robot.joint_numbers)
+    draw(
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known), "dominant", 4, normal, at,
+        "The joint with the largest share: where to stiffen first.", "The joint that gives most, over the plane.",
+        lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
+    )  # fmt: skip
+
+
+def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    compare_panel.controls(robot, view)
+    view = maps(robot)
+    rows, scales, rows_of_text, columns = compare_panel.panels(robot, view, known, normal)
+    draw(
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known), "compare", max(len(rows[0]), 2), normal, at,
+        "Above on one scale; below the difference to the first, centred on zero.",
+        "The same compliance of up to three robots or compliance sets, and the differences.", lambda: columns,
+    )  # fmt: skip
+    parts.facts(rows_of_text)
+
+
+def _lines(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+    if maps_fields.flat(robot) not in (None, 2):
+        raise WorkspaceError("The six lines lie in a plane of constant Z_M; this arm moves in another plane.")
+    _, at = (
+        maps_fields.plane_at(robot, view, box)
+        if view.normal == "z"
+        else ("z", min(max(0.0, box.lower[2]), box.upper[2]))
+    )
+    maps_inputs.plane_slider(robot, box, "z", at, unit)
+    _, at = maps_fields.plane_at(robot, maps(robot), box) if view.normal == "z" else ("z", at)
+    found = maps_fields.lines(robot, box, at)
+    scale = factors(view, robot)
+    changed = bool((scale != 1.0).any())
+    panels = []
+    for line in found:
+        by_joint = from_si(line.along_normal(), unit)
+        now = by_joint / scale
+        axis = 0 if abs(line.feed[0]) > 0.5 else 1
+        fixed = "YX"[axis]
+        panels.append(LinePanel(
+            f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = {from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
+            from_si(line.p[:, axis], unit), now.sum(axis=1), now, by_joint.sum(axis=1) if changed else None,
+        ))  # fmt: skip
+    if not any(np.isfinite(q.total).any() for q in panels):
+        st.info("None of the six lines is reached in this plane: move the slider or change the region.")
+        return
+    titles = [f"{'X' if abs(line.feed[0]) > 0.5 else 'Y'}<sub>M</sub>, {unit_label(unit)}" for line in found]
+    parts.figure(
+        line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()), "lines", name="path-lines",
+        table=lambda: _line_columns(panels, robot), alt="Deviation along six straight lines, total and by joint.",
+        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), deviation along "
+        "that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
+    )  # fmt: skip
+
+
+def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:
+    columns: dict[str, Any] = {
+        "line": np.repeat([p.title.replace("<sub>M</sub>", "_M") for p in panels], [len(p.s) for p in panels]),
+        "s": np.concatenate([p.s for p in panels]), "total": np.concatenate([p.total for p in panels]),
+    }  # fmt: skip
+    for j, number in enumerate(robot.joint_numbers):
+        columns[f"joint {number}"] = np.concatenate([p.by_joint[:, j] for p in panels])
+    return columns
+
+
+_SHEETS = {"nine": _nine, "shares": _shares, "dominant": _dominant, "compare": _compare}
