@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import plotly.graph_objects as go
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.viz.paths import thin
 from robomill.viz.theme import axis, axis_colours, figure, palette, rgba
 
@@ -65,7 +65,7 @@ def band_figure(
     return fig
 
 
-def _runs(good: FloatArray) -> list[slice]:
+def _runs(good: BoolArray) -> list[slice]:
     """Slices of consecutive True entries."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -85,7 +85,7 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
 def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool, height: int = 330) -> go.Figure:
     """Correlations (p, p) of the fitted parameters with their numbers; grey where one is not known."""
     p = palette(dark)
-    text = [["" if np.isnan(v) else f"{v:+.2f}" if i != j else "1" for j, v in enumerate(row)]
+    text = [["1" if i == j and np.isfinite(v) else _correlation(v) for j, v in enumerate(row)]
             for i, row in enumerate(correlation)]  # fmt: skip
     fig = figure(dark=dark, height=height, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
     fig.add_heatmap(
@@ -133,9 +133,7 @@ def residuals_figure(
             textfont={"size": 12, "color": p.bad}, hoverinfo="skip", cliponaxis=False,
             marker={"size": 15, "symbol": "circle-open", "color": p.bad, "line": {"width": 2}},
         )  # fmt: skip
-    fig.update_layout(
-        xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark)
-    )
+    fig.update_layout(xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
     return fig
 
 
@@ -150,7 +148,7 @@ def models_figure(
     for k in y:
         fig.add_scatter(x=[in_sample[k], left_out[k]], y=[k, k], mode="lines", showlegend=False, hoverinfo="skip",
                         line={"color": rgba(p.warm, 0.55), "width": 6})  # fmt: skip
-        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", text=f"{left_out[k]:.3g} %",
+        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", text=f"{left_out[k]:.2f} %",
                            showarrow=False, font={"size": 13, "color": p.text})  # fmt: skip
     fig.add_scatter(x=in_sample, y=y, mode="markers", name="on its own data", hovertemplate="%{x:.2f} %<extra></extra>",
                     marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}})  # fmt: skip
@@ -174,8 +172,8 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
     p = palette(dark)
     top = float(np.max(before[np.isfinite(before)], initial=float(np.max(after[np.isfinite(after)], initial=1.0))))
     shown = np.where(np.isfinite(before), before, 1.15 * top)
-    fig = figure(dark=dark, height=84 + 42 * len(names), revision="gain", barmode="group", bargap=0.34, bargroupgap=0.06,
-                 margin={"l": 8, "r": 64, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(dark=dark, height=84 + 42 * len(names), revision="gain", barmode="group", bargap=0.34,
+                 bargroupgap=0.06, margin={"l": 8, "r": 64, "t": 34, "b": 8})  # fmt: skip
     words = [f"± {v:.2g} %" if np.isfinite(v) else "not seen" for v in before]
     for name, values, text, colour in (
         ("now", shown, words, rgba(p.muted, 0.55)),
@@ -191,6 +189,13 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
         yaxis=axis("", dark=dark, autorange="reversed", showgrid=False, ticks=""),
     )
     return fig
+
+
+def _correlation(value: float) -> str:
+    """A correlation as it is written in its cell."""
+    if np.isnan(value):
+        return ""
+    return f"{value:+.2f}".replace("-", "−") if abs(value) >= 0.005 else "0"
 
 
 def _clipped(shown: Intervals) -> tuple[FloatArray, FloatArray]:

@@ -33,7 +33,10 @@ def level_figure(
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 8, "b": 8})
     bar: dict[str, Any] = colour_bar(f"{title}, {unit}", dark=dark)
-    bar.update({"orientation": "h", "x": 0.5, "xanchor": "center", "y": 1.0, "yanchor": "bottom", "len": 0.96})
+    # Within the paper, over a plot that leaves room for it: outside, plotly would shrink the plot.
+    bar.update(
+        {"orientation": "h", "x": 0.5, "xanchor": "center", "y": 0.86, "yanchor": "bottom", "len": 0.9, "ypad": 0}
+    )
     bar["title"]["side"] = "top"
     fig.add_heatmap(
         x=x, y=y, z=values.T, zmin=limits[0], zmax=limits[1], colorscale=diverging(dark) if signed else SEQUENTIAL,
@@ -47,7 +50,7 @@ def level_figure(
     fig.update_layout(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(x)),
-        yaxis=axis(f"Y<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(y)),
+        yaxis=axis(f"Y<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(y), domain=[0.0, 0.83]),
     )
     return fig
 

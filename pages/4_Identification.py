@@ -1,0 +1,65 @@
+"""Identification: load tests in, joint compliances out, with how sure; the measured map; a laboratory to learn in."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill import ui
+from robomill.errors import RobomillError
+from robomill.ui import identification_laboratory as laboratory
+from robomill.ui import identification_map as measured_map
+from robomill.ui import identification_panel as panel
+from robomill.ui import identification_plan as plan
+from robomill.ui import identification_results as results
+from robomill.ui import identification_words as words
+from robomill.ui.load_bench import Bench, bench, fit_of, robot_of, tests_of
+
+
+def load_tests(kept: Bench, view: ui.View, dark: bool) -> None:
+    """Measurements and model on the left, what they say on the right."""
+    robot = robot_of(kept)
+    tests = result = refusal = None
+    try:
+        tests = tests_of(kept, robot)
+        result = fit_of(kept, robot)
+    except RobomillError as exc:
+        refusal = exc
+    kicker = f"Identification · {kept.name}"
+    if result is None:
+        ui.headline(kicker, "Nothing can be identified from these load tests yet.")
+    else:
+        ui.headline(kicker, words.title(result))
+        ui.tiles(words.tiles(result, view.joint_unit, plan.cut_tile(kept, robot, result, view.length)))
+    left, right = ui.split([1, 2.3], "page", gap="large")
+    with left:
+        panel.source(kept, robot)
+        panel.said(tests, refusal, panel.findings(tests, result, robot))
+        panel.robot_choice(kept)
+        panel.model_choice(kept, robot)
+        if result is not None:
+            panel.use(kept, robot, result)
+    with right:
+        if result is None:
+            st.info("Mend what is named beside; your rows are kept as they are.", icon=":material/arrow_back:")
+            return
+        view_name = panel.choose("view", panel.VIEWS)
+        if view_name == "compliances":
+            results.compliances(result, robot, view.joint_unit, dark)
+        elif view_name == "residuals":
+            results.residuals(kept, result, dark)
+        elif view_name == "models":
+            results.models(kept, robot, view.joint_unit, dark)
+        elif view_name == "next":
+            plan.measure_next(kept, robot, result, view.length, dark)
+        else:
+            plan.in_the_cut(kept, robot, result, view.length, dark)
+
+
+project = ui.begin("Identification")
+section = panel.choose("section", panel.SECTIONS)
+if section == "tests":
+    load_tests(bench(), project.view, ui.dark())
+elif section == "map":
+    measured_map.page(bench(), project.view, ui.dark())
+else:
+    laboratory.page(bench(), project.view, ui.dark())

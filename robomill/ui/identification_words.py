@@ -1,0 +1,202 @@
+"""What an identification says on the screen: sentences, tiles and columns. Pure functions, no widgets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.identification.comparison import in_sample
+from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.models import Parameter
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+from robomill.ui.parts import Tile
+from robomill.ui.tables import PRISMATIC_UNITS, is_stiffness
+from robomill.units import UNITS, format_si, from_si, unit_label
+from robomill.viz.identification import Intervals
+
+MODEL_TITLES = {
+    "joints": "Joint springs",
+    "joints+bending": "Joints and bending links",
+    "joints+tool": "Joints and tool",
+    "joints+bending+tool": "Joints, bending and tool",
+    "constant": "One constant matrix",
+}
+SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
+
+
+def unit_of(parameter: Parameter, joint_unit: str) -> str:
+    """The unit a parameter is shown in: the screen's for joints and bending, um/N for what shifts."""
+    if parameter.unit.startswith("rad"):
+        return joint_unit
+    return PRISMATIC_UNITS[joint_unit] if parameter.joint else "um/N"
+
+
+def shown(value: Any, unit: str) -> Any:
+    """A compliance (SI) in ``unit``, turned over where that is a stiffness."""
+    if not is_stiffness(unit):
+        return from_si(value, unit)
+    with np.errstate(divide="ignore"):
+        return from_si(1.0 / np.asarray(value, dtype=np.float64), unit)
+
+
+def interval(low_high: FloatArray, unit: str) -> tuple[float, float]:
+    """An interval of a compliance in ``unit``, lower end first."""
+    ends = shown(np.asarray(low_high, dtype=np.float64), unit)
+    return float(ends.min()), float(ends.max())
+
+
+def number(value: float, unit: str) -> str:
+    """A value already in ``unit`` with that unit's digits, without its name; a dash where there is none."""
+    if not np.isfinite(value):
+        return "∞" if value > 0 else "–"
+    text = f"{value:.{UNITS[unit].digits}f}"
+    return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def intervals(
+    result: IdentificationResult, robot: Robot, joint_unit: str, truth: FloatArray | None = None
+) -> list[Intervals]:
+    """One drawing for each unit among the parameters: joints and bending, then what shifts."""
+    units = [unit_of(p, joint_unit) for p in result.labels]
+    drawn = []
+    for unit in dict.fromkeys(units):
+        rows = [k for k, u in enumerate(units) if u == unit]
+        known = np.array([bool(np.isfinite(result.parameter_stderr[k])) for k in rows])
+        value = np.where(known, shown(result.parameters[rows], unit), np.nan)
+        ends = np.array([interval(result.parameter_ci95[k], unit) for k in rows])
+        words = tuple(
+            f"<b>{number(value[i], unit)}</b>  ({number(ends[i, 0], unit)} to {number(ends[i, 1], unit)})"
+            if known[i]
+            else ""
+            for i in range(len(rows))
+        )
+        joints = [result.labels[k].joint for k in rows]
+        references = {
+            SET_TITLES.get(name, name.replace("_", " ").capitalize()): np.array(
+                [shown(values[j - 1], unit) if j else np.nan for j in joints]
+            )
+            for name, values in robot.compliance_sets.items()
+            if name != "identified"
+        }
+        drawn.append(Intervals(
+            labels=tuple(result.labels[k].label.capitalize().replace("C_", "C ") for k in rows),
+            value=value, low=ends[:, 0], high=ends[:, 1], words=words, unit=unit_label(unit),
+            references=references if any(joints) else {},
+            truth=None if truth is None else shown(truth, unit),
+            logarithmic=not any(result.labels[k].signed for k in rows) and bool((value[known] > 0).any()),
+        ))  # fmt: skip
+    return drawn
+
+
+def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: str) -> dict[str, Any]:
+    """The table of parameters: value, standard error, 95 % interval, share of the displacement, reference sets."""
+    units = [unit_of(p, joint_unit) for p in result.labels]
+    known = np.isfinite(result.parameter_stderr)
+    value = np.array([float(shown(v, u)) for v, u in zip(result.parameters, units, strict=True)])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        error = np.where(
+            [is_stiffness(u) for u in units], value * result.parameter_stderr / result.parameters,
+            [float(from_si(float(e), u)) for e, u in zip(result.parameter_stderr, units, strict=True)],
+        )  # fmt: skip
+    ends = [interval(c, u) for c, u in zip(result.parameter_ci95, units, strict=True)]
+    columns: dict[str, Any] = {
+        "parameter": [p.label for p in result.labels],
+        "value": np.where(known, value, np.nan),
+        "standard error": np.where(known, error, np.nan),
+        "95 % from": np.where(known, [e[0] for e in ends], np.nan),
+        "95 % to": np.where(known, [e[1] for e in ends], np.nan),
+        "unit": [unit_label(u) for u in units],
+        "share of displacement, %": from_si(result.share, "%"),
+    }
+    for name, values in robot.compliance_sets.items():
+        if name == "identified":
+            continue
+        columns[SET_TITLES.get(name, name)] = [
+            float(shown(values[p.joint - 1], u)) if p.joint else np.nan
+            for p, u in zip(result.labels, units, strict=True)
+        ]
+    return columns
+
+
+def residual_columns(result: IdentificationResult) -> dict[str, Any]:
+    """One row a test: residual by component (mm; mrad for single joints), its size, its share, times off."""
+    single = result.residual.shape[1] == 1
+    unit, names = ("mrad", [""]) if single else ("mm", ["x_", "y_", "z_"])
+    flagged = {o.row: o.times for o in result.outliers}
+    columns: dict[str, Any] = {"row": result.row}
+    for i, name in enumerate(names):
+        columns[f"residual_{name}{unit}"] = from_si(result.residual[:, i], unit)
+    columns[f"size_{unit}"] = from_si(sizes(result), unit)
+    columns["share_of_measured_%"] = from_si(result.residual_share, "%")
+    columns["times_the_usual"] = [flagged.get(int(r), np.nan) for r in result.row]
+    return columns
+
+
+def sizes(result: IdentificationResult) -> FloatArray:
+    """(m,) size of each test's residual; NaN where nothing was measured."""
+    size = np.sqrt(np.nansum(result.residual**2, axis=1))
+    return np.where(np.isfinite(result.residual).any(axis=1), size, np.nan)
+
+
+def summary(tests: LoadTests | JointTests) -> str:
+    """What was read: how many tests, at how many poses."""
+    m = len(tests)
+    if isinstance(tests, JointTests):
+        return f"{m} tests of {len(np.unique(tests.joint))} joints, one at a time."
+    poses = int(tests.pose_index().max()) + 1
+    numbers = int(np.isfinite(tests.displacement).sum())
+    return f"{m:,} tests at {poses:,} poses, {numbers:,} equations ({tests.protocol})."
+
+
+def weakest(result: IdentificationResult) -> tuple[str, float]:
+    """Label of the joint known least, and half its 95 % interval as a share of its value."""
+    joint = result.weakest_joint
+    k = next(i for i, p in enumerate(result.labels) if p.joint == joint)
+    value = result.parameters[k]
+    half = float(np.ptp(result.parameter_ci95[k])) / 2 if np.isfinite(result.parameter_stderr[k]) else np.inf
+    return result.labels[k].label, half / value if value > 0 else float("inf")
+
+
+def title(result: IdentificationResult) -> str:
+    """The page's one sentence."""
+    cv = result.cv_relative_error
+    said = (
+        f"These tests predict poses left out to {format_si(cv, '%', 1)}" if np.isfinite(cv)
+        else "There are too few poses to leave any out"
+    )  # fmt: skip
+    if result.model == "constant":
+        return f"{said}: one matrix for every pose, the naive baseline."
+    label, half = weakest(result)
+    if not np.isfinite(half):
+        return f"{said}; {label} cannot be seen."
+    return f"{said}; {label} is known least, to ± {100 * half:.0f} %."
+
+
+def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
+    """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
+    cv, inside = result.cv_relative_error, in_sample(result)
+    single = result.residual.shape[1] == 1
+    rms = format_si(result.residual_rms, "urad" if single else "um", 1)
+    items = [
+        Tile("Error on poses left out", format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
+             f"cross-validated; {format_si(inside, '%', 1)} on its own data", kind="computed"),
+    ]  # fmt: skip
+    if result.model == "constant":
+        items.append(Tile("Least known joint", "none", "this model has no joints"))
+    else:
+        label, half = weakest(result)
+        k = next(i for i, p in enumerate(result.labels) if p.label == label)
+        unit = unit_of(result.labels[k], joint_unit)
+        low, high = interval(result.parameter_ci95[k], unit)
+        note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
+        note = note if np.isfinite(half) else "these tests do not see it"
+        items.append(Tile(f"Least known: {label}", f"± {100 * half:.0f} %" if np.isfinite(half) else "not seen", note))
+    odd = len(result.outliers)
+    items += [
+        Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),
+        Tile("The cut at its worst", *cut),
+    ]  # fmt: skip
+    return items

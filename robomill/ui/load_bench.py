@@ -1,0 +1,170 @@
+"""The bench: load tests and the choices made about them, one plain session entry beside the project.
+
+The text of the tests is the truth; what is read from it, fitted and planned is kept by what it depends on, in the
+session only (uploads are a person's own) and bounded. A text that is refused stays as it was typed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+import streamlit as st
+
+from robomill.errors import LoadTestError
+from robomill.identification.comparison import Comparison, compare_models
+from robomill.identification.estimate import identify
+from robomill.identification.laboratory import Laboratory
+from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.measured_field import MeasuredField
+from robomill.identification.result import IdentificationResult
+from robomill.io.load_tests import read_load_tests, read_measured_map
+from robomill.io.robots import load_robot
+from robomill.io.samples import samples_dir
+from robomill.robot.model import Robot
+from robomill.ui import state
+
+Value = TypeVar("Value")
+
+KEY = "robomill:load tests"
+KEPT = 24
+SAMPLE_ROBOT = "slavkovic_5r"
+SAMPLES = {
+    "nine_points": "Nine points, 81 equations",
+    "tilted_bending_tool": "Tilted tool, links bend too",
+    "grid_45x6": "Grid of 45 x 6 points",
+    "nine_points_compliances": "Nine points as compliances",
+    "one_joint_at_a_time": "One joint at a time",
+}
+MAP_SAMPLES = {"grid_45x6": SAMPLES["grid_45x6"], "nine_points_compliances": SAMPLES["nine_points_compliances"]}
+
+
+@dataclass(eq=False)
+class Bench:
+    """Text and name of the tests, the model asked for, what was left out, the plan's goal; ``sample`` "" if own.
+
+    robot_name "": the project's robot. Lengths m, angles rad, forces N. ``revision`` counts changes of the text.
+    """
+
+    text: str = ""
+    name: str = ""
+    sample: str = ""
+    revision: int = 0
+    robot_name: str = ""
+    model: str = "joints"
+    bending: tuple[int, ...] = (2, 3)
+    robust: bool = False
+    excluded: tuple[int, ...] = ()
+    goal: str = "joint"
+    goal_joint: int = 0
+    count: int = 3
+    load: float = 250.0
+    tilt: float = 0.5235987755982988
+    force_unsure: float = 0.0
+    length_unsure: float = 0.0
+    map_text: str = ""
+    map_name: str = ""
+    map_sample: str = ""
+    map_revision: int = 0
+    laboratory: Laboratory | None = None
+    handed_in: bool = False
+    memory: dict[Any, Any] = field(default_factory=dict, repr=False)
+
+    def remembered(self, key: Any, make: Callable[[], Value]) -> Value:
+        """``make()``, once for each ``key``; the oldest of ``KEPT`` is forgotten. Refusals are not kept."""
+        if key not in self.memory:
+            made = make()
+            while len(self.memory) >= KEPT:
+                del self.memory[next(iter(self.memory))]
+            self.memory[key] = made
+        return self.memory[key]  # type: ignore[no-any-return]
+
+    def take(self, text: str, name: str, sample: str = "") -> None:
+        """Put other tests on the bench; what was left out of the old ones is forgotten."""
+        self.text, self.name, self.sample = text, name, sample
+        self.revision += 1
+        self.excluded = ()
+
+    def take_map(self, text: str, name: str, sample: str = "") -> None:
+        """Put another measured map on the bench."""
+        self.map_text, self.map_name, self.map_sample = text, name, sample
+        self.map_revision += 1
+
+
+def bench() -> Bench:
+    """The bench of this session; the first call lays the nine-point sample on it."""
+    if KEY not in st.session_state:
+        new = Bench()
+        take_sample(new, "nine_points")
+        new.take_map(sample_text("grid_45x6"), "grid_45x6.csv", "grid_45x6")
+        st.session_state[KEY] = new
+    return st.session_state[KEY]  # type: ignore[no-any-return]
+
+
+def take_sample(kept: Bench, sample: str) -> None:
+    """Put a sample on the bench, with the robot that it was made for."""
+    kept.take(sample_text(sample), f"{sample}.csv", sample)
+    kept.robot_name = "" if state.project().setup.robot.name == SAMPLE_ROBOT else SAMPLE_ROBOT
+
+
+@st.cache_data(max_entries=8, show_spinner=False)
+def sample_text(sample: str) -> str:
+    """The text of a sample of load tests."""
+    return (samples_dir() / "load_tests" / f"{sample}.csv").read_text(encoding="utf-8")
+
+
+def decoded(data: bytes, name: str) -> str:
+    """An uploaded file as text. Raises LoadTestError for what is not one."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise LoadTestError(f"{name}: this is not a text file; save the table as CSV (UTF-8) and take that.") from None
+
+
+def robot_of(kept: Bench) -> Robot:
+    """The robot that was measured: the project's, or a preset."""
+    return load_robot(kept.robot_name) if kept.robot_name else state.project().setup.robot
+
+
+def tests_of(kept: Bench, robot: Robot) -> LoadTests | JointTests:
+    """The tests as read, their poses checked against the robot. Raises LoadTestError with row and column."""
+    # The line end makes a single typed line a text, never the name of a file on this machine.
+    return kept.remembered(("tests", kept.revision, robot.digest()), lambda: read_load_tests(kept.text + "\n", robot))
+
+
+def fit_of(kept: Bench, robot: Robot) -> IdentificationResult:
+    """The fit of the model asked for. Raises LoadTestError."""
+    return kept.remembered(
+        ("fit", _choices(kept, robot), kept.model),
+        lambda: identify(
+            robot, tests_of(kept, robot), kept.model, bending_joints=kept.bending, robust=kept.robust,
+            exclude=kept.excluded,
+        ),
+    )  # fmt: skip
+
+
+def comparison_of(kept: Bench, robot: Robot) -> Comparison:
+    """Every model fitted to the same tests. Raises LoadTestError."""
+    tests = tests_of(kept, robot)
+    if isinstance(tests, JointTests):
+        raise LoadTestError(
+            "One joint at a time shows nothing but joints: models are compared on displacements of the tool."
+        )
+    return kept.remembered(
+        ("models", _choices(kept, robot)),
+        lambda: compare_models(
+            robot, tests, bending_joints=kept.bending, robust=kept.robust, exclude=kept.excluded
+        ),
+    )  # fmt: skip
+
+
+def field_of(kept: Bench, robot: Robot) -> MeasuredField:
+    """The measured map. Raises LoadTestError."""
+    return kept.remembered(
+        ("map", kept.map_revision, robot.digest()), lambda: read_measured_map(kept.map_text + "\n", robot)
+    )
+
+
+def _choices(kept: Bench, robot: Robot) -> tuple[Any, ...]:
+    return kept.revision, robot.digest(), kept.bending, kept.robust, kept.excluded
