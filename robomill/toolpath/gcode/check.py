@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.modal import (
-    COMPENSATION, CONTROL, CYCLES, IO, LENGTH, MOTION, NEEDS_AXES, NON_MODAL, OVERRIDE, SPINDLE, SPINDLE_MODE, TOOL,
+    COMPENSATION, CONTROL, CYCLES, DISTANCE, IO, LENGTH, MOTION, NEEDS_AXES, NON_MODAL, OVERRIDE, SPINDLE, SPINDLE_MODE, TOOL,
     USER, g_name,
 )  # fmt: skip
 from robomill.toolpath.gcode.words import Block
@@ -48,6 +48,10 @@ def choose_motion(machine: Machine, block: Block) -> None:
             block.motion = machine.motion
         elif machine.motion in _ARCS and any(letter in words for letter in "ijk"):
             block.motion = machine.motion
+    if non_modal == 530 and (
+        block.g.get(DISTANCE) == 910 or (DISTANCE not in block.g and not machine.absolute)
+    ):
+        raise block.refuse("G53 needs absolute coordinates; use G90 first.")
     for letter in "uvw":
         if letter in words:
             raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")

@@ -20,6 +20,8 @@ from robomill.toolpath.gcode.words import Block
 
 CORNER = 0.05
 """rad: directions that differ by less go straight on."""
+OVERSHOOT = {"mm": 0.0254, "in": 0.001}
+"""rad: an arc may sweep this much farther than programmed to meet the next move."""
 _HALF = math.pi / 2.0
 
 
@@ -122,11 +124,11 @@ class Compensation:
             if move.turn:
                 before = math.hypot(move.end[0] - move.centre[0], move.end[1] - move.centre[1])
                 after = math.hypot(u - move.centre[0], v - move.centre[1])
-                if abs(before - after) > 0.01:
+                if abs(before - after) > 10.0 * OVERSHOOT[machine.unit]:
                     raise self._gouge(block, "the arc before it")
                 if move.sweep and corner is not None:
                     sweep = find_turn(corner[0], corner[1], move.centre, move.turn, u, v)
-                    if abs(sweep) > abs(move.sweep) + 0.001:
+                    if abs(sweep) > abs(move.sweep) + OVERSHOOT[machine.unit]:
                         raise self._gouge(block, "the arc before it")
             elif corner is not None:
                 along = move.direction[0] * (u - corner[0]) + move.direction[1] * (v - corner[1])

@@ -106,7 +106,7 @@ def _from_sinumerik(raw: str) -> str:
     code, mark, comment = raw.partition(";")
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
-        code, comment, mark = message[1], "MSG," + message[2].strip('"'), ";"
+        code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
     code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)

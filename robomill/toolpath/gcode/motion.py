@@ -12,9 +12,9 @@ from robomill.toolpath.gcode.words import Block
 from robomill.units import format_si
 
 SPIRAL_TOLERANCE = {"mm": 0.02 * math.sqrt(2.0), "in": 0.002 * math.sqrt(2.0)}
-"""Largest difference of the radii to start and end of an arc given by its centre, in program units."""
+"""The radii to start and end of an arc given by its centre may differ by this much (program units), or by"""
 SPIRAL_SHARE = 1e-3
-"""The same, as a share of the larger radius."""
+"""this share of the larger radius, whichever is more, but never by more than 100 times the first figure."""
 RADIUS_TOLERANCE = {"mm": 0.00005 * 25.4, "in": 0.00005}
 """A radius below this is none; half a chord may exceed a given radius by this much. In program units."""
 
@@ -137,6 +137,8 @@ def arc(machine: Machine, block: Block) -> None:
     name = f"G{block.motion // 10}"
     if machine.plane not in AXES:
         raise block.refuse(f"{name} needs a plane G17, G18 or G19.")
+    if machine.rotation and machine.plane != 17:
+        raise block.refuse(f"{name} in G{machine.plane} with a rotated coordinate system (G10 R) is in no plane.")
     has_centre = any(letter in block.words for letter in "ijk")
     if not has_centre and "r" not in block.words:
         raise block.refuse(f"{name} needs its centre (I, J, K) or its radius (R).")
@@ -207,7 +209,7 @@ def arc_centre(
 ) -> tuple[float, float]:
     """Centre in the plane of an arc from (x, y) to (end_x, end_y), all in program units of the current system.
 
-    Raises GCodeError if the radii differ by more than ``SPIRAL_TOLERANCE``, naming both in mm.
+    Raises GCodeError naming both radii (mm) if they differ too much.
     """
     if "r" in block.words:
         return _centre_from_radius(machine, block, x, y, end_x, end_y)
@@ -219,13 +221,12 @@ def arc_centre(
     if min(r_start, r_end) < RADIUS_TOLERANCE[machine.unit]:
         raise block.refuse(f"{name} has a radius of 0; start or end lies on its centre.")
     tolerance = SPIRAL_TOLERANCE[machine.unit]
-    error = abs(r_start - r_end)
-    if error > tolerance or error > SPIRAL_SHARE * max(r_start, r_end):
+    allowed = min(max(tolerance, SPIRAL_SHARE * max(r_start, r_end)), 100.0 * tolerance)
+    if abs(r_start - r_end) > allowed:
         radii = [format_si(r * machine.factor, "mm", 4) for r in (r_start, r_end)]
-        allowed = min(tolerance, SPIRAL_SHARE * max(r_start, r_end)) * machine.factor
         raise block.refuse(
             f"{name} does not end on its circle: the radius is {radii[0]} at the start and {radii[1]} at the end; "
-            f"they may differ by {format_si(allowed, 'mm', 4)}."
+            f"they may differ by {format_si(allowed * machine.factor, 'mm', 4)}."
         )
     return centre
 

@@ -208,7 +208,9 @@ def tool_length(machine: Machine, block: Block, code: int) -> None:
 
 
 def known_tool(machine: Machine, block: Block, number: int) -> Tool:
-    """The tool, of no size if there is no table. Raises GCodeError if the table lacks it."""
+    """The tool, of no size if there is no table; 0 is the one in the spindle. Raises GCodeError if it is missing."""
+    if number == 0:
+        return machine.tool
     try:
         return machine.find_tool(number) or Tool(number)
     except KeyError:

@@ -95,7 +95,6 @@ def read_words(reader: Reader, diameter_mode: bool = False) -> Block:
             block.comment = text[reader.at + 1 : end]
             reader.at = end + 1
         elif letter == ";":
-            block.comment = block.comment or text[reader.at + 1 :]
             break
         elif letter == "#":
             _read_setting(reader, block)
