@@ -65,7 +65,7 @@ def _load() -> None:
 def _exercise(module: Kernels) -> None:
     """Call every kernel once on a few cells, which compiles it or loads it from the cache on disk."""
     z = np.ones((4, 4))
-    tile = (z, z.copy(), z.copy(), np.zeros((4, 4, 4)), np.zeros(16, dtype=np.int64), np.zeros(1, dtype=np.int64))
+    tile = (z, z.copy(), z.copy(), np.zeros((4, 4, 5)), np.zeros(16, dtype=np.int64), np.zeros(1, dtype=np.int64))
     grid, shape, chosen = (0.0, 0.0, 0.5, 0.5), (0, 1.0, 1.0, 0.0, 0.0), np.zeros(1, dtype=np.int64)
     module.cut_moves(shape, np.zeros((1, 6)), chosen, grid, tile)
     moves, frames, boxes = np.zeros((1, 7)), np.ones((1, 8)), np.zeros((1, 4))

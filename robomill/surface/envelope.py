@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
 
 FLAT, BALL, BULL, CHAMFER = range(4)
 BISECTIONS = 32
-SECTOR_TURN = 0.29
+SAME_EDGE = 0.5
 GOLDEN = 0.6180339887498949
 
 
@@ -183,24 +183,28 @@ def covered_share(d: FloatArray, nx: FloatArray, ny: FloatArray, dx: float, dy: 
     return np.clip(share, 0.0, 1.0)
 
 
-def sector(ex: FloatArray, ey: FloatArray) -> IntArray:
-    """Which of four sides of a cell the material beside an edge lies on, from the edge's normal.
+def note_share(record: FloatArray, covered: FloatArray, ex: FloatArray, ey: FloatArray) -> FloatArray:
+    """Records (n, 5) of edge cells with one more edge each: what it covers, and its normal (ex, ey).
 
-    Opposite normals fall on opposite sides (0, 1) and (2, 3). The sides are turned by an odd angle so that walls
-    along the axes and diagonals do not lie on the border of two.
+    A record holds what the first edge's direction covers, what edges in other directions cover, the first edge's
+    normal and how far the others turn from it (cosine). Edges within 60 degrees are taken as one wall, cut again.
     """
-    a = math.cos(SECTOR_TURN) * ex + math.sin(SECTOR_TURN) * ey
-    b = math.cos(SECTOR_TURN) * ey - math.sin(SECTOR_TURN) * ex
-    return np.where(np.abs(a) >= np.abs(b), np.where(a > 0, 0, 1), np.where(b > 0, 2, 3))
+    fresh = (record[:, 2] == 0.0) & (record[:, 3] == 0.0)
+    turn = ex * record[:, 2] + ey * record[:, 3]
+    same = ~fresh & (turn > SAME_EDGE)
+    other = ~fresh & ~same & (covered > record[:, 1])
+    result = record.copy()
+    result[fresh, 0], result[fresh, 2], result[fresh, 3] = covered[fresh], ex[fresh], ey[fresh]
+    result[same, 0] = np.maximum(record[same, 0], covered[same])
+    result[other, 1], result[other, 4] = covered[other], turn[other]
+    return result
 
 
-def union_share(share: FloatArray) -> FloatArray:
-    """Share of cells covered in all, from what edges on each of four sides (..., 4) cover.
-
-    Opposite sides leave a strip between them, so they add; neighbouring sides cross.
-    """
-    a, b = np.minimum(1.0, share[..., 0] + share[..., 1]), np.minimum(1.0, share[..., 2] + share[..., 3])
-    return np.asarray(a + b - a * b)
+def union_share(record: FloatArray) -> FloatArray:
+    """Share of cells covered in all, from their records (n, 5): opposite edges add, crossing edges overlap."""
+    first, other = record[:, 0], record[:, 1]
+    together = np.where(record[:, 4] < -SAME_EDGE, first + other, first + other - first * other)
+    return np.minimum(1.0, together)
 
 
 class Tilt(NamedTuple):

@@ -11,7 +11,7 @@ import math
 from numba import njit
 
 FLAT, BALL, BULL, CHAMFER = 0, 1, 2, 3
-COS_SECTOR, SIN_SECTOR = math.cos(0.29), math.sin(0.29)
+SAME_EDGE = 0.5
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -161,12 +161,16 @@ def covered_share(d, nx, ny, dx, dy):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def sector(ex, ey):  # type: ignore[no-untyped-def]
-    """Which of four sides of a cell the material beside an edge lies on."""
-    a, b = COS_SECTOR * ex + SIN_SECTOR * ey, COS_SECTOR * ey - SIN_SECTOR * ex
-    if abs(a) >= abs(b):
-        return 0 if a > 0.0 else 1
-    return 2 if b > 0.0 else 3
+def note_share(record, covered, ex, ey):  # type: ignore[no-untyped-def]
+    """Note what an edge with normal (ex, ey) covers of a cell; see ``envelope.note_share``."""
+    if record[2] == 0.0 and record[3] == 0.0:
+        record[0], record[2], record[3] = covered, ex, ey
+        return
+    turn = ex * record[2] + ey * record[3]
+    if turn > SAME_EDGE:
+        record[0] = max(record[0], covered)
+    elif covered > record[1]:
+        record[1], record[4] = covered, turn
 
 
 @njit(cache=True, nogil=True)
@@ -215,8 +219,7 @@ def cut_edge_cells(shape, move, grid, i, runs, tile):  # type: ignore[no-untyped
         if d >= 0.0:
             z_centre[i, column] = min(z_centre[i, column], height)
         z_low[i, column] = min(z_low[i, column], height)
-        side = sector(ex, ey)
-        share[i, column, side] = max(share[i, column, side], covered_share(d, ex, ey, dx, dy))
+        note_share(share[i, column], covered_share(d, ex, ey, dx, dy), ex, ey)
 
 
 @njit(cache=True, nogil=True)

@@ -102,7 +102,7 @@ class _Scratch:
         self.rows = rows_of_tile(shape)
         size = (self.rows, shape[1])
         self.z_centre, self.z_low = np.full(size, np.inf), np.full(size, np.inf)
-        self.share = np.zeros((*size, 4))
+        self.share = np.zeros((*size, 5))
         self.edges = np.empty(size[0] * size[1], dtype=np.int64)
 
     def tile(self, z: FloatArray) -> Tile:
@@ -113,7 +113,7 @@ class _Scratch:
     def settle(self, tile: Tile) -> tuple[IntArray, FloatArray]:
         """Write the heights at the centres of edge cells into z; return edge cells and their mean heights."""
         z, z_centre, z_low = (a.reshape(-1) for a in tile[:3])
-        share = tile[3].reshape(-1, 4)
+        share = tile[3].reshape(-1, 5)
         cells = tile[4][: tile[5][0]].copy()
         top = z[cells]
         mean = top - envelope.union_share(share[cells]) * np.maximum(0.0, top - z_low[cells])
@@ -157,8 +157,7 @@ def _cut_move(shape: Shape, move: envelope.Move, grid: Grid, tile: Tile) -> None
     count[0] += len(fresh)
     z_low[i, j] = np.minimum(z_low[i, j], height[part])
     covered = envelope.covered_share(d[part], ex[part], ey[part], grid.dx, grid.dy)
-    side = envelope.sector(ex[part], ey[part])
-    share[i, j, side] = np.maximum(share[i, j, side], covered)
+    share[i, j] = envelope.note_share(share[i, j], covered, ex[part], ey[part])
 
 
 def _outward(move: envelope.Move, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
