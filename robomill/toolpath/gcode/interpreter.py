@@ -9,7 +9,7 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import check, flow
-from robomill.toolpath.gcode.dialects import Dialect, choose_dialect
+from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute, restore_modes
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Machine
@@ -135,6 +135,12 @@ class Interpreter:
             self._comment(block)
         if execute(machine, block, self.frames[-1].saved):
             self.ended = True
+
+    def advance(self, lines: int) -> None:
+        """Count ``lines`` that were executed elsewhere and go on behind them."""
+        self.pc += lines
+        self.steps += lines
+        self._tick(max(self.pc - 1, 0))
 
     # --- budgets, ends, comments
     def _tick(self, index: int) -> None:
@@ -432,8 +438,3 @@ class Interpreter:
             self.pc = self.main.o_words().bare[frame.label] + 1
         else:
             self._leave()
-
-
-def choose(text: str, wanted: str) -> Dialect:
-    """The dialect by name, or the guess for ``"auto"``."""
-    return choose_dialect(text, wanted)

@@ -10,6 +10,7 @@ import numpy as np
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.dialects import choose_dialect
+from robomill.toolpath.gcode.fastpath import MIN_LINES, FastPath
 from robomill.toolpath.gcode.interpreter import Cancel, File, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Program
@@ -53,15 +54,15 @@ def interpret(
     data, name = read_source(source)
     text = data.decode("utf-8", "replace")
     lines = text.split("\n")
-    del data
     if isinstance(tools, str | Path):
         tools = read_tool_table(tools)
     chosen = choose_dialect(text, dialect)
     machine = Machine(tools)
-    folder = Path(source).parent if isinstance(source, Path) or (isinstance(source, str) and name != "program") else None
+    is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
+    folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     interpreter = Interpreter(machine, File(name, lines, folder), chosen, progress, cancel)
     try:
-        interpreter.run()
+        interpreter.run(FastPath(data, len(lines)) if fast and len(lines) >= MIN_LINES else None)
     except RecursionError:
         raise GCodeError(f"Line {machine.line}: too deeply nested to read.", line=machine.line) from None
     if chosen.guessed and chosen.name != "linuxcnc":
