@@ -95,6 +95,7 @@ def parser() -> argparse.ArgumentParser:
     fit.add_argument(
         "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
     )
+    fit.add_argument("--bending-joints", default="2,3", help="joints with bending springs (default 2,3)")
     fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
 
     run = verb("simulate", run_simulate, "Run a set-up: deviation, groove, verdict.")
@@ -229,15 +230,18 @@ def run_identify(arguments: Any) -> int:
 
     robot = load_robot(arguments.robot)
     tests = read_load_tests(Path(arguments.tests), robot)
-    result = identify(robot, tests, arguments.model, robust=arguments.robust)
+    joints = [int(v) for v in _numbers(arguments.bending_joints, "--bending-joints", None, "joint numbers")]
+    result = identify(robot, tests, arguments.model, robust=arguments.robust, bending_joints=joints)
     record = identification_report(result)
-    record["findings"] = [finding_record(f) for f in read_findings(tests, robot)]
+    record["explanations"] = list(result.explanations)
+    record["findings"] = [finding_record(f) for f in (*read_findings(tests, robot), *result.findings)]
     say(arguments, record, identification_lines(record))
     return 0
 
 
 def run_simulate(arguments: Any) -> int:
-    from robomill.io.projects import load_setup, read_program
+    from robomill.io.programs import read_program
+    from robomill.io.projects import load_setup
     from robomill.io.results import json_text, write_files
     from robomill.report.plain import simulation_lines
     from robomill.report.records import jsonable, simulation_record
@@ -254,13 +258,13 @@ def run_simulate(arguments: Any) -> int:
     result = simulate(setup)
     record = simulation_record(result)
     if arguments.out:
-        from robomill.io.meshes import zmap_to_stl
+        from robomill.io.meshes import mesh_bytes
 
         files = {
             "result.json": json_text(jsonable(record)),
             "deviation.csv": csv_text(deviation_columns(result)),
             "sections.csv": csv_text(section_columns(result)),
-            "machined.stl": zmap_to_stl(result.machined),
+            "machined.stl": mesh_bytes(result.machined, "stl"),
         }
         write_files(Path(arguments.out), files)
     say(arguments, record, simulation_lines(record))
@@ -281,13 +285,15 @@ def _theta(robot: Any, text: str) -> Any:
     return np.where(robot.chain.prismatic, to_si(values, "mm"), to_si(values, "deg"))
 
 
-def _numbers(text: str, option: str, count: int, what: str) -> list[float]:
+def _numbers(text: str, option: str, count: int | None, what: str) -> list[float]:
     import math
 
     try:
         values = [float(word) for word in text.split(",")]
     except ValueError:
         values = []
-    if len(values) != count or not all(map(math.isfinite, values)):
-        raise RobomillError(f"{option}: expected {count} numbers separated by commas ({what}), found {text!r}.")
+    if len(values) != (count or max(len(values), 1)) or not all(map(math.isfinite, values)):
+        raise RobomillError(
+            f"{option}: expected {count or 'one or more'} numbers separated by commas ({what}), found {text!r}."
+        )
     return values

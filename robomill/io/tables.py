@@ -7,10 +7,12 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from robomill.arrays import FloatArray
 from robomill.errors import ProjectError, RobomillError
 from robomill.robot.model import Provenance
-from robomill.units import to_si
+from robomill.units import from_si, to_si
 
 _MISSING: Any = object()
 
@@ -21,6 +23,19 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as exc:
         raise ProjectError(f"{where}: this is not a readable TOML file: {exc}.", where=where) from None
+
+
+def shown(value: float, unit: str) -> float:
+    """The value in ``unit`` with as few digits as read back to the very same SI number."""
+    exact = float(from_si(float(value), unit))
+    for digits in range(1, 18):
+        short = float(f"{exact:.{digits}g}")
+        if to_si(short, unit) == value:
+            return short
+    for near in (exact, np.nextafter(exact, -np.inf), np.nextafter(exact, np.inf)):
+        if to_si(float(near), unit) == value:
+            return float(near)
+    return exact
 
 
 class Table:
@@ -89,8 +104,6 @@ class Table:
 
     def rows(self, key: str, count: int, unit: str) -> FloatArray:
         """A list of lists of ``count`` numbers, in SI, as (r, count)."""
-        import numpy as np
-
         value = self._get(key, _MISSING)
         if not isinstance(value, list) or not value:
             raise self.refuse(key, f"expected a list of rows of {count} numbers, found {value!r:.60}.")

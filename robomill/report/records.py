@@ -128,6 +128,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
             "reason": _first_reason(result),
         },
         "groove": [groove_record(result, section) for section in result.sections],
+        "surface": surface_record(result),
         "verdict": verdict.level,
         "verdict_sentence": verdict.sentence,
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
@@ -183,6 +184,19 @@ def map_record(fields: Sequence[Field]) -> dict[str, Any]:
 
 def _extreme(field: Field, which: Any) -> float:
     return float(from_si(which.reduce(field.values, axis=None), field.quantity.unit))
+
+
+def surface_record(result: SimulationResult) -> dict[str, Any]:
+    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance."""
+    error = result.error
+    return {
+        "removed_volume_mm3": float(from_si(result.machined.removed_volume, "mm3")),
+        "ideal_volume_mm3": float(from_si(result.ideal.removed_volume, "mm3")),
+        "excess_volume_mm3": float(from_si(error.excess_volume, "mm3")),
+        "gouge_volume_mm3": float(from_si(error.gouge_volume, "mm3")),
+        "area_out_of_tolerance_share": error.area_out(result.setup.tolerance)[1],
+        "cells": int(result.machined.z.size),
+    }
 
 
 def finding_record(finding: Any) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.setup import SimulationSetup
+from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
@@ -148,6 +149,11 @@ class SimulationResult:
     def machined(self) -> ZMap:
         """The surface the deflected robot leaves."""
         return self._cut(self.p_machined)
+
+    @cached_property
+    def error(self) -> Deviation:
+        """Signed error of the machined surface against the ideal one: + material left, - cut too deep."""
+        return deviation(self.ideal, self.machined)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup

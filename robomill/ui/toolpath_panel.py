@@ -9,7 +9,8 @@ import pandas as pd
 import streamlit as st
 
 from robomill.errors import ToolpathError
-from robomill.io.projects import part_frame, program_from_bytes
+from robomill.io.programs import program_from_bytes
+from robomill.io.workpiece import part_frame
 from robomill.simulation.result import SimulationResult
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource, LinesSource

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from robomill.errors import ProjectError, RobomillError
-from robomill.io.projects import load_setup, open_project, program_from_bytes, setup_from_toml, setup_to_toml
+from robomill.io.programs import program_from_bytes
+from robomill.io.projects import load_setup, open_project, setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.toolpath.source import GCodeSource, LinesSource
 from robomill.units import to_si

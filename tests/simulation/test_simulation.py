@@ -8,8 +8,9 @@ import pytest
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.cutting.force import ConstantForce, PathForce
 from robomill.errors import SurfaceError, ToolpathError
-from robomill.io.projects import load_setup, part_frame
+from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.workpiece import part_frame
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource, LinesSource

@@ -1,0 +1,108 @@
+"""Part zero, cutter and stock, to and from the tables of a set-up."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.cutting.tool import Cutter
+from robomill.io.tables import Table, shown
+from robomill.surface.stock import Stock
+from robomill.units import to_si
+
+
+def part_from_table(table: Table) -> FloatArray:
+    if table.has("frame"):
+        T_MW = np.eye(4)
+        T_MW[:3] = np.array(table.rows("frame", 4, "1"))[:3]
+        T_MW[:3, 3] = to_si(T_MW[:3, 3], "mm")
+    else:
+        T_MW = part_frame(table.numbers("zero_mm", 3, "mm", [0.0] * 3), table.number("rotation_z_deg", "deg", 0.0))
+    table.finish()
+    return T_MW
+
+
+def part_frame(zero: Any, rotation_z: float = 0.0) -> FloatArray:
+    """T_MW from the part zero (3,) m in {M} and the part's turn about z_M in rad."""
+    c, s = np.cos(rotation_z), np.sin(rotation_z)
+    T_MW = np.eye(4)
+    T_MW[:2, :2] = [[c, -s], [s, c]]
+    T_MW[:3, 3] = zero
+    return T_MW
+
+
+def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
+    zero = [shown(v, "mm") for v in T_MW[:3, 3]]
+    angle = shown(float(np.arctan2(T_MW[1, 0], T_MW[0, 0])), "deg")
+    if np.array_equal(part_frame(to_si(np.array(zero), "mm"), to_si(angle, "deg")), T_MW):
+        return {"zero_mm": zero, "rotation_z_deg": angle}
+    rows = T_MW.copy()
+    rows[:3, 3] = zero
+    return {"frame": rows.tolist()}
+
+
+CUTTER_LENGTHS = ("diameter", "corner_radius", "flute_length", "stick_out", "tip_diameter")
+CUTTER_ANGLES = ("helix_angle", "tip_angle")
+
+
+def cutter_from_table(table: Table) -> Cutter:
+    given: dict[str, Any] = {"kind": table.text("kind"), "diameter": table.number("diameter_mm", "mm")}
+    for names, unit in ((CUTTER_LENGTHS[1:], "mm"), (CUTTER_ANGLES, "deg")):
+        for name in names:
+            value = table.number(f"{name}_{unit}", unit, None)
+            if value is not None:
+                given[name] = value
+    for name in ("helix", "hand"):
+        if table.has(name):
+            given[name] = table.text(name)
+    given["flutes"] = table.whole("flutes", 2)
+    table.finish()
+    return Cutter(**given)
+
+
+def cutter_to_table(cutter: Cutter) -> dict[str, Any]:
+    out: dict[str, Any] = {"kind": cutter.kind, "flutes": cutter.flutes, "helix": cutter.helix, "hand": cutter.hand}
+    for names, unit in ((CUTTER_LENGTHS, "mm"), (CUTTER_ANGLES, "deg")):
+        for name in names:
+            value = getattr(cutter, name)
+            if value is not None and (value != 0.0 or name == "diameter" or name == "helix_angle"):
+                out[f"{name}_{unit}"] = shown(value, unit)
+    return out
+
+
+def stock_from_table(table: Table, folder: Path | None) -> Stock:
+    if table.has("stl"):
+        from robomill.io.meshes import read_stl_stock  # meshes load only where one is read
+
+        stock, _ = read_stl_stock((folder or Path()) / table.text("stl"), unit=table.text("unit", "mm"))
+    else:
+        lower, upper = table.numbers("lower_mm", 3, "mm"), table.numbers("upper_mm", 3, "mm")
+        stock = Stock(np.array(lower), np.array(upper), _triangles(table))
+    table.finish()
+    return stock
+
+
+def _triangles(table: Table) -> FloatArray | None:
+    packed = table.text("triangles", "")
+    if not packed:
+        return None
+    try:
+        numbers = np.frombuffer(zlib.decompress(base64.b64decode(packed, validate=True)), dtype="<f8")
+        return numbers.reshape(-1, 3, 3)
+    except (binascii.Error, zlib.error, ValueError):
+        raise table.refuse("triangles", "the packed mesh is damaged; read the STL file again.") from None
+
+
+def stock_to_table(stock: Stock) -> dict[str, Any]:
+    table: dict[str, Any] = {
+        f"{name}_mm": [shown(v, "mm") for v in getattr(stock, name)] for name in ("lower", "upper")
+    }
+    if stock.triangles is not None:
+        table["triangles"] = base64.b64encode(zlib.compress(stock.triangles.astype("<f8").tobytes())).decode()
+    return table
