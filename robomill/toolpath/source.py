@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
+
+MAX_KEPT = 4
 
 
 @dataclass(frozen=True)
@@ -18,11 +23,29 @@ class GCodeSource:
     name: str = "program.nc"
     dialect: str = "auto"
 
-    def read(self) -> Toolpath:
-        """The path; raises GCodeError naming the line that cannot be read."""
+    def read(
+        self, progress: Callable[[float], None] | None = None, cancel: Callable[[], bool] | None = None
+    ) -> Toolpath:
+        """The path; raises GCodeError naming the line that cannot be read, or if ``cancel()`` is true.
+
+        The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again.
+        """
+        with _LOCK:
+            if self in _KEPT:
+                _KEPT.move_to_end(self)
+                return _KEPT[self]
         from robomill.toolpath.gcode import read_gcode  # the interpreter loads only where a program is read
 
-        return read_gcode(self.text.encode(), dialect=self.dialect)
+        path = read_gcode(self.text.encode(), dialect=self.dialect, progress=progress, cancel=cancel)
+        with _LOCK:
+            _KEPT[self] = path
+            while len(_KEPT) > MAX_KEPT:
+                _KEPT.popitem(last=False)
+        return path
+
+
+_KEPT: OrderedDict[GCodeSource, Toolpath] = OrderedDict()
+_LOCK = threading.Lock()
 
 
 @dataclass(frozen=True, eq=False)
