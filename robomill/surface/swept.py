@@ -41,7 +41,26 @@ class SweptPath:
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
         near = self._near(centre, normal, reach)
-        return lambda w: self._cut(w, centre, normal, near)
+        upright = np.hypot(self.axes[near, 0], self.axes[near, 1]) <= UPRIGHT
+        moves = moves_of(self.ends[near[upright]])
+        leaning = [tilt_of(self.axes[n]) for n in near[~upright]]
+        tilted = [
+            (tilt, tilted_move(tilt, self.ends[n, :3], self.ends[n, 3:]))
+            for tilt, n in zip(leaning, near[~upright], strict=True)
+        ]
+
+        def height(w: FloatArray) -> FloatArray:
+            x, y = centre[0] + w * normal[0], centre[1] + w * normal[1]
+            z = self.stock_top(x, y)
+            if upright.any():
+                cut, d = swept_height(self.shape, moves, x, y)
+                z = np.minimum(z, np.where(d >= 0.0, cut, np.inf).min(axis=0))
+            for tilt, move in tilted:
+                low, high = tilted_interval(self.shape, tilt, move, x, y, z)
+                z = np.where((low < high) & (high >= z), low, z)
+            return z
+
+        return height
 
     def _near(self, centre: FloatArray, normal: FloatArray, reach: float) -> IntArray:
         margin = self.shape.R
@@ -56,20 +75,6 @@ class SweptPath:
             (np.minimum(along_a, along_b) <= limit) & (np.maximum(along_a, along_b) >= -limit)
             & (np.minimum(across_a, across_b) <= reach + limit) & (np.maximum(across_a, across_b) >= -reach - limit)
         )  # fmt: skip
-
-    def _cut(self, w: FloatArray, centre: FloatArray, normal: FloatArray, near: IntArray) -> FloatArray:
-        x, y = centre[0] + w * normal[0], centre[1] + w * normal[1]
-        height = self.stock_top(x, y)
-        upright = np.hypot(self.axes[near, 0], self.axes[near, 1]) <= UPRIGHT
-        if upright.any():
-            z, d = swept_height(self.shape, moves_of(self.ends[near[upright]]), x, y)
-            height = np.minimum(height, np.where(d >= 0.0, z, np.inf).min(axis=0))
-        for n in near[~upright]:
-            tilt = tilt_of(self.axes[n])
-            move = tilted_move(tilt, self.ends[n, :3], self.ends[n, 3:])
-            low, high = tilted_interval(self.shape, tilt, move, x, y, height)
-            height = np.where((low < high) & (high >= height), low, height)
-        return height
 
     def stock_top(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the stock before the cut over (x, y) (q,), m."""
