@@ -121,3 +121,17 @@ def test_programs_in_other_encodings_are_read(encoding: str) -> None:
 def test_a_missing_setup_is_named() -> None:
     with pytest.raises(ProjectError, match="nowhere.toml: there is no such file"):
         load_setup("nowhere.toml")
+
+
+def test_a_stock_from_a_mesh_survives_saving(setup, tmp_path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    block = trimesh.creation.box(extents=[110.0, 40.0, 10.0])
+    block.apply_translation([9.0, 0.0, -5.0])
+    block.export(tmp_path / "blank.stl")
+    text = re.sub(r"lower_mm = .*\nupper_mm = .*", 'stl = "blank.stl"', TEXT)
+    (tmp_path / "setup.toml").write_text(text)
+    (tmp_path / "path.nc").write_text((SAMPLE.parent / "path.nc").read_text())
+    meshed = load_setup(tmp_path / "setup.toml")
+    assert meshed.stock.triangles is not None
+    assert meshed.stock.upper == pytest.approx(setup.stock.upper, abs=1e-9)
+    assert setup_from_toml(setup_to_toml(meshed)).digest() == meshed.digest()
