@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
 
 CHORD_ERROR = 1e-6
@@ -39,7 +39,7 @@ def in_plane(plane: IntArray, point: FloatArray) -> tuple[FloatArray, FloatArray
 
 
 def sweeps(
-    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: FloatArray
+    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: BoolArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Start angle, signed sweep (rad) and the radii (m) at both ends of arcs, each (m,)."""
     u0, v0, _ = in_plane(plane, start)
@@ -59,7 +59,7 @@ def arc_lengths(sweep: FloatArray, r0: FloatArray, r1: FloatArray, climb: FloatA
 
 
 def arc_extents(
-    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: FloatArray
+    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest corner (m, 3) of each arc, its extreme points included."""
     lower, upper = np.minimum(start, end), np.maximum(start, end)
@@ -100,7 +100,7 @@ def chord_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> I
 
 
 def chord_points(
-    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: FloatArray,
+    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: BoolArray,
     counts: IntArray,
 ) -> FloatArray:  # fmt: skip
     """End points (sum of counts, 3) of the chords of arcs (m,); the last point of each arc is its end, exactly."""

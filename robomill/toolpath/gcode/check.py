@@ -4,8 +4,21 @@ from __future__ import annotations
 
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.modal import (
-    COMPENSATION, CONTROL, CYCLES, DISTANCE, IO, LENGTH, MOTION, NEEDS_AXES, NON_MODAL, OVERRIDE, SPINDLE, SPINDLE_MODE, TOOL,
-    USER, g_name,
+    COMPENSATION,
+    CONTROL,
+    CYCLES,
+    DISTANCE,
+    IO,
+    LENGTH,
+    MOTION,
+    NEEDS_AXES,
+    NON_MODAL,
+    OVERRIDE,
+    SPINDLE,
+    SPINDLE_MODE,
+    TOOL,
+    USER,
+    g_name,
 )  # fmt: skip
 from robomill.toolpath.gcode.words import Block
 
@@ -48,9 +61,7 @@ def choose_motion(machine: Machine, block: Block) -> None:
             block.motion = machine.motion
         elif machine.motion in _ARCS and any(letter in words for letter in "ijk"):
             block.motion = machine.motion
-    if non_modal == 530 and (
-        block.g.get(DISTANCE) == 910 or (DISTANCE not in block.g and not machine.absolute)
-    ):
+    if non_modal == 530 and (block.g.get(DISTANCE) == 910 or (DISTANCE not in block.g and not machine.absolute)):
         raise block.refuse("G53 needs absolute coordinates; use G90 first.")
     for letter in "uvw":
         if letter in words:
@@ -99,7 +110,7 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
         ("i", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
         ("j", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
         ("k", arc or motion in (330, 331, 760, 870), "G2, G3, G33 or G87"),
-        ("l", cycle or thread or data or motion == 52 or compensation in _COMPENSATION_ON or io == 66, "G10 or a cycle"),
+        ("l", cycle or thread or data or motion == 52 or compensation in _COMPENSATION_ON or io == 66, "G10, a cycle"),
         (
             "p",
             data or non_modal == 40 or g.get(CONTROL) == 640 or arc or thread or motion in (50, 52)

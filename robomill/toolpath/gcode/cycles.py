@@ -169,9 +169,7 @@ def _one(
         hole.go(TRAVERSE, a, b, clear)
 
 
-def _tap(
-    machine: Machine, block: Block, hole: _Hole, a: float, b: float, clear: float, bottom: float
-) -> None:
+def _tap(machine: Machine, block: Block, hole: _Hole, a: float, b: float, clear: float, bottom: float) -> None:
     if machine.plane != 17:
         machine.findings.add(
             "warning", block.line, f"G{block.motion // 10} outside of G17 taps along the wrong axes, as LinuxCNC does"

@@ -29,10 +29,18 @@ HARMLESS: dict[str, dict[int, str]] = {
 }  # fmt: skip
 """G words that move nothing, by dialect; they are counted as ignored."""
 
-_SINUMERIK = re.compile(r"\b(CR|AR|TURN)\s*=|\b[XYZIJKABCFS]\d?\s*=|\bG(?:71|70|710|700|500|601|64[1-5])\b|\bMSG\s*\(|^\s*;\s*\$PATH|\bM17\b|\bDEF\s+(?:REAL|INT)", re.IGNORECASE | re.MULTILINE)  # fmt: skip
-_FANUC = re.compile(r"^\s*(?::|O)\d{4,}\s*(?:\(|$)|\bM98\s*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|\bIF\s*\[.*\bGOTO\b|\bG28\s*U0", re.IGNORECASE | re.MULTILINE)  # fmt: skip
-_GRBL = re.compile(r"^\s*\$(?:H|X|\d+=|J=)", re.IGNORECASE | re.MULTILINE)
-_LINUXCNC = re.compile(r"^\s*o\s*(?:<[^>]+>|\d+)\s*(?:sub|if|while|do|repeat|call)|#<", re.IGNORECASE | re.MULTILINE)
+_FLAGS = re.IGNORECASE | re.MULTILINE
+_SINUMERIK = re.compile(
+    r"\b(?:CR|AR|TURN)\s*=|\b[XYZIJKABCFS]\d?\s*=|\bG(?:71|70|710|700|500|601|64[1-5])\b|\bMSG\s*\(\s*\"|"
+    r"^\s*;\s*\$PATH|\bM17\b|\bDEF\s+(?:REAL|INT)",
+    _FLAGS,
+)
+_FANUC = re.compile(
+    r"^\s*(?::|O)\d{4,}\s*(?:\(|$)|\bM98\s*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|\bIF\s*\[.*\bGOTO\b|\bG28\s*U0",
+    _FLAGS,
+)
+_GRBL = re.compile(r"^\s*\$(?:H|X|\d+=|J=)", _FLAGS)
+_LINUXCNC = re.compile(r"^\s*o\s*(?:<[^>]+>|\d+)\s*(?:sub|if|while|do|repeat|call)|#<", _FLAGS)
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,29 @@ from typing import Any
 from robomill.toolpath.gcode import cycles, motion, offsets, splines, threads
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.modal import (
-    ARC_DISTANCE, COMPENSATION, CONTROL, COORDINATES, COOLANT, CYCLES, DIAMETER, DISTANCE, FEED_MODE, IO, LENGTH,
-    NON_MODAL, OVERRIDE, PLANE, PROBES, RETRACT, SPINDLE, SPINDLE_MODE, STOP, TOOL, UNITS, USER, g_name,
+    ARC_DISTANCE,
+    COMPENSATION,
+    CONTROL,
+    COOLANT,
+    COORDINATES,
+    CYCLES,
+    DIAMETER,
+    DISTANCE,
+    FEED_MODE,
+    IO,
+    LENGTH,
+    NON_MODAL,
+    OVERRIDE,
+    PLANE,
+    PROBES,
+    RETRACT,
+    SPINDLE,
+    SPINDLE_MODE,
+    STOP,
+    TOOL,
+    UNITS,
+    USER,
+    g_name,
 )  # fmt: skip
 from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import Block

@@ -101,7 +101,13 @@ class _Run:
         if first_bad < len(bad):
             cut = slice(0, first_bad)
             self.words = {k: v[cut] for k, v in words.items()}
-            p, code, feed, moves, middle = [q[: first_bad + 1] for q in p], code[cut], feed[cut], moves[cut], middle[cut]
+            p, code, feed, moves, middle = (
+                [q[: first_bad + 1] for q in p],
+                code[cut],
+                feed[cut],
+                moves[cut],
+                middle[cut],
+            )
         if first_bad:
             self._record(p, code, feed, moves, middle)
         return first_bad
@@ -137,11 +143,11 @@ class _Run:
             if not (given["XYZ"[first]][row] or given["XYZ"[second]][row]):
                 bad[row] = True
                 continue
-            block = Block(self.pc + row + 1, {"r": float(words["R"][row])}, motion=20 if self._is_clockwise(row) else 30)
+            block = Block(
+                self.pc + row + 1, {"r": float(words["R"][row])}, motion=20 if self._is_clockwise(row) else 30
+            )
             try:
-                out[row] = motion.arc_centre(
-                    machine, block, float(x[i]), float(y[i]), float(end_x[i]), float(end_y[i])
-                )
+                out[row] = motion.arc_centre(machine, block, float(x[i]), float(y[i]), float(end_x[i]), float(end_y[i]))
             except ValueError:
                 bad[row] = True
         return out
@@ -157,9 +163,7 @@ class _Run:
         unit = self.machine.unit
         r_start, r_end = np.hypot(dx, dy), np.hypot(ex, ey)
         tolerance = motion.SPIRAL_TOLERANCE[unit]
-        allowed = np.minimum(
-            np.maximum(tolerance, motion.SPIRAL_SHARE * np.maximum(r_start, r_end)), 100.0 * tolerance
-        )
+        allowed = np.minimum(np.maximum(tolerance, motion.SPIRAL_SHARE * np.maximum(r_start, r_end)), 100.0 * tolerance)
         # A hair less than allowed: what is on the edge is judged by the interpreter itself.
         good = (np.minimum(r_start, r_end) > motion.RADIUS_TOLERANCE[unit] * (1 + 1e-9)) & (
             np.abs(r_start - r_end) < allowed * (1 - 1e-9)
@@ -227,7 +231,7 @@ class _Run:
 
     def _settle(
         self, p: list[FloatArray], code: FloatArray, feed: FloatArray, speed: FloatArray, rows: IntArray,
-        kind: IntArray,
+        kind: Any,
     ) -> None:  # fmt: skip
         """Leave the machine as the last line leaves it."""
         machine = self.machine

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
 from robomill.toolpath.path import Finding, Toolpath
 
@@ -80,25 +79,36 @@ class Program:
         """True if no finding is an error."""
         return not any(f.level == "error" for f in self.findings)
 
-    def _arcs(self) -> tuple[IntArray, tuple[Any, ...]]:
-        i = np.flatnonzero(self.kind == ARC)
-        return i, (self.start[i], self.end[i], self.centre[i], self.plane[i], self.turns[i], self.clockwise[i])
+    def is_kind(self, name: str) -> BoolArray:
+        """(m,) True for moves of a kind in ``KINDS``."""
+        return np.asarray(self.kind == KINDS.index(name))
+
+    def geometry(self, rows: IntArray) -> tuple[Any, ...]:
+        """start, end, centre, plane, turns, clockwise of some moves, as the functions of ``arcs`` take them."""
+        return (
+            self.start[rows], self.end[rows], self.centre[rows], self.plane[rows].astype(np.int64), self.turns[rows],
+            self.clockwise[rows],
+        )  # fmt: skip
+
+    @cached_property
+    def _arc_rows(self) -> IntArray:
+        return np.flatnonzero(self.kind == ARC)
 
     @cached_property
     def sweep(self) -> FloatArray:
         """(m,) rad: signed sweep of arcs (clockwise negative), 0 for straight moves."""
-        i, geometry = self._arcs()
+        i = self._arc_rows
         sweep = np.zeros(len(self))
-        sweep[i] = arcs.sweeps(*geometry)[1]
+        sweep[i] = arcs.sweeps(*self.geometry(i))[1]
         return frozen(sweep)
 
     @cached_property
     def length(self) -> FloatArray:
         """(m,) m: true length of each move, arcs by their arc length, taps there and back."""
         length = np.linalg.norm(self.end - self.start, axis=1)
-        i, geometry = self._arcs()
-        _, sweep, r0, r1 = arcs.sweeps(*geometry)
-        climb = arcs.in_plane(self.plane[i], self.end[i] - self.start[i])[2]
+        i = self._arc_rows
+        _, sweep, r0, r1 = arcs.sweeps(*self.geometry(i))
+        climb = arcs.in_plane(self.plane[i].astype(np.int64), self.end[i] - self.start[i])[2]
         length[i] = arcs.arc_lengths(sweep, r0, r1, climb)
         length[self.kind == TAP] *= 2.0
         return frozen(length)
@@ -109,8 +119,7 @@ class Program:
         at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
-        i, geometry = self._arcs()
-        lower, upper = arcs.arc_extents(*geometry)
+        lower, upper = arcs.arc_extents(*self.geometry(self._arc_rows))
         points = [self.start[at_feed], self.end[at_feed], lower, upper]
         return (
             np.min([q.min(axis=0) for q in points if len(q)], axis=0),
@@ -118,58 +127,10 @@ class Program:
         )
 
     def toolpath(self, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
-        """The moves as straight pieces in {W}, arcs as chords within ``chord_error`` (m).
+        """The moves as straight pieces in {W}, arcs as chords within ``chord_error`` (m); see ``chords``.
 
-        Raises GCodeError if nothing moves, or if a finding is an error.
+        Raises GCodeError if nothing moves.
         """
-        if len(self) == 0:
-            raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
-        counts = np.ones(len(self), dtype=np.int64)
-        i, geometry = self._arcs()
-        _, sweep, r0, r1 = arcs.sweeps(*geometry)
-        counts[i] = arcs.chord_counts(sweep, np.maximum(r0, r1), chord_error)
-        tilt = np.abs(self.rotary - self.rotary0).max(axis=1)
-        counts = np.maximum(counts, np.ceil(tilt / arcs.MAX_TILT_STEP - 1e-9).astype(np.int64))
-        if counts.sum() > arcs.MAX_POINTS:
-            raise GCodeError(f"Program: the path would need {counts.sum()} points; at most {arcs.MAX_POINTS} fit.")
-        owner = np.repeat(np.arange(len(self)), counts)
-        first = np.repeat(np.cumsum(counts) - counts, counts)
-        fraction = ((np.arange(len(owner)) - first + 1) / counts[owner])[:, None]
-        p = self.start[owner] + fraction * (self.end - self.start)[owner]
-        last = np.cumsum(counts) - 1
-        p[last] = self.end
-        is_arc = self.kind[owner] == ARC
-        if len(i):
-            p[is_arc] = arcs.chord_points(*geometry, counts[i])
-        angles = self.rotary0[owner] + fraction * (self.rotary - self.rotary0)[owner]
-        rows = self._with_returns(p, tool_axis(angles), owner, last - counts + 1)
-        return Toolpath(findings=self.findings, units=self.units or "mm", **rows)
+        from robomill.toolpath.gcode.chords import to_toolpath
 
-    def _with_returns(self, p: FloatArray, k: FloatArray, owner: IntArray, first: IntArray) -> dict[str, Any]:
-        """Rows of a Toolpath: the start in front, and after each tap the way back."""
-        taps = np.flatnonzero(self.kind == TAP)
-        at = np.concatenate([[0], first[taps] + 1])
-        moves = np.concatenate([[0], taps])
-        cutting = np.arange(len(at)) > 0
-        inserted = np.zeros(len(p) + len(at), dtype=bool)
-        inserted[at + np.arange(len(at))] = True
-
-        def merge(values: Any, extra: Any) -> Any:
-            out = np.empty((len(inserted), *values.shape[1:]), dtype=values.dtype)
-            out[~inserted], out[inserted] = values, extra
-            return out
-
-        feeds = (self.kind != TRAVERSE) & (self.kind != PROBE)
-        return {
-            "p": merge(p, self.start[moves]), "k": merge(k, tool_axis(self.rotary0[moves])),
-            "cutting": merge(feeds[owner], cutting),
-            "v_f": merge(np.where(feeds, self.v_f, 0.0)[owner], np.where(cutting, self.v_f[moves], 0.0)),
-            "block": merge(self.line[owner], self.line[moves]), "n_s": merge(self.n_s[owner], self.n_s[moves]),
-            "tool": merge(self.tool[owner], self.tool[moves]),
-        }  # fmt: skip
-
-
-def tool_axis(angles: FloatArray) -> FloatArray:
-    """k (..., 3) for rotations A, B, C (..., 3) rad: k = (sin B, -sin A cos B, cos A cos B); C spins about k."""
-    a, b = angles[..., 0], angles[..., 1]
-    return np.stack([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)], axis=-1)
+        return to_toolpath(self, chord_error)

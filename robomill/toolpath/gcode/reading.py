@@ -11,8 +11,9 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.dialects import choose_dialect
 from robomill.toolpath.gcode.fastpath import MIN_LINES, FastPath
-from robomill.toolpath.gcode.interpreter import Cancel, File, Interpreter, Progress
+from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.gcode.source import Source, read_source
 from robomill.toolpath.gcode.tools import ToolTable, read_tool_table

@@ -74,7 +74,9 @@ def finish(machine: Machine, block: Block) -> None:
     if machine.motion != 52:
         raise block.refuse("G5.3 ends a NURBS, but none was begun with G5.2.")
     if len(machine.spline) < machine.spline_order:
-        raise block.refuse(f"the NURBS has {len(machine.spline)} control points; order {machine.spline_order} needs more.")
+        raise block.refuse(
+            f"the NURBS has {len(machine.spline)} control points; order {machine.spline_order} needs more."
+        )
     _run(machine, block, machine.spline, machine.spline_order)
     machine.spline, machine.motion = [], -1
 
@@ -90,10 +92,10 @@ def curve(control: list[tuple[float, float, float]], order: int) -> list[tuple[f
     n = len(control) - 1
     last = float(n - order + 2)
     pieces = PIECES * len(control)
-    knots = np.clip(np.arange(n + order + 1) - order + 1, 0, n - order + 2).astype(float)
-    u = np.arange(1, pieces) * (last / pieces)
+    knots: FloatArray = np.clip(np.arange(n + order + 1) - order + 1, 0, n - order + 2).astype(float)
+    u: FloatArray = np.arange(1, pieces, dtype=np.float64) * (last / pieces)
     basis = _basis(knots, u, n, order)
-    table = np.array(control)
+    table = np.array(control, dtype=np.float64)
     weights = basis * table[:, 2]
     points = weights @ table[:, :2] / weights.sum(axis=1)[:, None]
     return [(float(x), float(y)) for x, y in points] + [control[-1][:2]]
@@ -104,7 +106,10 @@ def _basis(knots: FloatArray, u: FloatArray, n: int, order: int) -> FloatArray:
     basis = ((knots[:-1] <= u[:, None]) & (u[:, None] < knots[1:])).astype(float)
     for degree in range(1, order):
         count = len(knots) - 1 - degree
-        span_left, span_right = knots[degree : degree + count] - knots[:count], knots[degree + 1 :] - knots[1 : count + 1]
+        span_left, span_right = (
+            knots[degree : degree + count] - knots[:count],
+            knots[degree + 1 :] - knots[1 : count + 1],
+        )
         rising = np.where(span_left > 0, (u[:, None] - knots[:count]) / np.where(span_left > 0, span_left, 1.0), 0.0)
         falling = np.where(
             span_right > 0, (knots[degree + 1 :] - u[:, None]) / np.where(span_right > 0, span_right, 1.0), 0.0
