@@ -10,6 +10,7 @@ import tomli_w
 
 from robomill.errors import ProjectError, RobomillError
 from robomill.io.force_models import force_from_table, force_to_table
+from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import read_program
 from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
 from robomill.io.sketches import sketch_from_table, sketch_to_table
@@ -60,12 +61,13 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     version = top.whole("version")
     if version != VERSION:
         raise top.refuse("version", f"this file is version {version}; this robomill reads version {VERSION}.")
+    robot = _robot(top.table("robot"), folder)
     cutter = cutter_from_table(top.table("cutter"))
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
         tolerance=top.number("tolerance_mm", "mm", 0.3e-3),
-        robot=_robot(top.table("robot"), folder),
+        robot=robot,
         source=_source(top.table("path"), folder),
         T_MW=part_from_table(top.table("part", {})),
         cutter=cutter,
@@ -73,10 +75,11 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         force=force_from_table(top.table("force"), cutter, folder),
         provenance=_provenance(top.table("provenance", {})),
         springs=tuple(spring_from_table(entry) for entry in top.tables("springs")),
+        measured_map=map_from_table(top.table("measured_map"), robot, folder) if top.has("measured_map") else None,
         links=links_from_table(top.table("links")) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
-    top.asked.update(("stock", "links"))
+    top.asked.update(("stock", "links", "measured_map"))
     top.finish()
     return setup
 
@@ -157,6 +160,8 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         data["stock"] = stock_to_table(setup.stock)
     if setup.springs:
         data["springs"] = [spring_to_table(spring) for spring in setup.springs]
+    if setup.measured_map is not None:
+        data["measured_map"] = map_to_table(setup.measured_map)
     if setup.links is not None:
         data["links"] = links_to_table(setup.links)
     # TOML reads the line ends of multi-line strings as plain ones, so a program with others is written escaped.

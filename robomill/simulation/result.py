@@ -45,6 +45,7 @@ class SimulationResult:
     path           the sampled Toolpath, in {W}
     theta          (m, n) rad          C_joint      (m, n, 3, 3) m/N, joint shares of the compliance
     reached        (m,) bool           C_spring     (m, k, 3, 3), springs beside the joints
+    C              (m, 3, 3), what the deflection was computed with: their sum, or the measured map
     F              (m, 3) N, force on the tool        R_MF (m, 3, 3) feed, feed-normal, axial
     delta          (m, 3) m            delta_joint  (m, n, 3), delta_spring (m, k, 3): the shares
     sag            (m, n, 3) m, joint shares of the sag under gravity; None where no masses are given
@@ -57,6 +58,7 @@ class SimulationResult:
     ik: IKResult
     C_joint: FloatArray
     C_spring: FloatArray
+    C: FloatArray
     conditions: CutConditions
     R_MF: FloatArray
     F: FloatArray
@@ -74,8 +76,18 @@ class SimulationResult:
     @cached_property
     def delta_component(self) -> FloatArray:
         """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
-        C = self.C_joint.sum(axis=-3) + self.C_spring.sum(axis=-3)
-        return np.einsum("mij,mjc,mc->mci", C, self.R_MF, self.force_components)
+        return np.einsum("mij,mjc,mc->mci", self.C, self.R_MF, self.force_components)
+
+    @cached_property
+    def delta_rest(self) -> FloatArray:
+        """(m, 3) m: what a measured map gives beyond joints and springs (structure, spindle); 0 without a map."""
+        modelled = self.C_joint.sum(axis=-3) + self.C_spring.sum(axis=-3)
+        return np.einsum("mij,mj->mi", self.C - modelled, self.F)
+
+    @cached_property
+    def answered(self) -> BoolArray:
+        """(m,) points with an answer: reached and, where a measured map is used, inside it."""
+        return np.asarray(self.reached & np.isfinite(self.delta).all(axis=1))
 
     @property
     def theta(self) -> FloatArray:
@@ -88,7 +100,7 @@ class SimulationResult:
     @cached_property
     def judged(self) -> BoolArray:
         """(m,) samples that count for the verdict: at feed and reached."""
-        return np.asarray(self.path.cutting & self.reached & np.isfinite(self.delta).all(axis=1))
+        return np.asarray(self.path.cutting & self.answered)
 
     @cached_property
     def deviation(self) -> FloatArray:
@@ -125,7 +137,7 @@ class SimulationResult:
     @cached_property
     def p_machined(self) -> FloatArray:
         """(m, 3) m in {W}: where the tip really goes. A rapid arrives where the cut that follows it begins."""
-        return moved_points(self.setup.T_MW, self.path, self.reached, self.delta)
+        return moved_points(self.setup.T_MW, self.path, self.answered, self.delta)
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
@@ -137,8 +149,8 @@ class SimulationResult:
 
     @cached_property
     def removes(self) -> BoolArray:
-        """(m,) steps that cut: at feed, with both ends reached."""
-        return np.asarray(self.path.cutting & self.reached & np.append(False, self.reached[:-1]))
+        """(m,) steps that cut: at feed, with an answer at both ends."""
+        return np.asarray(self.path.cutting & self.answered & np.append(False, self.answered[:-1]))
 
     @cached_property
     def ideal(self) -> ZMap:
@@ -171,7 +183,7 @@ class SimulationResult:
     def grooves(self, stations: ArrayLike) -> tuple[GrooveSection, ...]:
         """The groove's sections at ``stations`` (q,) m."""
         path = self.path
-        moved = np.where(self.reached[:, None], self.p_machined, np.nan)
+        moved = np.where(self.answered[:, None], self.p_machined, np.nan)
         return groove_sections(
             self.setup.stock_block, self.setup.cutter, path.p, moved, path.cutting, path.block, stations, k=path.k
         )
@@ -188,8 +200,10 @@ class SimulationResult:
     @cached_property
     def verdict(self) -> Verdict:
         tolerance = self.setup.tolerance
-        missed = int((~self.reached).sum())
+        missed = int((~self.answered).sum())
         if self.worst < 0:
+            if self.reached.any():
+                return Verdict("unreached", float("nan"), "No point of the cut lies inside the measured map.")
             return Verdict("unreached", float("nan"), "No point of the cut can be reached: move the part zero.")
         share = self.max_deviation / tolerance
         sentence = (
@@ -197,11 +211,12 @@ class SimulationResult:
             f"{100 * share:.0f} % of the {format_si(tolerance, 'mm', 2)} allowed"
         )
         if missed:
-            lines = sorted(set(self.path.block[~self.reached].tolist()))
+            lines = sorted(set(self.path.block[~self.answered].tolist()))
+            why = "cannot be reached" if not self.reached.all() else "lie outside the measured map"
             named = ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")
             return Verdict(
                 "unreached", share,
-                f"{missed} of {len(self.path)} points cannot be reached (line {named}); of the rest: {sentence}.",
+                f"{missed} of {len(self.path)} points {why} (line {named}); of the rest: {sentence}.",
             )  # fmt: skip
         if share > 1.0:
             return Verdict("out", share, f"{sentence}: out of tolerance.")

@@ -41,14 +41,16 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     sag = None if setup.links is None else gravity_sag(setup.robot, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
     R_MF = feed_directions(setup, path)
-    conditions, F, coupling = forces(
-        setup, path, ik.reached, R_MF, C_joint.sum(axis=-3) + C_spring.sum(axis=-3), offset
-    )
+    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
+    if setup.measured_map is not None:
+        p_M = path.p @ setup.T_MW[:3, :3].T + setup.T_MW[:3, 3]
+        C = np.where(path.cutting[:, None, None], setup.measured_map.compliance(p_M), C)
+    conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
     delta_joint, delta_spring = deflection(C_joint, F), deflection(C_spring, F)
     return SimulationResult(
         setup=setup, path=path, ik=ik, C_joint=C_joint, C_spring=C_spring, conditions=conditions, R_MF=R_MF, F=F,
         delta_joint=delta_joint, delta_spring=delta_spring, sag=sag,
-        delta=delta_joint.sum(axis=-2) + delta_spring.sum(axis=-2) + offset, coupling=coupling,
+        C=C, delta=bend(C, F) + offset, coupling=coupling,
     )  # fmt: skip
 
 
@@ -75,7 +77,7 @@ def forces(
     if not setup.coupling:
         return conditions, F, None
 
-    C = np.where(reached[:, None, None], C, 0.0)
+    C = np.nan_to_num(C)
 
     def again(delta: FloatArray) -> FloatArray:
         return bend(C, pushed(delta)[1]) + offset

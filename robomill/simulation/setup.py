@@ -17,6 +17,7 @@ from robomill.compliance.springs import Spring
 from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
+from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Provenance, Robot
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
@@ -38,6 +39,7 @@ class SimulationSetup:
     engagement  True: the force follows the arc of engagement found from the stock as it stands
     coupling    True: deflection changes the cut, iterated to a fixed point (needs engagement)
     springs     extra compliances beside the joints', each with its own line in the result
+    measured_map  compliance measured on a grid, used instead of joints and springs (whose shares are still shown)
     links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
                 deviation, False only shows it, since parts are zeroed with the arm sagged
     provenance  block name -> where its numbers come from
@@ -56,6 +58,7 @@ class SimulationSetup:
     engagement: bool = False
     coupling: bool = False
     springs: tuple[Spring, ...] = ()
+    measured_map: MeasuredField | None = None
     links: LinkMasses | None = None
     add_sag: bool = False
     description: str = field(default="", compare=False)

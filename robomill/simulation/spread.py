@@ -40,7 +40,7 @@ def alloy_spread(result: SimulationResult) -> AlloySpread | None:
         return None
     rows = force.by_material(result.conditions)
     at_feed = result.conditions.cutting[:, None]
-    C = result.C_joint.sum(axis=-3) + result.C_spring.sum(axis=-3)
+    C = result.C
     F = np.stack([np.where(at_feed, np.einsum("mij,mj->mi", result.R_MF, f), 0.0) for _, f in rows])
     rest = result.delta - np.einsum("mij,mj->mi", C, result.F)
     delta = np.einsum("mij,rmj->rmi", C, F) + rest

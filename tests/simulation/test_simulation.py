@@ -140,3 +140,15 @@ def test_halving_the_step_moves_no_answer(setup) -> None:
     coarse, fine = simulate(setup), simulate(setup.replace(step=0.5e-3))
     assert fine.max_deviation == pytest.approx(coarse.max_deviation, rel=1e-6)
     assert fine.rms_deviation == pytest.approx(coarse.rms_deviation, rel=1e-4)
+
+
+def test_a_measured_map_replaces_the_joint_model_and_says_where_it_ends(setup) -> None:
+    mapped = load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
+    run = simulate(mapped)
+    total = run.delta_joint.sum(axis=1) + run.delta_rest
+    assert total[run.judged] == pytest.approx(run.delta[run.judged], abs=1e-15)
+    outside = simulate(mapped.replace(T_MW=part_frame([0.58, -1.3, 0.002])))
+    assert outside.reached.all()
+    assert 0 < outside.judged.sum() < outside.path.cutting.sum()
+    assert "lie outside the measured map" in outside.verdict.sentence
+    assert np.isnan(outside.delta[outside.path.cutting & ~outside.answered]).all()

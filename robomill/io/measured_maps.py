@@ -1,0 +1,40 @@
+"""Measured compliance maps to and from the [measured_map] table of a set-up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robomill.identification.measured_field import MeasuredField
+from robomill.io.load_tests import read_measured_map
+from robomill.io.tables import Table, shown
+from robomill.robot.model import Robot
+
+
+def map_from_table(table: Table, robot: Robot, folder: Path | None) -> MeasuredField:
+    """A map from its ``file`` of measurements, or from the points and matrices in the table itself."""
+    if table.has("file"):
+        field = read_measured_map((folder or Path()) / table.text("file"), robot)
+    else:
+        p = table.rows("p_mm", 3, "mm")
+        C = table.rows("C_m_N", 9, "m/N").reshape(-1, 3, 3)
+        AB = table.rows("tilt_deg", 2, "deg")
+        if not len(p) == len(C) == len(AB):
+            raise table.refuse("C_m_N", f"expected {len(p)} rows like p_mm, found {len(C)} and {len(AB)} of tilt_deg.")
+        field = MeasuredField(p, C, AB, table.number("reach_m", "m", 0.0), table.text("source", ""))
+    table.finish()
+    return field
+
+
+def map_to_table(field: MeasuredField) -> dict[str, Any]:
+    """The table that ``map_from_table`` reads back to the same map."""
+
+    def rows(values: Any, unit: str) -> list[list[float]]:
+        return [[shown(v, unit) for v in row] for row in np.asarray(values)]
+
+    return {
+        "p_mm": rows(field.p, "mm"), "C_m_N": rows(field.C.reshape(-1, 9), "m/N"), "tilt_deg": rows(field.AB, "deg"),
+        "reach_m": shown(field.reach, "m"), "source": field.source,
+    }  # fmt: skip
