@@ -112,9 +112,8 @@ def _numbers(
     first = at + 1 + signed
     signs = np.flatnonzero(kind == _SIGN)
     misplaced = signs[kind[signs - 1] != _LETTER] if len(signs) else signs
-    wrong[np.searchsorted(at, misplaced) - 1] |= len(misplaced) > 0
-    points = np.flatnonzero(kind == _POINT)
-    owner = np.searchsorted(at, points) - 1
+    wrong[_inside(at, stop, misplaced)[0]] = True
+    owner, points = _inside(at, stop, np.flatnonzero(kind == _POINT))
     wrong[owner[1:][owner[1:] == owner[:-1]]] = True
     decimals = np.zeros(len(at), np.int64)
     decimals[owner] = stop[owner] - points - 1
@@ -132,6 +131,13 @@ def _numbers(
     value = mantissa / _TENS[np.clip(decimals, 0, _MAX_DIGITS)]
     negative = signed & (raw[np.minimum(at + 1, len(raw) - 1)] == ord("-"))
     return np.where(negative, -value, value), wrong
+
+
+def _inside(at: IntArray, stop: IntArray, positions: IntArray) -> tuple[IntArray, IntArray]:
+    """The words that hold ``positions``, and those positions; what is in no word is left out."""
+    owner = np.searchsorted(at, positions) - 1
+    held = (owner >= 0) & (positions < stop[owner])
+    return owner[held], positions[held]
 
 
 def _without_comments(raw: NDArray[np.uint8], bad: BoolArray) -> NDArray[np.uint8]:
