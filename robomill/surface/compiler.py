@@ -1,4 +1,8 @@
-"""The compiled path, loaded in the background so that nothing waits for it: until then NumPy does the work."""
+"""The compiled path, loaded in the background so that nothing waits for it: until then NumPy does the work.
+
+A long-running program calls ``warm_up()`` when it starts. Without that, kernels are loaded only for work that would
+take NumPy longer than loading them.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +13,8 @@ import numpy as np
 
 Engine = Literal["auto", "compiled", "numpy"]
 
-# From this much work on (moves times steps) waiting for the compiler is quicker than NumPy.
-WORTH_WAITING = 3_000
+# Work that would take NumPy longer than this waits for the kernels (half a second from the cache on disk).
+WORTH_WAITING_SECONDS = 3.0
 
 
 class Kernels(NamedTuple):
@@ -40,11 +44,12 @@ def warm_up(wait: bool = False) -> bool:
     return _ready is not None
 
 
-def kernels(engine: Engine = "auto", work: int = 0) -> Kernels | None:
-    """The kernels, or None where NumPy is to be used. ``work`` is the number of moves ahead."""
+def kernels(engine: Engine = "auto", numpy_seconds: float = 0.0) -> Kernels | None:
+    """The kernels, or None where NumPy is to be used. ``numpy_seconds``: about how long NumPy would take."""
     if engine == "numpy":
         return None
-    warm_up(wait=engine == "compiled" or work > WORTH_WAITING)
+    if engine == "compiled" or numpy_seconds > WORTH_WAITING_SECONDS:
+        warm_up(wait=True)
     if engine == "compiled" and _ready is None:
         raise RuntimeError("The compiled surface kernels could not be loaded.") from _failed
     return _ready

@@ -21,7 +21,7 @@ from robomill.surface import envelope, tilted
 from robomill.surface.compiler import Engine, kernels
 from robomill.surface.envelope import Shape, cutter_shape
 from robomill.surface.raster import stock_heights
-from robomill.surface.removal import Cancel, Grid, Progress, Watch, box_of
+from robomill.surface.removal import Cancel, Grid, Progress, Watch, box_of, numpy_seconds
 from robomill.surface.stock import Stock, stock_grid
 
 ANGLES = 180
@@ -68,7 +68,7 @@ def engage(
     grid = Grid(float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
     points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
     m = len(points)
-    axes = np.array(np.broadcast_to(np.array([0.0, 0.0, 1.0]) if k is None else np.asarray(k, dtype=float), (m, 3)))
+    axes = tilted.tool_axes(k, m)
     used = np.ones(m, dtype=bool) if cutting is None else np.array(cutting, dtype=bool)
     used[0] = False
     used[1:] &= np.isfinite(points[1:]).all(axis=1) & np.isfinite(points[:-1]).all(axis=1)
@@ -79,7 +79,9 @@ def engage(
     z[...] = stock_heights(stock, x, y)
     result = np.zeros((m, 5))
     shape, bottom = cutter_shape(cutter), float(stock.lower[2])
-    module = kernels(engine, m)
+    steps = np.hstack([points[:-1], points[1:]])[used[1:]]
+    leaning = bool((np.hypot(axes[:, 0], axes[:, 1]) > UPRIGHT).any())
+    module = kernels(engine, 3e-4 * len(steps) + numpy_seconds(steps, shape.R, grid, leaning))
     watch = Watch(m, progress, cancel)
     for start in range(0, m, CHUNK):
         stop = min(m, start + CHUNK)

@@ -6,7 +6,16 @@ import math
 
 from numba import njit
 
-from robomill.surface.kernels import CHAMFER, FLAT, move_of, profile, row_interval, swept_height, tilted_interval
+from robomill.surface.kernels import (
+    CHAMFER,
+    FLAT,
+    inverse_direction,
+    move_of,
+    profile,
+    row_interval,
+    swept_height,
+    tilted_interval,
+)
 
 
 @njit(cache=True, nogil=True)
@@ -77,11 +86,12 @@ def cut_centres(shape, move, grid, z, bottom):  # type: ignore[no-untyped-def]
     R = shape[1]
     level = m == 0.0 and shape[0] == FLAT
     floor = max(az, bottom)
+    inverse = inverse_direction(move)
     first = max(0, math.ceil((ax + min(0.0, length * ux) - R - x0) / dx))
     last = min(z.shape[0] - 1, math.floor((ax + max(0.0, length * ux) + R - x0) / dx))
     for i in range(first, last + 1):
         x = x0 + i * dx
-        low, high = row_interval(move, R, x)
+        low, high = row_interval(move, inverse, R, x)
         if low > high:
             continue
         for j in range(max(0, math.ceil((low - y0) / dy)), min(z.shape[1] - 1, math.floor((high - y0) / dy)) + 1):

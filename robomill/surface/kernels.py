@@ -33,15 +33,6 @@ def profile(shape, r):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def lag_residual(shape, m, v2, w):  # type: ignore[no-untyped-def]
-    """Sign of ``profile'(r) w / r - m`` for a corner radius, without its division by zero at the rim."""
-    _, _, r0, rc, _ = shape
-    r = math.sqrt(w * w + v2)
-    e = max(r - r0, 0.0)
-    return e * w - m * r * math.sqrt(max(rc * rc - e * e, 0.0))
-
-
-@njit(cache=True, nogil=True)
 def contact_lag(shape, m, v2):  # type: ignore[no-untyped-def]
     """How far behind a point the cutter stands when it cuts lowest there."""
     kind, R, r0, rc, slope = shape
@@ -57,30 +48,25 @@ def contact_lag(shape, m, v2):  # type: ignore[no-untyped-def]
         if m >= slope:
             return widest
         return min(max(math.sqrt(v2) * (m / math.sqrt(slope * slope - m * m)), kink), widest)
-    # Regula falsi (Illinois): the height is stationary at the root, so a rough root is exact enough.
-    low, high = kink, widest
-    r = math.sqrt(kink * kink + v2)
-    e = max(r - r0, 0.0)
-    f_low, f_high = e * kink - m * r * math.sqrt(max(rc * rc - e * e, 0.0)), rc * widest
-    side = 0
-    w = low
+    # Newton on e w = m r sqrt(rc^2 - e^2), held in a bracket: the height is stationary at the root, so a rough
+    # root is exact enough.
+    low, high, w = kink, widest, kink
     for _ in range(40):
-        if high - low < 1e-7 * R or f_high <= f_low:
-            break
-        w = (low * f_high - high * f_low) / (f_high - f_low)
-        f = lag_residual(shape, m, v2, w)
-        if abs(f) < 1e-7 * R * R * m:
+        r = math.sqrt(w * w + v2)
+        e = max(r - r0, 0.0)
+        root = math.sqrt(max(rc * rc - e * e, 0.0))
+        f = e * w - m * r * root
+        if abs(f) < 1e-7 * R * R * m or high - low < 1e-7 * R:
             break
         if f < 0.0:
-            low, f_low = w, f
-            if side < 0:
-                f_high *= 0.5
-            side = -1
+            low = w
         else:
-            high, f_high = w, f
-            if side > 0:
-                f_low *= 0.5
-            side = 1
+            high = w
+        rise = w / r if r > 0.0 else 1.0
+        slope_f = e + w * rise - m * rise * root + (m * r * e * rise / root if root > 0.0 else math.inf)
+        w = w - f / slope_f if slope_f > 0.0 else high
+        if not low < w < high:
+            w = 0.5 * (low + high)
     return w
 
 
@@ -110,9 +96,17 @@ def move_of(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def row_interval(move, R, x):  # type: ignore[no-untyped-def]
+def inverse_direction(move):  # type: ignore[no-untyped-def]
+    """1 / ux and 1 / uy of a move, 0 where the component is 0: divisions are dear in a loop over rows."""
+    ux, uy = move[3], move[4]
+    return (1.0 / ux if ux != 0.0 else 0.0, 1.0 / uy if uy != 0.0 else 0.0)
+
+
+@njit(cache=True, nogil=True)
+def row_interval(move, inverse, R, x):  # type: ignore[no-untyped-def]
     """Where the line at ``x`` parallel to y lies inside the track of radius R; low > high if nowhere."""
     ax, ay, _, ux, uy, length, _ = move
+    inverse_x, inverse_y = inverse
     low, high = math.inf, -math.inf
     X = x - ax
     w2 = R * R - X * X
@@ -124,25 +118,28 @@ def row_interval(move, R, x):  # type: ignore[no-untyped-def]
         w2 = R * R - (X - length * ux) ** 2
         if w2 >= 0.0:
             w = math.sqrt(w2)
-            low, high = min(low, cy - w), max(high, cy + w)
+            low = cy - w if cy - w < low else low
+            high = cy + w if cy + w > high else high
         a, b = -math.inf, math.inf
         if uy == 0.0:
             if X * ux < 0.0 or X * ux > length:
                 a = math.inf
         else:
-            a, b = -X * ux / uy, (length - X * ux) / uy
+            a, b = -X * ux * inverse_y, (length - X * ux) * inverse_y
             if a > b:
                 a, b = b, a
         if ux == 0.0:
             if abs(X * uy) > R:
                 a = math.inf
         else:
-            c, d = (X * uy - R) / ux, (X * uy + R) / ux
+            c, d = (X * uy - R) * inverse_x, (X * uy + R) * inverse_x
             if c > d:
                 c, d = d, c
-            a, b = max(a, c), min(b, d)
+            a = c if c > a else a
+            b = d if d < b else b
         if a <= b:
-            low, high = min(low, a), max(high, b)
+            low = a if a < low else low
+            high = b if b > high else high
     return low + ay, high + ay
 
 
@@ -223,12 +220,22 @@ def cut_edge_cells(shape, move, grid, i, runs, tile):  # type: ignore[no-untyped
 
 
 @njit(cache=True, nogil=True)
+def any_above(row, height):  # type: ignore[no-untyped-def]
+    """True if any cell of a row is still above a height: spares the dearer look at its edge cells."""
+    for j in range(row.size):  # noqa: SIM110 (compiled code has no any())
+        if row[j] > height:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def cut_upright(shape, move, grid, tile):  # type: ignore[no-untyped-def]
     """Cut one move of an upright cutter into a tile; grid (x0, y0, dx, dy) locates cell [0, 0] of the tile."""
     z = tile[0]
     x0, y0, dx, dy = grid
     ax, _, az, ux, _, length, m = move
     nx, ny = z.shape
+    inverse = inverse_direction(move)
     R = shape[1]
     half = 0.5 * math.sqrt(dx * dx + dy * dy)
     reach_low, reach_high = min(0.0, length * ux) - R - half, max(0.0, length * ux) + R + half
@@ -236,17 +243,18 @@ def cut_upright(shape, move, grid, tile):  # type: ignore[no-untyped-def]
     last = min(nx - 1, math.floor((ax + reach_high - x0) / dx))
     for i in range(first, last + 1):
         x = x0 + i * dx
-        low, high = row_interval(move, R + half, x)
+        low, high = row_interval(move, inverse, R + half, x)
         if low > high:
             continue
         j_low = max(0, math.ceil((low - y0) / dy))
         j_high = min(ny - 1, math.floor((high - y0) / dy))
-        full_low, full_high = row_interval(move, R - half, x)
+        full_low, full_high = row_interval(move, inverse, R - half, x)
         full_from, full_to = j_high + 1, j_high + 1
         if full_low <= full_high:
             full_from = min(max(j_low, math.ceil((full_low - y0) / dy)), j_high + 1)
             full_to = max(min(j_high, math.floor((full_high - y0) / dy)) + 1, full_from)
-        cut_edge_cells(shape, move, grid, i, (j_low, full_from, full_to, j_high + 1), tile)
+        if any_above(z[i, j_low:full_from], az) or any_above(z[i, full_to : j_high + 1], az):
+            cut_edge_cells(shape, move, grid, i, (j_low, full_from, full_to, j_high + 1), tile)
         cut_full_cells(shape, move, x, y0 + full_from * dy, dy, z[i, full_from:full_to])
 
 
@@ -303,7 +311,7 @@ def tilted_interval(shape, move, X, Y0, h0, tilt, ceiling):  # type: ignore[no-u
     ``move`` and the line are given in the tool's own frame; low > high if the line misses it.
     """
     sine, _ = tilt
-    low, high = row_interval(move, shape[1], X)
+    low, high = row_interval(move, inverse_direction(move), shape[1], X)
     low, high = (low - Y0) / sine, min((high - Y0) / sine, ceiling)
     if low >= high:
         return math.inf, -math.inf

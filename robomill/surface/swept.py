@@ -22,6 +22,7 @@ from robomill.surface.envelope import (
 )
 from robomill.surface.raster import stock_heights
 from robomill.surface.stock import Stock
+from robomill.surface.tilted import tool_axes
 from robomill.units import format_si
 
 Heights = Callable[[FloatArray], FloatArray]
@@ -86,7 +87,7 @@ class SweptPath:
 def swept_path(stock: Stock, cutter: Cutter, p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike) -> SweptPath:
     """The feed moves of a path p (m, 3) m with tool axes k; moves with an end that is not finite are left out."""
     points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
-    axes = np.broadcast_to(np.array([0.0, 0.0, 1.0]) if k is None else np.asarray(k, dtype=float), points.shape)
+    axes = tool_axes(k, len(points))
     n = np.flatnonzero(np.asarray(cutting, dtype=bool)[1:]) + 1
     ends = np.hstack([points[n - 1], points[n]])
     middle = axes[n - 1] + axes[n]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import SurfaceError
 from robomill.surface import envelope
 from robomill.surface.compiler import Kernels
@@ -14,6 +15,20 @@ from robomill.surface.envelope import Shape
 from robomill.surface.removal import Cancel, Grid, Progress, Watch, rows_of_tile, tiles_of
 
 SMALLEST_RISE = 0.1
+
+
+def tool_axes(k: ArrayLike | None, m: int) -> FloatArray:
+    """Unit tool axes (m, 3) from one axis (3,) or (m, 3), upright if None. Raises SurfaceError for a wrong axis."""
+    if k is None:
+        return np.tile([0.0, 0.0, 1.0], (m, 1))
+    axes = as_floats(k, "tool axis", (3,), error=SurfaceError)
+    if axes.shape not in ((3,), (m, 3)):
+        raise SurfaceError(f"Tool axis: found shape {axes.shape} for {m} points; expected (3,) or ({m}, 3).")
+    axes = np.array(np.broadcast_to(axes, (m, 3)))
+    length = np.linalg.norm(axes, axis=1, keepdims=True)
+    if (np.abs(length - 1.0) > 1e-6).any():
+        raise SurfaceError("Tool axis: expected unit vectors, found a length that is not 1.")
+    return axes / length
 
 
 def split_turning(R: float, ends: FloatArray, axes: FloatArray, cell: float) -> tuple[FloatArray, FloatArray]:

@@ -14,9 +14,9 @@ from robomill.errors import SurfaceError
 from robomill.surface.compiler import Engine, kernels
 from robomill.surface.envelope import cutter_shape
 from robomill.surface.raster import stock_heights
-from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright
+from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright, numpy_seconds
 from robomill.surface.stock import AXES, Stock, stock_grid
-from robomill.surface.tilted import cut_tilted, split_turning, tilted_moves
+from robomill.surface.tilted import cut_tilted, split_turning, tilted_moves, tool_axes
 from robomill.units import format_si
 
 UPRIGHT = 1e-9
@@ -119,12 +119,12 @@ def cut(
     grid = Grid(float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
     ends, axes, skipped = feed_moves(p, k, cutting)
     shape = cutter_shape(cutter)
-    module = kernels(engine, len(ends))
+    upright = np.abs(axes[:, [0, 1, 3, 4]]).max(axis=1, initial=0.0) <= UPRIGHT
+    module = kernels(engine, numpy_seconds(ends, shape.R, grid, not upright.all()))
     x, y = frozen(grid.x0 + np.arange(nx) * dx), frozen(grid.y0 + np.arange(ny) * dy)
     z_stock = stock_heights(stock, x, y)
     z = np.empty((nx, ny))
     z[...] = z_stock
-    upright = np.abs(axes[:, [0, 1, 3, 4]]).max(axis=1, initial=0.0) <= UPRIGHT
     edge = cut_upright(z, grid, shape, np.ascontiguousarray(ends[upright]), module, progress, cancel)
     overhang = 0
     if not upright.all():
@@ -150,7 +150,7 @@ def feed_moves(p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike | None) -> 
     """Feed moves of a path: ends (n, 6) m, tool axes there (n, 6), and how many were left out for ends not finite."""
     points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
     m = len(points)
-    axes = np.broadcast_to(np.array([0.0, 0.0, 1.0]) if k is None else np.asarray(k, dtype=float), (m, 3))
+    axes = tool_axes(k, m)
     used = np.ones(m, dtype=bool) if cutting is None else np.array(cutting, dtype=bool)
     if used.shape != (m,):
         raise SurfaceError(f"Cut: found {used.shape} cutting flags for {m} points; expected one each.")
