@@ -29,6 +29,7 @@ else:
 left, right = ui.thirds()
 with left:
     panel.controls(robot, view, unit)
+with right:
+    with st.container(border=True):
+        panel.picture()
     panel.box_card(robot, view, unit)
-with right, st.container(border=True):
-    panel.picture()

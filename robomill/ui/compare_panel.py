@@ -49,9 +49,15 @@ def controls(robot: Robot, view: MapView) -> None:
         see(against=tuple(st.session_state[key]))
 
     st.multiselect(
-        "Compare up to three", list(known), key=key, format_func=lambda k: known[k], max_selections=MOST, on_change=take,
-        label_visibility="collapsed", placeholder="Robots or compliance sets",
-    )  # fmt: skip
+        "Compare up to three",
+        list(known),
+        key=key,
+        format_func=lambda k: known[k],
+        max_selections=MOST,
+        on_change=take,
+        label_visibility="collapsed",
+        placeholder="Robots or compliance sets",
+    )
 
 
 def panels(
@@ -82,10 +88,13 @@ def panels(
     rows: list[list[Map | None]] = [
         [Map(f"<b>{names[key]}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]
     ]
-    if differences:
-        rows.append([None, *(
-            Map(f"{names[key]} − {names[keys[0]]}", differences[key], "difference", unit_label(UM)) for key in keys[1:]
-        )])  # fmt: skip
+    apart: list[Map | None] = [
+        Map(f"{names[key]} − {names[keys[0]]}", differences[key], "difference", unit_label(UM)) for key in keys[1:]
+    ]
+    if len(apart) == 1:
+        rows[0] += apart
+    elif apart:
+        rows.append([None, *apart])
     return rows, scales, _text(names, values, keys), _columns(names, values, keys)
 
 

@@ -77,15 +77,22 @@ def _put(found: PointReport, i: int, value: float) -> None:
 
 
 def what_if(robot: Robot, view: MapView) -> None:
-    """A factor on each joint's stiffness; the old result stays as ghost until they are 1 again or put into the robot."""
+    """A factor on each joint's stiffness; the old result stays as ghost until they are 1 or put into the robot."""
     scale = factors(view, robot)
     changed = bool((scale != 1.0).any())
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         st.markdown("**What if a joint were stiffer?**")
-        st.button("All × 1", on_click=see, kwargs={"factors": None}, type="tertiary", disabled=not changed,
-                  key="maps:reset", icon=":material/restart_alt:")  # fmt: skip
+        st.button(
+            "All × 1",
+            on_click=see,
+            kwargs={"factors": None},
+            type="tertiary",
+            disabled=not changed,
+            key="maps:reset",
+            icon=":material/restart_alt:",
+        )
     for i, number in enumerate(robot.joint_numbers):
-        name, slider = st.columns([0.36, 1], vertical_alignment="center")
+        name, slider = st.columns([0.52, 1], vertical_alignment="center")
         name.markdown(f"Joint {number} **× {scale[i]:.2f}**")
         with slider:
             inputs.slider(

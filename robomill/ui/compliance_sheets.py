@@ -148,9 +148,12 @@ def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal:
             row.append(Map(title, shown, "main" if view.common or i == j else "cross", unit_label(UM)))
         rows.append(row)
     about = (
-        "One scale for all nine, centred on zero: the robot's own largest value over the region, so colours stay while the "
-        "plane moves." if view.common else "Direct terms on a scale of sizes, cross terms on one centred on zero."
-    )  # fmt: skip
+        "One scale for all nine, centred on zero: the robot's own largest value over the region, so colours stay "
+        "while the "
+        "plane moves."
+        if view.common
+        else "Direct terms on a scale of sizes, cross terms on one centred on zero."
+    )
     draw(
         sheet(rows, known.grid, normal, at, unit, scales, view, box, known), "nine", 3, normal, at,
         f"{about} Click a cell for the report of that pose.",
@@ -186,17 +189,28 @@ def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, norma
     rows: list[list[Map | None]] = []
     for c, k in zip(ROWS[kind], index, strict=True):
         values = from_si(now.shares[..., k], UM)
-        rows.append([
-            Map(f"C<sub>{c}</sub> joint {number}  {_mean(values[..., j])}", slab(values[..., j], normal), unit=unit_label(UM))
-            for j, number in enumerate(robot.joint_numbers)
-        ])  # fmt: skip
+        rows.append(
+            [
+                Map(
+                    f"C<sub>{c}</sub> joint {number}  {_mean(values[..., j])}",
+                    slab(values[..., j], normal),
+                    unit=unit_label(UM),
+                )
+                for j, number in enumerate(robot.joint_numbers)
+            ]
+        )
     words = "sizes, from zero" if kind == "direct" else "signed, centred on zero"
     draw(
-        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known), f"shares-{kind}", robot.n, normal, at,
-        f"Each joint's summand of eq. (16), mean beside its name; one scale, {words}. Joints in a row add up to the map.",
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
+        f"shares-{kind}",
+        robot.n,
+        normal,
+        at,
+        f"Each joint's summand of eq. (16), mean beside its name; one scale, {words}. Joints in a row add up to "
+        f"the map.",
         "Shares of each joint in the compliance over the plane.",
         lambda: _columns(now, [f"C_{c}_{j}" for c in ROWS[kind] for j in range(1, robot.n + 1)]),
-    )  # fmt: skip
+    )
 
 
 def _mean(values: FloatArray) -> str:
@@ -214,15 +228,23 @@ def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, nor
         )
 
     rows: list[list[Map | None]] = [
-        [panel("<b>all three directions</b>", "dominant"), *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["direct"])],
+        [
+            panel("<b>all three directions</b>", "dominant"),
+            *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["direct"]),
+        ],
         [None, *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["cross"])],
-    ]  # fmt: skip
+    ]
     scale = Scale("", 0, 1, "joints", joints=robot.joint_numbers)
     draw(
-        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known), "dominant", 4, normal, at,
-        "The joint with the largest share: where to stiffen first.", "The joint that gives most, over the plane.",
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
+        "dominant",
+        4,
+        normal,
+        at,
+        "The joint with the largest share: where to stiffen first.",
+        "The joint that gives most, over the plane.",
         lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
-    )  # fmt: skip
+    )
 
 
 def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
@@ -230,10 +252,15 @@ def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, norm
     view = maps(robot)
     rows, scales, rows_of_text, columns = compare_panel.panels(robot, view, known, normal)
     draw(
-        sheet(rows, known.grid, normal, at, unit, scales, view, box, known), "compare", max(len(rows[0]), 2), normal, at,
-        "Above on one scale; below the difference to the first, centred on zero.",
-        "The same compliance of up to three robots or compliance sets, and the differences.", lambda: columns,
-    )  # fmt: skip
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
+        "compare",
+        max(len(rows[0]), 2),
+        normal,
+        at,
+        "The compared ones on one scale; the difference to the first on its own, centred on zero.",
+        "The same compliance of up to three robots or compliance sets, and the differences.",
+        lambda: columns,
+    )
     parts.facts(rows_of_text)
 
 
@@ -256,27 +283,38 @@ def _lines(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         now = by_joint / scale
         axis = 0 if abs(line.feed[0]) > 0.5 else 1
         fixed = "YX"[axis]
-        panels.append(LinePanel(
-            f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = {from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
-            from_si(line.p[:, axis], unit), now.sum(axis=1), now, by_joint.sum(axis=1) if changed else None,
-        ))  # fmt: skip
+        panels.append(
+            LinePanel(
+                f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = "
+                f"{from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
+                from_si(line.p[:, axis], unit),
+                now.sum(axis=1),
+                now,
+                by_joint.sum(axis=1) if changed else None,
+            )
+        )
     if not any(np.isfinite(q.total).any() for q in panels):
         st.info("None of the six lines is reached in this plane: move the slider or change the region.")
         return
     titles = [f"{'X' if abs(line.feed[0]) > 0.5 else 'Y'}<sub>M</sub>, {unit_label(unit)}" for line in found]
     parts.figure(
-        line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()), "lines", name="path-lines",
-        table=lambda: _line_columns(panels, robot), alt="Deviation along six straight lines, total and by joint.",
-        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), deviation along "
+        line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()),
+        "lines",
+        name="path-lines",
+        table=lambda: _line_columns(panels, robot),
+        alt="Deviation along six straight lines, total and by joint.",
+        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
+        "deviation along "
         "that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
-    )  # fmt: skip
+    )
 
 
 def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:
     columns: dict[str, Any] = {
         "line": np.repeat([p.title.replace("<sub>M</sub>", "_M") for p in panels], [len(p.s) for p in panels]),
-        "s": np.concatenate([p.s for p in panels]), "total": np.concatenate([p.total for p in panels]),
-    }  # fmt: skip
+        "s": np.concatenate([p.s for p in panels]),
+        "total": np.concatenate([p.total for p in panels]),
+    }
     for j, number in enumerate(robot.joint_numbers):
         columns[f"joint {number}"] = np.concatenate([p.by_joint[:, j] for p in panels])
     return columns

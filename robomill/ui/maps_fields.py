@@ -33,7 +33,7 @@ def geometry_key(robot: Robot) -> str:
 
 
 def region(robot: Robot, view: MapView) -> Box:
-    """The box the maps cover. Raises WorkspaceError where nothing is in reach or its corners are the wrong way round."""
+    """The box the maps cover. Raises WorkspaceError where nothing is in reach or a corner is on the wrong side."""
     if view.region == "own":
         lower, upper = np.array(view.lower), np.array(view.upper)
         if (upper < lower).any():
@@ -46,7 +46,8 @@ def region(robot: Robot, view: MapView) -> Box:
     if found is None:
         tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
         raise WorkspaceError(
-            f"{robot.title or robot.name} brings its tool nowhere at {tilt}: change the tilt, the tool frame or the limits."
+            f"{robot.title or robot.name} brings its tool nowhere at {tilt}: change the tilt, the tool frame or "
+            f"the limits."
         )
     return found
 
@@ -96,7 +97,8 @@ def plane(robot: Robot, view: MapView, box: Box, normal: str, at: float) -> Grid
         fits = step * float(np.sqrt(grid.cells / DRAWN_CELLS))
         raise WorkspaceError(
             f"A plane of {grid.cells:,} cells is more than a picture takes ({DRAWN_CELLS:,}): "
-            f"use a step of {format_si(np.ceil(fits * 1e3) / 1e3, 'mm', 0)} or more; the command line writes finer maps."
+            f"use a step of {format_si(np.ceil(fits * 1e3) / 1e3, 'mm', 0)} or more; the command line writes "
+            f"finer maps."
         )
     return grid
 
@@ -162,6 +164,18 @@ def _lines(key: str, _robot: Robot, _box: Box, _z: float, _points: int) -> list[
 
 
 __all__ = [
-    "coarse_cells", "field", "flat", "geometry_key", "lines", "normals", "plane", "plane_at", "plane_step", "proposed_box",
-    "reached", "region", "solid", "stiffer",
-]  # fmt: skip
+    "coarse_cells",
+    "field",
+    "flat",
+    "geometry_key",
+    "lines",
+    "normals",
+    "plane",
+    "plane_at",
+    "plane_step",
+    "proposed_box",
+    "reached",
+    "region",
+    "solid",
+    "stiffer",
+]

@@ -70,7 +70,7 @@ def report(robot: Robot, point: Point, A: float, B: float) -> PointReport:
 
 
 def default_point(view: MapView, box: Box, known: ComplianceField) -> Point:
-    """The point in hand: as clicked, or the paper's milling test in its box, else the reached cell nearest the middle."""
+    """The point in hand: as clicked, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:
         return view.point
     if view.region == "paper" and view.A == view.B == 0:
@@ -140,13 +140,16 @@ def _arm(found: PointReport, component: str, unit: str) -> None:
     fig = arm_figure(scene, dark=dark, height=430, revision="point-arm", zoom=0.95)
     yardstick = float(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1).sum())
     times = ellipsoid_scale(found.C, 0.16 * yardstick)
-    fig.add_traces(ellipsoid_traces(found.C, frames[-1][:3, 3], times, dark=dark, width=0.0065 * yardstick))
+    fig.add_traces(ellipsoid_traces(found.C, frames[-1][:3, 3], times, dark=dark, width=0.0065 * yardstick, away=delta))
     drawn = int(float(f"{displacement_scale(delta, frames):.2g}"))
     parts.figure(
-        fig, "point-arm", alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
-        caption=f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} push and "
+        fig,
+        "point-arm",
+        alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
+        caption=f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} "
+        f"push and "
         f"displacement, shown × {drawn:,}.",
-    )  # fmt: skip
+    )
 
 
 def _shares(found: PointReport, old: PointReport) -> None:
@@ -155,10 +158,14 @@ def _shares(found: PointReport, old: PointReport) -> None:
     shares = from_si(found.shares(), "um/N")
     before = from_si(old.shares().sum(axis=0), "um/N")
     parts.figure(
-        share_bars(names, shares, found.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before, height=388),
-        "point-shares", table=lambda: share_columns(found), alt="Joint shares of each compliance component at this pose.",
+        share_bars(
+            names, shares, found.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before, height=388
+        ),
+        "point-shares",
+        table=lambda: share_columns(found),
+        alt="Joint shares of each compliance component at this pose.",
         caption="Bars add up to the black mark, eq. (13). Grey mark: before the change.",
-    )  # fmt: skip
+    )
 
 
 def share_columns(found: PointReport) -> dict[str, object]:
@@ -195,16 +202,16 @@ def _matrix(found: PointReport, old: PointReport) -> None:
         parts.note("Change by the factors:")
         parts.matrix([[signed(v, True) for v in row] for row in change], list(AXES))
     values, axes = soft_direction(found.C)
-    rows = [
-        (word, format_si(float(values[i]), "um/N", 3), _direction(axes[:, i]))
-        for word, i in (("softest", 2), ("middle", 1), ("stiffest", 0))
+    parts.note("Principal compliances and their directions:")
+    shown = [
+        [signed(float(from_si(float(values[i]), "um/N"))), *(signed(float(v), digits=2) for v in _forward(axes[:, i]))]
+        for i in (2, 1, 0)
     ]
-    parts.facts(rows)
+    grid(shown, ["softest", "middle", "stiffest"], [unit_label("um/N"), *AXES])
 
 
-def _direction(axis: FloatArray) -> str:
-    axis = axis * np.sign(axis[np.argmax(np.abs(axis))])
-    return "(" + ", ".join(signed(float(v), digits=2) for v in axis) + ")"
+def _forward(axis: FloatArray) -> FloatArray:
+    return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
 def _six(found: PointReport) -> None:
@@ -237,7 +244,8 @@ def grid(rows: Sequence[Sequence[str]], row_names: Sequence[str], column_names: 
 
 
 def _low(name: str) -> str:
-    return f"{html.escape(name[0])}<sub>{html.escape(name[1:])}</sub>" if name[1:].isascii() else html.escape(name)
+    """A one-letter symbol with its index set low; words and units as they are."""
+    return f"{html.escape(name[0])}<sub>{html.escape(name[1:])}</sub>" if len(name) == 2 else html.escape(name)
 
 
 def signed(value: float, plus: bool = False, digits: int = 3) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import html
+import re
 
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
@@ -38,7 +39,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     limit = known.values("limit_distance")
     nearest = f"{100 * float(np.nanmin(limit)):.0f} %" if np.isfinite(limit).any() else "not reached"
     largest = maps_fields.proposed_box(robot, view.A, view.B)
-    size = "none" if largest is None else box_size(largest.size, unit)
+    size = "none" if largest is None else " × ".join(f"{v:.2f}" for v in largest.size if v > 1e-6) + " m"
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
     return [
@@ -47,8 +48,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
         parts.Tile("Least |det(J)|", least, "a singularity is near" if singular else "no singularity in this region"
                    if len(det) else ""),
         parts.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
-        parts.Tile("Largest box in reach", f"{size} {unit_label(unit)}" if largest is not None else "none", note,
-                   kind="computed"),
+        parts.Tile("Largest box in reach", size, note, kind="computed"),
     ]  # fmt: skip
 
 
@@ -95,9 +95,15 @@ def controls(robot: Robot, view: MapView, unit: str) -> None:
     names = {name: quantity(robot, name).title for name in QUANTITIES}
     inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: see(quantity=q), horizontal=False)
     what = quantity(robot, view.quantity)
-    st.html(f'<p class="rm-note"><b>{html.escape(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
+    st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
     maps_inputs.where(robot, view, unit)
     parts.note(maps_inputs.tilt_note(robot))
+
+
+def formula_html(formula: str) -> str:
+    """A formula with its indices set low and omega as a letter."""
+    text = html.escape(formula, quote=False).replace("omega_", "ω_").replace("sigma_", "σ_")
+    return re.sub(r"([A-Za-zσωθ])_(\w+)", r"\1<sub>\2</sub>", text)
 
 
 def box_card(robot: Robot, view: MapView, unit: str) -> None:
@@ -106,11 +112,12 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     largest = maps_fields.proposed_box(robot, view.A, view.B)
     rows = []
     digits = 0 if unit == "mm" else 1
+    flat = maps_fields.flat(robot) is not None
     for name, box, kind in (("largest in reach", largest, "computed"), ("the paper's", Box(*PAPER_BOX), "paper")):
-        if box is None:
+        if box is None or (flat and kind == "paper"):
             continue
         corner = ", ".join(f"{from_si(float(v), unit):.{digits}f}" for v in box.lower).replace("-", "−")
-        mark = parts.badge(kind) + (" its place in Y " + parts.badge("assumed") if kind == "paper" else "")
+        mark = parts.badge(kind) + (" place in Y " + parts.badge("assumed") if kind == "paper" else "")
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
     parts.facts(rows)
     if largest is not None and view.region != "largest":
@@ -155,12 +162,17 @@ def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     name, step = normal.upper() + "ₘ", float(f"{(high - low) / 50:.1g}")
     for k, (column, at) in enumerate(((left, first), (right, second))):
         with column:
+            ends = [float(from_si(v, unit)) for v in (low, high, at)]
             inputs.slider(
-                f"{name} {'left' if k == 0 else 'right'}, {unit_label(unit)}", f"maps:pair:{k}:{normal}:{unit}",
-                *(float(from_si(v, unit)) for v in (low, high, at)),
-                lambda v, k=k: _put_pair(k, to_si(v, unit), (first, second)), step=float(from_si(step, unit)),  # type: ignore[misc]
+                f"{name} {'left' if k == 0 else 'right'}, {unit_label(unit)}",
+                f"maps:pair:{k}:{normal}:{unit}",
+                ends[0],
+                ends[1],
+                ends[2],
+                lambda v, k=k: _put_pair(k, to_si(v, unit), (first, second)),  # type: ignore[misc]
+                step=float(from_si(step, unit)),
                 form="%.0f" if unit == "mm" else "%.2f",
-            )  # fmt: skip
+            )
     first, second = maps(robot).pair or (first, second)
     _sheet(robot, view, box, normal, [first, second], unit, "pair")
 
@@ -204,7 +216,7 @@ def plane_columns(robot: Robot, view: MapView, grid: Grid, what: Quantity) -> di
 
 
 def scale_of(robot: Robot, view: MapView, box: Box, what: Quantity) -> Scale:
-    """The scale of a quantity over the whole region: signed ones about zero, sizes from their least to their largest."""
+    """The scale of a quantity over the whole region: signed ones about zero, sizes from least to largest."""
     if what.name == "reach":
         return Scale("reach", 0, 1, "reach")
     known = maps_fields.field(robot, maps_fields.solid(robot, box, _overview(robot)), view.A, view.B)
@@ -253,14 +265,14 @@ def _level(low: float, high: float, view: MapView, unit: str) -> float:
 
 
 def _solid_figure(
-    robot: Robot, view: MapView, box: Box, grid: Grid, mask: FloatArray, values: FloatArray | None, what: Quantity,
+    robot: Robot, view: MapView, box: Box, grid: Grid, mask: BoolArray, values: FloatArray | None, what: Quantity,
     caption: str,
 ) -> None:  # fmt: skip
     dark = shell.dark()
     p = palette(dark)
     theta = _standing(robot, view, box)
     fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=dark, height=560, revision="workspace-solid")
-    signed = values is not None and what.name in SIGNED and np.nanmin(values) < 0 < np.nanmax(values)
+    signed = values is not None and what.name in SIGNED and bool(np.nanmin(values) < 0 < np.nanmax(values))
     limits = None
     if values is not None:
         top = float(np.nanmax(np.abs(values)))
@@ -268,7 +280,7 @@ def _solid_figure(
     if mask.any():
         fig.add_trace(voxel_trace(
             mask, (grid.x, grid.y, grid.z), dark=dark, values=values, limits=limits, signed=signed,
-            title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "), opacity=0.28 if values is None else 0.55,
+            title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "), opacity=0.25 if values is None else 1.0,
         ))  # fmt: skip
     low, high = np.array(box.lower), np.array(box.upper)
     largest = maps_fields.proposed_box(robot, view.A, view.B)

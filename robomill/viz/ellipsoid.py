@@ -38,18 +38,26 @@ def ellipsoid_scale(C: FloatArray, size: float) -> float:
     return size / top if top > 0 else 0.0
 
 
-def ellipsoid_traces(C: FloatArray, centre: FloatArray, times: float, *, dark: bool, width: float) -> list[Any]:
-    """The ellipsoid, half transparent, and its soft direction as a line through the tip with its word."""
+def ellipsoid_traces(
+    C: FloatArray, centre: FloatArray, times: float, *, dark: bool, width: float, word: str = "softest",
+    away: FloatArray | None = None,
+) -> list[Any]:  # fmt: skip
+    """The ellipsoid, half transparent, and its soft direction as a line through the tip with its word.
+
+    The word stands at the end that points away from ``away`` (3,), so that it does not cover an arrow there.
+    """
     p = palette(dark)
     values, axes = soft_direction(C)
     if values[-1] <= 0:
         return []
     soft = axes[:, -1] * times * values[-1]
+    if away is not None and soft @ away > 0:
+        soft = -soft
     end = np.asarray(centre) + 1.25 * soft
     return [
         solids.trace([ellipsoid_mesh(C, centre, times)], p.caution, "compliance ellipsoid", opacity=0.32),
         solids.trace([solids.tube(centre - 1.12 * soft, centre + 1.12 * soft, 0.55 * width, sides=12)], p.caution,
                      "soft direction"),
-        go.Scatter3d(x=[end[0]], y=[end[1]], z=[end[2]], mode="text", text=["softest"], hoverinfo="skip",
+        go.Scatter3d(x=[end[0]], y=[end[1]], z=[end[2]], mode="text", text=[word], hoverinfo="skip",
                      textfont={"color": p.caution, "size": 13}, showlegend=False),
     ]  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import plotly.graph_objects as go
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette
 
 PICKED_PER_MAP = 420  # points that can be clicked; each is an element of the page
@@ -117,7 +117,8 @@ def _below_empty(sheet: MapSheet, r: int, c: int) -> bool:
 def _colour_axis(sheet: MapSheet, name: str, used: list[str], dark: bool) -> dict[str, Any]:
     scale = sheet.scales[name]
     place = used.index(name)
-    bar = colour_bar(scale.title, dark=dark, x=1.005 + 0.075 * place)
+    share = 1.0 / len(used)
+    bar = colour_bar(scale.title, dark=dark, x=1.005, len=share, y=1.0 - share * (place + 0.5))
     if scale.kind == "joints":
         count = len(scale.joints)
         colours = joint_colours(count, dark)
@@ -157,8 +158,8 @@ def _panel(
         fig.add_trace(go.Scatter(
             x=[sheet.point[0]], y=[sheet.point[1]], mode="markers", xaxis=f"x{name}", yaxis=f"y{name}",
             hoverinfo="skip",
-            marker={"symbol": "circle" if sheet.on_plane else "circle-open", "size": 9, "color": p.text,
-                    "line": {"color": p.background, "width": 1.6 if sheet.on_plane else 2}},
+            marker={"symbol": "circle" if sheet.on_plane else "circle-open", "size": 7, "color": p.text,
+                    "line": {"color": p.background, "width": 1.4 if sheet.on_plane else 2}},
             selected={"marker": {"opacity": 1}}, unselected={"marker": {"opacity": 1}},
         ))  # fmt: skip
     if sheet.outline is not None:
@@ -195,7 +196,7 @@ def hover_text(value: float, unit: str, scale: Scale) -> str:
     return f"{value:.{scale.digits}f} {unit}".strip().replace("-", "−")
 
 
-def _thin(count: int, every: int) -> FloatArray:
+def _thin(count: int, every: int) -> IntArray:
     """Indices 0, every, ... so that the last one is the last point wherever that divides."""
     start = ((count - 1) % every) // 2
     return np.arange(start, count, every)

@@ -42,9 +42,13 @@ def share_bars(
     total = shares.sum(axis=0)
     if old is not None and not np.allclose(old, total, rtol=1e-6, atol=1e-12):
         fig.add_scatter(
-            x=old, y=list(names), mode="markers", name="sum before", hovertemplate="before %{x:+.4f} " + unit + "<extra></extra>",
+            x=old,
+            y=list(names),
+            mode="markers",
+            name="sum before",
+            hovertemplate="before %{x:+.4f} " + unit + "<extra></extra>",
             marker={"symbol": "line-ns-open", "size": 26, "color": p.muted, "line": {"width": 2.2, "color": p.muted}},
-        )  # fmt: skip
+        )
     fig.add_scatter(
         x=total, y=list(names), mode="markers", name="sum", hovertemplate="sum %{x:+.4f} " + unit + "<extra></extra>",
         marker={"symbol": "line-ns-open", "size": 26, "color": p.text, "line": {"width": 3, "color": p.text}},
@@ -53,16 +57,23 @@ def share_bars(
     positive = np.maximum(shares, 0).sum(axis=0)
     for name, value, edge in zip(names, total, positive, strict=True):
         fig.add_annotation(
-            x=max(edge, 0.0), y=name, text=f"{value:+.3f}".replace("-", "−"), showarrow=False, xanchor="left", xshift=8,
+            x=max(edge, 0.0), y=name, text=_signed(value), showarrow=False, xanchor="left", xshift=8,
             font={"size": 12.5, "color": p.text},
         )  # fmt: skip
     low = float(np.minimum(shares, 0).sum(axis=0).min(initial=0.0))
     fig.update_layout(
-        xaxis=axis(unit, dark=dark, range=[1.12 * low - 0.02 * top, 1.10 * float(positive.max(initial=0.1)) + 0.05 * top]),
+        xaxis=axis(
+            unit, dark=dark, range=[1.12 * low - 0.02 * top, 1.10 * float(positive.max(initial=0.1)) + 0.05 * top]
+        ),
         yaxis=axis("", dark=dark, autorange="reversed", ticks="", showline=False) | {"title": None},
-    )  # fmt: skip
+    )
     fig.add_vline(x=0, line={"color": p.line, "width": 1})
     return fig
+
+
+def _signed(value: float) -> str:
+    text = f"{value:+.3f}"
+    return (text[1:] if float(text) == 0 else text).replace("-", "−")
 
 
 def gain_bars(
@@ -88,12 +99,22 @@ def gain_bars(
         ))  # fmt: skip
         top = float(np.nanmax(gain, initial=0.0)) or 1.0
         low = float(np.nanmin(gain, initial=0.0))
-        fig.update_layout({
-            f"xaxis{suffix}": axis(unit, dark=dark, nticks=4, domain=[start, min(start + width, 1.0)], anchor=f"y{suffix}",
-                                   range=[1.3 * low if low < 0 else 0.0, 1.28 * top]),
-            f"yaxis{suffix}": axis("", dark=dark, autorange="reversed", anchor=f"x{suffix}", ticks="",
-                                   showticklabels=g == 0) | {"title": None},
-        })  # fmt: skip
+        fig.update_layout(
+            {
+                f"xaxis{suffix}": axis(
+                    unit,
+                    dark=dark,
+                    nticks=4,
+                    domain=[start, min(start + width, 1.0)],
+                    anchor=f"y{suffix}",
+                    range=[1.3 * low if low < 0 else 0.0, 1.28 * top],
+                ),
+                f"yaxis{suffix}": axis(
+                    "", dark=dark, autorange="reversed", anchor=f"x{suffix}", ticks="", showticklabels=g == 0
+                )
+                | {"title": None},
+            }
+        )
         fig.add_annotation(x=start, y=1.0, xref="paper", yref="paper", xanchor="left", yanchor="bottom", yshift=8,
                            text=f"<b>{title}</b>", showarrow=False, font={"size": 13, "color": p.text})  # fmt: skip
     return fig
@@ -142,7 +163,7 @@ def line_panels(
         ))  # fmt: skip
         x0, y1 = c * (width + 0.05), 1 - r * (tall + 0.2)
         fig.update_layout({
-            f"xaxis{suffix}": axis(s_titles[index], dark=dark, nticks=5, domain=[x0, min(x0 + width, 1.0)],
+            f"xaxis{suffix}": axis(s_titles[index], dark=dark, nticks=4, domain=[x0, min(x0 + width, 1.0)],
                                    anchor=f"y{suffix}"),
             f"yaxis{suffix}": axis(f"deviation, {unit}" if c == 0 else "", dark=dark, range=[low, high], nticks=5,
                                    domain=[max(y1 - tall, 0.0), y1], anchor=f"x{suffix}", showticklabels=c == 0),

@@ -86,7 +86,7 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
 
 
 def widen(fig: go.Figure, lower: FloatArray, upper: FloatArray, room: float = 2.4) -> None:
-    """Stretch the ranges of a scene of ``arm_figure`` so that the box lower .. upper (m) is inside, and keep it true."""
+    """Stretch the ranges of a scene of ``arm_figure`` so that the box lower .. upper (m) is inside, to scale."""
     scene = fig.layout.scene
     low = np.array([scene[f"{a}axis"].range[0] for a in "xyz"], dtype=float)
     high = np.array([scene[f"{a}axis"].range[1] for a in "xyz"], dtype=float)

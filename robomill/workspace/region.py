@@ -78,5 +78,5 @@ def _tips(robot: Robot) -> FloatArray:
 
 
 def _centred(low: float, high: float, step: float) -> FloatArray:
-    count = max(int(round((high - low) / step)), 1)
+    count = max(round((high - low) / step), 1)
     return np.linspace(low, high, count + 1)
