@@ -25,7 +25,7 @@ ui.headline(
 cut = ui.verdict_tiles(result, view.length)[0] if result is not None else ui.Tile("Max deviation", "not computed")
 stiff = float(np.sqrt(np.linalg.eigvalsh(now.C)[-1] ** 2))
 ui.tiles([
-    ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, kind="computed"),
+    ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, cut.change, kind="computed"),
     ui.Tile("C_yy at this pose", format_si(now.C[1, 1], "um/N", 3), "direct compliance along Y",
             format_si(old.C[1, 1], "um/N", 3) if old else ""),
     ui.Tile("Softest direction", format_si(stiff, "um/N", 3), robot_panel.direction_words(now.C),
@@ -43,7 +43,7 @@ with right:
     with pose, st.container(border=True):
         scene = ArmScene(frames=now.frames, ghost=old.frames if old and old.moved else None)
         ui.figure(
-            arm_figure(scene, dark=dark, height=540, revision="robot-arm", zoom=0.88), "robot-arm",
+            arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8), "robot-arm",
             alt="The arm at the chosen joint angles.",
             caption=f"{tip_words(robot, theta, view.length)}. Foot and tube sizes are for the eye only.",
         )  # fmt: skip

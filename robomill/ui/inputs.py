@@ -112,13 +112,16 @@ def slider(
 
 def seed(key: str, value: Any) -> None:
     """Show ``value`` in the widget ``key``, unless something refused is waiting there to be mended."""
-    waiting = state.store().refused.get(key)
-    if waiting is not None and key in st.session_state:
+    kept = state.store()
+    waiting = kept.refused.get(key)
+    known = key in st.session_state and key in kept.seeded
+    if waiting is not None and known:
         return
     shown = waiting[0] if waiting is not None else value
     # Written only where it differs: a slider that is being dragged would jump otherwise.
-    if key not in st.session_state or st.session_state[key] != shown:
+    if not known or st.session_state[key] != shown:
         st.session_state[key] = shown
+        kept.seeded.add(key)
 
 
 def sentence(key: str) -> None:

@@ -153,8 +153,8 @@ def surface(result: SimulationResult, view: state.View, station: float, dark: bo
             ), "surface", alt="The machined surface, to be turned with the mouse.",
         )  # fmt: skip
     parts.note(
-        f"Displacement shown × {view.exaggeration:g}; colours are true errors and end at the tolerance, "
-        f"± {format_si(result.setup.tolerance, 'um', 0)}. Walls that moved show the full depth, so they saturate."
+        f"Displacement shown × {view.exaggeration:g}; colours are true distances from the ideal groove and "
+        f"end at the tolerance, ± {format_si(result.setup.tolerance, 'um', 0)}."
     )
 
 
@@ -213,9 +213,9 @@ def downloads(result: SimulationResult, view: state.View, station: float) -> Non
 
 def surface_stl(result: SimulationResult) -> bytes:
     """The machined part as a binary STL in mm."""
-    from robomill.surface.deviation import stl_bytes
+    from robomill.io.meshes import mesh_bytes
 
-    return stl_bytes(result.machined)
+    return mesh_bytes(result.machined, "stl")
 
 
 def _or_empty(make: Callable[[], bytes | None]) -> Callable[[], bytes]:

@@ -27,7 +27,7 @@ def begin(title: str) -> state.Project:
     p = palette(dark())
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:
-        state.store()
+        state.enter(title)
     except RobomillError as exc:
         error(exc)
         st.stop()
@@ -78,7 +78,7 @@ def _project(kept: state.Store) -> None:
     project = kept.project
     st.caption("Project")
     with st.container(horizontal=True, gap="small"):
-        with st.popover("Open", icon=":material/folder_open:", width="stretch"):
+        with st.popover("Open", icon=":material/folder_open:", width="stretch", key="open"):
             _open(kept)
         st.download_button(
             "Save", data=lambda: project_to_toml(project), file_name=_file_name(project.setup.name),

@@ -65,7 +65,8 @@ class Project:
 class Store:
     """What lives in the session: the project, its history, and input that was refused but is still shown.
 
-    ``revision`` counts changes that came from outside a table editor, so that editors start afresh then.
+    ``revision`` counts changes that came from outside a table editor, so that editors start afresh then. ``seeded`` are
+    the widgets of ``page`` that have been given their value: a widget that returns with its page has lost it.
     """
 
     project: Project
@@ -75,6 +76,8 @@ class Store:
     refused: dict[str, tuple[Any, str]] = field(default_factory=dict)
     frames: dict[str, Any] = field(default_factory=dict)
     last_label: str = ""
+    page: str = ""
+    seeded: set[str] = field(default_factory=set)
 
 
 def presets() -> dict[str, str]:
@@ -94,6 +97,14 @@ def store() -> Store:
     if KEY not in st.session_state:
         st.session_state[KEY] = Store(Project(preset_setup(DEFAULT_PRESET)))
     return cast(Store, st.session_state[KEY])
+
+
+def enter(page: str) -> None:
+    """Say which page is running, so that widgets shared by pages are seeded again after a page change."""
+    kept = store()
+    if kept.page != page:
+        kept.page = page
+        kept.seeded.clear()
 
 
 def project() -> Project:

@@ -10,22 +10,25 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.kinematics.forward import joint_frames
 from robomill.simulation.result import SimulationResult
+from robomill.surface.deviation import deviation
 from robomill.surface.groove import GrooveSection
+from robomill.surface.stock import stock_grid
 from robomill.surface.zmap import ZMap, cut
 from robomill.units import format_si, from_si
 from robomill.viz.arm import ArmScene
 from robomill.viz.scene import Camera, SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
-PICTURE_CELLS = 220_000
+PICTURE_CELLS = 160_000
+SEARCHED_CELLS = 24  # how far sideways, in cells, a displaced wall is looked for
 
 
 @dataclass(frozen=True, eq=False)
 class Exaggerated:
     """The machined surface with the deflection enlarged ``times`` times, beside the ideal one, on a grid for pictures.
 
-    ``error`` (nx, ny) m is the *true* signed error at each cell of the true machined surface, moved to the enlarged
-    picture by enlarging height differences; NaN where nothing was cut.
+    ``error`` (nx, ny) m is the signed distance from the ideal surface, measured in the enlarged picture and divided by
+    ``times``: what the true surface has there. NaN where nothing was cut.
     """
 
     ideal: ZMap
@@ -35,20 +38,22 @@ class Exaggerated:
 
 
 def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
-    """Cut again with the tip ``times`` times as far off its path; ``times`` = 1 is the machined surface itself."""
+    """Cut again with the tip ``times`` times as far off its path; ``times`` = 1 is the machined surface itself.
+
+    Raises SurfaceError for a cell size that does not fit and for a path that misses the stock.
+    """
     setup, path = result.setup, result.path
     size = setup.stock_block.upper - setup.stock_block.lower
     cell = max(setup.cell, float(np.sqrt(size[0] * size[1] / PICTURE_CELLS)))
 
     def at(factor: float) -> ZMap:
         p = path.p + factor * (result.p_machined - path.p)
-        return cut(setup.stock_block, cell, setup.cutter, p, path.k, result.removes, must_touch=False)
+        return cut(setup.stock_block, cell, setup.cutter, p, path.k, result.removes, must_touch=factor == 0.0)
 
+    stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)
-    error = (drawn.z - ideal.z) / (times if times > 0 else 1.0)
-    # Beside a wall the height differs by the whole depth: that is no error of height, the colour just saturates.
-    error = np.where(drawn.cut_mask | ideal.cut_mask, error, np.nan)
-    return Exaggerated(ideal, drawn, error, times)
+    reach = min(1.3 * times * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell, SEARCHED_CELLS * cell)
+    return Exaggerated(ideal, drawn, deviation(ideal, drawn, reach=reach).error / times, times)
 
 
 def surface_picture(

@@ -1,0 +1,59 @@
+"""The pages without a browser; rendered pictures are left out, they have tests of their own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from streamlit.testing.v1 import AppTest
+
+from robomill.errors import RenderError
+from robomill.ui import render
+from robomill.ui.state import KEY, Store
+from robomill.viz.worker import RenderWorker
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class NoPictures(RenderWorker):
+    """A machine without OpenGL."""
+
+    def start(self) -> None:
+        self._deaths = 2
+
+    def render(self, picture: object) -> bytes:
+        self._deaths = 2
+        raise RenderError("Rendered pictures need an OpenGL library that this machine lacks; as root, run: apt-get.")
+
+
+@pytest.fixture
+def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
+    """The start page, run once."""
+    worker = NoPictures()
+    monkeypatch.setattr(render, "worker", lambda: worker)
+    return AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()
+
+
+def go(app: AppTest, page: str) -> AppTest:
+    """Another page of the same session."""
+    return app.switch_page(f"pages/{page}.py" if page != "app" else "app.py").run()
+
+
+def store(app: AppTest) -> Store:
+    """The session's store."""
+    kept = app.session_state[KEY]
+    assert isinstance(kept, Store)
+    return kept
+
+
+def words(app: AppTest) -> str:
+    """Every piece of HTML and text on the page."""
+    parts = [element.proto.body for element in app.get("html")] if app.get("html") else []
+    for kind in ("markdown", "caption", "error", "info", "warning"):
+        parts += [element.value for element in app.get(kind)]
+    return "\n".join(parts)
+
+
+def errors(app: AppTest) -> list[str]:
+    """What the page refuses."""
+    return [element.value for element in app.error]

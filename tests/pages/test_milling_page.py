@@ -1,0 +1,94 @@
+"""The milling page: inputs reach the result, refusals keep what was typed, every page takes the same bad values."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import errors, go, store, words
+from streamlit.testing.v1 import AppTest
+
+
+def test_it_runs_with_every_figure(app: AppTest) -> None:
+    go(app, "6_Milling")
+    assert not app.exception
+    assert len(app.get("plotly_chart")) == 4
+    assert [b.label for b in app.get("download_button") if b.label in ("Surface STL", "Deviation CSV", "Picture PNG")]
+
+
+def test_force_reaches_the_tiles(app: AppTest) -> None:
+    go(app, "6_Milling")
+    app.number_input(key="in:force.feed_normal:N").set_value(200.0).run()
+    assert "0.503" in words(app)
+    assert "Out of tolerance" in words(app)
+    assert store(app).project.setup.provenance["force"].kind == "user"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "sentence"),
+    [
+        ("in:tolerance:mm", 0.0, "Tolerance: found 0.000 mm; expected more than 0 mm."),
+        ("in:step:mm", -1.0, "Step: found −1.000 mm; expected more than 0 mm."),
+        ("in:cutter.diameter:mm", 0.0, "diameter"),
+        ("in:cutter.flutes", 0, "0 flutes"),
+        ("in:stock.lower[0]:mm", 99.0, "Stock in X"),
+    ],
+)
+def test_a_refused_value_stays_in_its_box_with_one_sentence(
+    app: AppTest, key: str, value: float, sentence: str
+) -> None:
+    go(app, "6_Milling")
+    before = store(app).project.setup.digest()
+    app.number_input(key=key).set_value(value).run()
+    assert not app.exception
+    assert len(errors(app)) == 1
+    assert sentence in errors(app)[0]
+    assert app.number_input(key=key).value == value
+    assert store(app).project.setup.digest() == before
+    go(app, "1_Robot")
+    go(app, "6_Milling")
+    assert app.number_input(key=key).value == value
+    assert len(errors(app)) == 1
+
+
+def test_a_cell_too_small_names_the_size_that_fits(app: AppTest) -> None:
+    go(app, "6_Milling")
+    app.number_input(key="in:cell:mm").set_value(0.001).run()
+    assert not app.exception
+    assert errors(app)
+    assert "cell" in errors(app)[0].lower()
+    assert app.number_input(key="in:cell:mm").value == pytest.approx(0.001)
+
+
+def test_stock_beside_the_path_is_one_sentence_and_nothing_is_lost(app: AppTest) -> None:
+    go(app, "6_Milling")
+    app.number_input(key="in:stock.upper[1]:mm").set_value(300.0).run()
+    app.number_input(key="in:stock.lower[1]:mm").set_value(200.0).run()
+    assert not app.exception
+    assert errors(app)
+    assert "stock" in errors(app)[0].lower()
+    assert app.number_input(key="in:stock.lower[1]:mm").value == 200.0
+    go(app, "app")
+    assert not app.exception
+    assert "0.25" in words(app)
+
+
+def test_cutter_kinds_and_force_kinds_switch(app: AppTest) -> None:
+    go(app, "6_Milling")
+    for kind in ("ball", "bull", "chamfer", "flat"):
+        app.button_group(key="cutter.kind").set_value(kind).run()
+        assert not app.exception
+        assert store(app).project.setup.cutter.kind == kind
+    app.button_group(key="force.kind").set_value("constant").run()
+    assert not app.exception
+    assert app.number_input(key="in:force.vector_M[1]:N").value == pytest.approx(100.0)
+    assert "0.23 mm off in Y" in words(app)
+
+
+def test_the_view_survives_pages(app: AppTest) -> None:
+    go(app, "6_Milling")
+    app.selectbox(key="view.camera").set_value("top").run()
+    app.slider(key="view.station").set_value(20.0).run()
+    go(app, "app")
+    go(app, "6_Milling")
+    assert app.selectbox(key="view.camera").value == "top"
+    assert app.slider(key="view.station").value == pytest.approx(20.0)
+    assert store(app).project.view.station == pytest.approx(0.2)

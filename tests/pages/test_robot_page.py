@@ -1,0 +1,77 @@
+"""The robot page: what is typed is kept across pages, undo and redo work, refusals are one sentence."""
+
+from __future__ import annotations
+
+import numpy as np
+from conftest import go, store, words
+from streamlit.testing.v1 import AppTest
+
+from robomill.ui import state, tables
+from robomill.units import to_si
+
+
+def halve_joint_5(app: AppTest) -> None:
+    """What the table editor's callback does; AppTest cannot type into a table."""
+    kept = store(app)
+    robot = kept.project.setup.robot
+    frame = tables.compliance_frame(robot, "1e-7 rad/(N m)")
+    frame.loc[4, "value"] = 45.675
+    new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame, "1e-7 rad/(N m)"))
+    kept.past, kept.project = [kept.project], state.Project(new, kept.project.view, kept.project.preset)
+
+
+def test_it_runs_and_shows_the_compliance_at_the_cut(app: AppTest) -> None:
+    go(app, "1_Robot")
+    assert not app.exception
+    text = words(app)
+    assert "2.295" in text
+    assert "−1.024" in text
+    assert "1.134" in text
+
+
+def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> None:
+    go(app, "1_Robot")
+    halve_joint_5(app)
+    app.run()
+    assert '<span class="rm-was">0.251 mm</span> · −0.037 mm' in words(app)
+    go(app, "app")
+    assert "0.19 mm off in Y" in words(app)
+    app.button(key="undo").click().run()
+    assert "0.23 mm off in Y" in words(app)
+    app.button(key="redo").click().run()
+    assert "0.19 mm off in Y" in words(app)
+    app.button(key="back").click().run()
+    assert "0.23 mm off in Y" in words(app)
+
+
+def test_slider_and_box_show_the_same_angle_and_it_survives_a_page_change(app: AppTest) -> None:
+    go(app, "1_Robot")
+    app.number_input(key="pose:box:1").set_value(-40.0).run()
+    assert app.slider(key="pose:slider:1").value == -40.0
+    app.slider(key="pose:slider:0").set_value(12.5).run()
+    assert app.number_input(key="pose:box:0").value == 12.5
+    go(app, "6_Milling")
+    go(app, "1_Robot")
+    assert app.number_input(key="pose:box:1").value == -40.0
+    theta = np.array(store(app).project.view.theta)
+    np.testing.assert_allclose(theta[:2], [to_si(12.5, "deg"), to_si(-40.0, "deg")])
+    app.button(key="pose:cut").click().run()
+    assert store(app).project.view.theta is None
+
+
+def test_table_3_is_one_click(app: AppTest) -> None:
+    go(app, "1_Robot")
+    app.button_group(key="robot.compliance_set").set_value("table_3").run()
+    assert not app.exception
+    assert store(app).project.setup.robot.compliance_set == "table_3"
+    go(app, "app")
+    assert "0.26 mm off in Y" in words(app)
+
+
+def test_every_robot_of_the_samples_opens(app: AppTest) -> None:
+    go(app, "1_Robot")
+    for name in app.selectbox(key="robot.name").options:
+        assert name
+    app.selectbox(key="robot.name").set_value("planar_2r").run()
+    assert not app.exception
+    assert store(app).project.setup.robot.name == "planar_2r"

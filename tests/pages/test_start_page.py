@@ -1,0 +1,53 @@
+"""The start page shows the paper's milling test, finished, without a click."""
+
+from __future__ import annotations
+
+from conftest import go, store, words
+from streamlit.testing.v1 import AppTest
+
+
+def test_the_first_screen_says_the_papers_numbers(app: AppTest) -> None:
+    assert not app.exception
+    text = words(app)
+    assert "The groove is 0.23 mm off in Y and 0.10 mm too deep." in text
+    for word in ("Max deviation", "RMS along the cut", "Worst line", "Verdict"):
+        assert word in text
+    assert "I design robots" in text
+    assert "I mill parts" in text
+    assert "I teach" in text
+
+
+def test_paper_and_assumed_numbers_are_marked(app: AppTest) -> None:
+    text = words(app)
+    for kind in ("paper", "measured", "assumed", "computed"):
+        assert f"rm-{kind}" in text
+    assert "are not printed" in text
+    for number in ("0.23 mm", "0.26 mm", "0.29 mm", "0.30 mm"):
+        assert number in text
+
+
+def test_no_graphics_library_is_said_once_with_the_command(app: AppTest) -> None:
+    assert [e.value for e in app.info if "apt-get" in e.value]
+    go(app, "6_Milling")
+    assert not [e for e in app.info if "apt-get" in e.value]
+    assert not app.exception
+    assert app.get("plotly_chart")
+
+
+def test_inch_changes_every_number_on_the_page(app: AppTest) -> None:
+    app.button_group(key="view.units").set_value("in").run()
+    assert not app.exception
+    assert "The groove is 0.009 in off in Y" in words(app)
+    assert store(app).project.view.units == "in"
+
+
+def test_the_fingerprint_is_shown(app: AppTest) -> None:
+    assert store(app).project.setup.digest()[:12] in words(app)
+
+
+def test_the_sidebar_shows_the_units_on_every_page(app: AppTest) -> None:
+    app.button_group(key="view.units").set_value("in").run()
+    for page in ("1_Robot", "5_Toolpath", "6_Milling", "app"):
+        go(app, page)
+        assert app.button_group(key="view.units").value in ("in", ["in"]), page
+        assert app.selectbox(key="view.joint_unit").value == "1e-7 rad/(N m)"

@@ -1,0 +1,71 @@
+"""The toolpath page: programs and tables, what is refused is one sentence, what cannot be reached is counted."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import errors, go, store, words
+from streamlit.testing.v1 import AppTest
+
+from robomill.toolpath.source import GCodeSource, LinesSource
+
+
+def test_it_says_what_was_read(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    assert not app.exception
+    assert "1 cut within 100.0 × 0.0 × 0.0 mm, all of it in reach." in words(app)
+
+
+def test_a_pasted_program_is_in_force_everywhere(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    app.text_area(key="program:text").set_value("G21 G90\nG0 X-50 Y10 Z-2\nG1 X30 F1200\n").run()
+    assert not app.exception
+    assert "80.0" in words(app)
+    go(app, "6_Milling")
+    assert "Line 3" in words(app)
+
+
+@pytest.mark.parametrize("text", ["", "   \n", "hello world\n", "G21\nM30\n", "G21 G90\nG2 X10 F100\n", "G1 X1e F10\n"])
+def test_a_program_that_cannot_be_read_is_kept_and_explained(app: AppTest, text: str) -> None:
+    go(app, "5_Toolpath")
+    before = store(app).project.setup.digest()
+    app.text_area(key="program:text").set_value(text).run()
+    assert not app.exception
+    assert len(errors(app)) >= 1
+    assert len(errors(app)[0]) > 20
+    assert app.text_area(key="program:text").value == text
+    if store(app).project.setup.digest() == before:
+        go(app, "app")
+        assert "0.23 mm off in Y" in words(app)
+
+
+def test_what_cannot_be_reached_is_counted_and_named(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    app.text_area(key="program:text").set_value("G21 G90\nG0 X0 Y0 Z-2\nG1 Y-1500 F1800\n").run()
+    assert not app.exception
+    text = words(app)
+    assert "points out of reach" in text
+    assert "lines 3" in text
+    go(app, "app")
+    assert not app.exception
+    assert "Out of reach" in words(app)
+
+
+def test_part_zero_moves_the_cut(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    app.number_input(key="in:T_MW[1,3]:mm").set_value(-1200.0).run()
+    app.number_input(key="part.rotation").set_value(90.0).run()
+    assert not app.exception
+    T_MW = store(app).project.setup.T_MW
+    assert T_MW[1, 3] == pytest.approx(-1.2)
+    assert T_MW[1, 0] == pytest.approx(1.0)
+
+
+def test_program_to_table_and_back(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    app.button_group(key="source.kind").set_value("lines").run()
+    assert not app.exception
+    source = store(app).project.setup.source
+    assert isinstance(source, LinesSource)
+    assert "0.251" in words(go(app, "app"))
+    app.button(key="undo").click().run()
+    assert isinstance(store(app).project.setup.source, GCodeSource)

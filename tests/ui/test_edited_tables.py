@@ -1,0 +1,109 @@
+"""Tables on the screen to the model and back, in the units people type."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from robomill.errors import RobotError, ToolpathError
+from robomill.io.robots import load_robot
+from robomill.robot.model import Robot
+from robomill.ui import tables
+from robomill.units import to_si
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return load_robot("slavkovic_5r")
+
+
+@pytest.mark.parametrize("unit", ["1e-7 rad/(N m)", "kN m/rad"])
+def test_an_unchanged_table_changes_nothing(robot: Robot, unit: str) -> None:
+    same = tables.with_compliance(robot, tables.compliance_frame(robot, unit), unit)
+    np.testing.assert_allclose(same.C_theta, robot.C_theta, rtol=1e-9)
+    assert same.compliance_set == "table_2"
+    assert tables.with_geometry(robot, tables.geometry_frame(robot)).digest() == robot.digest()
+    assert tables.with_limits(robot, tables.limits_frame(robot)).digest() == robot.digest()
+
+
+def test_the_papers_own_notation_can_be_typed(robot: Robot) -> None:
+    frame = tables.compliance_frame(robot, "1e-7 rad/(N m)")
+    assert frame["value"].tolist() == [7.14, 10.12, 12.3, 17.32, 91.35]
+    frame.loc[0, "value"] = 7.5
+    changed = tables.with_compliance(robot, frame, "1e-7 rad/(N m)")
+    assert changed.C_theta[0] == to_si(7.5, "1e-7 rad/(N m)")
+    assert changed.compliance_set == "user"
+
+
+def test_typing_table_3_is_table_3(robot: Robot) -> None:
+    frame = tables.compliance_frame(robot.with_compliance_set("table_3"), "1e-7 rad/(N m)")
+    assert tables.with_compliance(robot, frame, "1e-7 rad/(N m)").compliance_set == "table_3"
+
+
+def test_stiffness_is_the_inverse(robot: Robot) -> None:
+    frame = tables.compliance_frame(robot, "kN m/rad")
+    frame["value"] = [1000.0, 900.0, 800.0, 500.0, 100.0]
+    changed = tables.with_compliance(robot, frame, "kN m/rad")
+    np.testing.assert_allclose(changed.C_theta, [1e-6, 1 / 0.9e6, 1 / 0.8e6, 2e-6, 1e-5], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("unit", "value", "word"),
+    [
+        ("1e-7 rad/(N m)", None, "Joint 2: the compliance is missing"),
+        ("1e-7 rad/(N m)", float("nan"), "Joint 2: the compliance is missing"),
+        ("1e-7 rad/(N m)", -1.0, "2"),
+        ("1e-7 rad/(N m)", float("inf"), "compliance"),
+        ("kN m/rad", 0.0, "Joint 2: stiffness is 0"),
+        ("kN m/rad", None, "Joint 2: the stiffness is missing"),
+    ],
+)
+def test_a_bad_compliance_names_its_joint(robot: Robot, unit: str, value: float | None, word: str) -> None:
+    frame = tables.compliance_frame(robot, unit)
+    frame["value"] = frame["value"].astype(object)
+    frame.loc[1, "value"] = value
+    with pytest.raises(RobotError, match=word):
+        tables.with_compliance(robot, frame, unit)
+
+
+def test_a_bad_table_cell_names_joint_and_column(robot: Robot) -> None:
+    frame = tables.geometry_frame(robot).astype(object)
+    frame.loc[3, "d, mm"] = None
+    with pytest.raises(RobotError, match="Joint 4: d is missing"):
+        tables.with_geometry(robot, frame)
+    frame = tables.geometry_frame(robot)
+    frame.loc[3, "sign"] = 0.5
+    with pytest.raises(RobotError, match="sign"):
+        tables.with_geometry(robot, frame)
+    frame = tables.limits_frame(robot)
+    frame.loc[2, "upper"] = -170.0
+    with pytest.raises(RobotError, match="3"):
+        tables.with_limits(robot, frame)
+
+
+def test_lines_in_inches() -> None:
+    frame = pd.DataFrame([[0.0, 0.0, -0.1, 4.0, 0.0, -0.1, 60.0]], columns=list(tables.LINE_COLUMNS))
+    source = tables.lines_from_frame(frame, "in", "in/min", 200.0)
+    np.testing.assert_allclose(source.end, [[0.1016, 0.0, -0.00254]])
+    np.testing.assert_allclose(source.v_f, [0.0254])
+    back = tables.lines_frame(source, "in", "in/min")
+    np.testing.assert_allclose(back.to_numpy(), frame.to_numpy(), atol=1e-9)
+
+
+def test_an_empty_cell_of_a_line_is_named() -> None:
+    row = [0.0, 0.0, -2.0, 50.0, None, -2.0, 1800.0]
+    with pytest.raises(ToolpathError, match="Row 1: y₁ is missing"):
+        tables.lines_from_frame(pd.DataFrame([row], columns=list(tables.LINE_COLUMNS)), "mm", "mm/min")
+    with pytest.raises(ToolpathError, match="no rows"):
+        tables.lines_from_frame(pd.DataFrame([], columns=list(tables.LINE_COLUMNS)), "mm", "mm/min")
+
+
+def test_edits_of_the_screen_are_applied_in_order() -> None:
+    base = pd.DataFrame({"a": [1.0, 2.0, 3.0], "b": [4.0, 5.0, 6.0]})
+    changed = tables.edited(
+        base, {"edited_rows": {0: {"a": 9.0}, "2": {"b": 8.0}}, "deleted_rows": [1], "added_rows": [{"a": 7.0}]}
+    )
+    assert changed["a"].tolist() == [9.0, 3.0, 7.0]
+    assert changed["b"].tolist()[:2] == [4.0, 8.0]
+    assert base["a"].tolist() == [1.0, 2.0, 3.0]

@@ -1,0 +1,71 @@
+"""A saved project reads back to the same set-up and view; a broken one is refused with a reason."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from robomill.errors import ProjectError
+from robomill.io.projects import load_setup, setup_to_toml
+from robomill.io.samples import samples_dir
+from robomill.ui.files import project_from_toml, project_to_toml
+from robomill.ui.state import Project, View
+
+
+@pytest.fixture(scope="module")
+def project() -> Project:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    view = View(
+        units="in",
+        joint_unit="kN m/rad",
+        exaggeration=5.0,
+        station=0.25,
+        camera="top",
+        theta=(0.1, -0.2, 0.3, 0.0, 1.0),
+    )
+    return Project(setup.replace(tolerance=0.2e-3), view, "paper_flute")
+
+
+def test_round_trip(project: Project) -> None:
+    again = project_from_toml(project_to_toml(project))
+    assert again.setup.digest() == project.setup.digest()
+    assert again.view == project.view
+    assert again.preset == project.preset
+
+
+def test_an_edited_robot_round_trips(project: Project) -> None:
+    robot = project.setup.robot.replace(C_theta=project.setup.robot.C_theta * 0.5)
+    edited = dataclasses.replace(project, setup=project.setup.replace(robot=robot))
+    assert project_from_toml(project_to_toml(edited)).setup.digest() == edited.setup.digest()
+
+
+def test_a_bare_set_up_opens_with_the_view_in_force(project: Project) -> None:
+    opened = project_from_toml(setup_to_toml(project.setup), project.view)
+    assert opened.setup.digest() == project.setup.digest()
+    assert opened.view.units == "in"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "word"),
+    [
+        ('format = "robomill-setup"', 'format = "something"', "something"),
+        ("version = 1", "version = 99", "99"),
+        ('units = "in"', 'units = "furlong"', "furlong"),
+        ("station = 0.25", "station = true", "station"),
+        ("station = 0.25", "station = 0.25\nwishes = 3", "wishes"),
+        ("tolerance_mm", "tolerance_mn", "tolerance_mn"),
+        ("tolerance_mm = 0.2", "tolerance_mm = -1.0", "Tolerance"),
+    ],
+)
+def test_a_broken_file_is_refused_with_its_place(project: Project, old: str, new: str, word: str) -> None:
+    text = project_to_toml(project)
+    assert old in text
+    with pytest.raises(ProjectError, match=word):
+        project_from_toml(text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize("text", ["", "not toml at all [", "a = 1", "[view]\nunits = 'mm'\n", "view = 3\n"])
+def test_what_is_no_project_is_refused(text: str) -> None:
+    with pytest.raises(ProjectError):
+        project_from_toml(text)

@@ -1,0 +1,122 @@
+"""Every figure builds in both themes, names its axes with units and keeps its camera."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+from robomill.units import from_si
+from robomill.viz.arm import arm_figure, displacement_scale
+from robomill.viz.paths import MAX_POINTS, components_figure, plan_figure, shares_figure, thin
+from robomill.viz.sections import section_figure
+from robomill.viz.surfaces import MAX_CELLS, surface_figure, thinned
+from robomill.viz.theme import diverging, joint_colours
+from robomill.viz.views import arm_scene, exaggerated, place, plan_view, section_drawing
+
+
+@pytest.fixture(scope="module")
+def result() -> SimulationResult:
+    return simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml"))
+
+
+def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
+    s, delta = from_si(result.path.s, "mm"), from_si(result.delta, "mm")
+    shown = exaggerated(result, 10.0)
+    mm = [from_si(v, "mm") for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
+    groove = result.groove(0.5 * float(result.path.s[-1]))
+    return {
+        "arm": arm_figure(arm_scene(result, result.worst), dark=dark),
+        "components": components_figure(s, delta, result.path.block, 0.3, "mm", dark=dark, station=50.0),
+        "shares": shares_figure(
+            s, from_si(result.delta_joint[:, :, 1], "mm"), [f"joint {i}" for i in range(1, 6)], delta[:, 1], "y", "mm",
+            dark=dark,
+        ),
+        "plan": plan_figure(**plan_view(result, "deviation", "mm"), dark=dark),
+        "plan limits": plan_figure(**plan_view(result, "limits", "mm"), dark=dark),
+        "section": section_figure(section_drawing(groove, "mm"), dark=dark),
+        "surface": surface_figure(*mm, from_si(shown.error, "um"), 300.0, dark=dark),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_axes_have_units_and_views_are_kept(result: SimulationResult, dark: bool) -> None:
+    for name, figure in figures(result, dark).items():
+        layout = json.loads(figure.to_json())["layout"]
+        assert layout["height"] > 200, name
+        assert layout["uirevision"], name
+        holder = layout.get("scene", layout)
+        if "scene" in layout:
+            assert holder["uirevision"], name
+            assert holder["camera"]["projection"]["type"] == "orthographic", name
+        for axis in ("xaxis", "yaxis"):
+            text = holder[axis]["title"]["text"]
+            assert any(f", {unit}" in text for unit in ("m", "mm")), (name, text)
+
+
+def test_two_themes_differ(result: SimulationResult) -> None:
+    for name, light in figures(result, False).items():
+        assert light.to_json() != figures(result, True)[name].to_json(), name
+        break
+
+
+def test_signed_colours_are_symmetric_about_zero(result: SimulationResult) -> None:
+    for dark in (False, True):
+        assert [stop for stop, _ in diverging(dark)] == [0.0, 0.25, 0.5, 0.75, 1.0]
+        surface = figures(result, dark)["surface"].data[0]
+        assert surface.cmin == -surface.cmax
+
+
+def test_joint_colours_are_distinct() -> None:
+    for dark in (False, True):
+        assert len(set(joint_colours(7, dark))) == 7
+
+
+def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: SimulationResult) -> None:
+    once, ten = exaggerated(result, 1.0), exaggerated(result, 10.0)
+    j = int(np.argmin(np.abs(ten.drawn.y)))
+    i = len(ten.drawn.x) // 2
+    assert ten.drawn.z[i, j] - ten.ideal.z[i, j] == pytest.approx(
+        10 * (once.drawn.z[i, j] - once.ideal.z[i, j]), rel=1e-4
+    )
+    assert ten.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
+    assert once.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
+    assert np.isnan(ten.error[:, 0]).all(), "untouched material carries no error"
+
+
+def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
+    scene = arm_scene(result, result.worst)
+    assert scene.displacement is not None
+    assert 500 < displacement_scale(scene.displacement, scene.frames) < 5000
+
+
+def test_section_is_upright_at_the_measured_walls(result: SimulationResult) -> None:
+    drawing = section_drawing(result.groove(0.05), "mm")
+    steep = np.abs(np.diff(drawing.machined)) > 1.0
+    assert steep.sum() == 2
+    assert np.diff(drawing.u)[steep] == pytest.approx(0.0)
+    walls = sorted(drawing.u[:-1][steep])
+    assert walls == pytest.approx(sorted([drawing.wall_left, drawing.wall_right]))
+    assert drawing.centre_offset == pytest.approx(0.2295, abs=5e-4)
+
+
+def test_place_is_on_the_path(result: SimulationResult) -> None:
+    for station in (0.0, 0.0333, 0.05, 0.1):
+        point, along = place(result, station)
+        np.testing.assert_allclose(point, [-0.05 + station, 0.0, -0.002], atol=1e-9)
+        np.testing.assert_allclose(along, [1.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_large_runs_are_thinned_for_the_screen_only() -> None:
+    keep = thin(1_000_000, [123_457])
+    assert len(keep) <= MAX_POINTS + 1
+    assert 123_457 in keep
+    x, y = np.arange(1000.0), np.arange(900.0)
+    _, _, z = thinned(x, y, np.zeros((1000, 900)))
+    assert z.size <= MAX_CELLS
