@@ -227,4 +227,4 @@ def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise
     )  # fmt: skip
     _, sweep, radius, _ = arcs.sweeps(*geometry)
     counts = arcs.chord_counts(sweep, radius, arcs.CHORD_ERROR)
-    return np.vstack([lifted(start), arcs.chord_points(*geometry, counts)])[:, :2]
+    return np.vstack([lifted(start), arcs.chord_points(*geometry, counts=counts)])[:, :2]

@@ -38,7 +38,7 @@ def preset(name: str, sketch: Sketch, diameter: float, word: str = "ROBOMILL") -
     elif name == "spiral":
         shapes = [("polyline", spiral(0.03, 0.6 * diameter))]
     elif name == "word":
-        shapes = [("polyline", stroke) for stroke in centred_word(word, 0.02)]
+        shapes = [("polyline", stroke) for stroke in centred_word(word, 0.018)]
     else:
         raise ToolpathError(f"Sketch: there is no preset {name!r}; known are {', '.join(PRESETS)}.")
     return sketch.replace(elements=tuple(Element(s, p, sketch.depth, sketch.v_f) for s, p in shapes))  # type: ignore[arg-type]

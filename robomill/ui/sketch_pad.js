@@ -13,6 +13,8 @@ const ACTS = [
   ["undo", "Undo (Ctrl+Z)", "M9 7L4 12l5 5M4 12h10a5 5 0 0 1 0 10h-2"],
   ["redo", "Redo (Ctrl+Y)", "M15 7l5 5-5 5M20 12H10a5 5 0 0 0 0 10h2"],
   ["remove", "Delete the selected shape (Del)", "M5 7h14M10 7V4h4v3M7 7l1 13h8l1-13"],
+];
+const VIEWS = [
   ["closer", "Zoom in (+)", "M12 6v12M6 12h12"],
   ["farther", "Zoom out (−)", "M6 12h12"],
   ["fit", "Show everything (F)", "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5"],
@@ -145,7 +147,7 @@ class Pad {
       return b;
     };
     for (const [name, text, key, path] of TOOLS) add(".tools", name, `${text} (${key})`, path, text).onclick = () => this.choose(name);
-    for (const [name, title, path] of ACTS) add(".acts", name, title, path).onclick = () => this.act(name);
+    for (const [where, some] of [[".acts", ACTS], [".views", VIEWS]]) for (const [name, title, path] of some) add(where, name, title, path).onclick = () => this.act(name);
     this.select.onchange = () => { this.data.grid = Number(this.select.value); this.send(); };
   }
 
@@ -205,7 +207,7 @@ class Pad {
     const b = this.bounds();
     if (!b || !this.view) return !!this.view;
     const [w, h] = this.size(), [u0, v1] = this.toScreen([b[0], b[1]]), [u1, v0] = this.toScreen([b[2], b[3]]);
-    return u0 > 0 && v0 > 0 && u1 < w && v1 < h && Math.max(u1 - u0, v1 - v0) > 0.12 * Math.min(w, h);
+    return u0 > 0 && v0 > 0 && u1 < w && v1 < h && Math.max((u1 - u0) / w, (v1 - v0) / h) > 0.42;
   }
 
   zoom(times, at) {

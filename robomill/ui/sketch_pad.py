@@ -7,7 +7,6 @@ changes: after undo, a preset, or an edit of the table.
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
 from robomill.ui import inputs, state
 from robomill.ui.sketch_table import pad_elements, sketch_from_pad
+from robomill.ui.sources import put_sketch
 from robomill.units import UNITS, from_si
 
 KEY = "sketch.pad"
@@ -77,15 +77,9 @@ def _take() -> None:
 
 
 def _write(sent: dict[str, Any], source: SketchSource, memory: PadMemory) -> None:
-    view, kept = state.project().view, state.store()
+    view = state.project().view
     new = sketch_from_pad(sent, source.sketch, view.length, view.feed)
-    changed = dataclasses.replace(source, sketch=new)
-    if digest(new) == digest(source.sketch):
-        # Only the snap: how one draws is no step to undo.
-        setup = kept.project.setup.replace(source=changed)
-        kept.project = dataclasses.replace(kept.project, setup=setup)
-    else:
-        state.change(source=changed)
+    put_sketch(new)
     memory.known = _fingerprint(new, view.length)
 
 

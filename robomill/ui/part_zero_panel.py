@@ -1,0 +1,112 @@
+"""Where the part zero {W} lies in the robot's frame {M}: by numbers, or by three touched points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import ToolpathError
+from robomill.io.workpiece import part_frame
+from robomill.toolpath.part_zero import frame_from_points, points_of_frame
+from robomill.ui import inputs, parts, state
+from robomill.ui.editors import table_editor
+from robomill.units import format_si, from_si, to_si, unit_label
+
+WAY, TOUCH = "part.way", "part.touch"
+WAYS = {"numbers": "By numbers", "points": "By three points"}
+NAMES = ("zero", "on +x", "on the +y side")
+TOUCH_ERROR = 0.1e-3
+
+
+def part_zero() -> None:
+    """The two ways to say where the part lies."""
+    st.markdown("**Part zero {W} in the robot's frame {M}**")
+    if WAY not in st.session_state:
+        st.session_state[WAY] = "numbers"
+    way = st.segmented_control(
+        "Part zero", list(WAYS), key=WAY, format_func=lambda k: WAYS[k], required=True, label_visibility="collapsed",
+        width="stretch",
+    )  # fmt: skip
+    if way == "points":
+        _by_points()
+    else:
+        _by_numbers()
+
+
+def _by_numbers() -> None:
+    unit = state.project().view.length
+    left, right = st.columns(2)
+    for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
+        with column:
+            inputs.number(axis, f"T_MW[{i},3]", unit, step=10.0 if unit == "mm" else 1.0, digits=2)
+    T_MW = state.project().setup.T_MW
+    key = "part.rotation"
+    inputs.seed(key, float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9)))
+    with right:
+        st.number_input(
+            "Turn about Z, °", key=key, step=5.0, format="%.2f",
+            on_change=lambda: inputs.attempt(key, st.session_state[key], lambda: _turn(float(st.session_state[key]))),
+        )  # fmt: skip
+        inputs.sentence(key)
+    tilt = tilt_of(T_MW)
+    if tilt > 1e-6:
+        parts.note(
+            f"The part is tilted by {format_si(tilt, 'deg', 3)} against the robot's base, as its three points say; "
+            "a turn typed here sets it upright."
+        )
+
+
+def _turn(degrees: float) -> None:
+    state.change(T_MW=part_frame(state.project().setup.T_MW[:3, 3], to_si(degrees, "deg")))
+
+
+def tilt_of(T_MW: FloatArray) -> float:
+    """rad between z_W and z_M."""
+    return float(np.arctan2(np.hypot(T_MW[0, 2], T_MW[1, 2]), T_MW[2, 2]))
+
+
+def _by_points() -> None:
+    view = state.project().view
+    unit = view.length
+    table_editor(
+        f"touch:{unit}", lambda: points_frame(state.project().setup.T_MW, unit),
+        lambda frame: _take(frame, unit), locked=("point",),
+        columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"},
+    )  # fmt: skip
+    touched = st.session_state.get(TOUCH)
+    words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
+    if touched is not None and np.array_equal(touched.T_MW, state.project().setup.T_MW):
+        error = touched.tilt(TOUCH_ERROR)
+        words += (
+            f" Third point at {format_si(touched.angle, 'deg', 1)} to x; if each point is off by "
+            f"{format_si(TOUCH_ERROR, 'mm', 1)}, the axes are good to {format_si(error, 'deg', 2)}."
+        )
+    else:
+        words += " Touch the zero, a point far along +x, and one on the side of +y."
+    parts.note(words)
+
+
+def points_frame(T_MW: FloatArray, unit: str) -> pd.DataFrame:
+    """Three points that give the frame in force, in display units."""
+    points = np.round(from_si(points_of_frame(T_MW), unit), 6) + 0.0
+    return pd.DataFrame({"point": NAMES, **{axis: points[:, i] for i, axis in enumerate("XYZ")}})
+
+
+def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
+    """Points (3, 3) m of the table. Raises ToolpathError naming an empty cell."""
+    values = np.empty((3, 3))
+    for row in range(3):
+        for column, axis in enumerate("XYZ"):
+            typed = frame[axis].iloc[row]
+            if typed is None or pd.isna(typed):
+                raise ToolpathError(f"Part zero, {NAMES[row]}: {axis} is missing; type a number.")
+            values[row, column] = to_si(float(typed), unit)
+    return values
+
+
+def _take(frame: pd.DataFrame, unit: str) -> None:
+    touched = frame_from_points(*frame_points(frame, unit))
+    state.change(T_MW=touched.T_MW, from_editor=True)
+    st.session_state[TOUCH] = touched

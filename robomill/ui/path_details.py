@@ -1,0 +1,143 @@
+"""The path in detail: what was found while it was read, its extents, lengths and feeds, and one line of it in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Finding
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import parts
+from robomill.ui.path_reach import PathReach
+from robomill.ui.program_view import LEVELS, program_lines, select_line, selected_line
+from robomill.units import format_si, format_value, from_si, unit_label
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it."""
+    if seconds < 120:
+        return format_si(seconds, "s", 1)
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def counted(count: int, word: str) -> str:
+    """``1 cut``, ``12 cuts``."""
+    return f"{count:,} {word}{'' if count == 1 else 's'}"
+
+
+def findings_list(findings: Sequence[Finding]) -> None:
+    """What the reader noticed, worst first; a click on a row points at its line."""
+    st.markdown("**What was read**")
+    if not findings:
+        parts.note("Every word was understood; nothing was skipped or guessed.")
+        return
+    order = list(LEVELS)
+    found = sorted(findings, key=lambda f: (order.index(f.level), f.line))
+    shown = found[:500]
+    frame = pd.DataFrame({
+        "level": [LEVELS[f.level] for f in shown], "line": [f"{f.line:,}" if f.line else "all" for f in shown],
+        "what": [f.message + (f" ({f.count:,} times)" if f.count > 1 else "") for f in shown],
+    })  # fmt: skip
+
+    def take() -> None:
+        rows = st.session_state["toolpath.findings"]["selection"]["rows"]
+        if rows:
+            select_line(shown[rows[0]].line)
+
+    st.dataframe(
+        frame, hide_index=True, height=min(36 * (len(frame) + 1) + 2, 290), key="toolpath.findings", on_select=take,
+        selection_mode="single-row", row_height=36,
+        column_config={
+            "level": st.column_config.TextColumn("level", width=86),
+            "line": st.column_config.TextColumn("line", width=60),
+            "what": st.column_config.TextColumn("what", width="large"),
+        },
+    )  # fmt: skip
+    hidden = len(found) - len(shown)
+    parts.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
+
+
+def path_facts(setup: SimulationSetup, unit: str) -> None:
+    """Extents, lengths, time and feeds in the units of the shop floor."""
+    path = setup.toolpath
+    low, high = path.extents
+    rapids = float(path.step_length[~path.cutting].sum())
+    feeds = path.v_f[path.cutting & (path.step_length > 0)]
+    rows = [
+        (
+            f"{axis}<sub>W</sub>", f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
+            f"{_plain(high[i] - low[i], unit)} {unit_label(unit)}",
+        )
+        for i, axis in enumerate("xyz")
+    ]  # fmt: skip
+    rows.append(("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(rapids, unit, 1)} rapid"))
+    rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
+    if len(feeds):
+        rows.append(("Feed", _range(feeds, "mm/min"), _range(feeds, "mm/s")))
+    if path.n_s.max() > 0:
+        rows.append(("Spindle", _range(path.n_s[path.cutting], "1/min"), ""))
+    if isinstance(setup.source, GCodeSource):
+        tools = [int(t) for t in np.unique(path.tool) if t > 0]
+        words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
+        rows.append(("Written in", {"mm": "millimetres (G21)", "in": "inches (G20)"}.get(path.units, "mm"), words))
+    body = "".join(f'<tr><td class="q">{a}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
+    st.html(f'<table class="rm-facts">{body}</table>')
+
+
+def _plain(value: float, unit: str) -> str:
+    return format_si(float(value), unit, 2 if unit == "mm" else 4).partition(" ")[0]
+
+
+def _range(values: FloatArray, unit: str) -> str:
+    low, high = float(values.min()), float(values.max())
+    text = format_si(high, unit)
+    return text if np.isclose(low, high) else f"{format_value(from_si(low, unit), unit).partition(' ')[0]} … {text}"
+
+
+def line_words(setup: SimulationSetup, reach: PathReach | None, result: SimulationResult | None, unit: str) -> str:
+    """The selected line in words: its text, its move, its reach and deviation; "" where none is selected."""
+    line = selected_line()
+    if not line:
+        return ""
+    path = setup.toolpath
+    name = "Line" if isinstance(setup.source, GCodeSource) else "Row"
+    text = ""
+    if isinstance(setup.source, GCodeSource):
+        lines = program_lines(setup.source.text)
+        text = lines[line - 1].strip()[:80] if line <= len(lines) else ""
+    words = [f"{name} {line:,}" + (f": {text}" if text else "")]
+    i = np.flatnonzero(path.block == line)
+    i = i[path.step_length[i] > 0]
+    if len(i) == 0:
+        return words[0] + ". It moves nothing."
+    at_feed = i[path.cutting[i]]
+    moves = f"{counted(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
+    if len(at_feed):
+        moves += f", {_range(path.v_f[at_feed], 'mm/min')} ({_range(path.v_f[at_feed], 'mm/s')})"
+    else:
+        moves += " as a rapid"
+    words.append(moves)
+    if reach is not None and (reach.missed & (reach.path.block == line)).any():
+        words.append(f"out of reach: {reach.reason}")
+    elif result is not None:
+        of_line = result.judged & (result.path.block == line)
+        if of_line.any():
+            largest = float(result.deviation[of_line].max())
+            words.append(f"deviation up to {format_si(largest, unit, 3 if unit == 'mm' else 4)}")
+    return ". ".join(words) + "."
+
+
+def support_table() -> None:
+    """Which words are read, and how."""
+    try:
+        from robomill.toolpath.gcode import support
+    except ImportError:
+        return
+    del support
