@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
+from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock
 from robomill.surface.swept import Station, SweptPath, station_at, stock_span, swept_path
 from robomill.surface.trace import trace_groove
@@ -129,11 +130,11 @@ def _section(
     if not (low < 0.0 < high and low < shift < high):
         return _empty(place, block, "the tool is outside the stock here")
     w = np.linspace(max(low, -window), min(high, window), samples)
-    top = float(paths[0].stock_top(place.centre[:1], place.centre[1:2])[0])
+    skin = skin_on_line(stock, place.centre, place.normal)
     traces = []
     for path, middle in zip(paths, (0.0, shift), strict=True):
         height = path.heights(place.centre, place.normal, float(high - low))
-        traces.append(trace_groove(height, middle, low, high, cutter.radius, top))
+        traces.append(trace_groove(height, middle, low, high, cutter.radius, skin))
     ideal, machined = traces
     if machined is None or ideal is None:
         which = "deflected" if machined is None else "commanded"

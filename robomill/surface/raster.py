@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
@@ -43,3 +45,38 @@ def skin(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArra
         top[rows, columns] = np.where(inside, np.maximum(top[rows, columns], height), top[rows, columns])
         layers[rows, columns] += inside
     return top, layers
+
+
+def skin_on_line(stock: Stock, centre: FloatArray, normal: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Function w (q,) -> height of the stock before the cut (q,) m over the line centre + w normal in plan.
+
+    A vertical plane cuts each triangle of a mesh in a straight piece; the skin is the highest of them.
+    """
+    bottom = float(stock.lower[2])
+    if stock.triangles is None:
+        top = float(stock.upper[2])
+        return lambda w: np.full(np.shape(w), top)
+    feed = np.array([normal[1], -normal[0]])
+    plan = stock.triangles[:, :, :2] - centre[:2]
+    side, along = plan @ feed, plan @ normal[:2]
+    crossed = (side.min(axis=1) <= 0) & (side.max(axis=1) > 0)
+    side, along, z = side[crossed], along[crossed], stock.triangles[crossed, :, 2]
+    ends = []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        meets = (side[:, i] <= 0) != (side[:, j] <= 0)
+        share = np.where(meets, side[:, i] / np.where(meets, side[:, i] - side[:, j], 1.0), np.nan)
+        ends.append(np.stack([q[:, i] + share * (q[:, j] - q[:, i]) for q in (along, z)], axis=1))
+    pieces = np.stack(ends, axis=1)
+    w_low, w_high = np.nanmin(pieces[:, :, 0], axis=1), np.nanmax(pieces[:, :, 0], axis=1)
+    order = np.argsort(np.where(np.isnan(pieces[:, :, 0]), np.inf, pieces[:, :, 0]), axis=1)
+    z_low, z_high = (np.take_along_axis(pieces[:, :, 1], order[:, n : n + 1], axis=1)[:, 0] for n in (0, 1))
+    upright = w_high - w_low < 1e-12
+    span = np.where(upright, 1.0, w_high - w_low)
+
+    def height(w: FloatArray) -> FloatArray:
+        inside = (w >= w_low[:, None]) & (w <= w_high[:, None])
+        slope = np.where(upright, 0.0, (z_high - z_low) / span)[:, None]
+        level = np.where(upright, np.maximum(z_low, z_high), z_low)[:, None]
+        return np.where(inside, level + slope * (w - w_low[:, None]), bottom).max(axis=0, initial=bottom)
+
+    return height

@@ -20,7 +20,7 @@ from robomill.surface.envelope import (
     tilted_interval,
     tilted_move,
 )
-from robomill.surface.raster import stock_heights
+from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock
 from robomill.surface.tilted import tool_axes
 from robomill.units import format_si
@@ -41,6 +41,7 @@ class SweptPath:
 
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
+        stock_top = skin_on_line(self.stock, centre, normal)
         near = self._near(centre, normal, reach)
         upright = np.hypot(self.axes[near, 0], self.axes[near, 1]) <= UPRIGHT
         moves = moves_of(self.ends[near[upright]])
@@ -52,7 +53,7 @@ class SweptPath:
 
         def height(w: FloatArray) -> FloatArray:
             x, y = centre[0] + w * normal[0], centre[1] + w * normal[1]
-            z = self.stock_top(x, y)
+            z = stock_top(w)
             if upright.any():
                 cut, d = swept_height(self.shape, moves, x, y)
                 z = np.minimum(z, np.where(d >= 0.0, cut, np.inf).min(axis=0))
@@ -76,12 +77,6 @@ class SweptPath:
             (np.minimum(along_a, along_b) <= limit) & (np.maximum(along_a, along_b) >= -limit)
             & (np.minimum(across_a, across_b) <= reach + limit) & (np.maximum(across_a, across_b) >= -reach - limit)
         )  # fmt: skip
-
-    def stock_top(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Height of the stock before the cut over (x, y) (q,), m."""
-        if self.stock.triangles is None:
-            return np.full(x.shape, float(self.stock.upper[2]))
-        return np.array([float(stock_heights(self.stock, x[i : i + 1], y[i : i + 1])[0, 0]) for i in range(len(x))])
 
 
 def swept_path(stock: Stock, cutter: Cutter, p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike) -> SweptPath:
@@ -117,6 +112,8 @@ def station_at(p: FloatArray, cutting: BoolArray, station: float) -> Station:
     """Where path length ``station`` (m) lies on the feed moves. Raises SurfaceError beyond either end."""
     steps = np.where(cutting[1:], np.linalg.norm(np.diff(p, axis=0), axis=1), 0.0)
     s = np.concatenate([[0.0], np.cumsum(steps)])
+    if not s[-1] > 0:
+        raise SurfaceError("Section: the path has no feed move with a length, so it leaves no groove to measure.")
     if not -1e-12 <= station <= s[-1] + 1e-12:
         raise SurfaceError(
             f"Section at {format_si(station, 'mm', 2)}: the feed path runs from 0 to {format_si(s[-1], 'mm', 2)}."

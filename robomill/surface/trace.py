@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.surface.swept import Heights
 
 WALL_LEVELS = 9
@@ -30,16 +30,16 @@ class Trace:
     height: Heights
 
 
-def trace_groove(height: Heights, middle: float, low: float, high: float, radius: float, top: float) -> Trace | None:
+def trace_groove(height: Heights, middle: float, low: float, high: float, radius: float, skin: Heights) -> Trace | None:
     """Follow the cut region from the tool axis at ``middle`` to the first material on either side.
 
     Walls are NaN where the region runs out of the stock (low, high). None if nothing is cut at the tool axis.
     """
-    floor = float(height(np.array([middle]))[0])
+    floor, top = float(height(np.array([middle]))[0]), float(skin(np.array([middle]))[0])
     if not floor < top - 1e-12:
         return None
     levels = top - (top - floor) * np.concatenate([[1e-9], np.linspace(0.02, 0.6, WALL_LEVELS)])
-    walls = {side: _wall(height, middle, end, levels, radius) for side, end in ((1, high), (-1, low))}
+    walls = {side: _wall(height, skin, middle, end, levels, radius) for side, end in ((1, high), (-1, low))}
     left, left_angle, left_bow = _wall_form(walls[1], levels, 1)
     right, right_angle, right_bow = _wall_form(walls[-1], levels, -1)
     inner = [0.5 * ((limit if np.isnan(edge) else edge) - middle) for edge, limit in ((right, low), (left, high))]
@@ -48,20 +48,26 @@ def trace_groove(height: Heights, middle: float, low: float, high: float, radius
     return Trace(left, right, left_angle, right_angle, left_bow, right_bow, floor, slope, top, height)
 
 
-def _wall(height: Heights, middle: float, end: float, levels: FloatArray, radius: float) -> FloatArray:
+def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: FloatArray, radius: float) -> FloatArray:
     """Position w of the first material above each level, from ``middle`` towards ``end``; NaN if there is none.
 
-    Found on a line of points, then on ever finer ones between two of them; material narrower than a fiftieth of
+    Where the stock itself lies below a level, material is what was not cut. Found on a line of points, then on ever finer ones between two of them; material narrower than a fiftieth of
     the radius may be missed.
     """
     side = 1.0 if end > middle else -1.0
     reach, step = abs(end - middle), radius / 50
+    thin = 1e-9 * abs(levels[0] - levels[-1]) + 1e-12
+
+    def above(w: FloatArray, level: FloatArray) -> BoolArray:
+        return np.asarray(height(w) >= np.minimum(level, skin(w) - thin))
+
     start, found = 0.0, np.full((len(levels), 2), np.nan)
     while start < reach and np.isnan(found[:, 0]).any():
         ahead = np.minimum(start + step * np.arange(151), reach)
-        z = height(middle + side * ahead)
+        w = middle + side * ahead[1:]
+        z, uncut = height(w), skin(w) - thin
         for n in np.flatnonzero(np.isnan(found[:, 0])):
-            hits = np.flatnonzero(z[1:] >= levels[n])
+            hits = np.flatnonzero(z >= np.minimum(levels[n], uncut))
             if len(hits):
                 found[n] = ahead[hits[0]], ahead[hits[0] + 1]
         start = float(ahead[-1])
@@ -73,7 +79,8 @@ def _wall(height: Heights, middle: float, end: float, levels: FloatArray, radius
     parts = np.arange(SUBDIVISIONS + 1) / SUBDIVISIONS
     for _ in range(NARROWINGS):
         c = a[:, None] + parts * (b - a)[:, None]
-        solid = height(middle + side * c[:, 1:-1].ravel()).reshape(len(a), -1) >= level[:, None]
+        inner = middle + side * c[:, 1:-1]
+        solid = above(inner.ravel(), np.repeat(level, inner.shape[1])).reshape(inner.shape)
         first = np.where(solid.any(axis=1), solid.argmax(axis=1), SUBDIVISIONS - 1)
         a, b = c[np.arange(len(a)), first], c[np.arange(len(a)), first + 1]
     result = np.full(len(levels), np.nan)

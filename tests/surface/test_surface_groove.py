@@ -116,3 +116,43 @@ def test_what_cannot_be_measured_says_why():
     with pytest.raises(SurfaceError, match="runs from 0 to 207"):
         groove_section(stock, FLAT, p, moved, cutting, None, 0.3)
     assert feed_length(p, cutting) == pytest.approx(0.207)
+
+
+def test_tilted_cutter_leaves_a_leaning_wall_and_a_tilted_floor():
+    """Axis tilted by B about Y (towards +X), feed along +Y: left of the feed is -X, where the wall opens up."""
+    tilt = np.radians(8.0)
+    k = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
+    p = np.array([[0.0, -0.05, -0.003], [0.0, 0.05, -0.003]])
+    stock = Stock((-0.02, -0.03, -0.01), (0.02, 0.03, 0.0))
+    moved = p + np.array([2e-4, 0.0, -1e-4])
+    section = groove_section(stock, FLAT, p, moved, [False, True], None, 0.05, k=k)
+    assert section.floor_error == pytest.approx(-1e-4, abs=1e-12)
+    assert np.arctan(section.floor_tilt) == pytest.approx(tilt, abs=1e-9)  # higher to the left
+    opening, lip = sorted([section.wall_left_angle, section.wall_right_angle], reverse=True)
+    assert np.degrees(opening) == pytest.approx(98.0, abs=1e-6)
+    assert np.degrees(lip) == pytest.approx(90.0, abs=1e-6)  # the undercut side shows its lip only
+    # both walls move sideways with the tool, and the cylinder's sides move with its depth along the slope too
+    assert section.centre_offset == pytest.approx(-(2e-4 + 1e-4 * np.tan(tilt)), abs=1e-10)
+
+
+def test_groove_in_a_mesh_stock():
+    """A wedge rising across the feed: walls end where its skin is, depth counts from the skin over the tool."""
+    pytest.importorskip("trimesh")
+    import trimesh
+
+    corners = np.array([[x, y, z] for x in (-0.03, 0.03) for y in (-0.02, 0.02) for z in (-0.01, 0.1 * y)])
+    wedge = trimesh.convex.convex_hull(corners)
+    stock = Stock(corners.min(axis=0), corners.max(axis=0), wedge.triangles)
+    p = np.array([[-0.04, 0, -0.003], [0.04, 0, -0.003]])
+    section = groove_section(stock, FLAT, p, p + np.array([0, 1e-4, 0]), [False, True], None, 0.04)
+    assert section.depth == pytest.approx(0.003 + 0.1 * 1e-4, abs=1e-12)  # the skin is higher over the moved tool
+    assert section.width == pytest.approx(0.008, abs=1e-9)
+    assert section.centre_offset == pytest.approx(1e-4, abs=1e-10)
+    outside = np.abs(section.w) > 0.0045
+    np.testing.assert_allclose(section.z_ideal[outside], 0.1 * section.w[outside], atol=1e-12)
+
+
+def test_a_path_without_feed_has_no_groove():
+    stock, p, _, _ = slot(0.0)
+    with pytest.raises(SurfaceError, match="no groove to measure"):
+        groove_section(stock, FLAT, p, p, np.zeros(len(p), bool), None, 0.0)
