@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import LoadTestError, RobomillError
+from robomill.errors import RobomillError
 from robomill.identification.load_test import JointTests
 from robomill.identification.plan import PathLoad, Plan, box_candidates, next_best
 from robomill.identification.result import IdentificationResult
@@ -29,6 +29,9 @@ MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 
 def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """Goal, box and load; the poses to measure, as a table and a sheet; intervals before and after."""
+    if isinstance(tests_of(kept, robot), JointTests):
+        st.info("One joint at a time needs no plan: load the joint known least once more.", icon=":material/info:")
+        return
     _goal_inputs(kept, robot, result)
     try:
         plan = plan_of(kept, robot, result)
@@ -48,7 +51,7 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
             alt="Half widths of the 95 % intervals now and after the planned tests.",
         )  # fmt: skip
     columns = plan_columns(plan, unit)
-    st.dataframe(columns, hide_index=True, height=min(36 * (len(plan.F) + 1) + 3, 330))
+    st.dataframe(columns, hide_index=True)
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         parts.download(
             "Measuring sheet (CSV)", lambda: measuring_sheet(plan, kept.name), "measuring-sheet.csv", "text/csv",
@@ -91,10 +94,9 @@ def _joint(kept: Bench, robot: Robot, result: IdentificationResult) -> int:
 
 
 def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
-    """The tests to do next. Raises LoadTestError where nothing can be planned."""
+    """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
     tests = tests_of(kept, robot)
-    if isinstance(tests, JointTests):
-        raise LoadTestError("One joint at a time needs no plan: load the joint known least once more.")
+    assert not isinstance(tests, JointTests)
     goal: Any = kept.goal if kept.goal == "all" else _joint(kept, robot, result)
     if kept.goal == "path":
         cut = cut_of(robot)

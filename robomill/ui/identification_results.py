@@ -39,7 +39,7 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
                 alt="Fitted compliances with 95 % intervals beside the reference values.",
             )  # fmt: skip
     unseen(result)
-    left, right = parts.split([1, 1], "fit")
+    left, right = parts.split([1, 1.3], "fit")
     with left, st.container(border=True, height="stretch"):
         st.markdown("**Which are confused with which**")
         if np.isfinite(result.correlation).any():
@@ -91,9 +91,10 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
         cells += [words.number(columns[c][k], unit) for c in references]
         own = "" if unit == joint_unit else f" <small>{html.escape(unit_label(unit))}</small>"
         row = "".join(f'<td class="n">{c}</td>' for c in cells)
-        body.append(f'<tr><td style="white-space:nowrap">{html.escape(parameter.label)}{own}</td>{row}</tr>')
+        wrap = ' style="white-space:nowrap"' if parameter.joint else ""
+        body.append(f"<tr><td{wrap}>{html.escape(parameter.label)}{own}</td>{row}</tr>")
     top = "".join(f'<th class="{"n" if i else ""}">{html.escape(h)}</th>' for i, h in enumerate(head))
-    st.html(f'<table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table>')
+    st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table></div>')
     parts.note(f"In {unit_label(joint_unit)} unless said. {parts.badge('paper')} Tables 2 and 3" if references else
                f"In {unit_label(joint_unit)} unless said.")  # fmt: skip
 
@@ -172,13 +173,14 @@ def _outliers(kept: Bench, result: IdentificationResult) -> None:
 def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Every model on the same tests: errors on own data and on poses left out, parameters, remarks."""
     try:
-        compared = comparison_of(kept, robot)
+        with st.spinner("Fitting every model …"):
+            compared = comparison_of(kept, robot)
     except RobomillError as exc:
-        parts.error(exc)
+        st.info(str(exc), icon=":material/info:")
         return
     results, rows = compared.results, compared.rows()
     counts = [row["parameters"] for row in rows]
-    names = [f"{words.MODEL_TITLES[r.model]}, {n} parameters" for r, n in zip(results, counts, strict=True)]
+    names = [f"{words.MODEL_TITLES[r.model]} ({n})" for r, n in zip(results, counts, strict=True)]
     best = compared.simplest_good
     st.markdown(f"**{_judgement(compared)}**")
     with st.container(border=True):
@@ -188,7 +190,7 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
                 np.array([from_si(r.cv_relative_error, "%") for r in results]),
                 next(k for k, r in enumerate(results) if r is best), dark=dark,
             ), "ident-models", name="models", table=lambda: _model_columns(rows),
-            caption="The bar between the two is the over-fitting. Bold: the simplest that predicts as well.",
+            caption="In brackets: parameters. From ring to dot: over-fitting. Bold: simplest that predicts as well.",
             alt="Errors of the models on their own data and on poses left out.",
         )  # fmt: skip
     absorbed = compared.absorbed()
@@ -241,5 +243,7 @@ def _side_by_side(
         )
         remark = html.escape(str(row["remark"]).capitalize())
         body += f"<tr><td>{words.MODEL_TITLES[result.model]}</td>{cells}<td>{remark}</td></tr>"
-    st.html(f'<table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table>')
+    st.html(
+        f'<div style="overflow-x:auto"><table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table></div>'
+    )
     parts.note(f"Joint values in {unit_label(joint_unit)}; – where a model has none or the tests do not see it.")

@@ -87,10 +87,11 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
     p = palette(dark)
     text = [["1" if i == j and np.isfinite(v) else _correlation(v) for j, v in enumerate(row)]
             for i, row in enumerate(correlation)]  # fmt: skip
+    written = len(names) <= 8
     fig = figure(dark=dark, height=height, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
     fig.add_heatmap(
         z=correlation, x=list(names), y=list(names), zmin=-1, zmax=1, colorscale=diverging(dark), xgap=2, ygap=2,
-        text=text, texttemplate="%{text}" if len(names) <= 8 else None, textfont={"size": 12},
+        text=text, texttemplate="%{text}" if written else None, textfont={"size": 12}, showscale=not written,
         colorbar=colour_bar("correlation", dark=dark, tickvals=[-1, -0.5, 0, 0.5, 1]),
         hovertemplate="%{y} with %{x}: %{z:+.2f}<extra></extra>",
     )  # fmt: skip
@@ -181,7 +182,7 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
     ):
         fig.add_bar(
             y=list(names), x=values, name=name, orientation="h", marker={"color": colour}, text=text,
-            textposition="outside", textfont={"size": 12, "color": p.text}, cliponaxis=False,
+            textposition="outside", constraintext="none", textfont={"size": 12, "color": p.text}, cliponaxis=False,
             hovertemplate="%{y}: %{text}<extra>" + name + "</extra>",
         )  # fmt: skip
     fig.update_layout(

@@ -1,0 +1,422 @@
+"""The identification page: samples, refusals that keep what was typed, outliers by click, use in the project, bands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from streamlit.testing.v1 import AppTest
+
+from robomill.errors import LoadTestError
+from robomill.identification.estimate import identify
+from robomill.identification.load_test import LoadTests
+from robomill.identification.models import Model
+from robomill.identification.synthesis import simulated_tests
+from robomill.improve.uncertainty import monte_carlo
+from robomill.io.load_test_sheets import load_test_template, load_tests_to_csv
+from robomill.io.load_tests import read_load_tests
+from robomill.io.projects import load_setup
+from robomill.io.robots import load_robot
+from robomill.io.samples import samples_dir
+from robomill.simulation.run import simulate
+from robomill.ui import identification_words as words
+from robomill.ui import uncertainty
+from robomill.ui.identification_panel import adopted
+from robomill.ui.load_bench import KEY, SAMPLES, Bench, decoded, sample_text
+from robomill.ui.state import KEY as PROJECT
+
+HEADER = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm"
+GOOD = "-20.556045,-41.011425,6.666809,0,34.344616,250,0,0,0.6803,-0.0547,-0.1071"
+
+
+@pytest.fixture
+def page(app: AppTest) -> AppTest:
+    """The identification page, run once."""
+    return app.switch_page("pages/4_Identification.py").run()
+
+
+def bench(page: AppTest) -> Bench:
+    return page.session_state[KEY]  # type: ignore[no-any-return]
+
+
+def html(page: AppTest) -> str:
+    return "\n".join(element.proto.body for element in page.get("html"))
+
+
+def typed(page: AppTest, text: str) -> AppTest:
+    return page.text_area(key="ident:text").set_value(text).run()
+
+
+def pick(page: AppTest, key: str, value: str) -> AppTest:
+    return next(g for g in page.get("button_group") if g.key == key).set_value(value).run()
+
+
+def click(page: AppTest, key: str) -> AppTest:
+    return page.button(key=key).click().run()
+
+
+# ---- what is there at once -----------------------------------------------------------------------------------------
+def test_it_opens_with_a_finished_result(page: AppTest) -> None:
+    assert not page.exception
+    shown = html(page)
+    assert "These tests predict poses left out to 1.0 %; joint 4 is known least, to ± 53 %." in shown
+    assert "cross-validated; 0.9 % on its own data" in shown
+    assert "15.72 to 50.99 ×10⁻⁷ rad/(N m)" in shown
+    assert "0.292 ± 0.001" in shown
+    assert "synthetic" in shown
+    assert any("Joint 4 is known to ±53 %" in i.value for i in page.info)
+    assert len(page.get("plotly_chart")) == 2
+
+
+@pytest.mark.parametrize("view", ["residuals", "models", "next", "cut"])
+def test_every_view_runs(page: AppTest, view: str) -> None:
+    pick(page, "ident:view", view)
+    assert not page.exception
+    assert not page.error
+    assert page.get("plotly_chart")
+
+
+@pytest.mark.parametrize("sample", list(SAMPLES))
+def test_every_sample_runs_in_every_view(page: AppTest, sample: str) -> None:
+    page.selectbox(key="ident:sample").set_value(sample).run()
+    for view in ("compliances", "residuals", "models", "next", "cut"):
+        pick(page, "ident:view", view)
+        assert not page.exception
+        assert [e.value for e in page.error] == []
+    assert bench(page).sample == sample
+
+
+@pytest.mark.parametrize("section", ["map", "laboratory"])
+def test_the_other_sections_run(page: AppTest, section: str) -> None:
+    pick(page, "ident:section", section)
+    assert not page.exception
+    assert not page.error
+
+
+# ---- bad input: one sentence, and what was typed stays -------------------------------------------------------------
+def _rows(*rows: str) -> str:
+    return "\n".join([HEADER, *rows]) + "\n"
+
+
+def _nine(change: Callable[[list[str]], list[str]]) -> str:
+    lines = [line for line in sample_text("nine_points").splitlines() if not line.startswith("#")]
+    return "\n".join([lines[0], *change(lines[1:])]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (_rows(GOOD), "3 measured numbers for 5 unknown compliances"),
+        (_rows(GOOD, GOOD.replace("250,0,0", "0,250,0")), "one pose"),
+        (_rows(GOOD, GOOD.replace("250,0,0", "0,0,0")), "Row 3: the force is zero"),
+        (_rows(GOOD).replace(",dx_mm,dy_mm,dz_mm", "").replace(",0.6803,-0.0547,-0.1071", ""), "columns are missing"),
+        (_rows(GOOD).replace("dx_mm", "dx_furlong"), "unit 'furlong' is not known; write one of"),
+        (_rows(GOOD, GOOD.replace("0.6803", "nan")), "Row 3, column dx_mm"),
+        (_rows(GOOD, GOOD.replace("0.6803", "")), "Row 3, column dx_mm: the cell is empty"),
+        (_rows(GOOD, GOOD.replace("0.6803", "soft")), "Row 3, column dx_mm: found 'soft', expected a number"),
+        (_rows(GOOD, GOOD.replace("-20.556045", "-200")), "Row 3, theta1"),
+        ("", "the file is empty"),
+        (HEADER, "only a header"),
+        ("/etc/hostname", "no column is known"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_sentence_and_stays_in_its_box(page: AppTest, text: str, sentence: str) -> None:
+    typed(page, text)
+    assert not page.exception
+    assert len(page.error) == 1
+    if "no column" not in sentence:
+        assert sentence in page.error[0].value
+    assert "\n" not in page.error[0].value
+    assert page.text_area(key="ident:text").value == text
+    assert "Nothing can be identified from these load tests yet." in html(page)
+    page.switch_page("pages/1_Robot.py").run()
+    page.switch_page("pages/4_Identification.py").run()
+    assert page.text_area(key="ident:text").value == text
+    assert len(page.error) == 1
+
+
+def test_a_typed_file_name_is_a_text_and_never_opens_a_file(page: AppTest) -> None:
+    typed(page, "/etc/hostname")
+    assert "only a header" in page.error[0].value or "no column" in page.error[0].value
+
+
+def test_fewer_equations_than_unknowns_is_said_and_nothing_breaks(page: AppTest) -> None:
+    typed(page, _nine(lambda rows: [rows[0].rsplit(",", 2)[0] + ",,", rows[5]]))
+    assert not page.exception
+    assert len(page.error) == 1
+
+
+def test_a_copied_row_and_a_turned_sign_are_suspected_aloud(page: AppTest) -> None:
+    typed(page, _nine(lambda rows: [*rows, rows[3]]))
+    assert any("repeats row" in w.value for w in page.warning)
+
+    def turned(rows: list[str]) -> list[str]:
+        cells = [row.split(",") for row in rows]
+        return [",".join([*c[:8], *(f"{-float(v):g}" for v in c[8:])]) for c in cells]
+
+    typed(page, _nine(turned))
+    assert not page.exception
+    assert any("sign of the displacements" in w.value for w in page.warning)
+
+
+def test_micrometres_taken_for_millimetres_are_suspected(page: AppTest) -> None:
+    typed(page, sample_text("nine_points").replace("dx_mm,dy_mm,dz_mm", "dx_um,dy_um,dz_um"))
+    assert any("times smaller" in w.value for w in page.warning)
+
+
+def test_a_file_that_is_no_text_is_refused() -> None:
+    with pytest.raises(LoadTestError, match=r"sheet.xlsx: this is not a text file"):
+        decoded(b"PK\x03\x04\xff\xfe\x00", "sheet.xlsx")
+
+
+def test_the_bench_survives_a_visit_elsewhere(page: AppTest) -> None:
+    page.selectbox(key="ident:model").set_value("joints+tool").run()
+    pick(page, "ident:view", "models")
+    page.switch_page("pages/6_Milling.py").run()
+    page.switch_page("pages/4_Identification.py").run()
+    assert page.selectbox(key="ident:model").value == "joints+tool"
+    assert next(g for g in page.get("button_group") if g.key == "ident:view").value == "models"
+
+
+# ---- outliers ------------------------------------------------------------------------------------------------------
+def test_an_outlier_is_used_until_a_click_leaves_it_out(page: AppTest) -> None:
+    def spoilt(rows: list[str]) -> list[str]:
+        rows[7] = rows[7].rsplit(",", 1)[0] + ",1.5"
+        return rows
+
+    typed(page, _nine(spoilt))
+    pick(page, "ident:view", "residuals")
+    assert any("row 9" in w.value and "until you leave them out" in w.value for w in page.warning)
+    assert bench(page).excluded == ()
+    click(page, "ident:drop")
+    assert bench(page).excluded == (9,)
+    assert "1.0 %" in html(page)
+    click(page, "ident:restore")
+    assert bench(page).excluded == ()
+
+
+# ---- models --------------------------------------------------------------------------------------------------------
+def test_models_are_ranked_and_the_absorbed_bending_is_said(page: AppTest) -> None:
+    page.selectbox(key="ident:sample").set_value("tilted_bending_tool").run()
+    pick(page, "ident:view", "models")
+    assert any("have absorbed what is not in the joints" in i.value for i in page.info)
+    click(page, "ident:best")
+    assert bench(page).model == "joints+bending"
+
+
+# ---- plan ----------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("goal", ["joint", "all", "path"])
+def test_three_more_tests_shrink_joint_4_by_a_third(page: AppTest, goal: str) -> None:
+    pick(page, "ident:view", "next")
+    page.selectbox(key="ident:goal").set_value(goal).run()
+    assert not page.exception
+    said = next(m.value for m in page.markdown if "more tests should narrow" in m.value)
+    if goal == "joint":
+        assert "joint 4 by 83%" in said
+    if goal == "path":
+        assert "the path's predicted deviation from" in said
+
+
+def test_the_measuring_sheet_is_read_back_after_filling_in(page: AppTest) -> None:
+    from robomill.identification.plan import box_candidates, next_best
+    from robomill.ui.identification_plan import measuring_sheet
+
+    robot = load_robot("slavkovic_5r")
+    tests = read_load_tests(sample_text("nine_points"), robot)
+    assert isinstance(tests, LoadTests)
+    fit = identify(robot, tests)
+    plan = next_best(robot, tests, fit, box_candidates(robot, np.array([-0.6, -1.6, 0]), np.array([0.6, -1, 0.1])))
+    sheet = measuring_sheet(plan, "nine_points.csv")
+    with pytest.raises(LoadTestError, match="the cell is empty"):
+        read_load_tests(sheet, robot)
+    filled = read_load_tests(sheet.replace(",,,", ",0.1,0.2,0.3\n").replace(",,", ",0.1,0.2,0.3"), robot)
+    assert isinstance(filled, LoadTests)
+    np.testing.assert_allclose(filled.theta, plan.theta, atol=1e-6)
+
+
+@pytest.mark.parametrize("protocol", ["joints", "world", "joint by joint", "compliances"])
+def test_every_template_says_what_is_missing_rather_than_breaking(page: AppTest, protocol: str) -> None:
+    typed(page, load_test_template(protocol, 5))
+    assert not page.exception
+
+
+@pytest.mark.parametrize(("key", "value"), [("ident:count", 0.0), ("ident:load", -5.0), ("ident:tilt", 400.0)])
+def test_a_refused_plan_number_stays_with_its_bounds(page: AppTest, key: str, value: float) -> None:
+    pick(page, "ident:view", "next")
+    page.number_input(key=key).set_value(value).run()
+    assert not page.exception
+    assert "expected" in page.error[0].value
+    assert page.number_input(key=key).value == value
+
+
+# ---- use in the project, and the band ------------------------------------------------------------------------------
+def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) -> None:
+    before = page.session_state[PROJECT].project.setup
+    assert uncertainty.fingerprint(before) not in page.session_state[uncertainty.KEY]
+    click(page, "ident:use")
+    assert not page.exception
+    setup = page.session_state[PROJECT].project.setup
+    fit = identify(load_robot("slavkovic_5r"), read_load_tests(sample_text("nine_points"), load_robot("slavkovic_5r")))
+    np.testing.assert_allclose(setup.robot.C_theta, fit.C_theta, rtol=1e-12)
+    assert setup.robot.compliance_set == "identified"
+    assert setup.robot.provenance["compliance.identified"].kind == "computed"
+    assert "27 load tests (nine_points.csv)" in setup.robot.provenance["compliance.identified"].source
+    known = page.session_state[uncertainty.KEY][uncertainty.fingerprint(setup)]
+    np.testing.assert_allclose(known.sources.covariance, fit.covariance)
+    assert page.button(key="ident:use").disabled
+    page.button(key="undo").click().run()
+    assert page.session_state[PROJECT].project.setup.digest() == before.digest()
+    assert not page.button(key="ident:use").disabled
+
+
+def test_springs_come_along_and_give_way_to_the_next_identification() -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    robot = setup.robot
+    tests = read_load_tests(sample_text("tilted_bending_tool"), robot)
+    rich = adopted(setup, robot, identify(robot, tests, "joints+bending+tool"), "a.csv")
+    assert len(rich.springs) == 3
+    again = adopted(rich, rich.robot, identify(robot, tests, "joints+bending+tool"), "b.csv")
+    assert len(again.springs) == 3
+    plain = adopted(rich, rich.robot, identify(robot, tests), "c.csv")
+    assert plain.springs == ()
+
+
+@pytest.mark.parametrize("model", ["joints", "joints+bending+tool"])
+def test_the_band_belongs_to_what_the_simulation_computes(model: str) -> None:
+    """The propagated deflection is the simulated one, so the band lies around the curve that is shown."""
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    robot = setup.robot
+    fit = identify(robot, read_load_tests(sample_text("tilted_bending_tool"), robot), model)
+    result = simulate(adopted(setup, robot, fit, "a.csv"))
+    known = uncertainty.knowledge(fit, robot, "from tests")
+    band = uncertainty.deviation_band(result, known)
+    judged = result.judged
+    np.testing.assert_allclose(band.delta[judged], result.delta[judged], atol=1e-12)
+    assert np.nanmin(uncertainty.size_band(result, band)[judged]) > 0
+
+
+def test_the_band_agrees_with_monte_carlo() -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    robot = setup.robot
+    fit = identify(robot, read_load_tests(sample_text("grid_45x6"), robot))
+    result = simulate(adopted(setup, robot, fit, "a.csv"))
+    known = uncertainty.widened(uncertainty.knowledge(fit, robot, ""), robot, force=5.0)
+    i = result.worst
+    band = uncertainty.deviation_band(result, known, i)
+    drawn = monte_carlo(result.setup.robot, result.theta[i], result.F[i], known.sources, draws=6000, seed=3)
+    size = np.linalg.norm(drawn, axis=-1)
+    half = float(uncertainty.size_band(result, band, i))
+    inside = np.mean(np.abs(size - result.max_deviation) <= half)
+    assert inside == pytest.approx(0.95, abs=0.012)
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "unit", "text"),
+    [
+        (2.3e-4, 2e-5, "mm", "0.23 ± 0.02 mm"),
+        (2.916e-4, 1.3e-6, "mm", "0.292 ± 0.001 mm"),
+        (2.9162e-4, 3e-7, "mm", "0.2916 ± 0.0003 mm"),
+        (1.2e-3, 4e-4, "mm", "1.20 ± 0.40 mm"),
+        (2.54e-4, 2.54e-5, "in", "0.010 ± 0.001 in"),
+    ],
+)
+def test_digits_follow_the_half_width(value: float, half: float, unit: str, text: str) -> None:
+    assert uncertainty.band_text(value, half, unit) == text
+
+
+def test_without_an_identification_no_tile_has_a_band(page: AppTest) -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    assert uncertainty.tile_text(simulate(setup)) == ""
+
+
+# ---- the measured map ----------------------------------------------------------------------------------------------
+def test_the_map_shows_both_methods_and_their_difference(page: AppTest) -> None:
+    pick(page, "ident:section", "map")
+    assert len(page.get("plotly_chart")) == 3
+    shown = html(page)
+    assert "differ by 15 % on average; the measured ones are higher" in shown
+    assert "0.290" in shown
+    page.selectbox(key="ident:map:component").set_value("C_yz").run()
+    page.selectbox(key="ident:map:sample").set_value("nine_points_compliances").run()
+    assert not page.exception
+    assert len(page.get("plotly_chart")) == 3
+
+
+def test_the_map_agrees_with_the_joint_model_it_was_made_from(page: AppTest) -> None:
+    click(page, "ident:use")
+    pick(page, "ident:section", "map")
+    assert "differ by 1 % on average" in html(page)
+
+
+def test_a_map_with_a_direction_missing_is_one_sentence(page: AppTest) -> None:
+    lines = sample_text("grid_45x6").splitlines()
+    bench(page).take_map("\n".join(lines[:-1]), "mine.csv")
+    pick(page, "ident:section", "map")
+    assert not page.exception
+    assert "not fully measured" in page.error[0].value
+
+
+# ---- the laboratory ------------------------------------------------------------------------------------------------
+def test_a_student_measures_fits_and_is_scored(page: AppTest) -> None:
+    pick(page, "ident:section", "laboratory")
+    for x, y, b in ((0.0, -1300.0, 30.0), (400.0, -1500.0, -30.0), (-400.0, -1100.0, 20.0), (500.0, -1200.0, 0.0)):
+        for name, value in (("X", x), ("Y", y), ("B", b)):
+            page.number_input(key=f"lab:{name}").set_value(value).run()
+        click(page, "lab:three")
+    assert not page.exception
+    assert bench(page).laboratory.budget == 0  # type: ignore[union-attr]
+    assert page.button(key="lab:measure").disabled
+    assert "truth" not in html(page).lower() or not bench(page).handed_in
+    click(page, "lab:hand")
+    assert "of 100 points" in html(page)
+    page.button(key="lab:new").click().run()
+    assert bench(page).laboratory.budget == 12  # type: ignore[union-attr]
+    assert not bench(page).handed_in
+
+
+def test_a_pose_out_of_reach_costs_nothing_and_is_explained(page: AppTest) -> None:
+    pick(page, "ident:section", "laboratory")
+    page.number_input(key="lab:X").set_value(5000.0).run()
+    click(page, "lab:measure")
+    assert not page.exception
+    assert "not reached" in page.error[0].value
+    assert bench(page).laboratory.budget == 12  # type: ignore[union-attr]
+    assert page.number_input(key="lab:X").value == 5000.0
+
+
+# ---- words ---------------------------------------------------------------------------------------------------------
+def test_stiffness_turns_intervals_over() -> None:
+    low, high = words.interval(np.array([8e-7, 1e-6]), "kN m/rad")
+    assert low == pytest.approx(1000.0)
+    assert high == pytest.approx(1250.0)
+
+
+def test_the_constant_model_has_no_joint_to_show() -> None:
+    robot = load_robot("slavkovic_5r")
+    fit = identify(robot, read_load_tests(sample_text("nine_points"), robot), "constant")
+    tiles = words.tiles(fit, "1e-7 rad/(N m)", ("no joints", ""))
+    assert tiles[1].value == "none"
+    drawn = words.intervals(fit, robot, "1e-7 rad/(N m)")
+    assert len(drawn) == 1
+    assert not drawn[0].logarithmic
+
+
+def test_another_robot_is_measured_without_touching_the_project(page: AppTest) -> None:
+    robot = load_robot("kuka_kr270")
+    rng = np.random.default_rng(4)
+    low, high = robot.limits[:, 0], robot.limits[:, 1]
+    theta = 0.5 * (low + high) + 0.2 * rng.uniform(-1, 1, (12, robot.n)) * (high - low)
+    tests = simulated_tests(robot, np.repeat(theta, 3, axis=0), np.tile(np.eye(3) * 500, (12, 1)), noise=1e-6,
+                            model=Model("joints"))  # fmt: skip
+    before = page.session_state[PROJECT].project.setup.digest()
+    page.selectbox(key="ident:robot").set_value("kuka_kr270").run()
+    assert len(page.error) == 1
+    assert "5 joint columns for a robot of 6 joints" in page.error[0].value
+    typed(page, load_tests_to_csv(tests, digits=6))
+    assert not page.exception
+    assert not page.error
+    for view in ("compliances", "residuals", "models", "next", "cut"):
+        pick(page, "ident:view", view)
+        assert not page.exception
+    assert page.session_state[PROJECT].project.setup.digest() == before
