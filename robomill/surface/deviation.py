@@ -87,14 +87,22 @@ def deviation(ideal: ZMap, machined: ZMap, *, reach: float = 1e-3) -> Deviation:
         )
     height_error = machined.z - ideal.z
     was_cut = ideal.cut_mask | machined.cut_mask
-    cell_area = ideal.dx * ideal.dy
-    volume = (machined.mean - ideal.mean) * cell_area
-    return Deviation(
-        x=ideal.x, y=ideal.y, height_error=frozen(height_error),
-        error=frozen(np.where(was_cut, surface_error(ideal, machined, reach), np.nan)), cut=frozen(was_cut, bool),
-        cell_area=cell_area,
-        excess_volume=float(volume[volume > 0].sum()), gouge_volume=float(-volume[volume < 0].sum()),
-    )  # fmt: skip
+    error = surface_error(ideal, machined, reach)
+    error[~was_cut] = np.nan
+    for array in (height_error, error, was_cut):  # large, and nobody else's: no copy
+        array.flags.writeable = False
+    excess, gouge = _volumes(height_error, ideal, machined)
+    return Deviation(ideal.x, ideal.y, height_error, error, was_cut, ideal.dx * ideal.dy, excess, gouge)
+
+
+def _volumes(height_error: FloatArray, ideal: ZMap, machined: ZMap) -> tuple[float, float]:
+    """Excess and gouge, m^3, from the difference of the cells' mean heights."""
+    difference = height_error.reshape(-1).copy()
+    for surface, sign in ((machined, 1.0), (ideal, -1.0)):
+        cells = surface.edge.index
+        difference[cells] += sign * (surface.edge.mean - surface.z.reshape(-1)[cells])
+    area = ideal.dx * ideal.dy
+    return float(difference.sum(where=difference > 0)) * area, -float(difference.sum(where=difference < 0)) * area
 
 
 def surface_error(ideal: ZMap, machined: ZMap, reach: float) -> FloatArray:

@@ -12,6 +12,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.envelope import (
+    Move,
     Shape,
     cutter_shape,
     moves_of,
@@ -42,9 +43,9 @@ class SweptPath:
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
         stock_top = skin_on_line(self.stock, centre, normal)
-        near = self._near(centre, normal, reach)
+        near, low, high = self._near(centre, normal, reach)
         upright = np.hypot(self.axes[near, 0], self.axes[near, 1]) <= UPRIGHT
-        moves = moves_of(self.ends[near[upright]])
+        moves, low, high = np.hstack(moves_of(self.ends[near[upright]])), low[upright], high[upright]
         leaning = [tilt_of(self.axes[n]) for n in near[~upright]]
         tilted = [
             (tilt, tilted_move(tilt, self.ends[n, :3], self.ends[n, 3:]))
@@ -54,29 +55,31 @@ class SweptPath:
         def height(w: FloatArray) -> FloatArray:
             x, y = centre[0] + w * normal[0], centre[1] + w * normal[1]
             z = stock_top(w)
-            if upright.any():
-                cut, d = swept_height(self.shape, moves, x, y)
+            here = moves[(high >= w.min()) & (low <= w.max())]
+            if len(here):
+                cut, d = swept_height(self.shape, Move(*here.T[:, :, None]), x, y)
                 z = np.minimum(z, np.where(d >= 0.0, cut, np.inf).min(axis=0))
             for tilt, move in tilted:
-                low, high = tilted_interval(self.shape, tilt, move, x, y, z)
-                z = np.where((low < high) & (high >= z), low, z)
+                below, above = tilted_interval(self.shape, tilt, move, x, y, z)
+                z = np.where((below < above) & (above >= z), below, z)
             return z
 
         return height
 
-    def _near(self, centre: FloatArray, normal: FloatArray, reach: float) -> IntArray:
-        margin = self.shape.R
+    def _near(self, centre: FloatArray, normal: FloatArray, reach: float) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Moves whose track may meet the line, and the part of the line (low, high) each may meet."""
         tilt = np.hypot(self.axes[:, 0], self.axes[:, 1])
         rise = np.maximum(self.stock.upper[2] - np.minimum(self.ends[:, 2], self.ends[:, 5]), 0.0) + self.shape.R
-        lean = np.where(tilt > UPRIGHT, rise * tilt / np.maximum(self.axes[:, 2], 0.05), 0.0)
+        limit = self.shape.R + np.where(tilt > UPRIGHT, rise * tilt / np.maximum(self.axes[:, 2], 0.05), 0.0)
         feed = np.array([normal[1], -normal[0]])
         a, b = self.ends[:, :2] - centre[:2], self.ends[:, 3:5] - centre[:2]
         along_a, along_b, across_a, across_b = a @ feed, b @ feed, a @ normal[:2], b @ normal[:2]
-        limit = margin + lean
-        return np.flatnonzero(
+        low, high = np.minimum(across_a, across_b) - limit, np.maximum(across_a, across_b) + limit
+        near = np.flatnonzero(
             (np.minimum(along_a, along_b) <= limit) & (np.maximum(along_a, along_b) >= -limit)
-            & (np.minimum(across_a, across_b) <= reach + limit) & (np.maximum(across_a, across_b) >= -reach - limit)
+            & (low <= reach) & (high >= -reach)
         )  # fmt: skip
+        return near, low[near], high[near]
 
 
 def swept_path(stock: Stock, cutter: Cutter, p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike) -> SweptPath:

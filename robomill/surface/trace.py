@@ -51,8 +51,8 @@ def trace_groove(height: Heights, middle: float, low: float, high: float, radius
 def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: FloatArray, radius: float) -> FloatArray:
     """Position w of the first material above each level, from ``middle`` towards ``end``; NaN if there is none.
 
-    Where the stock itself lies below a level, material is what was not cut. Found on a line of points, then on ever finer ones between two of them; material narrower than a fiftieth of
-    the radius may be missed.
+    Where the stock itself lies below a level, material is what was not cut. Found on a line of points, then on
+    ever finer ones between two of them; material narrower than a fiftieth of the radius may be missed.
     """
     side = 1.0 if end > middle else -1.0
     reach, step = abs(end - middle), radius / 50
@@ -63,7 +63,7 @@ def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: Flo
 
     start, found = 0.0, np.full((len(levels), 2), np.nan)
     while start < reach and np.isnan(found[:, 0]).any():
-        ahead = np.minimum(start + step * np.arange(151), reach)
+        ahead = np.minimum(start + step * np.arange(76), reach)
         w = middle + side * ahead[1:]
         z, uncut = height(w), skin(w) - thin
         for n in np.flatnonzero(np.isnan(found[:, 0])):
