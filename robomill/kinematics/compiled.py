@@ -15,6 +15,8 @@ from importlib import import_module
 from types import ModuleType
 
 LARGE = 20_000  # configurations from which a call starts the compiling for those that follow
+# The modules that hold a ``Kernels``; imported before compiling, so that one warm-up serves all.
+HOLDERS = ("robomill.kinematics.forward", "robomill.kinematics.solutions", "robomill.workspace.solve")
 _registered: list[Kernels] = []
 _lock = threading.Lock()
 _thread: threading.Thread | None = None
@@ -45,6 +47,8 @@ def warm_up(wait: bool = False) -> bool:
     global _thread
     if os.environ.get("ROBOMILL_NUMPY"):
         return False
+    for holder in HOLDERS:
+        import_module(holder)
     with _lock:
         pending = [kernels for kernels in _registered if kernels.loaded is None]
         if pending and not _failure and (_thread is None or not _thread.is_alive()):

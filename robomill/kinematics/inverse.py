@@ -10,16 +10,17 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.choice import choose, choose_spin, join_path, spun
+from robomill.kinematics.choice import SPIN_STEPS, choose, choose_spin, join_path, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.numeric import solve_numerically
-from robomill.kinematics.result import RESIDUAL, IKResult, Mode, check, task_mode
-from robomill.kinematics.solutions import compiled_solutions, solutions
+from robomill.kinematics.result import RESIDUAL, IKResult, Mode, check, task_mode, within_residual
+from robomill.kinematics.solutions import compiled_solutions, nearest_solutions, solutions
 from robomill.robot.model import Robot
 
 Spin = float | Literal["least motion", "fixed"]
 Found = tuple[FloatArray, IntArray, FloatArray | None]
+Fit = tuple[FloatArray, FloatArray]
 
 
 def inverse_kinematics(
@@ -60,19 +61,18 @@ def inverse_kinematics(
     elif isinstance(spin, str) and spin not in ("least motion", "fixed"):
         raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
     arm = decoupled(robot)
+    names = ("numerical",) if arm is None else branch_names()
+    fit: Fit | None = None
     if arm is None:
         if branch is not None:
             raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
         theta, index, turn = _numerical(robot, flat, goal, mode, lead, along_path)
-        names: tuple[str, ...] = ("numerical",)
+    elif along_path:
+        theta, index, turn = _along_path(robot, arm, flat, lead[-1], branch_mask(branch), free_spin)
     else:
-        wanted, names = branch_mask(branch), branch_names()
-        if along_path:
-            theta, index, turn = _along_path(robot, arm, flat, lead[-1], wanted, free_spin)
-        else:
-            theta, index, turn = _pose_by_pose(robot, arm, flat, goal, wanted, near is None, free_spin)
-    sound, residual, angle = check(robot, theta, flat, mode)
-    reached = sound & (index >= 0)
+        theta, index, turn, fit = _closed(robot, arm, flat, goal, branch_mask(branch), near is None, free_spin)
+    residual, angle = fit or check(robot, theta, flat, mode)[1:]
+    reached = (index >= 0) & within_residual(residual, angle, mode)
     return IKResult(
         robot=robot,
         T_MT=flat.reshape(*lead, 4, 4),
@@ -131,6 +131,23 @@ def branch_mask(branch: str | None) -> BoolArray:
 def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
     value = as_floats(near, "near", (robot.n,), error=KinematicsError)  # type: ignore[arg-type]
     return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
+
+
+def _closed(
+    robot: Robot,
+    arm: Decoupled,
+    flat: FloatArray,
+    goal: FloatArray,
+    wanted: BoolArray,
+    arm_first: bool,
+    free_spin: bool,
+) -> tuple[FloatArray, IntArray, FloatArray | None, Fit | None]:
+    """(theta, index, spin, (residual, residual angle) where the kernel has found them already)."""
+    compiled = nearest_solutions(robot, arm, flat, goal, wanted, arm_first, SPIN_STEPS if free_spin else 0)
+    if compiled is None:
+        return (*_pose_by_pose(robot, arm, flat, goal, wanted, arm_first, free_spin), None)
+    theta, index, fit = compiled
+    return theta, index, fit[:, 0] if free_spin else None, (fit[:, 1], fit[:, 2])
 
 
 def _pose_by_pose(

@@ -3,6 +3,9 @@
 Every step is a loop over lanes of straight-line arithmetic on the rows of small buffers, updated in place, so that the
 compiler can prove the rows apart and use vector instructions. The NumPy columns of ``forward`` and ``jacobian`` are the
 same formulas, and a test holds the two together. Import only through ``compiled``.
+
+numba's cache looks at the file a kernel stands in, not at those it takes helpers from: after a change here or in
+``kernel_math``, clear the caches of the other kernel modules (``__pycache__/*.nb?``) too.
 """
 
 # mypy: disable-error-code="no-untyped-def, attr-defined, call-overload"
@@ -11,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numba.types import Array, boolean, float64, void
+from numba.types import Array, boolean, float64, int64, void
 
 from robomill.kinematics.kernel_math import sin_cos
 
@@ -22,6 +25,7 @@ OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"c
 IN1, IN2, IN3 = (Array(float64, dims, "C", readonly=True) for dims in (1, 2, 3))
 OUT1, OUT2, OUT3 = (Array(float64, dims, "C") for dims in (1, 2, 3))
 IN_FLAGS = Array(boolean, 1, "C", readonly=True)
+INDEX = Array(int64, 1, "C")
 FLAGS, FLAGS2 = Array(boolean, 1, "C"), Array(boolean, 2, "C")
 CHAIN = (IN2, IN3, IN1, IN1, IN_FLAGS)
 

@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numba.types import float64, void
+from numba.types import boolean, float64, int64, void
 
-from robomill.kinematics.kernel_math import arc_tangent
+from robomill.kinematics.kernel_math import arc_tangent, sin_cos
 from robomill.kinematics.kernels import (
     CHAIN,
     FLAGS2,
     IN1,
+    IN2,
     IN3,
+    IN_FLAGS,
+    INDEX,
     LANES,
     OPTIONS,
+    OUT2,
     OUT3,
     TOOL_ROWS,
     chain_block,
@@ -26,8 +30,17 @@ from robomill.kinematics.kernels import (
 
 ROUNDING = 1e-12
 TINY = 1e-300
-# Rows of the target's buffer: tip 0-2, tool axis 3-5, directions in {S}: u 6-8, g 9-11, wrist centre in {S} 12-14.
-TARGET_ROWS = 15
+TURN = 2.0 * np.pi
+LIMIT_SLACK = 1e-10
+ARM_WEIGHT = 1e6
+SPIN_HALVINGS = 7
+NOWHERE = 1e300
+# Rows of the cost buffer: least over the eight solutions, at hand, overshoot at hand, branch; least over all spins, its
+# branch, its spin, and the spin at hand.
+COST_BEST, COST_BRANCH, COST_SPIN, COST_ROWS = 4, 5, 6, 8
+# Rows of the target's buffer: tip 0-2, tool axis 3-5; in {S}: u 6-8, g 9-11, wrist centre 12-14; the tool's x 15-17 and
+# y 18-20; cosine and sine of the spin about the tool axis 21-22.
+TARGET_ROWS = 23
 # Rows of the arm's buffer: c_1 s_1 x 0-2, c s of the turn 3-4, wrist direction 5-7 and normal 8-10, flags 11-13.
 ARM_ROWS = 14
 # Where ``decoupled.packed`` puts the constants.
@@ -37,25 +50,35 @@ P_S, P_W, P_O, P_A1, P_H, P_L2, P_L3, P_U, P_G, P_GN, P_CU, P_CG, P_CW, P_DIR = 
 
 
 @njit(inline="always")
-def load_targets(T_MT, start, count, P, target):
-    """Poses start .. start + count of T_MT (m, 4, 4) into the target buffer (15, LANES)."""
+def load_targets(T_MT, start, count, target):
+    """Tip and axes of poses start .. start + count of T_MT (m, 4, 4) into the target buffer."""
     for lane in range(LANES):
         row = start + min(lane, count - 1)
         for r in range(3):
             target[r, lane] = T_MT[row, r, 3]
             target[3 + r, lane] = T_MT[row, r, 2]
-            u = T_MT[row, r, 0] * P[P_CU] + T_MT[row, r, 1] * P[P_CU + 1] + T_MT[row, r, 2] * P[P_CU + 2]
-            g = T_MT[row, r, 0] * P[P_CG] + T_MT[row, r, 1] * P[P_CG + 1] + T_MT[row, r, 2] * P[P_CG + 2]
-            w = T_MT[row, r, 0] * P[P_CW] + T_MT[row, r, 1] * P[P_CW + 1] + T_MT[row, r, 2] * P[P_CW + 2]
-            target[6 + r, lane] = u
-            target[9 + r, lane] = g
-            target[12 + r, lane] = T_MT[row, r, 3] - w - P[P_O + r]
-    into_base(P, target)
+            target[15 + r, lane] = T_MT[row, r, 0]
+            target[18 + r, lane] = T_MT[row, r, 1]
+    for lane in range(LANES):
+        target[21, lane] = 1.0
+        target[22, lane] = 0.0
 
 
 @njit(inline="always")
-def into_base(P, target):
-    """Turn rows 6 .. 14 of the target buffer from {M} into the arm's frame {S}."""
+def aim_block(target, P):
+    """Rows 6 .. 14 in the arm's frame {S} from tip, axes and the spin (its cosine and sine) about the tool axis."""
+    u0, u1, u2 = P[P_CU], P[P_CU + 1], P[P_CU + 2]
+    g0, g1, g2 = P[P_CG], P[P_CG + 1], P[P_CG + 2]
+    w0, w1, w2 = P[P_CW], P[P_CW + 1], P[P_CW + 2]
+    for r in range(3):
+        o = P[P_O + r]
+        for lane in range(LANES):
+            c, s = target[21, lane], target[22, lane]
+            x, y, z = target[15 + r, lane], target[18 + r, lane], target[3 + r, lane]
+            x, y = c * x + s * y, c * y - s * x
+            target[6 + r, lane] = u0 * x + u1 * y + u2 * z
+            target[9 + r, lane] = g0 * x + g1 * y + g2 * z
+            target[12 + r, lane] = target[r, lane] - (w0 * x + w1 * y + w2 * z) - o
     s0, s1, s2, s3, s4, s5, s6, s7, s8 = P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[8]
     for first in range(6, 15, 3):
         for lane in range(LANES):
@@ -193,50 +216,207 @@ def last_joint(target, P, arm, flip, theta, row):
 
 
 @njit(inline="always")
-def misfit(tool, target, error):
-    """error (2, LANES): squared distance of the tips and of the tool axes."""
+def misfit(tool, target, whole, error):
+    """error (2, LANES): squared distance of the tips; squared chord of the tool axes, or of the ``whole`` rotation.
+
+    A rotation by an angle has the chord 2 sin(angle / 2): its matrix is off by the square root of twice that squared.
+    """
     for lane in range(LANES):
         x, y, z = tool[9, lane] - target[0, lane], tool[10, lane] - target[1, lane], tool[11, lane] - target[2, lane]
         error[0, lane] = x * x + y * y + z * z
         x, y, z = tool[2, lane] - target[3, lane], tool[5, lane] - target[4, lane], tool[8, lane] - target[5, lane]
         error[1, lane] = x * x + y * y + z * z
+    if whole:
+        for lane in range(LANES):
+            x, y, z = (
+                tool[0, lane] - target[15, lane],
+                tool[3, lane] - target[16, lane],
+                tool[6, lane] - target[17, lane],
+            )
+            error[1, lane] += x * x + y * y + z * z
+        for lane in range(LANES):
+            x, y, z = (
+                tool[1, lane] - target[18, lane],
+                tool[4, lane] - target[19, lane],
+                tool[7, lane] - target[20, lane],
+            )
+            error[1, lane] = 0.5 * (error[1, lane] + x * x + y * y + z * z)
 
 
-@njit(void(IN3, IN1, *CHAIN, float64, OUT3, FLAGS2), **OPTIONS)
-def all_solutions(T_MT, P, T_0, E, sign, offset, prismatic, tolerance, theta_out, sound):
-    """theta (m, 8, n), sound (m, 8): the eight solutions of T_MT (m, 4, 4).
+@njit(inline="always")
+def choose_block(theta, possible, n, limits, goal, arm_first, wanted, last_free, trial, found, cost):
+    """found (n, LANES): the solution within limits nearest ``goal`` (n, LANES), by the rule of ``choice.choose``."""
+    for lane in range(LANES):
+        cost[0, lane] = NOWHERE
+        cost[3, lane] = -1.0
+    for branch in range(8):
+        if not wanted[branch]:
+            continue
+        order = ARM_WEIGHT * (branch // 2) if arm_first else 0.0
+        for lane in range(LANES):
+            cost[1, lane] = order
+            cost[2, lane] = 0.0
+        for j in range(n):
+            low, high, middle = limits[j, 0], limits[j, 1], 0.5 * (limits[j, 0] + limits[j, 1])
+            row = branch * n + j
+            held = 1.0 if (last_free & (j == 5)) else 0.0
+            for lane in range(LANES):
+                near = goal[j, lane]
+                angle = held * near + (1.0 - held) * theta[row, lane]
+                close = angle + TURN * np.rint((near - angle) / TURN)
+                central = angle + TURN * np.rint((middle - angle) / TURN)
+                inside = (close >= low - LIMIT_SLACK) & (close <= high + LIMIT_SLACK)
+                turned = close if inside else central
+                kept = min(max(turned, low), high)
+                trial[j, lane] = kept
+                cost[1, lane] += (turned - near) * (turned - near)
+                cost[2, lane] = max(cost[2, lane], abs(turned - kept))
+        for lane in range(LANES):
+            fine = (possible[branch, lane] > 0.5) & (cost[2, lane] <= LIMIT_SLACK)
+            cost[1, lane] = cost[1, lane] if fine else NOWHERE
+            cost[2, lane] = 1.0 if cost[1, lane] < cost[0, lane] else 0.0
+            cost[0, lane] = min(cost[0, lane], cost[1, lane])
+            cost[3, lane] = branch if cost[2, lane] > 0.5 else cost[3, lane]
+        for j in range(n):
+            for lane in range(LANES):
+                found[j, lane] = trial[j, lane] if cost[2, lane] > 0.5 else found[j, lane]
 
-    With ``tolerance`` >= 0 (m and rad) each is checked by forward kinematics, x axes too where n is 6; otherwise sound
-    says only that the geometry has a solution.
+
+@njit(inline="always")
+def search_block(
+    target,
+    P,
+    n,
+    limits,
+    goal,
+    arm_first,
+    wanted,
+    last_free,
+    spins,
+    every,
+    arm,
+    theta,
+    possible,
+    trial,
+    found,
+    best,
+    cost,
+):
+    """best (n, LANES), with its cost, branch and spin in the cost buffer, over ``spins`` spins and their refinement.
+
+    spins 0: the pose as given. The search is that of ``choice.choose_spin``. With ``every`` nothing is chosen: the eight
+    solutions are left in theta and possible.
     """
-    m, n = len(T_MT), theta_out.shape[2]
+    for lane in range(LANES):
+        cost[COST_BEST, lane] = NOWHERE
+        cost[COST_BRANCH, lane] = -1.0
+        cost[COST_SPIN, lane] = 0.0
+        cost[7, lane] = 0.0
+    step = TURN / max(spins, 1)
+    attempts = spins + 2 * SPIN_HALVINGS if spins > 0 else 1
+    for attempt in range(attempts):
+        if spins > 0:
+            refinement = attempt - spins
+            if refinement < 0:
+                for lane in range(LANES):
+                    cost[7, lane] = attempt * step
+            else:
+                if refinement % 2 == 0:
+                    for lane in range(LANES):
+                        cost[7, lane] = cost[COST_SPIN, lane] + step * 0.5 ** (refinement // 2 + 1)
+                else:
+                    # The other side of where this refinement began, which its first half may have left.
+                    back = step * 0.5 ** (refinement // 2)
+                    for lane in range(LANES):
+                        cost[7, lane] = cost[7, lane] - back
+            for lane in range(LANES):
+                s, c = sin_cos(cost[7, lane])
+                target[21, lane] = c
+                target[22, lane] = s
+        else:
+            for lane in range(LANES):
+                target[21, lane] = 1.0
+                target[22, lane] = 0.0
+        aim_block(target, P)
+        solve_block(target, P, n, arm, theta, possible)
+        if every:
+            return
+        choose_block(theta, possible, n, limits, goal, arm_first, wanted, last_free, trial, found, cost)
+        for lane in range(LANES):
+            better = cost[0, lane] < cost[COST_BEST, lane]
+            cost[2, lane] = 1.0 if better else 0.0
+            cost[COST_BEST, lane] = cost[0, lane] if better else cost[COST_BEST, lane]
+            cost[COST_BRANCH, lane] = cost[3, lane] if better else cost[COST_BRANCH, lane]
+            cost[COST_SPIN, lane] = cost[7, lane] if better else cost[COST_SPIN, lane]
+        for j in range(n):
+            for lane in range(LANES):
+                best[j, lane] = found[j, lane] if cost[2, lane] > 0.5 else best[j, lane]
+
+
+@njit(inline="always")
+def check_block(theta, n, T_0, E, sign, offset, prismatic, target, tool, axes, error, limit, possible):
+    """Of the eight solutions those stay possible whose pose meets the target; with six axes all of it counts."""
+    for branch in range(8):
+        chain_block(tool, theta, branch * n, axes, n, T_0, E, sign, offset, prismatic)
+        misfit(tool, target, n == 6, error)
+        for lane in range(LANES):
+            close = (error[0, lane] <= limit) & (error[1, lane] <= limit)
+            possible[branch, lane] = possible[branch, lane] if close else 0.0
+
+
+@njit(
+    void(
+        IN3, IN1, *CHAIN, IN2, IN2, boolean, IN_FLAGS, boolean, int64, float64, boolean,
+        OUT3, FLAGS2, OUT2, INDEX, OUT2,
+    ),
+    **OPTIONS,
+)  # fmt: skip
+def solve(
+    T_MT, P, T_0, E, sign, offset, prismatic, limits, goals, arm_first, wanted, last_free, spins, tolerance, every,
+    theta_every, sound, theta_near, index, fit,
+):  # fmt: skip
+    """The solutions of poses T_MT (m, 4, 4): all of them, or of each pose the one nearest its goal.
+
+    With ``every``: theta_every (m, 8, n) and sound (m, 8), checked by forward kinematics to ``tolerance`` (m and rad) if
+    that is not negative. Otherwise theta_near (m, n), index (m,) (-1: none), see ``search_block``, and fit (m, 3): spin
+    rad, residual m and residual angle rad by forward kinematics (of the whole rotation if ``tolerance`` is positive, else
+    of the tool axis); goals (1 or m, n). The outputs of the other kind are not touched. One kernel for both, because
+    compiling the solution is what takes the time.
+    """
+    m, n = len(T_MT), limits.shape[0]
     target, arm = np.empty((TARGET_ROWS, LANES)), np.empty((ARM_ROWS, LANES))
     theta, possible = np.empty((8 * n, LANES)), np.empty((8, LANES))
+    trial, found, best = np.empty((n, LANES)), np.zeros((n, LANES)), np.zeros((n, LANES))
+    cost, goal = np.empty((COST_ROWS, LANES)), np.empty((n, LANES))
     tool, axes, error = np.empty((TOOL_ROWS, LANES)), np.empty((6 * n, LANES)), np.empty((2, LANES))
-    across = np.empty((3, LANES))
-    limit = tolerance * tolerance
     for start in range(0, m, LANES):
         count = min(LANES, m - start)
-        load_targets(T_MT, start, count, P, target)
-        solve_block(target, P, n, arm, theta, possible)
-        if tolerance >= 0.0:
-            for lane in range(LANES):
-                row = start + min(lane, count - 1)
-                across[0, lane] = T_MT[row, 0, 0]
-                across[1, lane] = T_MT[row, 1, 0]
-                across[2, lane] = T_MT[row, 2, 0]
-            spin = 1.0 if n == 6 else 0.0
-            for branch in range(8):
-                chain_block(tool, theta, branch * n, axes, n, T_0, E, sign, offset, prismatic)
-                misfit(tool, target, error)
-                for lane in range(LANES):
-                    x, y = tool[0, lane] - across[0, lane], tool[3, lane] - across[1, lane]
-                    z = tool[6, lane] - across[2, lane]
-                    turned = error[1, lane] + spin * (x * x + y * y + z * z)
-                    close = (error[0, lane] <= limit) & (turned <= limit)
-                    possible[branch, lane] = possible[branch, lane] if close else 0.0
+        load_targets(T_MT, start, count, target)
+        for lane in range(LANES):
+            row = start + min(lane, count - 1) if len(goals) > 1 else 0
+            for j in range(n):
+                goal[j, lane] = goals[row, j]
+        search_block(
+            target, P, n, limits, goal, arm_first, wanted, last_free, spins, every,
+            arm, theta, possible, trial, found, best, cost,
+        )  # fmt: skip
+        if every:
+            if tolerance >= 0.0:
+                check_block(
+                    theta, n, T_0, E, sign, offset, prismatic, target, tool, axes, error, tolerance**2, possible
+                )
+            for lane in range(count):
+                for branch in range(8):
+                    sound[start + lane, branch] = possible[branch, lane] > 0.5
+                    for j in range(n):
+                        theta_every[start + lane, branch, j] = theta[branch * n + j, lane]
+            continue
+        chain_block(tool, best, 0, axes, n, T_0, E, sign, offset, prismatic)
+        misfit(tool, target, tolerance > 0.0, error)
         for lane in range(count):
-            for branch in range(8):
-                sound[start + lane, branch] = possible[branch, lane] > 0.5
-                for j in range(n):
-                    theta_out[start + lane, branch, j] = theta[branch * n + j, lane]
+            index[start + lane] = int(cost[COST_BRANCH, lane])
+            fit[start + lane, 0] = cost[COST_SPIN, lane]
+            fit[start + lane, 1] = np.sqrt(error[0, lane])
+            fit[start + lane, 2] = 2.0 * np.arcsin(min(0.5 * np.sqrt(error[1, lane]), 1.0))
+            for j in range(n):
+                theta_near[start + lane, j] = best[j, lane]

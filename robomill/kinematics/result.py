@@ -115,8 +115,13 @@ def check(robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode) -> tupl
         angle = 2.0 * np.arcsin(np.minimum(np.sqrt((turned**2).sum(axis=(-1, -2)) / 8.0), 1.0))
     else:
         angle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(found[..., :3, 2] - T_MT[..., :3, 2], axis=-1), 1.0))
-    close = residual <= RESIDUAL
-    return (close if mode == "position" else close & (angle <= RESIDUAL)), residual, angle
+    return within_residual(residual, angle, mode), residual, angle
+
+
+def within_residual(residual: FloatArray, angle: FloatArray, mode: Mode) -> BoolArray:
+    """Whether an answer is near enough to be one, in what of the pose counts."""
+    close: BoolArray = residual <= RESIDUAL
+    return close if mode == "position" else close & (angle <= RESIDUAL)
 
 
 def overshoot(robot: Robot, theta: FloatArray) -> FloatArray:
