@@ -59,7 +59,7 @@ def _pieces(program: Program, i: IntArray, chord_error: float) -> IntArray:
     _, sweep, r0, r1 = arcs.sweeps(*program.geometry(i))
     counts[i] = arcs.chord_counts(sweep, np.maximum(r0, r1), chord_error)
     if program.rotary.any() or program.rotary0.any():
-        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / arcs.MAX_TILT_STEP - 1e-9)
+        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / arcs.MAX_TILT_STEP - 1e-4)
         if tilt.sum() > arcs.MAX_POINTS:
             raise GCodeError(f"Program: the turning axes would need more than {arcs.MAX_POINTS} points.")
         counts = np.maximum(counts, tilt.astype(np.int64))

@@ -54,8 +54,8 @@ class Dialect:
         """The line in LinuxCNC's words."""
         if self.name == "sinumerik":
             return _from_sinumerik(raw)
-        if self.name == "fanuc" and raw[:1] == ":":
-            return "O" + raw[1:]
+        if self.name == "fanuc":
+            return _DWELL.sub(r"\1P", "O" + raw[1:] if raw[:1] == ":" else raw)
         if self.name == "grbl" and raw.lstrip()[:1] in "$!~?":
             return _from_grbl(raw)
         return raw
@@ -106,6 +106,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     return Dialect("linuxcnc")
 
 
+_DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
 

@@ -14,10 +14,14 @@ from robomill.toolpath.gcode.fastpath import MIN_LINES, FastPath
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.program import ARC, FEED, Program
 from robomill.toolpath.gcode.source import Source, read_source
 from robomill.toolpath.gcode.tools import ToolTable, read_tool_table
 from robomill.toolpath.path import Toolpath
+from robomill.units import format_si, to_si
+
+LIKELY = (0.008, 3.0)
+"""m: parts smaller or larger than this are doubted."""
 
 
 def read_gcode(
@@ -78,7 +82,25 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
     if not machine.units_said and len(columns["line"]):
         machine.findings.add("suspicious", 0, "no G20 or G21: lengths are taken as mm")
+    _doubt_size(machine, columns)
     return Program(
         **columns, units=machine.units_said, dialect=dialect, lines=lines, dwells=machine.dwells,
         dwell_time=machine.dwell_time, findings=machine.findings.freeze(), messages=tuple(machine.messages),
     )  # fmt: skip
+
+
+def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
+    """Note a part that would have a likelier size in the other unit, 25.4 times off."""
+    at_feed = (columns["kind"] == FEED) | (columns["kind"] == ARC)
+    if not at_feed.any():
+        return
+    ends = columns["end"][at_feed]
+    size = float((ends.max(axis=0) - ends.min(axis=0)).max())
+    inch = to_si(1.0, "in") / to_si(1.0, "mm")
+    shown = format_si(size, "mm", 1)
+    if machine.units_said != "in" and 0.0 < size < LIKELY[0]:
+        other = format_si(size * inch, "mm", 1)
+        machine.findings.add("suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}")
+    elif size > LIKELY[1]:
+        other = format_si(size / inch, "mm", 1)
+        machine.findings.add("suspicious", 0, f"the part is {shown} across; a unit taken wrongly would make it {other}")

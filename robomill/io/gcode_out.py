@@ -1,0 +1,113 @@
+"""A Toolpath as a G-code program: line numbers, and words only where something changes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import ToolpathError
+from robomill.toolpath.path import Toolpath
+from robomill.units import from_si
+
+DECIMALS = {"mm": 6, "in": 7}
+"""Digits after the point of lengths, so that a program says where to go to about a nanometre."""
+
+_FEED_DECIMALS = 4
+_ANGLE_DECIMALS = 6
+
+
+def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: str = "") -> str:
+    """The program of a path in {W}, in ``units`` ``"mm"`` (G21) or ``"in"`` (G20), with N in steps of ``numbers``.
+
+    Read again, it gives the same points, feeds and cutting moves; a start other than zero becomes a first rapid.
+    A tilted tool axis becomes A and B: k = (sin B, -sin A cos B, cos A cos B). Raises ToolpathError for a cut
+    without feed or an unknown unit.
+    """
+    if units not in DECIMALS:
+        raise ToolpathError(f"G-code: the unit is {units!r}; expected 'mm' or 'in'.")
+    slow = np.flatnonzero(path.cutting & ~(path.v_f > 0))
+    if len(slow):
+        raise ToolpathError(f"G-code: point {slow[0]} is cut with a feed of 0; give the path a feed above 0.")
+    writer = _Writer(units, numbers)
+    if title:
+        writer.raw("(" + "".join(c for c in title if c.isprintable() and c not in "();") + ")")
+    writer.line(["G21" if units == "mm" else "G20", "G90", "G94", "G17"])
+    lengths = np.round(from_si(path.p, units), DECIMALS[units])
+    angles = np.round(_angles(path.k), _ANGLE_DECIMALS)
+    tilted = bool(np.abs(angles).max() > 0)
+    feeds = np.round(from_si(path.v_f, f"{units}/min"), _FEED_DECIMALS)
+    speeds = np.round(from_si(path.n_s, "1/min"), _FEED_DECIMALS)
+    for i in range(len(path)):
+        if i == 0 and not lengths[0].any() and not angles[0].any():
+            writer.spindle(int(path.tool[0]), float(speeds[0]))
+            continue
+        writer.spindle(int(path.tool[i]), float(speeds[i]))
+        position = [float(v) for v in lengths[i]] + ([float(v) for v in angles[i]] if tilted else [])
+        writer.move(position, bool(path.cutting[i]), float(feeds[i]))
+    writer.line(["M5"] if writer.speed else [])
+    writer.line(["M2"])
+    return "\n".join(writer.lines) + "\n"
+
+
+def _angles(k: FloatArray) -> FloatArray:
+    """(m, 2) deg: A and B of tool axes (m, 3); A goes on smoothly, and stays where the axis lies along X."""
+    b = np.degrees(np.arcsin(np.clip(k[:, 0], -1.0, 1.0)))
+    free = np.hypot(k[:, 1], k[:, 2]) < 1e-9
+    a = np.where(free, np.nan, np.degrees(np.arctan2(-k[:, 1], k[:, 2])))
+    known = np.maximum.accumulate(np.where(free, 0, np.arange(len(a))))
+    a = np.nan_to_num(a[known])
+    return np.stack([np.unwrap(a, period=360.0), b], axis=1)
+
+
+class _Writer:
+    """Remembers what the machine knows, and writes only what is new to it."""
+
+    def __init__(self, units: str, step: int) -> None:
+        self.digits = DECIMALS[units]
+        self.step = step
+        self.lines: list[str] = []
+        self.count = 0
+        self.at: list[float] = [0.0] * 5
+        self.motion = ""
+        self.feed = 0.0
+        self.speed = 0.0
+        self.tool = 0
+
+    def raw(self, text: str) -> None:
+        self.lines.append(text)
+
+    def line(self, words: list[str]) -> None:
+        if words:
+            self.count += 1
+            self.lines.append(" ".join(([f"N{self.count * self.step}"] if self.step else []) + words))
+
+    def spindle(self, tool: int, speed: float) -> None:
+        """Change the tool and the spindle speed where they change."""
+        if tool != self.tool:
+            self.line([f"T{tool}", "M6"])
+            self.tool, self.speed = tool, 0.0
+        if speed != self.speed:
+            self.line([f"S{_number(speed, _FEED_DECIMALS)}", "M3"] if speed else ["M5"])
+            self.speed = speed
+
+    def move(self, position: list[float], cutting: bool, feed: float) -> None:
+        """G0 or G1 to a position; the words that do not change are left out."""
+        motion = "G1" if cutting else "G0"
+        digits = [self.digits] * 3 + [_ANGLE_DECIMALS] * 2
+        words = [
+            letter + _number(value, d)
+            for letter, value, before, d in zip("XYZAB", position, self.at, digits)
+            if value != before
+        ]
+        if motion != self.motion or not words:
+            words.insert(0, motion)
+        if cutting and feed != self.feed:
+            words.append("F" + _number(feed, _FEED_DECIMALS))
+            self.feed = feed
+        self.motion, self.at = motion, position + self.at[len(position) :]
+        self.line(words)
+
+
+def _number(value: float, digits: int) -> str:
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
+    return "0" if text in ("-0", "") else text
