@@ -107,7 +107,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     if not line:
         return ""
     path = setup.toolpath
-    name = "Line" if isinstance(setup.source, GCodeSource) else "Row"
+    name = {"GCodeSource": "Line", "LinesSource": "Row"}.get(type(setup.source).__name__, "Shape")
     text = ""
     if isinstance(setup.source, GCodeSource):
         lines = program_lines(setup.source.text)
@@ -120,7 +120,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     at_feed = i[path.cutting[i]]
     moves = f"{counted(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
     if len(at_feed):
-        moves += f", {_range(path.v_f[at_feed], 'mm/min')} ({_range(path.v_f[at_feed], 'mm/s')})"
+        moves += f" at {_range(path.v_f[at_feed], 'mm/min')} ({_range(path.v_f[at_feed], 'mm/s')})"
     else:
         moves += " as a rapid"
     words.append(moves)
@@ -131,7 +131,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
         if of_line.any():
             largest = float(result.deviation[of_line].max())
             words.append(f"deviation up to {format_si(largest, unit, 3 if unit == 'mm' else 4)}")
-    return ". ".join(words) + "."
+    return f"{words[0]} — {'; '.join(words[1:])}."
 
 
 def support_table() -> None:

@@ -138,9 +138,7 @@ def _accept(source: GCodeSource) -> None:
 
 
 def _refuse(source: GCodeSource, exc: RobomillError) -> None:
-    line = int(getattr(exc, "line", 0))
-    st.session_state[REFUSED] = Refused(source, str(exc), line)
-    select_line(line)
+    st.session_state[REFUSED] = Refused(source, str(exc), int(getattr(exc, "line", 0)))
 
 
 def _show_refused(refused: Refused, dark: bool) -> None:
@@ -151,7 +149,7 @@ def _show_refused(refused: Refused, dark: bool) -> None:
                   disabled=len(refused.source.text) > EDITABLE_CHARACTERS)  # fmt: skip
         st.button("Leave it", icon=":material/close:", key="refused.leave", on_click=_leave, type="tertiary")
     level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
-    program_view(refused.source.text, level, dark)
+    program_view(refused.source.text, level, dark, fixed=refused.line)
 
 
 def _mend(refused: Refused) -> None:
@@ -162,7 +160,6 @@ def _mend(refused: Refused) -> None:
 
 def _leave() -> None:
     st.session_state.pop(REFUSED, None)
-    select_line(0)
 
 
 def _take_text(text: str) -> None:

@@ -29,7 +29,7 @@ function build(root, data, choose) {
     });
     if (found) {
       row.style.setProperty("--tone", data.tones[found.level]);
-      mark.title = found.words;
+      row.title = found.words;
       cell("said", found.words);
     }
     rows.appendChild(row);

@@ -1,4 +1,4 @@
-"""A program with line numbers and findings in place; the line that is pointed at is shared by code, list and picture."""
+"""A program with line numbers and findings in place; the line pointed at is shared by code, list and picture."""
 
 from __future__ import annotations
 
@@ -48,10 +48,15 @@ def program_lines(text: str) -> tuple[str, ...]:
     return tuple(lines[:-1] if lines and not lines[-1] else lines)
 
 
-def program_view(text: str, findings: Sequence[Finding], dark: bool, height: int = 420) -> None:
-    """The program's lines around the selected one; a click selects a line."""
+def program_view(
+    text: str, findings: Sequence[Finding], dark: bool, height: int = 420, *, fixed: int | None = None
+) -> None:
+    """The program's lines around the selected one; a click selects a line.
+
+    ``fixed`` shows a program that is not in force, around that line; clicks then point at nothing.
+    """
     lines = program_lines(text)
-    selected = min(selected_line(), len(lines))
+    selected = min(selected_line() if fixed is None else fixed, len(lines))
     first, shown = window(lines, selected)
     marks: dict[str, dict[str, str]] = {}
     for f in findings:
@@ -63,7 +68,10 @@ def program_view(text: str, findings: Sequence[Finding], dark: bool, height: int
         "lines": shown, "first": first, "total": len(lines), "marks": marks, "selected": selected, "height": height,
         "tones": tones, "rev": digest((shown, first, marks, dark))[:16],
     }  # fmt: skip
-    _component(key=KEY, data=data, on_line_change=_take)
+    if fixed is None:
+        _component(key=KEY, data=data, on_line_change=_take)
+    else:
+        _component(key=f"{KEY}.fixed", data=data, on_line_change=lambda: None)
 
 
 def window(lines: Sequence[str], selected: int) -> tuple[int, list[str]]:

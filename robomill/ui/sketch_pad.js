@@ -479,12 +479,12 @@ class Pad {
       }
       node("path", { d, class: "hit", "data-i": i }, into);
     });
-    const many = this.elements.reduce((n, e) => n + e.points.length, 0) > MAX_KNOBS;
+    const count = this.elements.reduce((n, e) => n + e.points.length, 0), many = count > MAX_KNOBS, crowd = count > 40;
     this.elements.forEach((e, i) => {
       if (!many || (i === this.sel && e.points.length <= MAX_KNOBS)) for (const { at, k } of knobs(e)) {
         const [u, v] = this.toScreen(at), held = this.drag && this.drag.kind === "knob" && this.drag.i === i && this.drag.k === k;
         const begins = k === (e.shape === "circle" ? 1 : 0);
-        node("circle", { cx: u, cy: v, r: begins ? 5 : 4.4, class: `knob${begins ? " start" : ""}${held ? " on" : ""}`, "data-i": i }, into);
+        node("circle", { cx: u, cy: v, r: (begins ? 5 : 4.4) * (crowd ? 0.72 : 1), class: `knob${begins ? " start" : ""}${held ? " on" : ""}`, "data-i": i }, into);
       }
       if (this.elements.length <= 60) {
         const [u, v] = this.toScreen(e.shape === "circle" ? e.points[1] : e.points[0]);

@@ -15,14 +15,18 @@ from robomill.ui import cache, parts, state
 from robomill.ui.path_details import counted, duration
 from robomill.ui.path_reach import PathReach
 from robomill.ui.program_view import select_line, selected_line
+from robomill.ui.sources import kind_of
 from robomill.units import format_si, from_si, unit_label
-from robomill.viz.toolpath import PathPicture, short
+from robomill.viz.path_picture import PathPicture, short
 
 AUTO_SAMPLES = 60_000
 ASKED = "toolpath.asked"
 COLOUR, SHAPE = "toolpath.colour", "toolpath.shape"
 COLOURS = {"reach": "Reach", "deviation": "Deviation", "limits": "Room to limits", "feed": "Feed", "depth": "Height"}
 SHAPES = {"plan": "From above", "turn": "Turnable", "arm": "With the arm"}
+
+NOUNS = {"program": "cutting line", "lines": "cut", "sketch": "shape"}
+PLACES = {"program": "line", "lines": "row", "sketch": "shape"}
 
 
 def samples(setup: SimulationSetup) -> int:
@@ -52,14 +56,15 @@ def ask_button(setup: SimulationSetup) -> None:
         parts.note(f"Not simulated yet: {words}. Until then the path is coloured by reach.")
 
 
-def sentence(path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str) -> str:
+def sentence(
+    path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str
+) -> str:
     """What was read, whether it can be reached, and how far off it is."""
     if path is None:
         return "There is no path yet."
     low, high = path.extents
     size = " × ".join(format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in high - low)
-    cuts = int(path.cutting.sum())
-    text = f"{counted(cuts, 'cut')} within {size} {unit_label(unit)}"
+    text = f"{counted(len(np.unique(path.block[path.cutting])), NOUNS[noun])} within {size} {unit_label(unit)}"
     if reach is None:
         return text + "."
     lost = reach.missed
@@ -69,10 +74,12 @@ def sentence(path: Toolpath | None, reach: PathReach | None, result: SimulationR
     if result is None or result.worst < 0:
         return f"{text}, all in reach."
     worst = format_si(result.max_deviation, unit, 2 if unit == "mm" else 4)
-    return f"{text}, all in reach; at most {worst} off, at line {result.worst_block}."
+    return f"{text}, all in reach; at most {worst} off, at {PLACES[noun]} {result.worst_block:,}."
 
 
-def tiles(path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str) -> None:
+def tiles(
+    path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str
+) -> None:
     """Length and time, reach, deviation, findings."""
     if path is None:
         return
@@ -80,7 +87,7 @@ def tiles(path: Toolpath | None, reach: PathReach | None, result: SimulationResu
     found = [
         parts.Tile(
             "At feed", format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
-            f"{duration(float(path.t[-1]))} · {counted(cuts, 'cut')}, {counted(moves - cuts, 'rapid')}",
+            f"{duration(float(path.t[-1]))} · {counted(moves, 'move')}, {moves - cuts:,} of them rapid",
         )
     ]  # fmt: skip
     if reach is None:
@@ -90,10 +97,16 @@ def tiles(path: Toolpath | None, reach: PathReach | None, result: SimulationResu
         blocks = np.unique(reach.path.block[lost]).tolist()
         share = 1.0 - lost.sum() / max(int(reach.path.cutting.sum()), 1)
         named = ", ".join(f"{b:,}" for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
-        words = f"out of reach at line {named}" if blocks else "of the cut, within the joint limits"
+        words = f"out of reach at {PLACES[noun]} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
         found.append(parts.Tile("Reach", f"{np.floor(share * 100):.0f} %", words, tone="out" if blocks else "ok"))
-    found.append(_deviation_tile(result, unit))
+    found.append(_deviation_tile(result, unit, noun))
+    if noun != "program":
+        rows = np.unique(path.block[path.cutting])
+        tools = "each cut in its order" if len(rows) > 1 else "one cut"
+        found.append(parts.Tile({"sketch": "Shapes", "lines": "Rows"}[noun], f"{len(rows):,}", tools))
+        parts.tiles(found)
+        return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in path.findings)
     words = f"{alarming:,} to look at" if alarming else "nothing to worry about" if count else "every word understood"
@@ -101,7 +114,7 @@ def tiles(path: Toolpath | None, reach: PathReach | None, result: SimulationResu
     parts.tiles(found)
 
 
-def _deviation_tile(result: SimulationResult | None, unit: str) -> parts.Tile:
+def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> parts.Tile:
     if result is None:
         return parts.Tile("Max deviation", "–", "not simulated yet")
     if result.worst < 0:
@@ -109,7 +122,8 @@ def _deviation_tile(result: SimulationResult | None, unit: str) -> parts.Tile:
     tone = {"ok": "ok", "tight": "tight"}.get(result.verdict.level, "out")
     return parts.Tile(
         "Max deviation", format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
-        f"line {result.worst_block:,} · {result.verdict.share:.0%} of the tolerance", tone=tone, kind="computed",
+        f"{PLACES[noun]} {result.worst_block:,} · {result.verdict.share:.0%} of the tolerance",
+        tone=tone, kind="computed",
     )  # fmt: skip
 
 
@@ -158,6 +172,7 @@ def picture(
     return PathPicture(
         points=from_si(path.p, unit), cutting=path.cutting, block=path.block, length_unit=unit_label(unit),
         reached=use.reached if use is not None else reach.reached, selected=selected_line(),
+        noun=PLACES[kind_of(setup.source)],
         stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)), total=len(setup.toolpath) - 1, **more,
     )  # fmt: skip
 
@@ -184,3 +199,21 @@ def path_columns(reach: PathReach, result: SimulationResult | None) -> dict[str,
     if result is not None and len(result.path) == len(path):
         columns["deviation_mm"] = from_si(result.deviation, "mm")
     return columns
+
+
+def stock_note(setup: SimulationSetup) -> None:
+    """Where a stated stock does not hold the path, say so and offer the stock that does."""
+    if setup.stock is None:
+        return
+    low, high = setup.toolpath.extents
+    room = 1e-6 + np.array([setup.cutter.radius, setup.cutter.radius, np.inf])
+    beside = np.maximum(setup.stock.lower - low - room, high - setup.stock.upper - room)
+    below = float(setup.stock.lower[2] - low[2])
+    if max(float(beside[:2].max()), below) <= 1e-6:
+        return
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        parts.note("The path leaves the stock that is stated: what lies outside cuts air.")
+        st.button(
+            "Let the stock follow the path", key="stock.follow", icon=":material/fit_screen:", type="tertiary",
+            on_click=lambda: state.change(stock=None),
+        )  # fmt: skip

@@ -1,9 +1,7 @@
-"""The whole toolpath as a picture, from above or turnable: coloured by a quantity, thinned for the screen in words."""
+"""The whole toolpath as a picture, from above or turnable: coloured by a quantity, with the line that is pointed at."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,88 +9,12 @@ import plotly.graph_objects as go
 from plotly.colors import sample_colorscale
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.viz.path_picture import PathPicture
 from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, rgba
 
-BUDGET = 20_000
 VECTOR_LINES = 5_000
 MAX_PICKS = 3_000
 CLASSES = 16
-
-
-@dataclass(frozen=True, eq=False)
-class PathPicture:
-    """A path in {W} and display units: points (m, 3), move i ends at point i; cutting, reached (m,) bool; block (m,).
-
-    value (m,) colours the cuts (None: reached or not), on 0 to ``limit`` where one is given; above it is marked.
-    ``selected`` is the source line that is pointed at (0: none), ``worst`` the index of the largest value (-1: none).
-    """
-
-    points: FloatArray
-    cutting: BoolArray
-    reached: BoolArray
-    block: IntArray
-    value: FloatArray | None = None
-    title: str = ""
-    unit: str = ""
-    digits: int = 3
-    limit: float | None = None
-    length_unit: str = "mm"
-    stock: tuple[FloatArray, FloatArray] | None = None
-    selected: int = 0
-    worst: int = -1
-    total: int = 0
-
-    @cached_property
-    def kept(self) -> IntArray:
-        """Indices of the points that are drawn."""
-        must = [self.worst] if self.worst >= 0 else []
-        return decimate(self.points, self.cutting, self.reached, BUDGET, must)
-
-    @property
-    def caption(self) -> str:
-        """How much of the path is drawn, in words; "" where it is all of it."""
-        segments = max(self.total, len(self.points) - 1)
-        drawn = len(self.kept) - 1
-        if drawn >= len(self.points) - 1:
-            return ""
-        return f"Showing {short(drawn)} of {short(segments)} segments; results use all of them."
-
-
-def short(count: int) -> str:
-    """A count as people say it: 812k, 1.2M."""
-    if count < 10_000:
-        return f"{count:,}"
-    return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
-
-
-def decimate(
-    points: FloatArray, cutting: BoolArray, reached: BoolArray, budget: int, must: list[int] | None = None
-) -> IntArray:
-    """Indices of at most about ``budget`` points (m, 3) that look like all of them.
-
-    A point is left out only while the path stays inside one cell of a grid that is as fine as the budget allows;
-    where cutting or reach changes both ends are kept, and so are the indices in ``must``.
-    """
-    m = len(points)
-    if m <= budget:
-        return np.arange(m)
-    corner = np.zeros(m, dtype=bool)
-    corner[[0, m - 1, *(must or [])]] = True
-    for flag in (cutting, reached):
-        change = np.flatnonzero(flag[1:] != flag[:-1])
-        # A path that changes all the time has no ends worth keeping before its shape.
-        if len(change) < budget // 4:
-            corner[change] = corner[change + 1] = True
-    low, high = points.min(axis=0), points.max(axis=0)
-    cell = max(float((high - low).max()), 1e-12) / 4000.0
-    while True:
-        where = np.floor((points - low) / cell).astype(np.int64)
-        moved = np.ones(m, dtype=bool)
-        moved[1:] = (where[1:] != where[:-1]).any(axis=1)
-        kept = moved | corner
-        if int(kept.sum()) <= budget:
-            return np.flatnonzero(kept)
-        cell *= 1.5
 
 
 def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revision: str = "path-plan") -> go.Figure:
@@ -120,6 +42,7 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
             hoverinfo="skip", showlegend=False,
         )
     )  # fmt: skip
+    _halo(fig, picture, dark)
     for name, colour, chosen, legend in _classes(picture, dark):
         fig.add_trace(
             make(
@@ -157,39 +80,35 @@ def turnable_picture(
         **_lines(picture, ends, rapid, (0, 1, 2)), mode="lines", name="rapid", hoverinfo="skip",
         line={"color": p.muted, "width": 1.5, "dash": "dot"},
     )  # fmt: skip
-    for name, colour, chosen, legend in _classes(picture, dark):
-        fig.add_scatter3d(
-            **_lines(picture, ends, chosen, (0, 1, 2)), mode="lines", name=name, showlegend=legend, hoverinfo="skip",
-            line={"color": colour, "width": 5},
-        )  # fmt: skip
     here = _selected(picture)
     if len(here):
         q = picture.points[here]
         fig.add_scatter3d(
             x=q[:, 0], y=q[:, 1], z=q[:, 2], mode="lines", showlegend=False, hoverinfo="skip",
-            line={"color": p.warm, "width": 9},
+            line={"color": rgba(p.text, 0.7), "width": 14},
+        )  # fmt: skip
+    for name, colour, chosen, legend in _classes(picture, dark):
+        fig.add_scatter3d(
+            **_lines(picture, ends, chosen, (0, 1, 2)), mode="lines", name=name, showlegend=legend, hoverinfo="skip",
+            line={"color": colour, "width": 5},
         )  # fmt: skip
     if picture.value is not None:
-        fig.add_scatter3d(
-            x=[None],
-            y=[None],
-            z=[None],
-            mode="markers",
-            showlegend=False,
-            hoverinfo="skip",
-            marker=_scale(picture, dark),
-        )
+        bar = _scale(picture, dark)
+        fig.add_scatter3d(x=[None], y=[None], z=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
     largest = float(size.max())
     times = float(np.clip(round(0.22 * largest / max(float(size[2]), 1e-9)), 1, 50))
-    x, y, z = (max(float(v), 0.12) for v in size * [1.0, 1.0, times] / largest)
+    x, y, z = (1.9 * max(float(v), 0.1) for v in size * [1.0, 1.0, times] / largest)
     unit = picture.length_unit
     fig.update_layout(
         scene={
             "xaxis": axis3d(f"x_W, {unit}", dark=dark), "yaxis": axis3d(f"y_W, {unit}", dark=dark),
             "zaxis": axis3d(f"z_W, {unit}", dark=dark), "aspectmode": "manual",
             "aspectratio": {"x": x, "y": y, "z": z},
-            "camera": {"projection": {"type": "orthographic"}, "eye": {"x": -0.9, "y": -1.5, "z": 0.95}},
+            "camera": {
+                "projection": {"type": "orthographic"}, "eye": {"x": -0.75, "y": -1.25, "z": 0.95},
+                "center": {"x": 0.0, "y": 0.0, "z": -0.1},
+            },
             "uirevision": revision,
         }
     )  # fmt: skip
@@ -270,20 +189,25 @@ def _selected(picture: PathPicture) -> IntArray:
     return np.append(max(int(i[0]) - 1, 0), i)
 
 
-def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
-    """Where the path begins, where the value is largest, and the line that is pointed at."""
-    p = palette(dark)
+def _halo(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+    """The line that is pointed at, as a border around whatever colour it has."""
     here = _selected(picture)
-    if len(here):
-        q = picture.points[here]
-        fig.add_scatter(
-            x=q[:, 0], y=q[:, 1], mode="lines", name=f"line {picture.selected}", hoverinfo="skip",
-            line={"color": p.warm, "width": 5},
-        )  # fmt: skip
-        fig.add_scatter(
-            x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
-            marker={"size": 13, "color": rgba(p.warm, 0.25), "line": {"color": p.warm, "width": 2.2}},
-        )  # fmt: skip
+    if len(here) == 0:
+        return
+    p, q = palette(dark), picture.points[here]
+    fig.add_scatter(
+        x=q[:, 0], y=q[:, 1], mode="lines", name=f"{picture.noun} {picture.selected}", hoverinfo="skip",
+        line={"color": p.text, "width": 8},
+    )  # fmt: skip
+    fig.add_scatter(
+        x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+        marker={"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, "width": 2}},
+    )  # fmt: skip
+
+
+def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+    """Where the path begins and where the value is largest."""
+    p = palette(dark)
     start = picture.points[0]
     fig.add_scatter(
         x=[start[0]], y=[start[1]], mode="markers", name="start", hoverinfo="skip",
@@ -305,7 +229,9 @@ def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     """Faint points to hover over and to click: a click on a bare line tells nobody anything."""
     kept = picture.kept[:: max(1, len(picture.kept) // MAX_PICKS)]
     q, block = picture.points[kept], picture.block[kept]
-    words = [f"line {b}" + ("" if c else ", rapid") for b, c in zip(block, picture.cutting[kept], strict=True)]
+    words = [
+        f"{picture.noun} {b}" + ("" if c else ", rapid") for b, c in zip(block, picture.cutting[kept], strict=True)
+    ]
     hover = "%{text}<br>x %{x:.2f}, y %{y:.2f}, z %{customdata[1]:.2f} " + picture.length_unit
     data: list[FloatArray] = [block.astype(float), q[:, 2]]
     if picture.value is not None:

@@ -1,0 +1,90 @@
+"""What a picture of a toolpath needs, and how much of a long path is drawn: thinned by shape, and said in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+
+BUDGET = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class PathPicture:
+    """A path in {W} and display units: points (m, 3), move i ends at point i; cutting, reached (m,) bool; block (m,).
+
+    value (m,) colours the cuts (None: reached or not), on 0 to ``limit`` where one is given; above it is marked.
+    ``selected`` is the source line (``noun``) that is pointed at (0: none), ``worst`` the index of the largest value
+    (-1: none).
+    """
+
+    points: FloatArray
+    cutting: BoolArray
+    reached: BoolArray
+    block: IntArray
+    value: FloatArray | None = None
+    title: str = ""
+    unit: str = ""
+    digits: int = 3
+    limit: float | None = None
+    length_unit: str = "mm"
+    stock: tuple[FloatArray, FloatArray] | None = None
+    selected: int = 0
+    noun: str = "line"
+    worst: int = -1
+    total: int = 0
+
+    @cached_property
+    def kept(self) -> IntArray:
+        """Indices of the points that are drawn."""
+        must = [self.worst] if self.worst >= 0 else []
+        return decimate(self.points, self.cutting, self.reached, BUDGET, must)
+
+    @property
+    def caption(self) -> str:
+        """How much of the path is drawn, in words; "" where it is all of it."""
+        segments = max(self.total, len(self.points) - 1)
+        drawn = len(self.kept) - 1
+        if drawn >= len(self.points) - 1:
+            return ""
+        return f"Showing {short(drawn)} of {short(segments)} segments; results use all of them."
+
+
+def short(count: int) -> str:
+    """A count as people say it: 812k, 1.2M."""
+    if count < 10_000:
+        return f"{count:,}"
+    return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
+
+
+def decimate(
+    points: FloatArray, cutting: BoolArray, reached: BoolArray, budget: int, must: list[int] | None = None
+) -> IntArray:
+    """Indices of at most about ``budget`` points (m, 3) that look like all of them.
+
+    A point is left out only while the path stays inside one cell of a grid that is as fine as the budget allows;
+    where cutting or reach changes both ends are kept, and so are the indices in ``must``.
+    """
+    m = len(points)
+    if m <= budget:
+        return np.arange(m)
+    corner = np.zeros(m, dtype=bool)
+    corner[[0, m - 1, *(must or [])]] = True
+    for flag in (cutting, reached):
+        change = np.flatnonzero(flag[1:] != flag[:-1])
+        # A path that changes all the time has no ends worth keeping before its shape.
+        if len(change) < budget // 4:
+            corner[change] = corner[change + 1] = True
+    low, high = points.min(axis=0), points.max(axis=0)
+    cell = max(float((high - low).max()), 1e-12) / 4000.0
+    while True:
+        where = np.floor((points - low) / cell).astype(np.int64)
+        moved = np.ones(m, dtype=bool)
+        moved[1:] = (where[1:] != where[:-1]).any(axis=1)
+        kept = moved | corner
+        if int(kept.sum()) <= budget:
+            return np.flatnonzero(kept)
+        cell *= 1.5
