@@ -1,12 +1,18 @@
 """The compiled path, loaded in the background so that nothing waits for it: until then NumPy does the work.
 
-A long-running program calls ``warm_up()`` when it starts. Without that, kernels are loaded only for work that would
-take NumPy longer than loading them.
+A long-running program calls ``warm_up()`` when it starts: the kernels are compiled in a process of their own (compiling
+would hold this one's interpreter lock) and then loaded from the cache on disk. Without that, kernels are loaded only
+for work that would take NumPy longer than loading them. ROBOMILL_NUMPY=1 stays with NumPy.
 """
 
 from __future__ import annotations
 
+import hashlib
+import os
+import subprocess
+import sys
 import threading
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -15,6 +21,7 @@ Engine = Literal["auto", "compiled", "numpy"]
 
 # Work that would take NumPy longer than this waits for the kernels (half a second from the cache on disk).
 WORTH_WAITING_SECONDS = 3.0
+SOURCES = ("kernels.py", "engagement_kernels.py")
 
 
 class Kernels(NamedTuple):
@@ -29,19 +36,34 @@ _ready: Kernels | None = None
 _failed: BaseException | None = None
 _thread: threading.Thread | None = None
 _lock = threading.Lock()
+_build_lock = threading.Lock()
 
 
 def warm_up(wait: bool = False) -> bool:
-    """Load (the first time on a machine: compile) the kernels in a background thread; True once they are ready."""
+    """Get the kernels ready in the background; with ``wait``, here and now. True once they are.
+
+    Safe to call often and from any thread. Where there is no compiler or no cache, NumPy goes on serving.
+    """
     global _thread
+    if os.environ.get("ROBOMILL_NUMPY"):
+        return False
+    if wait:
+        _build()
+        return _ready is not None
     with _lock:
         if _ready is None and _failed is None and _thread is None:
-            _thread = threading.Thread(target=_load, name="surface-kernels", daemon=True)
+            _thread = threading.Thread(target=_build_apart, name="surface-kernels", daemon=True)
             _thread.start()
-        thread = _thread
-    if wait and thread is not None:
-        thread.join()
     return _ready is not None
+
+
+def status() -> str:
+    """ "compiled", "compiling", "numpy", or why the kernels cannot be had."""
+    if _ready is not None:
+        return "compiled"
+    if _failed is not None:
+        return f"compiled kernels are not available ({type(_failed).__name__}: {_failed})"
+    return "compiling" if _thread is not None and _thread.is_alive() else "numpy"
 
 
 def kernels(engine: Engine = "auto", numpy_seconds: float = 0.0) -> Kernels | None:
@@ -55,16 +77,62 @@ def kernels(engine: Engine = "auto", numpy_seconds: float = 0.0) -> Kernels | No
     return _ready
 
 
-def _load() -> None:
+def _build_apart() -> None:
+    """Fill the cache from another process, then load from it."""
+    try:
+        folder = cache_folder()
+        if folder is None or not any(folder.rglob("*.nbi")):
+            command = f"import sys; sys.path[:0] = {sys.path!r}; from robomill.surface import compiler as c; c._build()"
+            subprocess.run([sys.executable, "-c", command], check=False, capture_output=True, timeout=600)
+    except (OSError, subprocess.SubprocessError):
+        pass  # no second process to be had: compile in this one
+    _build()
+
+
+def _build() -> None:
+    """Load the kernels, compiling what the cache does not hold."""
     global _ready, _failed
+    with _build_lock:
+        if _ready is not None or _failed is not None:
+            return
+        try:
+            found = _load()
+            _exercise(found)
+            _ready = found
+        except Exception as exc:
+            _failed = exc
+
+
+def _load() -> Kernels:
+    import numba
+
+    config: Any = numba.config
+    before, folder = config.CACHE_DIR, cache_folder()
+    config.CACHE_DIR = before if before or folder is None else str(folder)
     try:
         from robomill.surface import engagement_kernels, kernels
+    finally:
+        config.CACHE_DIR = before
+    return Kernels(kernels.cut_moves, kernels.cut_tilted, engagement_kernels.engage_moves)
 
-        found = Kernels(kernels.cut_moves, kernels.cut_tilted, engagement_kernels.engage_moves)
-        _exercise(found)
-        _ready = found
-    except Exception as exc:
-        _failed = exc
+
+def cache_folder() -> Path | None:
+    """Where compiled code is kept, or None for the compiler's own choice.
+
+    The name holds a digest of all kernel sources: the compiler by itself looks only at a function's own file, and
+    would keep running old code of the functions it calls.
+    """
+    here = Path(__file__).parent
+    key = hashlib.sha256(b"".join((here / name).read_bytes() for name in SOURCES)).hexdigest()[:12]
+    for root in (here / "__pycache__", Path.home() / ".cache" / "robomill"):
+        folder = root / f"kernels-{key}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(folder, os.W_OK):
+            return folder
+    return None
 
 
 def _exercise(module: Kernels) -> None:

@@ -39,8 +39,24 @@ def test_a_compiler_that_fails_leaves_numpy(monkeypatch):
     monkeypatch.setattr(compiler, "_exercise", broken)
     assert not compiler.warm_up(wait=True)
     assert compiler.kernels("auto", 100.0) is None
+    assert "no place for compiled code" in compiler.status()
     with pytest.raises(RuntimeError, match="could not be loaded"):
         compiler.kernels("compiled")
+
+
+def test_numpy_can_be_insisted_on(monkeypatch):
+    monkeypatch.setenv("ROBOMILL_NUMPY", "1")
+    monkeypatch.setattr(compiler, "_ready", None)
+    assert not compiler.warm_up(wait=True)
+    assert compiler.kernels("auto", 100.0) is None
+    assert compiler.status() in ("numpy", "compiling")
+
+
+def test_the_cache_knows_every_source(monkeypatch, tmp_path):
+    folder = compiler.cache_folder()
+    assert folder is not None
+    monkeypatch.setattr(compiler, "SOURCES", ("kernels.py",))
+    assert compiler.cache_folder() != folder
 
 
 def test_axes_are_checked():
