@@ -7,15 +7,20 @@ approximation for the arc tangent (Moshier, 1989).
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
+
+# Inlined by LLVM, not by numba: the arithmetic ends up in one loop all the same, and compiling takes half the time.
+INLINE: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "fastmath": {"contract"}}
 
 TWO_OVER_PI = 0.63661977236758134308
 PI_2_HIGH = 1.57079632673412561417  # 33 bits, so that a small multiple of it is exact
 PI_2_LOW = 6.07710050650619224932e-11
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def sin_cos(x: float) -> tuple[float, float]:
     """(sin x, cos x)."""
     k = np.floor(x * TWO_OVER_PI + 0.5)
@@ -44,7 +49,7 @@ def sin_cos(x: float) -> tuple[float, float]:
     return sine, cosine
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def arc_tangent(y: float, x: float) -> float:
     """atan2(y, x); 0 at the origin."""
     ax, ay = abs(x), abs(y)

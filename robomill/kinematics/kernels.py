@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numba.types import Array, boolean, float64, int64, void
 
-from robomill.kinematics.kernel_math import sin_cos
+from robomill.kinematics.kernel_math import INLINE, sin_cos
 
 LANES = 64
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
@@ -33,7 +33,7 @@ CHAIN = (IN2, IN3, IN1, IN1, IN_FLAGS)
 TOOL_ROWS = 15
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):
     """Run the chain over rows first .. first + n of theta: fills tool (15, LANES) and axes (6 n, LANES).
 
@@ -83,7 +83,7 @@ def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):
             tool[11, lane] = x * c03 + y * c13 + z * c23 + tool[11, lane]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def jacobian_block(tool, axes, n, sign, prismatic, J):
     """J (6 n, LANES), six rows a joint, from the buffers of ``chain_block``."""
     for i in range(n):
@@ -104,7 +104,7 @@ def jacobian_block(tool, axes, n, sign, prismatic, J):
             J[k + 5, lane] = turn * zz
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def load_rows(theta, start, count, block):
     """Rows start .. start + count of theta (m, n) into block (n, LANES); spare lanes repeat the last row."""
     for lane in range(LANES):
@@ -113,7 +113,7 @@ def load_rows(theta, start, count, block):
             block[i, lane] = theta[row, i]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def store_pose(tool, start, count, T_MT):
     """The tool buffer into T_MT[start : start + count]."""
     for lane in range(count):

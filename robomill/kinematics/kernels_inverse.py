@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numba.types import boolean, float64, int64, void
 
-from robomill.kinematics.kernel_math import arc_tangent, sin_cos
+from robomill.kinematics.kernel_math import INLINE, arc_tangent, sin_cos
 from robomill.kinematics.kernels import (
     CHAIN,
     FLAGS2,
@@ -49,7 +49,7 @@ P_S, P_W, P_O, P_A1, P_H, P_L2, P_L3, P_U, P_G, P_GN, P_CU, P_CG, P_CW, P_DIR = 
 )  # fmt: skip
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def load_targets(T_MT, start, count, target):
     """Tip and axes of poses start .. start + count of T_MT (m, 4, 4) into the target buffer."""
     for lane in range(LANES):
@@ -64,7 +64,7 @@ def load_targets(T_MT, start, count, target):
         target[22, lane] = 0.0
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def aim_block(target, P):
     """Rows 6 .. 14 in the arm's frame {S} from tip, axes and the spin (its cosine and sine) about the tool axis."""
     u0, u1, u2 = P[P_CU], P[P_CU + 1], P[P_CU + 2]
@@ -88,7 +88,7 @@ def aim_block(target, P):
             target[first + 2, lane] = s6 * x + s7 * y + s8 * z
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def solve_block(target, P, n, arm, theta, possible):
     """theta (8 n, LANES), possible (8, LANES; 1 or 0) from the target buffer; arm (14, LANES) is room to work in."""
     a_1, h = P[P_A1], P[P_H]
@@ -184,7 +184,7 @@ def solve_block(target, P, n, arm, theta, possible):
                         theta[kw, lane] = theta[k, lane]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def last_joint(target, P, arm, flip, theta, row):
     """theta_6 of the wrist whose direction is in the arm buffer, into ``row`` of theta."""
     u0, u1, u2 = P[P_U], P[P_U + 1], P[P_U + 2]
@@ -215,7 +215,7 @@ def last_joint(target, P, arm, flip, theta, row):
         theta[row, lane] = d_6 * arc_tangent(hx * n0 + hy * n1 + hz * n2, hx * g0 + hy * g1 + hz * g2)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def misfit(tool, target, whole, error):
     """error (2, LANES): squared distance of the tips; squared chord of the tool axes, or of the ``whole`` rotation.
 
@@ -243,7 +243,7 @@ def misfit(tool, target, whole, error):
             error[1, lane] = 0.5 * (error[1, lane] + x * x + y * y + z * z)
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def choose_block(theta, possible, n, limits, goal, arm_first, wanted, last_free, trial, found, cost):
     """found (n, LANES): the solution within limits nearest ``goal`` (n, LANES), by the rule of ``choice.choose``."""
     for lane in range(LANES):
@@ -282,7 +282,7 @@ def choose_block(theta, possible, n, limits, goal, arm_first, wanted, last_free,
                 found[j, lane] = trial[j, lane] if cost[2, lane] > 0.5 else found[j, lane]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def search_block(
     target,
     P,
@@ -304,8 +304,8 @@ def search_block(
 ):
     """best (n, LANES), with its cost, branch and spin in the cost buffer, over ``spins`` spins and their refinement.
 
-    spins 0: the pose as given. The search is that of ``choice.choose_spin``. With ``every`` nothing is chosen: the eight
-    solutions are left in theta and possible.
+    spins 0: the pose as given. The search is that of ``choice.choose_spin``. With ``every`` nothing is chosen: the
+    eight solutions are left in theta and possible.
     """
     for lane in range(LANES):
         cost[COST_BEST, lane] = NOWHERE
@@ -353,7 +353,7 @@ def search_block(
                 best[j, lane] = found[j, lane] if cost[2, lane] > 0.5 else best[j, lane]
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def check_block(theta, n, T_0, E, sign, offset, prismatic, target, tool, axes, error, limit, possible):
     """Of the eight solutions those stay possible whose pose meets the target; with six axes all of it counts."""
     for branch in range(8):
@@ -377,11 +377,11 @@ def solve(
 ):  # fmt: skip
     """The solutions of poses T_MT (m, 4, 4): all of them, or of each pose the one nearest its goal.
 
-    With ``every``: theta_every (m, 8, n) and sound (m, 8), checked by forward kinematics to ``tolerance`` (m and rad) if
-    that is not negative. Otherwise theta_near (m, n), index (m,) (-1: none), see ``search_block``, and fit (m, 3): spin
-    rad, residual m and residual angle rad by forward kinematics (of the whole rotation if ``tolerance`` is positive, else
-    of the tool axis); goals (1 or m, n). The outputs of the other kind are not touched. One kernel for both, because
-    compiling the solution is what takes the time.
+    With ``every``: theta_every (m, 8, n) and sound (m, 8), checked by forward kinematics to ``tolerance`` (m and rad)
+    if that is not negative. Otherwise theta_near (m, n), index (m,) (-1: none), see ``search_block``, and fit (m, 3):
+    spin rad, residual m and residual angle rad by forward kinematics (of the whole rotation if ``tolerance`` is
+    positive, else of the tool axis); goals (1 or m, n). The outputs of the other kind are not touched. One kernel for
+    both, because compiling the solution is what takes the time.
     """
     m, n = len(T_MT), limits.shape[0]
     target, arm = np.empty((TARGET_ROWS, LANES)), np.empty((ARM_ROWS, LANES))

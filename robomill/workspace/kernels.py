@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numba.types import void
 
+from robomill.kinematics.kernel_math import INLINE
 from robomill.kinematics.kernels import (
     CHAIN,
     IN1,
@@ -28,7 +29,7 @@ from robomill.kinematics.kernels import (
 )
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def determinant_block(J, n, tilt, det):
     """det (LANES): of the 5 x 5 task Jacobian (omega rows on tilt (2, 3)) or of the 6 x 6 Jacobian, by 3 x 3 minors."""
     for lane in range(LANES):
@@ -77,7 +78,7 @@ def determinant_block(J, n, tilt, det):
                     det[lane] += sign * upper * lower
 
 
-@njit(inline="always")
+@njit(**INLINE)
 def shares_block(J, n, weight, shares):
     """shares (6 n, LANES): each joint's part of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
     for i in range(n):

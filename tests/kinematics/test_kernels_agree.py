@@ -87,6 +87,22 @@ def test_fields(name, A, B, numpy_only):
         np.testing.assert_allclose(getattr(fast, key), getattr(slow, key), atol=tolerance, rtol=0, err_msg=key)
 
 
+def test_spin_search(numpy_only):
+    robot = rm.load_robot("fanuc_r2000ic")
+    T_MT = rm.tool_pose(robot, _theta(robot, 400))
+    for options in ({}, {"near": np.full(6, 0.2)}, {"branch": "elbow down"}, {"spin": "fixed"}, {"spin": 0.4}):
+        fast = rm.inverse_kinematics(robot, T_MT, **options)
+        with numpy_only:
+            slow = rm.inverse_kinematics(robot, T_MT, **options)
+        np.testing.assert_array_equal(fast.reached, slow.reached)
+        assert fast.reached.mean() > 0.3
+        same = fast.reached & (fast.branch_index == slow.branch_index)
+        assert same.sum() > 0.99 * fast.reached.sum()
+        np.testing.assert_allclose(fast.theta[same], slow.theta[same], atol=1e-6)
+        if fast.spin is not None:
+            np.testing.assert_allclose(fast.spin[same], slow.spin[same], atol=1e-9)
+
+
 def test_nan_configurations_stay_nan():
     robot = rm.load_robot("slavkovic_5r")
     theta = _theta(robot, 100)
