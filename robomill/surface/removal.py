@@ -21,6 +21,7 @@ from robomill.surface.envelope import Shape
 
 TILE_CELLS = 250_000
 CHUNK_MOVES = 20_000
+STRAIGHT = 1e-11  # rad: a divided line bends less by rounding
 
 Progress = Callable[[float], None]
 Cancel = Callable[[], bool]
@@ -184,6 +185,31 @@ def box_of(shape: tuple[int, ...], grid: Grid, move: envelope.Move, reach: float
             return None
         ranges.append(slice(low, high + 1))
     return ranges[0], ranges[1]
+
+
+def joined(ends: FloatArray, axes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Moves ends (n, 6), axes (n, a), with runs of moves that go straight on under one axis made one move.
+
+    A line that was divided for the deflection is so cut at once where it is still a line.
+    """
+    if len(ends) < 2:
+        return ends, axes
+    span = ends[:, 3:] - ends[:, :3]
+    length = np.linalg.norm(span, axis=1)
+    before, after = span[:-1], span[1:]
+    scale = length[:-1] * length[1:]
+    bend = np.linalg.norm(np.cross(before, after), axis=1)
+    goes_on = (
+        (scale > 0)
+        & (bend <= STRAIGHT * scale)
+        & (np.einsum("ni,ni->n", before, after) > 0)
+        & (ends[:-1, 3:] == ends[1:, :3]).all(axis=1)
+        & (axes[:-1] == axes[1:]).all(axis=1)
+        & (axes[:, : axes.shape[1] // 2] == axes[:, axes.shape[1] // 2 :]).all(axis=1)[1:]
+    )
+    first = np.flatnonzero(np.append(True, ~goes_on))
+    last = np.append(first[1:], len(ends)) - 1
+    return np.hstack([ends[first, :3], ends[last, 3:]]), axes[first]
 
 
 def numpy_seconds(ends: FloatArray, R: float, grid: Grid, tilted: bool = False) -> float:

@@ -22,6 +22,7 @@ from robomill.surface.envelope import (
     tilted_move,
 )
 from robomill.surface.raster import skin_on_line
+from robomill.surface.removal import joined
 from robomill.surface.stock import Stock
 from robomill.surface.tilted import tool_axes
 from robomill.units import format_si
@@ -88,10 +89,10 @@ def swept_path(stock: Stock, cutter: Cutter, p: ArrayLike, k: ArrayLike | None, 
     axes = tool_axes(k, len(points))
     n = np.flatnonzero(np.asarray(cutting, dtype=bool)[1:]) + 1
     ends = np.hstack([points[n - 1], points[n]])
-    middle = axes[n - 1] + axes[n]
     known = np.isfinite(ends).all(axis=1)
-    middle = middle[known] / np.linalg.norm(middle[known], axis=1, keepdims=True)
-    return SweptPath(stock, cutter_shape(cutter), ends[known], middle)
+    ends, pairs = joined(ends[known], np.hstack([axes[n - 1], axes[n]])[known])
+    middle = pairs[:, :3] + pairs[:, 3:]
+    return SweptPath(stock, cutter_shape(cutter), ends, middle / np.linalg.norm(middle, axis=1, keepdims=True))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from robomill.errors import SurfaceError
 from robomill.surface.compiler import Engine, kernels
 from robomill.surface.envelope import cutter_shape
 from robomill.surface.raster import stock_heights
-from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright, numpy_seconds
+from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright, joined, numpy_seconds
 from robomill.surface.stock import AXES, Stock, stock_grid
 from robomill.surface.tilted import cut_tilted, split_turning, tilted_moves, tool_axes
 from robomill.units import format_si
@@ -118,6 +118,7 @@ def cut(
     nx, ny, dx, dy = stock_grid(stock, cell)
     grid = Grid(float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
     ends, axes, skipped = feed_moves(p, k, cutting)
+    ends, axes = joined(ends, axes)
     shape = cutter_shape(cutter)
     upright = np.abs(axes[:, [0, 1, 3, 4]]).max(axis=1, initial=0.0) <= UPRIGHT
     module = kernels(engine, numpy_seconds(ends, shape.R, grid, not upright.all()))
