@@ -119,8 +119,8 @@ def _change_tool(machine: Machine, block: Block) -> None:
         if number < 0:
             raise block.refuse("M61 needs Q, a tool number of 0 or more.")
     else:
-        if machine.selected < 0:
-            raise block.refuse("M6 needs a tool; select it with T first.")
+        if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
+            machine.findings.add("warning", block.line, "M6 without a tool selected by T: no tool is in the spindle")
         if machine.compensation is not None:
             raise block.refuse(f"M6 cannot be used {_CLOSED}")
         number = machine.selected

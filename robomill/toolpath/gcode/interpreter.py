@@ -14,7 +14,7 @@ from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File, OWords
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
-MAX_STEPS = 2_000_000
+MAX_STEPS = 1_000_000
 """Lines that may be executed beyond the length of the program: loops and subroutines."""
 
 MAX_LINE = 100_000

@@ -49,7 +49,7 @@ class Machine:
         self.motion, self.plane, self.absolute, self.arc_absolute = 800, 17, True, False
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
-        self.tool, self.selected = _NO_TOOL, -1
+        self.tool, self.selected = _NO_TOOL, 0
         self.mist = self.flood = False
         self.cycle: dict[str, float] = {}
         self.initial_level: float | None = None

@@ -94,8 +94,9 @@ def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
     at_feed = (columns["kind"] == FEED) | (columns["kind"] == ARC)
     if not at_feed.any():
         return
-    ends = columns["end"][at_feed]
-    size = float((ends.max(axis=0) - ends.min(axis=0)).max())
+    ends, starts = columns["end"][at_feed], columns["start"][at_feed]
+    upper, lower = np.maximum(ends.max(axis=0), starts.max(axis=0)), np.minimum(ends.min(axis=0), starts.min(axis=0))
+    size = float((upper - lower).max())
     inch = to_si(1.0, "in") / to_si(1.0, "mm")
     shown = format_si(size, "mm", 1)
     if machine.units_said != "in" and 0.0 < size < LIKELY[0]:

@@ -1,0 +1,62 @@
+"""APT-CL files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.apt import read_apt
+
+FILE = """PARTNO/ BLADE
+$$ a comment
+UNITS/INCHES
+LOADTL/7
+SPINDL/RPM,6000,CLW
+MULTAX/ON
+FROM/0,0,2
+RAPID
+GOTO/0,0,0.1,0,0,2
+FEDRAT/10,IPM
+GOTO/1,0,-0.1,$
+ 0,0.6,0.8
+GODLTA/0,1,0
+COOLNT/ON
+WHATEVER/1
+FINI
+GOTO/9,9,9
+"""
+
+
+def test_points_axes_feeds_and_units() -> None:
+    path = read_apt(FILE)
+    inch = 25.4e-3
+    assert path.p / inch == pytest.approx(np.array([[0, 0, 2], [0, 0, 0.1], [1, 0, -0.1], [1, 1, -0.1]]))
+    assert path.k[-1] == pytest.approx((0, 0.6, 0.8))
+    assert path.v_f == pytest.approx([0, 0, 10 * inch / 60, 10 * inch / 60])
+    assert path.cutting.tolist() == [False, False, True, True]
+    assert path.block.tolist() == [7, 9, 11, 13]
+    assert path.n_s[-1] == pytest.approx(100)
+    assert path.tool.tolist() == [7, 7, 7, 7]
+    assert [(f.level, f.line) for f in path.findings] == [("ignored", 15)]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("GOTO/0,0,0\nGOTO/1,1,1\n", "Line 2: a cut needs a feed"),
+        ("GOTO/0,0\n", "Line 1: found 2 numbers"),
+        ("GOTO/0,0,x\n", "Line 1: GOTO has 'x'"),
+        ("GOTO/0,0,0,0,0,0\n", "Line 1: the tool axis"),
+        ("GOTO/0,0,1e999\n", "Line 1: GOTO has a number that is too large"),
+        ("GOTO/0,0,0\nCYCLE/DRILL,5\n", "Line 2: CYCLE moves the tool"),
+        ("UNITS/FURLONGS\n", "Line 1: UNITS"),
+        ("FEDRAT/-5\n", "Line 1: FEDRAT"),
+        ("PARTNO/X\nFINI\n", "fewer than two"),
+        ("GODLTA/1,1,1\n", "Line 1: GODLTA"),
+    ],
+)
+def test_refusals(text: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        read_apt(text)
+    assert says in str(caught.value)

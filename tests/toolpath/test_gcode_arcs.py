@@ -1,0 +1,110 @@
+"""Arcs against their analytic definition: planes, forms, senses, helices, full circles; chords of second order."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret, read_gcode
+from robomill.toolpath.gcode.arcs import chord_counts
+
+PLANES = {
+    17: ("X", "Y", "Z", "I", "J", 0, 1, 2),
+    18: ("Z", "X", "Y", "K", "I", 2, 0, 1),
+    19: ("Y", "Z", "X", "J", "K", 1, 2, 0),
+}
+CASES = list(itertools.product(PLANES, ("G2", "G3"), ("ijk", "absolute", "R"), (0.4, 1.9, 2.8, 3.6, 5.5)))
+
+
+def number(value: float) -> str:
+    return f"{value:.9f}"
+
+
+@pytest.mark.parametrize(("plane", "code", "form", "sweep"), CASES)
+def test_every_point_lies_on_the_arc(plane: int, code: str, form: str, sweep: float) -> None:
+    a, b, c, i, j, first, second, third = PLANES[plane]
+    radius, start_angle, climb = 7.0, 0.6, 2.0
+    sign = -1.0 if code == "G2" else 1.0
+    centre = np.array([3.0, -4.0])
+    start = centre + radius * np.array([math.cos(start_angle), math.sin(start_angle)])
+    end = centre + radius * np.array([math.cos(start_angle + sign * sweep), math.sin(start_angle + sign * sweep)])
+    words = f"{code} {a}{number(end[0])} {b}{number(end[1])} {c}{climb}"
+    if form == "R":
+        words += f" R{radius if sweep <= math.pi else -radius}"
+    else:
+        middle = centre if form == "absolute" else centre - start
+        words = ("G90.1 " if form == "absolute" else "") + words + f" {i}{number(middle[0])} {j}{number(middle[1])}"
+    text = f"G21 G{plane} F100\nG0 {a}{number(start[0])} {b}{number(start[1])}\n{words}\nM2\n"
+    program = interpret(text)
+    assert program.sweep[1] == pytest.approx(sign * sweep, abs=1e-6)
+    assert program.length[1] == pytest.approx(math.hypot(radius * sweep, climb) * 1e-3, rel=1e-6)
+    path = program.toolpath(1e-6)
+    p = path.p[2:] * 1e3
+    angle = np.unwrap(np.arctan2(p[:, second] - centre[1], p[:, first] - centre[0]))
+    assert np.hypot(p[:, first] - centre[0], p[:, second] - centre[1]) == pytest.approx(radius, abs=1e-6)
+    turned = angle - start_angle - 2 * math.pi * round((angle[0] - start_angle) / (2 * math.pi))
+    assert (np.diff(turned) * sign > 0).all()
+    assert p[:, third] == pytest.approx(climb * turned / (sign * sweep), abs=1e-6)
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("turns", [1, 3])
+def test_full_circles_and_helices_return(plane: int, turns: int) -> None:
+    a, b, c, i, j, first, second, third = PLANES[plane]
+    program = interpret(f"G21 G{plane} F100\nG3 {i}5 {j}0 {c}-2 P{turns}\nM2\n")
+    assert program.sweep[0] == pytest.approx(2 * math.pi * turns)
+    assert program.turns[0] == turns
+    assert program.length[0] * 1e3 == pytest.approx(math.hypot(10 * math.pi * turns, 2), rel=1e-12)
+    lower, upper = program.extents
+    assert lower[first] == pytest.approx(0, abs=1e-15)
+    assert upper[first] == pytest.approx(0.010)
+    assert (lower[second], upper[second]) == pytest.approx((-0.005, 0.005))
+    assert lower[third] == pytest.approx(-0.002)
+
+
+def test_extents_of_an_arc_reach_its_quadrants_only_if_it_passes_them() -> None:
+    quarter = interpret("G21 F100\nG0 X10\nG3 X0 Y10 I-10 J0\nM2\n").extents
+    assert np.array(quarter) * 1e3 == pytest.approx(np.array([[0, 0, 0], [10, 10, 0]]), abs=1e-12)
+    most = interpret("G21 F100\nG0 X10\nG2 X0 Y10 I-10 J0\nM2\n").extents
+    assert np.array(most) * 1e3 == pytest.approx(np.array([[-10, -10, 0], [10, 10, 0]]), abs=1e-12)
+
+
+def test_chord_error_is_kept_and_is_of_second_order() -> None:
+    program = interpret("G21 F100\nG3 I50\nM2\n")
+    errors, steps = [], []
+    for chord_error in (1e-4, 1e-5, 1e-6):
+        p = program.toolpath(chord_error).p - np.array([0.05, 0, 0])
+        middle = np.linalg.norm((p[1:] + p[:-1]) / 2, axis=1)
+        errors.append(0.05 - middle.min())
+        steps.append(len(p))
+        assert errors[-1] <= chord_error
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order == pytest.approx(-2.0, abs=0.05)
+
+
+def test_ends_are_exact() -> None:
+    path = read_gcode("G21 F100\nG1 X10\nG3 X3.3 Y7.7 R9\nG1 X1\nM2\n")
+    assert tuple(path.p[path.block == 3][-1] * 1e3) == pytest.approx((3.3, 7.7, 0), abs=0)
+
+
+@pytest.mark.parametrize("chord_error", [0.0, -1.0, math.nan, math.inf])
+def test_chord_error_must_be_a_length(chord_error: float) -> None:
+    with pytest.raises(GCodeError, match="Chord error"):
+        chord_counts(np.ones(1), np.ones(1), chord_error)
+
+
+def test_too_many_turns_are_refused_with_what_would_fit() -> None:
+    with pytest.raises(GCodeError, match="so use .* mm or more"):
+        read_gcode("G21 F100\nG3 I5 P1000000\nM2\n")
+
+
+def test_tilted_axis_turns_in_small_steps() -> None:
+    path = read_gcode("G21 F100\nG1 X10 A30 B-20\nM2\n")
+    a, b = math.radians(30), math.radians(-20)
+    assert path.k[-1] == pytest.approx((math.sin(b), -math.sin(a) * math.cos(b), math.cos(a) * math.cos(b)))
+    dots = np.einsum("ij,ij->i", path.k[1:], path.k[:-1])
+    assert np.degrees(np.arccos(dots)).max() < 3.0

@@ -1,0 +1,180 @@
+"""Sources, encodings, findings, dialects, tools and reports."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, read_tool_table, write_moves_jsonl
+from robomill.toolpath.gcode.source import MAX_BYTES, as_plain_bytes
+
+PROGRAM = "G21 G90\nG0 X1\nG1 Y2 F60\nM2\n"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        PROGRAM.encode(), PROGRAM.encode("utf-8-sig"), PROGRAM.encode("utf-16"), PROGRAM.encode("utf-32"),
+        PROGRAM.replace("\n", "\r\n").encode(), PROGRAM.replace("\n", "\r").encode(), PROGRAM.upper().encode(),
+        PROGRAM.lower().encode(), ("(größe)\n" + PROGRAM).encode("latin-1"), ("\n\n" + PROGRAM).encode(),
+    ],
+)  # fmt: skip
+def test_encodings_and_line_ends(data: bytes) -> None:
+    path = read_gcode(data)
+    assert path.p[-1] * 1e3 == pytest.approx((1, 2, 0))
+    assert path.v_f[-1] == pytest.approx(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"", "empty"), (b"  \n \n", "empty"), (b"G21\nG0 X1\0\n", "NUL"), (bytes(range(1, 32)) * 50, "binary"),
+        (b"\x7fELF\x02\x01\x01" + b"\0" * 20, "NUL"), (b"\xff\xfeG\x00\x00\xd8", "UTF-16"),
+    ],
+)  # fmt: skip
+def test_what_is_no_program(data: bytes, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        interpret(data)
+
+
+def test_a_string_is_a_file_if_it_looks_like_one(tmp_path: Path) -> None:
+    file = tmp_path / "part.NC"
+    file.write_text(PROGRAM)
+    assert len(read_gcode(str(file))) == len(read_gcode(file)) == len(read_gcode(PROGRAM)) == 3
+    with pytest.raises(GCodeError, match="cannot be read"):
+        read_gcode(str(tmp_path / "missing.nc"))
+    with pytest.raises(GCodeError, match="cannot be read"):
+        read_gcode(tmp_path)
+    with pytest.raises(GCodeError, match="no motion"):
+        read_gcode("M2")
+    with pytest.raises(GCodeError, match="expected text, bytes or a path"):
+        read_gcode(42)  # type: ignore[arg-type]
+
+
+def test_too_large_is_refused() -> None:
+    class Huge(bytes):
+        def __len__(self) -> int:
+            return MAX_BYTES + 1
+
+    with pytest.raises(GCodeError, match="at most 200 MB"):
+        as_plain_bytes(Huge(b"G0"))
+
+
+def test_one_enormous_line_is_refused_quickly() -> None:
+    with pytest.raises(GCodeError, match="characters long"):
+        interpret("G0 X1" + "0" * 10_000_000 + "\n")
+
+
+def levels(text: str, **more: object) -> dict[str, list[str]]:
+    out: dict[str, list[str]] = {}
+    for finding in interpret(text, **more).findings:  # type: ignore[arg-type]
+        out.setdefault(finding.level, []).append(finding.message)
+    return out
+
+
+def test_findings() -> None:
+    assert "warning" not in levels(PROGRAM)
+    assert "no G20 or G21: lengths are taken as mm" in levels("G0 X1\nM2\n")["suspicious"]
+    assert "the program ends without M2, M30 or %" in levels("G21 G0 X1\n")["warning"]
+    assert any("inches" in m for m in levels("G0 X0\nG1 X3.25 F1\nM2\n")["suspicious"])
+    assert any("wrongly" in m for m in levels("G20 G0 X0\nG1 X300 F1\nM2\n")["suspicious"])
+    assert any("one line" in m for m in levels("G20 F5 G1 X1\nM2\n")["suspicious"])
+    counted = [f for f in interpret("G21\nM36 G0 X1\nM36\nM36\nM2\n").findings if f.level == "ignored"]
+    assert (counted[0].count, counted[0].line) == (3, 2)
+
+
+def test_percent_signs() -> None:
+    assert len(interpret("%\nG21 G0 X1\n%\nthis is no G-code\n")) == 1
+    assert not [f for f in interpret("%\nG21 G0 X1\n%\n").findings if f.level == "warning"]
+
+
+def test_dialects_are_guessed_and_shown() -> None:
+    fanuc = interpret("%\nO1234 (PART)\nG21 G0 X1\nM98 P20100\nG4 X1.\nM30\nO0100\nG91 G1 X1 F60\nM99\n%\n")
+    assert (fanuc.dialect, len(fanuc), fanuc.dwells) == ("fanuc", 3, 1)
+    assert any("guess" in f.message for f in fanuc.findings)
+    assert interpret("O<a> sub\nO<a> endsub\nG0 X1\nM2\n").dialect == "linuxcnc"
+    assert interpret('G71\nMSG("hello")\nG0 X=5\nM30\n').messages == ((2, "hello"),)
+    assert interpret("G0 X1\nM2\n", dialect="fanuc").dialect == "fanuc"
+    with pytest.raises(GCodeError, match="Dialect 'klingon'"):
+        interpret(PROGRAM, dialect="klingon")
+
+
+def test_messages_show_parameters() -> None:
+    program = interpret("#1=2.5\n(MSG, hello)\n(DEBUG, #1 and #<nope> and #5420)\n(just a comment)\nM2\n")
+    assert program.messages == ((2, " hello"), (3, " 2.500000 and ###### and 0.000000"))
+
+
+def test_tool_tables(tmp_path: Path) -> None:
+    tbl, table = tmp_path / "tools.tbl", tmp_path / "tools.csv"
+    tbl.write_text("T1 P1 D+6.0 Z+20.5 ;six\n;\nT4 P2 Z-1.5 D.5 Q2\n")
+    table.write_text("tool,diameter_mm,length_mm\n1,6,20.5\n")
+    assert read_tool_table(tbl)[1] == read_tool_table(table)[1] == Tool(1, 6e-3, (0.0, 0.0, 20.5e-3))
+    assert read_tool_table(tbl)[4].orientation == 2
+    head = "tool,diameter_mm,length_mm\n"
+    for text, says in (
+        ("", "no tools"), ("X1 Y2\n", "line 1"), ("tool,diameter_mm\n1,2\n", "length_mm"), (head + "1,a,2\n", "line 2"),
+        (head + "1,1,2\n1,1,2\n", "twice"),
+    ):  # fmt: skip
+        tbl.write_text(text)
+        with pytest.raises(GCodeError, match=says):
+            read_tool_table(tbl)
+    with pytest.raises(GCodeError, match="cannot be read"):
+        read_tool_table(tmp_path / "none.tbl")
+    with pytest.raises(GCodeError, match="tool 9 is not in the tool table"):
+        interpret("T9 M6\n", tools=table)
+
+
+def test_report_and_moves(tmp_path: Path) -> None:
+    program = interpret("G21 G18 F120\nG0 X10\nG2 X0 Z10 I-10 K0 Y5\nG1 Y0\nG33.1 Z12 K1 S60 M3\nM2\n")
+    report = gcode_report(program)
+    assert report["moves"] == {"traverse": 1, "feed": 1, "arc": 1, "tap": 1}
+    assert report["length_mm"]["arc"] == pytest.approx(math.hypot(5 * math.pi, 5))
+    assert report["extents_mm"][0] == pytest.approx([0, 0, 0], abs=1e-12)
+    assert (report["units"], report["ok"]) == ("mm", True)
+    json.dumps(report)
+    write_moves_jsonl(program, tmp_path / "moves.jsonl")
+    rows = [json.loads(line) for line in (tmp_path / "moves.jsonl").read_text().splitlines()]
+    assert [row["kind"] for row in rows] == ["traverse", "arc", "feed", "tap"]
+    arc = rows[1]
+    assert (arc["plane"], arc["turns"], arc["clockwise"], arc["line"]) == ("XZ", 1, True, 3)
+    assert arc["centre"] == pytest.approx([0, 0])
+    assert arc["sweep_deg"] == pytest.approx(-90)
+    assert rows[2]["start"] == pytest.approx(arc["end"])
+    assert rows[2]["feed_mm_min"] == pytest.approx(120)
+
+
+def test_progress_and_cancel() -> None:
+    text = "G21 F100\n" + "G1 X1\nX2\n" * 100_000
+    seen: list[float] = []
+    interpret(text, progress=seen.append)
+    assert len(seen) > 2
+    assert seen == sorted(seen)
+    with pytest.raises(GCodeError, match="cancelled"):
+        interpret(text, cancel=lambda: True)
+
+
+def test_subroutines_in_files_beside_the_program(tmp_path: Path) -> None:
+    (tmp_path / "hole.ngc").write_text("O<hole> sub\nG0 X#1\nO<hole> endsub\nM2\n")
+    main = tmp_path / "main.ngc"
+    main.write_text("G21\nO<hole> call [5]\nG0 Y1\nM2\n")
+    program = interpret(main)
+    assert program.end[-1] * 1e3 == pytest.approx((5, 1, 0))
+    with pytest.raises(GCodeError, match="no Ohole sub"):
+        interpret(main.read_text())
+
+
+def test_toolpath_marks_cuts_feeds_tools_and_lines() -> None:
+    tools = {2: Tool(2, 8e-3)}
+    path = read_gcode("G21 F600\nT2 M6\nS3000 M3\nG0 X1\nG1 X2\nG20\nG1 X1\nM5\nG0 X0\nM2\n", tools=tools)
+    assert path.cutting.tolist() == [False, False, True, True, False]
+    assert path.v_f * 60e3 == pytest.approx([0, 0, 600, 600, 0])
+    assert path.block.tolist()[1:] == [4, 5, 7, 9]
+    assert path.n_s == pytest.approx([50, 50, 50, 50, 0])
+    assert set(path.tool.tolist()) == {2}
+    assert path.p[3] * 1e3 == pytest.approx((25.4, 0, 0))
+    assert np.array_equal(path.k, np.broadcast_to([0, 0, 1.0], path.k.shape))

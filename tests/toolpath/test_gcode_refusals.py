@@ -1,0 +1,32 @@
+"""Programs that are refused: the first line of each file states the exact message ("<" and ">" for brackets)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+FILES = sorted((Path(__file__).parent / "data" / "refused").glob("*.ngc"))
+SLOW = {"o_endless"}
+
+
+@pytest.mark.parametrize("file", [f for f in FILES if f.stem not in SLOW], ids=lambda f: f.stem)
+def test_refused_with_the_message_on_its_first_line(file: Path) -> None:
+    with pytest.raises(GCodeError) as caught:
+        interpret(file)
+    message = str(caught.value)
+    assert "(" + message.replace("(", "<").replace(")", ">") + ")" == file.read_text().splitlines()[0]
+    assert message.startswith(f"Line {caught.value.line}: ")
+
+
+def test_endless_loop_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robomill.toolpath.gcode.interpreter.MAX_STEPS", 5000)
+    with pytest.raises(GCodeError, match="may not end"):
+        interpret(next(f for f in FILES if f.stem == "o_endless"))
+
+
+def test_there_are_many() -> None:
+    assert len(FILES) > 90
