@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
-from robomill.arrays import FloatArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Finding
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import parts
 from robomill.ui.path_reach import PathReach
+from robomill.ui.path_summary import path_summary
 from robomill.ui.program_view import LEVELS, program_lines, select_line, selected_line
 from robomill.units import format_si, format_value, from_si, unit_label
 
@@ -67,9 +67,8 @@ def findings_list(findings: Sequence[Finding]) -> None:
 def path_facts(setup: SimulationSetup, unit: str) -> None:
     """Extents, lengths, time and feeds in the units of the shop floor."""
     path = setup.toolpath
-    low, high = path.extents
-    rapids = float(path.step_length[~path.cutting].sum())
-    feeds = path.v_f[path.cutting & (path.step_length > 0)]
+    summary = path_summary(path)
+    low, high = summary.low, summary.high
     rows = [
         (
             f"{axis}<sub>W</sub>", f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
@@ -77,14 +76,16 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
         )
         for i, axis in enumerate("xyz")
     ]  # fmt: skip
-    rows.append(("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(rapids, unit, 1)} rapid"))
+    rows.append(
+        ("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(summary.rapids, unit, 1)} rapid")
+    )
     rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
-    if len(feeds):
-        rows.append(("Feed", _range(feeds, "mm/min"), _range(feeds, "mm/s")))
-    if path.n_s.max() > 0:
-        rows.append(("Spindle", _range(path.n_s[path.cutting], "1/min"), ""))
+    if summary.feeds:
+        rows.append(("Feed", _range(summary.feeds, "mm/min"), _range(summary.feeds, "mm/s")))
+    if summary.spindles:
+        rows.append(("Spindle", _range(summary.spindles, "1/min"), ""))
     if isinstance(setup.source, GCodeSource):
-        tools = [int(t) for t in np.unique(path.tool) if t > 0]
+        tools = summary.tools
         words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
         rows.append(("Written in", {"mm": "millimetres (G21)", "in": "inches (G20)"}.get(path.units, "mm"), words))
     body = "".join(f'<tr><td class="q">{a}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
@@ -95,8 +96,8 @@ def _plain(value: float, unit: str) -> str:
     return format_si(float(value), unit, 2 if unit == "mm" else 4).partition(" ")[0]
 
 
-def _range(values: FloatArray, unit: str) -> str:
-    low, high = float(values.min()), float(values.max())
+def _range(values: tuple[float, float], unit: str) -> str:
+    low, high = values
     text = format_si(high, unit)
     return text if np.isclose(low, high) else f"{format_value(from_si(low, unit), unit).partition(' ')[0]} … {text}"
 
@@ -120,7 +121,8 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     at_feed = i[path.cutting[i]]
     moves = f"{counted(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
     if len(at_feed):
-        moves += f" at {_range(path.v_f[at_feed], 'mm/min')} ({_range(path.v_f[at_feed], 'mm/s')})"
+        feeds = (float(path.v_f[at_feed].min()), float(path.v_f[at_feed].max()))
+        moves += f" at {_range(feeds, 'mm/min')} ({_range(feeds, 'mm/s')})"
     else:
         moves += " as a rapid"
     words.append(moves)

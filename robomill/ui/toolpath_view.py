@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.ui import cache, parts, state
 from robomill.ui.path_details import counted, duration
 from robomill.ui.path_reach import PathReach
+from robomill.ui.path_summary import missed_blocks, path_summary
 from robomill.ui.program_view import select_line, selected_line
 from robomill.ui.sources import kind_of
 from robomill.units import format_si, from_si, unit_label
-from robomill.viz.path_picture import PathPicture, short
+from robomill.viz.path_picture import BUDGET, PathPicture, decimate, short
 
 AUTO_SAMPLES = 60_000
 ASKED = "toolpath.asked"
@@ -62,14 +64,14 @@ def sentence(
     """What was read, whether it can be reached, and how far off it is."""
     if path is None:
         return "There is no path yet."
-    low, high = path.extents
+    summary = path_summary(path)
+    low, high = summary.low, summary.high
     size = " × ".join(format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in high - low)
-    text = f"{counted(len(np.unique(path.block[path.cutting])), NOUNS[noun])} within {size} {unit_label(unit)}"
+    text = f"{counted(summary.blocks, NOUNS[noun])} within {size} {unit_label(unit)}"
     if reach is None:
         return text + "."
-    lost = reach.missed
-    if lost.any():
-        length = float(reach.path.step_length[lost].sum())
+    missed, length, _ = missed_blocks(reach)
+    if missed:
         return f"{text}; {format_si(length, unit, 1)} of them cannot be reached."
     if result is None or result.worst < 0:
         return f"{text}, all in reach."
@@ -83,7 +85,8 @@ def tiles(
     """Length and time, reach, deviation, findings."""
     if path is None:
         return
-    moves, cuts = len(path) - 1, int(path.cutting.sum())
+    summary = path_summary(path)
+    moves, cuts = summary.moves, summary.cuts
     found = [
         parts.Tile(
             "At feed", format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
@@ -93,18 +96,17 @@ def tiles(
     if reach is None:
         found.append(parts.Tile("Reach", "not computed"))
     else:
-        lost = reach.missed
-        blocks = np.unique(reach.path.block[lost]).tolist()
-        share = 1.0 - lost.sum() / max(int(reach.path.cutting.sum()), 1)
+        missed, _, lost = missed_blocks(reach)
+        blocks = lost.tolist()
+        share = 1.0 - missed / max(path_summary(reach.path).cuts, 1)
         named = ", ".join(f"{b:,}" for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
         words = f"out of reach at {PLACES[noun]} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
         found.append(parts.Tile("Reach", f"{np.floor(share * 100):.0f} %", words, tone="out" if blocks else "ok"))
     found.append(_deviation_tile(result, unit, noun))
     if noun != "program":
-        rows = np.unique(path.block[path.cutting])
-        tools = "each cut in its order" if len(rows) > 1 else "one cut"
-        found.append(parts.Tile({"sketch": "Shapes", "lines": "Rows"}[noun], f"{len(rows):,}", tools))
+        words = "cut in this order" if summary.blocks > 1 else "one cut"
+        found.append(parts.Tile({"sketch": "Shapes", "lines": "Rows"}[noun], f"{summary.blocks:,}", words))
         parts.tiles(found)
         return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
@@ -173,8 +175,17 @@ def picture(
         points=from_si(path.p, unit), cutting=path.cutting, block=path.block, length_unit=unit_label(unit),
         reached=use.reached if use is not None else reach.reached, selected=selected_line(),
         noun=PLACES[kind_of(setup.source)],
-        stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)), total=len(setup.toolpath) - 1, **more,
+        stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)), total=len(setup.toolpath) - 1,
+        indices=_kept(use if use is not None else reach), **more,
     )  # fmt: skip
+
+
+@lru_cache(maxsize=6)
+def _kept(drawn: PathReach | SimulationResult) -> IntArray:
+    """Which points are drawn, found once for each path."""
+    path = drawn.path
+    must = [drawn.worst] if isinstance(drawn, SimulationResult) and drawn.worst >= 0 else []
+    return decimate(path.p, path.cutting, drawn.reached, BUDGET, must)
 
 
 def take_pick(key: str) -> None:
@@ -205,7 +216,8 @@ def stock_note(setup: SimulationSetup) -> None:
     """Where a stated stock does not hold the path, say so and offer the stock that does."""
     if setup.stock is None:
         return
-    low, high = setup.toolpath.extents
+    summary = path_summary(setup.toolpath)
+    low, high = summary.low, summary.high
     room = 1e-6 + np.array([setup.cutter.radius, setup.cutter.radius, np.inf])
     beside = np.maximum(setup.stock.lower - low - room, high - setup.stock.upper - room)
     below = float(setup.stock.lower[2] - low[2])

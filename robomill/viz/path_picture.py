@@ -36,10 +36,13 @@ class PathPicture:
     noun: str = "line"
     worst: int = -1
     total: int = 0
+    indices: IntArray | None = None
 
     @cached_property
     def kept(self) -> IntArray:
-        """Indices of the points that are drawn."""
+        """Indices of the points that are drawn: those given, or as many as the budget allows."""
+        if self.indices is not None:
+            return self.indices
         must = [self.worst] if self.worst >= 0 else []
         return decimate(self.points, self.cutting, self.reached, BUDGET, must)
 
