@@ -39,13 +39,19 @@ with left:
     robot_panel.editors(project)
     pose_sliders(project, theta, result)
 with right:
-    pose, numbers = st.columns([2.3, 1], gap="medium")
+    pose, numbers = ui.split([2.3, 1], "pose")
     with pose, st.container(border=True):
         scene = ArmScene(frames=now.frames, ghost=old.frames if old and old.moved else None)
+        before = old.frames.tobytes() if old and old.moved else b""
+        arm = ui.kept_figure(
+            "robot-arm", (now.frames.tobytes(), before, dark),
+            lambda: arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8),
+        )  # fmt: skip
         ui.figure(
-            arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8), "robot-arm",
+            arm, "robot-arm",
             alt="The arm at the chosen joint angles.",
             caption=f"{tip_words(robot, theta, view.length)}. Foot and tube sizes are for the eye only.",
         )  # fmt: skip
     with numbers:
         robot_panel.compliance_matrix(now, old)
+        robot_panel.share_bars(robot, theta, dark)

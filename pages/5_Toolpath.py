@@ -1,54 +1,95 @@
-"""The toolpath: a table of lines or a program, the part zero, what was found, and whether the arm can follow."""
+"""The toolpath: a program, a table of lines or a sketch; the part zero; what was found; whether the arm can follow."""
 
 from __future__ import annotations
 
 import streamlit as st
 
 from robomill import ui
-from robomill.report.tables import deviation_columns
-from robomill.ui import toolpath_panel as panel
+from robomill.toolpath.source import GCodeSource, SketchSource
+from robomill.ui import path_details as details
+from robomill.ui import toolpath_view as shown
+from robomill.ui.part_zero_panel import part_zero
+from robomill.ui.path_reach import board_reach, path_reach
+from robomill.ui.program_panel import program_inputs
+from robomill.ui.sketch_pad import sketch_pad
+from robomill.ui.sketch_panel import sketch_inputs
+from robomill.ui.sources import kind_of, kind_switch
+from robomill.ui.toolpath_lines import lines_inputs
 from robomill.viz.arm import arm_figure
-from robomill.viz.paths import plan_figure
-from robomill.viz.views import arm_scene, plan_view
+from robomill.viz.toolpath import plan_picture, turnable_picture
+from robomill.viz.views import arm_scene, sample_at
 
 project = ui.begin("Toolpath")
-setup, view, dark = project.setup, project.view, ui.dark()
-unit = view.length
+setup, dark, unit = project.setup, ui.dark(), project.view.length
+source = setup.source
+drawing = isinstance(source, SketchSource)
+HEIGHT = 300 if drawing else 420
 
-path = ui.attempt(lambda: setup.toolpath)
-result = ui.attempt(ui.result, setup) if path is not None else None
+empty = isinstance(source, SketchSource) and not source.sketch.elements
+path = None if empty else ui.attempt(lambda: setup.toolpath)
+reach = ui.attempt(path_reach, setup) if path is not None else None
+result = ui.attempt(shown.simulated, setup) if reach is not None else None
 
-ui.headline(f"Toolpath · {setup.source.name}", panel.sentence(path, result, unit))
-ui.tiles(panel.tiles(path, result, unit))
+kind = kind_of(source)
+ui.headline(f"Toolpath · {source.name}", shown.sentence(path, reach, result, unit, kind))
+shown.tiles(path, reach, result, unit, kind)
 
-left, right = ui.thirds()
+left, right = ui.split([1.2, 1.75], "page", gap="large") if drawing else ui.thirds()
 with left:
-    panel.source_inputs(project)
-    panel.part_zero(unit)
+    kind_switch()
+    if isinstance(source, GCodeSource):
+        program_inputs(source, path, dark)
+    elif isinstance(source, SketchSource):
+        sketch_inputs()
+    else:
+        lines_inputs(source, project.view)
+    with st.container(border=True):
+        part_zero()
+
 with right:
-    if result is not None:
+    if isinstance(source, SketchSource):
         with st.container(border=True):
-            quantities = panel.QUANTITIES
-            shown = panel.quantity()
-            plan = plan_view(result, shown, unit)
+            board = board_reach(setup, -source.sketch.depth, unit)
+            sketch_pad(source.sketch, setup.cutter.diameter, board)
+    if path is None or reach is None:
+        st.stop()
+    with st.container(border=True):
+        colour, seen = shown.picture_choices(result is not None)
+        picture = shown.picture(setup, reach, result, colour, unit)
+        key = f"path-{seen}"
+        thinned = f" {picture.caption}" if picture.caption else ""
+        if seen == "plan":
             ui.figure(
-                plan_figure(**plan, dark=dark, height=360), f"plan-{shown}", name="toolpath",
-                table=lambda: deviation_columns(result),
+                plan_picture(picture, dark=dark, height=HEIGHT), key, name="toolpath",
+                table=lambda: shown.path_columns(reach, result), on_select=lambda: shown.take_pick(key),
+                caption=f"From above; a click shows the line. Crosses: out of reach.{thinned}",
                 alt="The path from above; points out of reach are marked with crosses.",
-                caption=f"From above, coloured by {quantities[shown].lower()}. Crosses: out of reach.",
             )  # fmt: skip
-        below, beside = st.columns([1, 1.15], gap="medium")
-        with below:
-            panel.findings(path)
-        with beside, st.container(border=True):
-            if result.worst >= 0:
-                scene = arm_scene(result, result.worst)
-                ui.figure(
-                    arm_figure(scene, dark=dark, height=340, revision="path-arm", zoom=0.85), "path-arm",
-                    caption="The arm at the worst point of the path. Grey dots: out of reach.",
-                    alt="The arm, the part and the path in the robot's frame.",
-                )  # fmt: skip
-            else:
-                ui.note(f"No point of this path can be reached. {result.ik.reason(1)}")
-    elif path is not None:
-        panel.findings(path)
+        elif seen == "turn":
+            figure, times = turnable_picture(picture, dark=dark, height=HEIGHT)
+            ui.figure(
+                figure, key, name="toolpath", table=lambda: shown.path_columns(reach, result),
+                caption=f"Heights shown × {times:g}, parallel projection.{thinned}",
+                alt="The path in space, to be turned.",
+            )  # fmt: skip
+        elif result is not None:
+            index = result.worst if result.worst >= 0 else sample_at(result, 0.0)
+            ui.figure(
+                arm_figure(arm_scene(result, index), dark=dark, height=HEIGHT, revision="path-arm", zoom=0.85), key,
+                caption="The arm at the worst point of the path. Grey dots: out of reach.",
+                alt="The arm, the part and the path in the robot's frame.",
+            )  # fmt: skip
+        words = details.line_words(setup, reach, result, unit)
+        if words:
+            st.info(words, icon=":material/my_location:")
+        shown.stock_note(setup)
+        if result is None:
+            shown.ask_button(setup)
+    with st.container(border=True):
+        st.markdown("**The path in figures**")
+        details.path_facts(setup, unit)
+    if not drawing:
+        with st.container(border=True):
+            details.findings_list(path.findings)
+            if isinstance(source, GCodeSource):
+                details.support_table()

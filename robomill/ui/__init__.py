@@ -31,7 +31,7 @@ Rules of the house:
 
 from __future__ import annotations
 
-from robomill.ui.cache import groove, pictured, result
+from robomill.ui.cache import groove, kept_figure, pictured, result
 from robomill.ui.editors import table_editor
 from robomill.ui.inputs import accept, choice, number, refuse, seed, sentence, slider, whole
 from robomill.ui.parts import (
@@ -57,7 +57,7 @@ from robomill.ui.verdict import verdict_sentence, verdict_tiles
 
 __all__ = [
     "Project", "Tile", "View", "accept", "attempt", "badge", "before", "begin", "change", "choice", "dark",
-    "download", "error", "facts", "figure", "groove", "headline", "look", "matrix", "note", "number", "picture",
-    "pictured", "project", "redo", "refuse", "replace", "result", "seed", "sentence", "slider", "split", "store",
-    "table_editor", "table_twin", "thirds", "tiles", "undo", "verdict_sentence", "verdict_tiles", "whole",
+    "download", "error", "facts", "figure", "groove", "headline", "kept_figure", "look", "matrix", "note", "number",
+    "picture", "pictured", "project", "redo", "refuse", "replace", "result", "seed", "sentence", "slider", "split",
+    "store", "table_editor", "table_twin", "thirds", "tiles", "undo", "verdict_sentence", "verdict_tiles", "whole",
 ]  # fmt: skip

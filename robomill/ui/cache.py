@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 import streamlit as st
 
 from robomill.simulation.result import SimulationResult
@@ -9,6 +12,9 @@ from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
 from robomill.viz.views import Exaggerated, exaggerated
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 
 def result(setup: SimulationSetup) -> SimulationResult:
@@ -34,3 +40,16 @@ def pictured(setup: SimulationSetup, times: float) -> Exaggerated:
 @st.cache_resource(max_entries=16, show_spinner=False)
 def _pictured(key: tuple[str, float], _result: SimulationResult) -> Exaggerated:
     return exaggerated(_result, key[1])
+
+
+def kept_figure(name: str, key: Sequence[Any], make: Callable[[], go.Figure]) -> go.Figure:
+    """The figure of ``make``, built once for equal ``key`` (digests, view, theme); do not change it afterwards.
+
+    Building a figure costs more than computing what it shows; a classroom sees the same ones.
+    """
+    return _kept_figure(name, tuple(key), make)
+
+
+@st.cache_resource(max_entries=96, show_spinner=False)
+def _kept_figure(name: str, key: tuple[Any, ...], _make: Callable[[], go.Figure]) -> go.Figure:
+    return _make()

@@ -7,12 +7,15 @@ import pandas as pd
 import streamlit as st
 
 from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import joint_contributions
 from robomill.io.robots import load_robot, robot_names
+from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, parts, state, tables
 from robomill.ui.editors import table_editor
 from robomill.ui.pose import PoseNumbers
 from robomill.units import from_si, unit_label
+from robomill.viz.theme import joint_colours
 
 
 def editors(project: state.Project) -> None:
@@ -26,7 +29,7 @@ def editors(project: state.Project) -> None:
         table_editor(
             "geometry", lambda: tables.geometry_frame(state.project().setup.robot), _write_geometry,
             columns={"joint": st.column_config.TextColumn("#", width=34),
-                     **{label: st.column_config.NumberColumn(label, format="%.6g", width=56)
+                     **{label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
                         for label in tables.GEOMETRY.values()}},
             locked=("joint",),
         )  # fmt: skip
@@ -125,6 +128,21 @@ def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
     if old is not None:
         st.markdown("**Before the last change**")
         parts.matrix([[_signed(v) for v in row] for row in from_si(old.C, "um/N")], ["X", "Y", "Z"])
+
+
+def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:
+    """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
+    J = geometric_jacobian(robot, theta)
+    C_yy = joint_contributions(J[:3], robot.C_theta)[:, 1, 1]
+    total = float(C_yy.sum()) or 1.0
+    st.markdown("**Where the give along Y comes from**")
+    rows = "".join(
+        f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
+        f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
+        f'<td class="n">{100 * value / total:.0f} %</td></tr>'
+        for number, value, colour in zip(robot.joint_numbers, C_yy, joint_colours(7, dark))
+    )
+    st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
 
 
 def _signed(value: float) -> str:

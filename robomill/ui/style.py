@@ -65,6 +65,8 @@ sub { line-height: 0; }
 .rm-facts .q { opacity: .72; white-space: nowrap; width: 8.5rem; }
 .rm-facts .v { min-width: 9.5rem; font-variant-numeric: tabular-nums; }
 
+.rm-narrow .q { width: 4.2rem; }
+.rm-narrow .rm-barcell { width: auto; }
 .rm-barcell { width: 32%; min-width: 5rem; vertical-align: middle !important; }
 .rm-bar { display: block; height: .55rem; border-radius: 2px;
   background: color-mix(in srgb, var(--rm-hue) 72%, transparent); }
