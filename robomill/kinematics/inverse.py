@@ -13,7 +13,7 @@ from robomill.errors import KinematicsError
 from robomill.kinematics.choice import SPIN_STEPS, choose, choose_spin, join_path, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.forward import BLOCK
-from robomill.kinematics.numeric import solve_numerically
+from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import RESIDUAL, IKResult, Mode, check, task_mode, within_residual
 from robomill.kinematics.solutions import compiled_solutions, nearest_solutions, solutions
 from robomill.robot.model import Robot
@@ -66,7 +66,8 @@ def inverse_kinematics(
     if arm is None:
         if branch is not None:
             raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
-        theta, index, turn = _numerical(robot, flat, goal, mode, lead, along_path)
+        start = bent_home(robot)[None] if near is None or along_path else goal
+        theta, index, turn = _numerical(robot, flat, start, mode, lead, along_path)
     elif along_path:
         theta, index, turn = _along_path(robot, arm, flat, lead[-1], branch_mask(branch), free_spin)
     else:

@@ -19,9 +19,12 @@ from robomill.robot.model import Robot
 
 STARTS = 64  # starts a pose is given before it counts as not found
 LIBRARY = 8192  # random configurations from which the nearest serve as starts
+COMPARED = 8  # starts of which small arms take the solution nearest to the reference
 STEPS = 40
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
 PATIENCE = 6  # steps in which the error must have halved
+OTHER_SIDE = 1e3  # rad^2: far above any joint motion
+BEND = 0.6  # rad (or m)
 LONGEST_STEP = 0.6  # rad (or m) a joint may move in one step
 
 
@@ -40,23 +43,45 @@ def solve_numerically(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mo
     return theta, found
 
 
+def bent_home(robot: Robot) -> FloatArray:
+    """(n,) home with every joint after the first turned a little: a straight arm is singular and has no elbow side.
+
+    Starting there, neighbouring poses mostly end on the same side.
+    """
+    bend = np.where(np.arange(robot.n) > 0, BEND, 0.0)
+    return np.clip(robot.home + bend, robot.limits[:, 0], robot.limits[:, 1])
+
+
 def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
     m = len(T_MT)
-    theta = np.array(np.broadcast_to(near, (m, robot.n)))
-    theta, error = descend(robot, T_MT, theta, mode)
+    reference = np.array(np.broadcast_to(near, (m, robot.n)))
+    theta, error = descend(robot, T_MT, reference, mode)
     starts: FloatArray | None = None
     possible = _within_stretch(robot, T_MT)
     for attempt in range(STARTS):
-        open_ = np.flatnonzero((error > TIGHT) & possible)
+        compare = mode == "position" and attempt < COMPARED
+        open_ = np.flatnonzero(possible if compare else (error > TIGHT) & possible)
         if not open_.size:
             break
         if starts is None:
             starts, first = _starts(robot, T_MT[open_], mode), open_
         rows = np.searchsorted(first, open_)
         trial, remains = descend(robot, T_MT[open_], starts[rows, attempt], mode)
-        better = remains < error[open_]
+        better = np.where(error[open_] > TIGHT, remains < error[open_], False)
+        if compare:
+            nearer = _remoteness(trial, reference[open_]) < _remoteness(theta[open_], reference[open_])
+            better |= (remains <= TIGHT) & (error[open_] <= TIGHT) & nearer
         theta[open_[better]], error[open_[better]] = trial[better], remains[better]
     return theta, error <= TIGHT
+
+
+def _remoteness(theta: FloatArray, reference: FloatArray) -> FloatArray:
+    """(m,) joint motion from the reference (m, n), after how many joints past the first bend to its other side.
+
+    The side comes first, so that over a map a planar arm keeps its elbow where the limits allow.
+    """
+    other_side = (theta[:, 1:] * reference[:, 1:] < 0).sum(axis=1)
+    return OTHER_SIDE * other_side + ((theta - reference) ** 2).sum(axis=1)
 
 
 def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
