@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +11,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
+from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import COMPONENTS, Quantity, quantity
@@ -59,6 +59,14 @@ class ComplianceField:
     def total(self) -> FloatArray:
         """(nx, ny, nz, 6) m/N: C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
         return self.shares.sum(axis=-2)
+
+    @cached_property
+    def singular_values(self) -> FloatArray:
+        """(reached cells, r), falling: of the task Jacobian, rows as named by ``dexterity.square_rows``."""
+        pose = pose_from_world([0.0, 0.0, 0.0, self.A, self.B])
+        task = dexterity.square_matrix(self.robot, pose, self.J[self.reached])
+        values: FloatArray = np.linalg.svd(task, compute_uv=False)
+        return values
 
     def C(self) -> FloatArray:
         """Compliance (nx, ny, nz, 3, 3) m/N."""
@@ -109,8 +117,14 @@ def _evaluate(field: ComplianceField, what: Quantity) -> FloatArray:
         return field.reached.astype(np.float64)
     if what.name == "det_J":
         return field.det_J
-    if what.name in _OF_CONFIGURATION:
-        return _at_reached(field, _OF_CONFIGURATION[what.name])
+    if what.name == "manipulability":
+        return np.abs(field.det_J)
+    if what.name == "limit_distance":
+        return _where_reached(field, dexterity.limit_distance(field.robot, field.theta[field.reached]))
+    if what.name == "smallest_singular_value":
+        return _where_reached(field, field.singular_values[:, -1])
+    if what.name == "inverse_condition":
+        return _where_reached(field, field.singular_values[:, -1] / field.singular_values[:, 0])
     if what.name in ("C_soft", "C_stiff"):
         pick = -1 if what.name == "C_soft" else 0
         values: FloatArray = np.linalg.eigvalsh(field.C()[field.reached]).astype(np.float64)
@@ -129,24 +143,10 @@ def _evaluate(field: ComplianceField, what: Quantity) -> FloatArray:
     return part
 
 
-_OF_CONFIGURATION: dict[str, Callable[[Robot, FloatArray], FloatArray]] = {
-    "manipulability": dexterity.manipulability,
-    "inverse_condition": dexterity.inverse_condition,
-    "smallest_singular_value": dexterity.smallest_singular_value,
-    "limit_distance": dexterity.limit_distance,
-}
-
-
 def _where_reached(field: ComplianceField, values: FloatArray) -> FloatArray:
     full = np.full(field.reached.shape, np.nan)
     full[field.reached] = values
     return full
-
-
-def _at_reached(field: ComplianceField, law: Callable[[Robot, FloatArray], FloatArray]) -> FloatArray:
-    if not field.reached.any():
-        return np.full(field.reached.shape, np.nan)
-    return _where_reached(field, law(field.robot, field.theta[field.reached]))
 
 
 def _dominant(field: ComplianceField, size: FloatArray) -> FloatArray:
