@@ -21,7 +21,7 @@ Engine = Literal["auto", "compiled", "numpy"]
 
 # Work that would take NumPy longer than this waits for the kernels (half a second from the cache on disk).
 WORTH_WAITING_SECONDS = 3.0
-SOURCES = ("kernels.py", "engagement_kernels.py")
+SOURCES = ("kernels.py", "tilted_kernels.py", "engagement_kernels.py")
 
 
 class Kernels(NamedTuple):
@@ -110,10 +110,10 @@ def _load() -> Kernels:
     before, folder = config.CACHE_DIR, cache_folder()
     config.CACHE_DIR = before if before or folder is None else str(folder)
     try:
-        from robomill.surface import engagement_kernels, kernels
+        from robomill.surface import engagement_kernels, kernels, tilted_kernels
     finally:
         config.CACHE_DIR = before
-    return Kernels(kernels.cut_moves, kernels.cut_tilted, engagement_kernels.engage_moves)
+    return Kernels(kernels.cut_moves, tilted_kernels.cut_tilted, engagement_kernels.engage_moves)
 
 
 def cache_folder() -> Path | None:

@@ -14,8 +14,8 @@ from robomill.surface.kernels import (
     profile,
     row_interval,
     swept_height,
-    tilted_interval,
 )
+from robomill.surface.tilted_kernels import tilted_interval
 
 
 @njit(cache=True, nogil=True)

@@ -11,19 +11,11 @@ from numpy.typing import ArrayLike
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
-from robomill.surface.envelope import (
-    Move,
-    Shape,
-    cutter_shape,
-    moves_of,
-    swept_height,
-    tilt_of,
-    tilted_interval,
-    tilted_move,
-)
+from robomill.surface.envelope import Move, Shape, cutter_shape, moves_of, swept_height
 from robomill.surface.raster import skin_on_line
 from robomill.surface.removal import joined
 from robomill.surface.stock import Stock
+from robomill.surface.tilt import tilt_of, tilted_interval, tilted_move
 from robomill.surface.tilted import tool_axes
 from robomill.units import format_si
 

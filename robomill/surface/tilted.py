@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import SurfaceError
-from robomill.surface import envelope
 from robomill.surface.compiler import Kernels
-from robomill.surface.envelope import Shape
+from robomill.surface.envelope import Move, Shape
 from robomill.surface.removal import Cancel, Grid, Progress, Watch, rows_of_tile, tiles_of
+from robomill.surface.tilt import Tilt, tilted_interval
 
 SMALLEST_RISE = 0.1
 
@@ -135,13 +135,13 @@ def cut_tilted_move(
     if (first > last).any():
         return
     i, j = (a.ravel() for a in np.mgrid[first[0] : last[0] + 1, first[1] : last[1] + 1])
-    tilt = envelope.Tilt(
+    tilt = Tilt(
         np.append(frame[0:2], 0.0), np.append(frame[2:4], frame[6]), np.append(frame[4:6], frame[7]),
         float(frame[6]), float(frame[7]),
     )  # fmt: skip
-    move = envelope.Move(*(float(value) for value in tilted.moves[n]))
+    move = Move(*(float(value) for value in tilted.moves[n]))
     top = z[i, j]
-    low, high = envelope.tilted_interval(shape, tilt, move, grid.x0 + i * grid.dx, grid.y0 + j * grid.dy, top)
+    low, high = tilted_interval(shape, tilt, move, grid.x0 + i * grid.dx, grid.y0 + j * grid.dy, top)
     hit = low < high
     i, j, low, high, top = i[hit], j[hit], low[hit], high[hit], top[hit]
     open_above = high >= top

@@ -1,4 +1,4 @@
-"""Engagement angles at odd immersions converge to arccos, first order in the cell, down to the arc's step of 1 degree."""
+"""Engagement of side cuts converges to arccos, first order in the cell, down to the arc's step of 1 degree."""
 
 import numpy as np
 import pytest
