@@ -18,6 +18,8 @@ from robomill.ui.path_summary import path_summary
 from robomill.ui.program_view import LEVELS, program_lines, select_line, selected_line
 from robomill.units import format_si, format_value, from_si, unit_label
 
+DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
+
 
 def duration(seconds: float) -> str:
     """A time as people say it."""
@@ -137,9 +139,21 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
 
 
 def support_table() -> None:
-    """Which words are read, and how."""
-    try:
-        from robomill.toolpath.gcode import support
-    except ImportError:
-        return
-    del support
+    """Which words are read, left out or refused; every row has its test."""
+    from robomill.toolpath.gcode.support import SUPPORT
+
+    said = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
+    with st.expander("What is supported", icon=":material/fact_check:"):
+        frame = pd.DataFrame({
+            "words": [row.words for row in SUPPORT], "meaning": [row.meaning for row in SUPPORT],
+            "": [said[row.status] for row in SUPPORT],
+            "dialect": ["all" if row.dialect == "linuxcnc" else DIALECTS[row.dialect] for row in SUPPORT],
+        })  # fmt: skip
+        st.dataframe(
+            frame, hide_index=True, height=330,
+            column_config={
+                "words": st.column_config.TextColumn(width=150), "meaning": st.column_config.TextColumn(width="medium"),
+                "": st.column_config.TextColumn(width=110), "dialect": st.column_config.TextColumn(width=80),
+            },
+        )  # fmt: skip
+        parts.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")

@@ -14,6 +14,7 @@ from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Finding, Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import inputs, parts, reading, state
+from robomill.ui.path_details import DIALECTS
 from robomill.ui.program_view import program_lines, program_view, select_line, selected_line
 from robomill.ui.sources import put
 
@@ -21,7 +22,6 @@ SUFFIXES = ("nc", "ngc", "tap", "gcode", "cnc", "txt", "mpf", "eia", "min")
 MAX_PROGRAM_MB = 100
 EDITABLE_CHARACTERS = 200_000
 FILE, TEXT, MODE, REFUSED = "program.file", "program.text", "program.mode", "program.refused"
-DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ COLOUR, SHAPE = "toolpath.colour", "toolpath.shape"
 COLOURS = {"reach": "Reach", "deviation": "Deviation", "limits": "Room to limits", "feed": "Feed", "depth": "Height"}
 SHAPES = {"plan": "From above", "turn": "Turnable", "arm": "With the arm"}
 
-NOUNS = {"program": "cutting line", "lines": "cut", "sketch": "shape"}
+NOUNS = {"program": "cut", "lines": "cut", "sketch": "shape"}
 PLACES = {"program": "line", "lines": "row", "sketch": "shape"}
 
 

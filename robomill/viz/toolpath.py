@@ -36,9 +36,10 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     fig.add_trace(
         make(**xy, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip")
     )
+    width = 3.0 if len(kept) < 3_000 else 1.6
     fig.add_trace(
         make(
-            **_lines(picture, ends, cut, flat), mode="lines", line={"color": rgba(p.text, 0.18), "width": 6},
+            **_lines(picture, ends, cut, flat), mode="lines", line={"color": rgba(p.text, 0.18), "width": 2 * width},
             hoverinfo="skip", showlegend=False,
         )
     )  # fmt: skip
@@ -46,7 +47,7 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     for name, colour, chosen, legend in _classes(picture, dark):
         fig.add_trace(
             make(
-                **_lines(picture, ends, chosen, flat), mode="lines", name=name, line={"color": colour, "width": 3},
+                **_lines(picture, ends, chosen, flat), mode="lines", name=name, line={"color": colour, "width": width},
                 hoverinfo="skip", showlegend=legend,
             )
         )  # fmt: skip
@@ -199,15 +200,18 @@ def _halo(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
         x=q[:, 0], y=q[:, 1], mode="lines", name=f"{picture.noun} {picture.selected}", hoverinfo="skip",
         line={"color": p.text, "width": 8},
     )  # fmt: skip
-    fig.add_scatter(
-        x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
-        marker={"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, "width": 2}},
-    )  # fmt: skip
 
 
 def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
-    """Where the path begins and where the value is largest."""
+    """Where the path begins, where the value is largest, and where the line that is pointed at ends."""
     p = palette(dark)
+    here = _selected(picture)
+    if len(here):
+        q = picture.points[here]
+        fig.add_scatter(
+            x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            marker={"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, "width": 2}},
+        )  # fmt: skip
     start = picture.points[0]
     fig.add_scatter(
         x=[start[0]], y=[start[1]], mode="markers", name="start", hoverinfo="skip",

@@ -9,15 +9,21 @@ from streamlit.testing.v1 import AppTest
 from robomill.toolpath.source import GCodeSource, LinesSource
 
 
+def type_program(app: AppTest, text: str) -> None:
+    """Go to the editor and type a program."""
+    app.button_group(key="program.mode").set_value("edit").run()
+    app.text_area(key="program.text").set_value(text).run()
+
+
 def test_it_says_what_was_read(app: AppTest) -> None:
     go(app, "5_Toolpath")
     assert not app.exception
-    assert "1 cut within 100.0 × 0.0 × 0.0 mm, all of it in reach." in words(app)
+    assert "1 cut within 100.0 × 0.0 × 0.0 mm, all in reach; at most 0.25 mm off, at line 7." in words(app)
 
 
 def test_a_pasted_program_is_in_force_everywhere(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.text_area(key="program:text").set_value("G21 G90\nG0 X-50 Y10 Z-2\nG1 X30 F1200\n").run()
+    type_program(app, "G21 G90\nG0 X-50 Y10 Z-2\nG1 X30 F1200\n")
     assert not app.exception
     assert "80.0" in words(app)
     go(app, "6_Milling")
@@ -28,11 +34,11 @@ def test_a_pasted_program_is_in_force_everywhere(app: AppTest) -> None:
 def test_a_program_that_cannot_be_read_is_kept_and_explained(app: AppTest, text: str) -> None:
     go(app, "5_Toolpath")
     before = store(app).project.setup.digest()
-    app.text_area(key="program:text").set_value(text).run()
+    type_program(app, text)
     assert not app.exception
     assert len(errors(app)) >= 1
     assert len(errors(app)[0]) > 20
-    assert app.text_area(key="program:text").value == text
+    assert app.text_area(key="program.text").value == text
     if store(app).project.setup.digest() == before:
         go(app, "app")
         assert "0.23 mm off in Y" in words(app)
@@ -40,11 +46,11 @@ def test_a_program_that_cannot_be_read_is_kept_and_explained(app: AppTest, text:
 
 def test_what_cannot_be_reached_is_counted_and_named(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.text_area(key="program:text").set_value("G21 G90\nG0 X0 Y0 Z-2\nG1 Y-1500 F1800\n").run()
+    type_program(app, "G21 G90\nG0 X0 Y0 Z-2\nG1 Y-1500 F1800\n")
     assert not app.exception
     text = words(app)
-    assert "points out of reach" in text
-    assert "lines 3" in text
+    assert "mm of them cannot be reached" in text
+    assert "out of reach at line 3" in text
     go(app, "app")
     assert not app.exception
     assert "Out of reach" in words(app)
