@@ -50,7 +50,7 @@ def page(kept: Bench, view: state.View, dark: bool) -> None:
         _measure(kept, robot, lab)
     with right:
         with st.container(border=True):
-            _arm(robot, dark)
+            _arm(robot, dark, 330 if done else 450)
         if result is not None:
             truth = lab.reveal() if kept.handed_in else None
             with st.container(border=True):
@@ -163,7 +163,7 @@ def _measure(kept: Bench, robot: Robot, lab: Laboratory) -> None:
     first, second = st.columns(2)
     first.button("Measure", key="lab:measure", type="primary", width="stretch", disabled=spent,
                  icon=":material/straighten:", on_click=_push, args=(kept, False))  # fmt: skip
-    second.button("X, Y and Z", key="lab:three", width="stretch", disabled=spent or lab.budget < 3,
+    second.button("Along X, Y and Z", key="lab:three", width="stretch", disabled=spent or lab.budget < 3,
                   on_click=_push, args=(kept, True))  # fmt: skip
     inputs.sentence("lab:measure")
     if spent and not kept.handed_in:
@@ -210,7 +210,7 @@ def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
         return None, str(exc)
 
 
-def _arm(robot: Robot, dark: bool) -> None:
+def _arm(robot: Robot, dark: bool, height: int) -> None:
     choice = st.session_state[KEPT]
     solved = inverse_kinematics(robot, pose_from_world(np.array(choice["pose"])))
     if not bool(solved.reached):
@@ -219,7 +219,7 @@ def _arm(robot: Robot, dark: bool) -> None:
     force = np.eye(3)["XYZ".index(choice["push"])] * choice["load"]
     scene = ArmScene(frames=joint_frames(robot, solved.theta), force=force, force_label=f"{choice['load']:g} N")
     parts.figure(
-        arm_figure(scene, dark=dark, height=330, revision="lab-arm", zoom=0.9), "lab-arm",
+        arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9), "lab-arm",
         caption="The pose to be measured and the weight on the tool.", alt="The arm at the chosen pose with its load.",
     )  # fmt: skip
 

@@ -17,7 +17,7 @@ from robomill.ui.identification_panel import OWN, robot_choice, upload
 from robomill.ui.identification_plan import cut_of
 from robomill.ui.load_bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
 from robomill.units import format_si, from_si, unit_label
-from robomill.viz.measured_maps import level_figure
+from robomill.viz.measured_maps import both_figure, level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
 
@@ -49,7 +49,7 @@ def page(kept: Bench, view: state.View, dark: bool) -> None:
         for finding in field.findings:
             st.warning(finding.message, icon=":material/visibility:")
         _maps(field, robot, *chosen, view.length, dark)
-        _cut(field, cut, view.length)
+        _cut(field, cut, view.length, dark)
 
 
 def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
@@ -215,25 +215,38 @@ def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, A
     }  # fmt: skip
 
 
-def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str) -> None:
-    """The project's cut by both methods, in a sentence."""
+def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bool) -> None:
+    """The project's cut by both methods: along the path, and its worst point."""
     if cut is None or cut.worst < 0:
         return
-    mapped = along_cut(field, cut)[cut.worst]
-    if not np.isfinite(mapped).all():
-        parts.note("The worst point of the project's cut lies outside the measured region: the map does not answer.")
+    mapped = along_cut(field, cut)
+    if not np.isfinite(mapped[cut.judged]).any():
+        parts.note("The project's cut lies outside the measured region: the map does not answer there.")
         return
-    digits = 3 if unit == "mm" else 4
-    both = [
-        " · ".join(
-            f"{a} {format_si(float(v), unit, digits, sign=True).rpartition(' ')[0]}"
-            for a, v in zip("XYZ", d, strict=True)
+    left, right = parts.split([1.5, 1], "map-cut")
+    blank = np.where(cut.judged, 1.0, np.nan)
+    s = from_si(cut.path.s, unit)
+    by_map = from_si(np.linalg.norm(mapped, axis=1) * blank, unit)
+    by_joints = from_si(cut.deviation * blank, unit)
+    with left, st.container(border=True, height="stretch"):
+        st.markdown("**The project's cut by both**")
+        parts.figure(
+            both_figure(s, by_map, by_joints, unit, dark=dark), "ident-both", name="cut-by-map",
+            table=lambda: {f"station_{unit}": s, f"by_map_{unit}": by_map, f"by_joints_{unit}": by_joints},
+            caption="Size of the deviation along the path.", alt="Deviation along the path by map and joint model.",
+        )  # fmt: skip
+    with right, st.container(border=True, height="stretch"):
+        st.markdown(f"**At its worst, line {cut.worst_block}**")
+        digits = 3 if unit == "mm" else 4
+        rows = [
+            (axis.upper(), format_si(float(a), unit, digits, sign=True), format_si(float(b), unit, digits, sign=True))
+            for axis, a, b in zip("xyz", mapped[cut.worst], cut.delta[cut.worst], strict=True)
+        ]
+        head = f"map {parts.badge(kind_of(field))}", f"joints {parts.badge('computed')}"
+        body = "".join(f'<tr><td>{q}</td><td class="n">{a}</td><td class="n">{b}</td></tr>' for q, a, b in rows)
+        st.html(
+            f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
+            f"{body}</table>"
         )
-        for d in (mapped, cut.delta[cut.worst])
-    ]
-    parts.facts([
-        ("Worst of the cut", f"{both[0]} {unit_label(unit)}", f"by the measured map {parts.badge(kind_of(field))}"),
-        ("", f"{both[1]} {unit_label(unit)}", f"by the joint model in force {parts.badge('computed')}"),
-    ])  # fmt: skip
-    if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
-        parts.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
+        if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
+            parts.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")

@@ -159,6 +159,8 @@ def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
     fitted = adopted(setup, robot, result, kept.name)
     known = uncertainty.known(setup)
     in_force = known is not None and uncertainty.fingerprint(setup) == uncertainty.fingerprint(fitted)
+    if in_force:
+        uncertainty.keep(setup, _knowledge(kept, robot, result))  # force and lengths may have been stated since
     st.button(
         "In force in the project" if in_force else "Use these compliances in the project", type="primary",
         icon=":material/check:" if in_force else ":material/input:", key="ident:use", width="stretch",
@@ -187,9 +189,14 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
     return setup.replace(robot=result.applied_to(robot).replace(provenance=marked), springs=old + found)
 
 
+def _knowledge(kept: Bench, robot: Robot, result: IdentificationResult) -> uncertainty.Knowledge:
+    known = uncertainty.knowledge(result, robot, f"from {len(result.row)} load tests")
+    return uncertainty.widened(known, robot, kept.force_unsure, kept.length_unsure)
+
+
 def _use(kept: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     def put() -> None:
-        known = uncertainty.knowledge(result, robot, f"from {len(result.row)} load tests")
+        known = _knowledge(kept, robot, result)
         state.change(robot=fitted.robot, springs=fitted.springs)
         uncertainty.keep(fitted, known)
         kept.robot_name = ""

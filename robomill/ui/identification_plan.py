@@ -14,11 +14,12 @@ from robomill.identification.plan import PathLoad, Plan, box_candidates, next_be
 from robomill.identification.result import IdentificationResult
 from robomill.improve.uncertainty import quantile
 from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, inputs, parts, state, uncertainty
-from robomill.ui.identification_panel import adopted, field
-from robomill.ui.load_bench import Bench, tests_of
+from robomill.ui.identification_panel import adopted, field, upload
+from robomill.ui.load_bench import Bench, appended, tests_of
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.bands import band_figure
 from robomill.viz.identification import gain_figure
@@ -57,7 +58,8 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
             "Measuring sheet (CSV)", lambda: measuring_sheet(plan, kept.name), "measuring-sheet.csv", "text/csv",
             key="ident:sheet",
         )  # fmt: skip
-        parts.note("Fill in dx, dy, dz, add the rows to those of the tests, and take both as your load tests.")
+        parts.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
+    upload("Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name))
 
 
 def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
@@ -91,6 +93,11 @@ def _joint(kept: Bench, robot: Robot, result: IdentificationResult) -> int:
     if kept.goal_joint in robot.joint_numbers:
         return kept.goal_joint
     return result.weakest_joint if result.model != "constant" else robot.joint_numbers[0]
+
+
+def _take_sheet(kept: Bench, robot: Robot, text: str, name: str) -> None:
+    read_load_tests(text + "\n", robot)  # refused here with row and column of the sheet, before it joins anything
+    kept.take(appended(kept.text, text), f"{kept.name} + {name}")
 
 
 def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
@@ -164,6 +171,8 @@ def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str)
         return "not known", "no residuals to judge the noise by"
     digits = uncertainty.band_digits(half, unit)
     text = uncertainty.band_text(found.max_deviation, half, unit)
+    if uncertainty.fingerprint(found.setup) == uncertainty.fingerprint(state.project().setup):
+        return text, "95 % band; in force in the project"
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
 
 

@@ -35,15 +35,16 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
             parts.figure(
                 intervals_figure(drawn, dark=dark), f"ident-intervals-{k}", name="compliances",
                 table=(lambda: words.parameter_columns(result, robot, joint_unit)) if first else None,
-                caption="Bars: 95 % intervals. Logarithmic: equal lengths are equal percentages." if first else "",
+                caption=_scale(drawn.logarithmic) if first else "",
                 alt="Fitted compliances with 95 % intervals beside the reference values.",
             )  # fmt: skip
     unseen(result)
-    left, right = parts.split([1, 1.3], "fit")
+    few = len(result.labels) <= 8
+    left, right = parts.split([1, 1.3], "fit") if few else (st.container(), st.container())
     with left, st.container(border=True, height="stretch"):
         st.markdown("**Which are confused with which**")
         if np.isfinite(result.correlation).any():
-            names = [p.label.replace("joint ", "J").replace("bending ", "b") for p in result.labels]
+            names = [words.pretty(p.label).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
             parts.figure(
                 correlation_figure(names, result.correlation, dark=dark), "ident-correlation",
                 table=lambda: {"": names, **{n: result.correlation[:, i] for i, n in enumerate(names)}},
@@ -61,12 +62,17 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         )
 
 
+def _scale(logarithmic: bool) -> str:
+    bars = "Bars: 95 % intervals."
+    return f"{bars} Logarithmic: equal lengths are equal percentages." if logarithmic else bars
+
+
 def unseen(result: IdentificationResult) -> None:
     """The joint that cannot be seen, or is known least, and why."""
     if result.unseen_joints:
         for joint in result.unseen_joints:
             st.warning(joint.sentence, icon=":material/visibility_off:")
-    elif result.model != "constant":
+    elif result.model != "constant" and not words.is_single(result):
         st.info(result.explain(result.weakest_joint), icon=":material/lightbulb:")
 
 
@@ -80,6 +86,7 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
     columns = words.parameter_columns(result, robot, joint_unit)
     references = [c for c in columns if c not in FIXED]
     head = ["", "value", "std. error", "95 % interval", *references]
+    common = words.unit_of(result.labels[0], joint_unit)
     body = []
     for k, parameter in enumerate(result.labels):
         unit = words.unit_of(parameter, joint_unit)
@@ -88,15 +95,17 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
             f"<b>{words.number(value, unit)}</b>", words.number(error, unit),
             f"{words.number(low, unit)} to {words.number(high, unit)}",
         ]  # fmt: skip
+        if parameter.label in result.lumped:
+            cells = [f"counted with {result.lumped[parameter.label]}", "", ""]
         cells += [words.number(columns[c][k], unit) for c in references]
-        own = "" if unit == joint_unit else f" <small>{html.escape(unit_label(unit))}</small>"
+        own = "" if unit == common else f" <small>{html.escape(unit_label(unit))}</small>"
         row = "".join(f'<td class="n">{c}</td>' for c in cells)
-        wrap = ' style="white-space:nowrap"' if parameter.joint else ""
-        body.append(f"<tr><td{wrap}>{html.escape(parameter.label)}{own}</td>{row}</tr>")
+        body.append(f'<tr><td style="white-space:nowrap">{parts.subscripts(parameter.label)}{own}</td>{row}</tr>')
     top = "".join(f'<th class="{"n" if i else ""}">{html.escape(h)}</th>' for i, h in enumerate(head))
     st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table></div>')
-    parts.note(f"In {unit_label(joint_unit)} unless said. {parts.badge('paper')} Tables 2 and 3" if references else
-               f"In {unit_label(joint_unit)} unless said.")  # fmt: skip
+    sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
+    said = [f"{parts.badge(source.kind)} {title}" for title, source in sources if source and title in references]
+    parts.note(f"In {unit_label(common)}. {' '.join(said)}")
 
 
 FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
@@ -104,7 +113,7 @@ FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit",
 
 def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
     """Residual of each test, what does not fit, and the click that leaves it out."""
-    single = result.residual.shape[1] == 1
+    single = words.is_single(result)
     with st.container(border=True):
         picked = _residual_unit(single)
         if picked == "%":

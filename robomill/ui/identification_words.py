@@ -24,6 +24,7 @@ MODEL_TITLES = {
     "joints+bending+tool": "Joints, bending and tool",
     "constant": "One constant matrix",
 }
+IDENTIFIED_SET = "identified"
 SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
 
 
@@ -59,36 +60,49 @@ def number(value: float, unit: str) -> str:
 def intervals(
     result: IdentificationResult, robot: Robot, joint_unit: str, truth: FloatArray | None = None
 ) -> list[Intervals]:
-    """One drawing for each unit among the parameters: joints and bending, then what shifts."""
-    units = [unit_of(p, joint_unit) for p in result.labels]
-    drawn = []
-    for unit in dict.fromkeys(units):
-        rows = [k for k, u in enumerate(units) if u == unit]
-        known = np.array([bool(np.isfinite(result.parameter_stderr[k])) for k in rows])
-        value = np.where(known, shown(result.parameters[rows], unit), np.nan)
-        ends = np.array([interval(result.parameter_ci95[k], unit) for k in rows])
-        words = tuple(
-            f"<b>{number(value[i], unit)}</b>  ({number(ends[i, 0], unit)} to {number(ends[i, 1], unit)})"
-            if known[i]
-            else ""
-            for i in range(len(rows))
-        )
-        joints = [result.labels[k].joint for k in rows]
-        references = {
-            SET_TITLES.get(name, name.replace("_", " ").capitalize()): np.array(
-                [shown(values[j - 1], unit) if j else np.nan for j in joints]
-            )
-            for name, values in robot.compliance_sets.items()
-            if name != "identified"
-        }
-        drawn.append(Intervals(
-            labels=tuple(result.labels[k].label.capitalize().replace("C_", "C ") for k in rows),
-            value=value, low=ends[:, 0], high=ends[:, 1], words=words, unit=unit_label(unit),
-            references=references if any(joints) else {},
-            truth=None if truth is None else shown(truth, unit),
-            logarithmic=not any(result.labels[k].signed for k in rows) and bool((value[known] > 0).any()),
-        ))  # fmt: skip
-    return drawn
+    """One drawing for each kind and unit of parameter: the joints, then bending, then what shifts."""
+    groups = [(unit_of(p, joint_unit), p.joint is not None) for p in result.labels]
+    return [
+        _drawing(result, robot, unit, [k for k, g in enumerate(groups) if g == (unit, joint)], truth if joint else None)
+        for unit, joint in dict.fromkeys(groups)
+    ]
+
+
+def _drawing(
+    result: IdentificationResult, robot: Robot, unit: str, rows: list[int], truth: FloatArray | None
+) -> Intervals:
+    labels = [result.labels[k] for k in rows]
+    lumped = [result.lumped.get(p.label, "") for p in labels]
+    known = np.isfinite(result.parameter_stderr[rows]) & np.array([not other for other in lumped])
+    value = np.where(known, shown(result.parameters[rows], unit), np.nan)
+    ends = np.array([interval(result.parameter_ci95[k], unit) for k in rows])
+    words = tuple(
+        f"<b>{number(v, unit)}</b>  ({number(low, unit)} to {number(high, unit)})" if seen
+        else f"moves as {other} does at these poses: counted there" if other else "not seen by these tests"
+        for v, (low, high), seen, other in zip(value, ends, known, lumped, strict=True)
+    )  # fmt: skip
+    joints = [p.joint - 1 for p in labels if p.joint is not None]
+    references = {title: shown(C[joints], unit) for title, C in reference_sets(robot)} if joints else {}
+    return Intervals(
+        labels=tuple(pretty(p.label) for p in labels), value=value, low=ends[:, 0], high=ends[:, 1], words=words,
+        unit=unit_label(unit), references=references,
+        truth=None if truth is None else shown(truth, unit),
+        logarithmic=not any(p.signed for p in labels) and bool((value[known] > 0).any()),
+    )  # fmt: skip
+
+
+def reference_sets(robot: Robot) -> list[tuple[str, FloatArray]]:
+    """The robot's own compliance sets (all rows) with their titles, but for those found here."""
+    return [
+        (SET_TITLES.get(name, name.replace("_", " ").capitalize()), C)
+        for name, C in robot.compliance_sets.items()
+        if name != IDENTIFIED_SET
+    ]
+
+
+def pretty(label: str) -> str:
+    """A parameter's label as a figure writes it: "Joint 4", "C" with its index set low."""
+    return f"C<sub>{label[2:]}</sub>" if label.startswith("C_") else label.capitalize()
 
 
 def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: str) -> dict[str, Any]:
@@ -111,10 +125,10 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
         "unit": [unit_label(u) for u in units],
         "share of displacement, %": from_si(result.share, "%"),
     }
-    for name, values in robot.compliance_sets.items():
-        if name == "identified":
-            continue
-        columns[SET_TITLES.get(name, name)] = [
+    if result.model == "constant":
+        return columns
+    for name, values in reference_sets(robot):
+        columns[name] = [
             float(shown(values[p.joint - 1], u)) if p.joint else np.nan
             for p, u in zip(result.labels, units, strict=True)
         ]
@@ -123,7 +137,7 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
 
 def residual_columns(result: IdentificationResult) -> dict[str, Any]:
     """One row a test: residual by component (mm; mrad for single joints), its size, its share, times off."""
-    single = result.residual.shape[1] == 1
+    single = is_single(result)
     unit, names = ("mrad", [""]) if single else ("mm", ["x_", "y_", "z_"])
     flagged = {o.row: o.times for o in result.outliers}
     columns: dict[str, Any] = {"row": result.row}
@@ -133,6 +147,11 @@ def residual_columns(result: IdentificationResult) -> dict[str, Any]:
     columns["share_of_measured_%"] = from_si(result.residual_share, "%")
     columns["times_the_usual"] = [flagged.get(int(r), np.nan) for r in result.row]
     return columns
+
+
+def is_single(result: IdentificationResult) -> bool:
+    """Whether the tests were of one joint at a time."""
+    return result.residual.shape[1] == 1
 
 
 def sizes(result: IdentificationResult) -> FloatArray:
@@ -163,9 +182,10 @@ def weakest(result: IdentificationResult) -> tuple[str, float]:
 def title(result: IdentificationResult) -> str:
     """The page's one sentence."""
     cv = result.cv_relative_error
+    what = "readings" if is_single(result) else "poses"
     said = (
-        f"These tests predict poses left out to {format_si(cv, '%', 1)}" if np.isfinite(cv)
-        else "There are too few poses to leave any out"
+        f"These tests predict {what} left out to {format_si(cv, '%', 1)}" if np.isfinite(cv)
+        else f"There are too few {what} to leave any out"
     )  # fmt: skip
     if result.model == "constant":
         return f"{said}: one matrix for every pose, the naive baseline."
@@ -178,10 +198,11 @@ def title(result: IdentificationResult) -> str:
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
     """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
     cv, inside = result.cv_relative_error, in_sample(result)
-    single = result.residual.shape[1] == 1
+    single = is_single(result)
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
     items = [
-        Tile("Error on poses left out", format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
+        Tile(f"Error on {'readings' if single else 'poses'} left out",
+             format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
              f"cross-validated; {format_si(inside, '%', 1)} on its own data", kind="computed"),
     ]  # fmt: skip
     if result.model == "constant":

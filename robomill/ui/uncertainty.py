@@ -8,15 +8,23 @@ edit, another set or an undo ends it, going back brings it again. Everything els
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray, digest, frozen
+from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.errors import ProjectError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
-from robomill.improve.uncertainty import Sources, Uncertain, deflection_uncertainty, quantile, with_band
+from robomill.improve.uncertainty import (
+    Sources,
+    Uncertain,
+    compliance_uncertainty,
+    deflection_uncertainty,
+    quantile,
+    with_band,
+)
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -70,6 +78,51 @@ def known(setup: SimulationSetup) -> Knowledge | None:
     return _kept().get(fingerprint(setup))
 
 
+def to_table(setup: SimulationSetup) -> dict[str, Any] | None:
+    """What is known of the compliances in force, as plain numbers for the project file; None where nothing is."""
+    given = known(setup)
+    if given is None or given.sources.covariance is None:
+        return None
+    table: dict[str, Any] = {
+        "model": given.choice.name,
+        "bending_joints": list(given.choice.bending_joints),
+        "parameters": given.parameters.tolist(),
+        "covariance": np.asarray(given.sources.covariance).tolist(),
+        "words": given.words,
+    }
+    if given.sources.dof is not None:
+        table["dof"] = int(given.sources.dof)
+    if given.sources.F is not None:
+        table["force_covariance"] = given.sources.F.tolist()
+    if given.sources.lengths is not None:
+        table["lengths"] = given.sources.lengths.tolist()
+    return table
+
+
+def from_table(setup: SimulationSetup, table: Any) -> None:
+    """Keep what a project file knows of the compliances of ``setup``. Raises ProjectError for what cannot be so."""
+    where = "project file: [uncertainty]"
+    if not isinstance(table, dict):
+        raise ProjectError(f"{where} is not a table; remove it or save the project again.")
+    try:
+        choice = Model(str(table["model"]), tuple(int(j) for j in table.get("bending_joints", (2, 3))))
+        p = len(choice.parameters(setup.robot))
+        parameters = as_floats(table["parameters"], "parameters", (p,), error=ProjectError)
+        covariance = as_floats(table["covariance"], "covariance", (p, p), error=ProjectError)
+        F = (
+            None
+            if "force_covariance" not in table
+            else as_floats(table["force_covariance"], "force_covariance", (3, 3))
+        )
+        rows = 2 * setup.robot.rows
+        lengths = None if "lengths" not in table else as_floats(table["lengths"], "lengths", (rows,))
+        dof = None if "dof" not in table else int(table["dof"])
+    except (KeyError, TypeError, ValueError) as exc:
+        raise ProjectError(f"{where} cannot be used ({exc}); remove it or save the project again.") from exc
+    sources = Sources(frozen(covariance), F, lengths, dof)
+    keep(setup, Knowledge(choice, frozen(parameters), sources, str(table.get("words", "from load tests"))))
+
+
 def fingerprint(setup: SimulationSetup) -> str:
     """SHA-256 over the compliances in force: joints, blocked axes, springs."""
     robot = setup.robot
@@ -99,6 +152,18 @@ def worst_half(result: SimulationResult) -> float:
     if given is None or result.worst < 0:
         return float("nan")
     return float(size_band(result, deviation_band(result, given, result.worst), result.worst))
+
+
+def compliance_std(setup: SimulationSetup, theta: FloatArray) -> FloatArray | None:
+    """(..., 3, 3) m/N: standard deviation of every entry of C at theta (..., n), for maps; None where none is known.
+
+    By the uncertainty of the joints' compliances; that of the springs beside them is not in it.
+    """
+    given = known(setup)
+    if given is None or given.sources.covariance is None:
+        return None
+    n = setup.robot.n
+    return compliance_uncertainty(setup.robot, theta, given.sources.covariance[:n, :n])
 
 
 def tile_text(result: SimulationResult, unit: str = "mm") -> str:

@@ -21,7 +21,7 @@ _ROW = 46
 
 @dataclass(frozen=True, eq=False)
 class Intervals:
-    """Values (p,) with intervals low, high (p,) and their words; NaN values are not known.
+    """Values (p,) with intervals low, high (p,) and their words; a NaN value is not known, its words say why.
 
     references: name -> (p,), drawn as open symbols; ``truth`` (p,) as crosses; ``logarithmic`` for positive values.
     """
@@ -41,13 +41,15 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
     """Each parameter as a point on its 95 % interval, the numbers written at the right."""
     p = palette(dark)
     low, high = _clipped(shown)
-    fig = figure(dark=dark, height=84 + _ROW * len(shown.labels), revision=f"intervals-{shown.unit}",
-                 margin={"l": 8, "r": 156, "t": 34, "b": 8})  # fmt: skip
+    compared = bool(shown.references) or shown.truth is not None
+    top = 34 if compared else 8
+    fig = figure(dark=dark, height=50 + top + _ROW * len(shown.labels), revision=f"intervals-{shown.unit}",
+                 margin={"l": 8, "r": 156, "t": top, "b": 8}, showlegend=compared)  # fmt: skip
     colours = joint_colours(7, dark)
     y = np.arange(len(shown.labels))
     for k in y:
         if not np.isfinite(shown.value[k]):
-            fig.add_annotation(x=0.02, xref="paper", y=k, xanchor="left", text="not seen by these tests",
+            fig.add_annotation(x=0.02, xref="paper", y=k, xanchor="left", text=shown.words[k],
                                showarrow=False, font={"size": 12.5, "color": p.muted})  # fmt: skip
             continue
         fig.add_scatter(
@@ -56,7 +58,8 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
         )  # fmt: skip
     known = np.isfinite(shown.value)
     fig.add_scatter(
-        x=shown.value[known], y=y[known], mode="markers", name="fitted, with its 95 % interval",
+        x=np.clip(shown.value[known], low[known], None), y=y[known], mode="markers",
+        name="fitted, with its 95 % interval",
         marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
         text=[shown.words[k] for k in y[known]], hovertemplate="%{text}<extra></extra>",
     )  # fmt: skip
@@ -70,7 +73,7 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
             x=shown.truth, y=y, mode="markers", name="truth", hovertemplate="truth: %{x:.2f}<extra></extra>",
             marker={"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": p.text}},
         )  # fmt: skip
-    for k in y:
+    for k in y[known]:
         fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", align="left", text=shown.words[k],
                            showarrow=False, font={"size": 12.5, "color": p.text})  # fmt: skip
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
@@ -203,11 +206,12 @@ def _clipped(shown: Intervals) -> tuple[FloatArray, FloatArray]:
     """The ends that can be drawn: on a logarithmic axis nothing at or below zero, and nothing infinite."""
     low, high = shown.low.copy(), shown.high.copy()
     if shown.logarithmic:
-        sizes = [shown.value, high, *shown.references.values()]
+        sizes = [shown.value, *shown.references.values()]
         flat = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in sizes])
         bottom, top = (float(flat.min()), float(flat.max())) if len(flat) else (1.0, 10.0)
-        low = np.where(low > bottom / 5, low, bottom / 5)
-        high = np.where(np.isfinite(high), high, top * 2)
+        # A spring that is all but rigid must not stretch the axis by decades.
+        floor = max(bottom / 4, top / 120)
+        low, high = np.maximum(low, floor), np.maximum(np.where(np.isfinite(high), high, top * 2), floor)
     return low, high
 
 
