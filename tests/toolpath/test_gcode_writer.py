@@ -1,0 +1,48 @@
+"""The writer: modal economy, refusals, tilted axes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import ToolpathError
+from robomill.io.gcode_out import write_gcode
+from robomill.toolpath.gcode import read_gcode
+from robomill.toolpath.path import Toolpath, toolpath_from_lines
+
+
+def test_words_are_written_where_something_changes() -> None:
+    path = read_gcode("G21 S600 M3\nG0 Z5\nG1 Z-1 F300\nX10\nY10\nG0 Z5\nM2\n")
+    assert write_gcode(path, numbers=0).splitlines() == [
+        "G21 G90 G94 G17", "S600 M3", "G0 Z5", "G1 Z-1 F300", "X10", "Y10", "G0 Z5", "M5", "M2",
+    ]  # fmt: skip
+    assert write_gcode(path).splitlines()[1].startswith("N20 ")
+
+
+def test_a_start_away_from_zero_becomes_a_rapid() -> None:
+    path = toolpath_from_lines([[0.01, 0, 0]], [[0.02, 0, 0]], [0.01])
+    again = read_gcode(write_gcode(path))
+    assert again.p[1:] == pytest.approx(path.p)
+    assert not again.cutting[1]
+
+
+def test_tilted_axes_come_back() -> None:
+    t = np.linspace(0, 1, 200)
+    a, b = 6 * t, np.sin(9 * t)
+    k = np.stack([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)], axis=1)
+    p = np.stack([t, t * 0, t * 0], axis=1) * 0.1
+    path = Toolpath(p=p, k=k, v_f=np.full(200, 0.01), cutting=t > 0, block=np.arange(200), n_s=np.zeros(200), tool=0)  # type: ignore[arg-type]
+    again = read_gcode(write_gcode(path))
+    index = np.searchsorted(again.p[:, 0], p[1:, 0] - 1e-9)
+    assert abs(again.k[index] - k[1:]).max() < 1e-6
+
+
+def test_refusals() -> None:
+    path = toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], [0.01])
+    with pytest.raises(ToolpathError, match="expected 'mm' or 'in'"):
+        write_gcode(path, units="furlong")
+    stuck = Toolpath(
+        p=path.p, k=path.k, v_f=np.zeros(2), cutting=path.cutting, block=path.block, n_s=path.n_s, tool=path.tool
+    )
+    with pytest.raises(ToolpathError, match="feed of 0"):
+        write_gcode(stuck)
