@@ -59,6 +59,7 @@ UNITS: dict[str, Unit] = {
     "1e-9 m/N": Unit("×10⁻⁹ m/N", 1e-9, 2),
     "urad/N": Unit("µrad/N", 1e-6, 3),
     "urad/(N m)": Unit("µrad/(N m)", 1e-6, 3),
+    "m2": Unit("m²", 1.0, 3),
     "m3": Unit("m³", 1.0, 3),
     "mm3": Unit("mm³", 1e-9, 1),
     "mm2": Unit("mm²", 1e-6, 2),

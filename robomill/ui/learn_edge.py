@@ -13,6 +13,7 @@ from robomill.compliance.cartesian import cartesian_compliance
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant
 from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.ui import inputs, maps_fields, parts, shell, state
@@ -26,6 +27,7 @@ from robomill.viz.voxels import widen
 from robomill.workspace.quantities import quantity
 
 RADII = 121
+HALVINGS = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +60,30 @@ def _ray(key: str, _robot: Robot, _point: FloatArray) -> Ray:
     longest = float(np.abs(_robot.a).sum() + np.abs(_robot.d).sum()) + size
     count = RADII if decoupled(_robot) is not None else 41
     radii = np.union1d(np.linspace(0.02, 1.0, count) * longest, [size])
-    p = np.column_stack([base + radii[:, None] * across, np.full(len(radii), _point[2])])
-    poses = np.column_stack([p, np.zeros((len(p), 2))])
-    found = inverse_kinematics(_robot, pose_from_world(poses))
+
+    def solved(r: FloatArray) -> tuple[FloatArray, IKResult]:
+        p = np.column_stack([base + r[:, None] * across, np.full(len(r), _point[2])])
+        return p, inverse_kinematics(_robot, pose_from_world(np.column_stack([p, np.zeros((len(p), 2))])))
+
+    reached = solved(radii)[1].reached
     at = int(np.searchsorted(radii, size))
     first, last = at, at
-    while first > 0 and found.reached[first - 1]:
+    while first > 0 and reached[first - 1]:
         first -= 1
-    while last < len(radii) - 1 and found.reached[last + 1]:
+    while last < len(radii) - 1 and reached[last + 1]:
         last += 1
-    run = slice(first, last + 1)
-    return Ray(p[run], found.theta[run], determinant(_robot, found.theta[run]), at - first)
+    # The edges themselves, by halving between the last point in reach and the first one out of it.
+    edges = []
+    for inside, outside in ((first, first - 1), (last, last + 1)):
+        if 0 <= outside < len(radii):
+            low, high = radii[inside], radii[outside]
+            for _ in range(HALVINGS):
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if bool(solved(np.array([middle]))[1].reached[0]) else (low, middle)
+            edges.append(low)
+    run = np.union1d(radii[first : last + 1], edges)
+    p, found = solved(run)
+    return Ray(p, found.theta, determinant(_robot, found.theta), int(np.argmin(np.abs(run - size))))
 
 
 @st.fragment
@@ -82,14 +97,16 @@ def edge(found: PointReport) -> None:
         parts.note("This pose is the only one in reach on its ray; choose another robot or point.")
         return
     now = lesson()
-    current = float(radius[way.start]) if now.out is None else float(np.clip(now.out, radius[0], radius[-1]))
-    inputs.slider(
-        f"Distance from the base, {unit_label(unit)}", f"learn:out:{unit}", float(round(radius[0], 3)),
-        float(round(radius[-1], 3)), round(current, 3), lambda v: go(out=v), step=float(f"{np.ptp(radius) / 60:.1g}"),
-        form="%.0f" if unit == "mm" else "%.1f",
-    )  # fmt: skip
-    chosen = lesson().out
-    i = way.start if chosen is None else int(np.abs(radius - chosen).argmin())
+    i = way.start if now.out is None else int(np.abs(way.radius - now.out).argmin())
+    key = f"learn:out:{unit}:{len(radius)}"
+    inputs.seed(key, i)
+    st.select_slider(
+        f"Distance from the base, {unit_label(unit)}",
+        list(range(len(radius))),
+        key=key,
+        format_func=lambda k: f"{radius[k]:.0f}" if unit == "mm" else f"{radius[k]:.1f}",
+        on_change=lambda: go(out=float(way.radius[st.session_state[key]])),
+    )
     here = report(found.robot, tuple(map(float, way.p[i])), 0.0, 0.0)  # type: ignore[arg-type]
     left, right = parts.split([1.35, 1], "edge", gap="large")
     with left, st.container(border=True):

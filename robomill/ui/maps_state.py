@@ -14,6 +14,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.robot.model import Robot
+from robomill.workspace.region import holds_paper_box
 
 KEY = "robomill.maps"
 Point = tuple[float, float, float]
@@ -55,8 +56,7 @@ def maps(robot: Robot) -> MapView:
     kept = st.session_state.get(KEY)
     if kept is not None and kept.robot == identity(robot):
         return kept  # type: ignore[no-any-return]
-    printed = any(p.kind == "paper" for p in robot.provenance.values())
-    fresh = MapView(identity(robot), "paper" if printed else "largest")
+    fresh = MapView(identity(robot), "paper" if robot.n == 5 and holds_paper_box(robot) else "largest")
     if kept is not None:
         fresh = dataclasses.replace(
             fresh, picture=kept.picture, quantity=_kept_quantity(kept.quantity), sheet=kept.sheet

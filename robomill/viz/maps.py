@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -72,15 +73,14 @@ def sheet_figure(
     n_rows, n_columns = len(sheet.rows), max(len(row) for row in sheet.rows)
     top, bottom = 26, 44
     height = top + n_rows * panel_height + (n_rows - 1) * gap_y + bottom
-    fig = figure(
-        dark=dark, height=height, revision=revision, dragmode="pan", hovermode="closest", hoverdistance=-1,
-        clickmode="event+select", showlegend=False, margin={"l": 8, "r": 8, "t": top, "b": bottom},
-    )  # fmt: skip
     inner = height - top - bottom
     width = (1.0 - gap_x * (n_columns - 1)) / n_columns
     used = list(dict.fromkeys(m.scale for row in sheet.rows for m in row if m is not None))
+    # Plain dictionaries: nine panels made by plotly's checking classes take ten times as long, at every slider step.
+    data: list[dict[str, Any]] = []
+    layout = _layout(dark, height, revision, top, bottom)
     for name in used:
-        fig.update_layout({f"coloraxis{_number(used.index(name))}": _colour_axis(sheet, name, used, dark)})
+        layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, dark)
     index = 0
     for r, row in enumerate(sheet.rows):
         y1 = 1.0 - r * (panel_height + gap_y) / inner
@@ -89,9 +89,26 @@ def sheet_figure(
             if panel is None:
                 continue
             place = ((c * (width + gap_x), min(c * (width + gap_x) + width, 1.0)), (y0, min(y1, 1.0)))
-            _panel(fig, sheet, panel, index, place, used, (r == n_rows - 1 or _below_empty(sheet, r, c), c == 0), dark)
+            titled = (r == n_rows - 1 or _below_empty(sheet, r, c), c == 0 or not any(row[:c]))
+            data += _traces(sheet, panel, index, used, dark)
+            _decorate(layout, sheet, panel, index, place, titled, dark)
             index += 1
-    return fig
+    return go.Figure(data=data, layout=layout, _validate=False)
+
+
+def _layout(dark: bool, height: int, revision: str, top: int, bottom: int) -> dict[str, Any]:
+    base = figure(
+        dark=dark,
+        height=height,
+        revision=revision,
+        dragmode="pan",
+        hovermode="closest",
+        hoverdistance=-1,
+        clickmode="event+select",
+        showlegend=False,
+        margin={"l": 8, "r": 8, "t": top, "b": bottom},
+    )
+    return {**base.to_plotly_json()["layout"], "annotations": [], "shapes": []}
 
 
 def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, event: Any) -> tuple[float, float] | None:
@@ -135,59 +152,66 @@ def _colour_axis(sheet: MapSheet, name: str, used: list[str], dark: bool) -> dic
     return {"colorscale": SEQUENTIAL, "cmin": scale.low, "cmax": high, "colorbar": bar}
 
 
-def _panel(
-    fig: go.Figure,
-    sheet: MapSheet,
-    panel: Map,
-    index: int,
-    place: tuple[tuple[float, float], tuple[float, float]],
-    used: list[str],
-    titled: tuple[bool, bool],
-    dark: bool,
-) -> None:
+def _traces(sheet: MapSheet, panel: Map, index: int, used: list[str], dark: bool) -> list[dict[str, Any]]:
+    """The heat map, the points that can be clicked, and the point in hand."""
     p = palette(dark)
     name = _number(index)
-    scale = sheet.scales[panel.scale]
-    fig.add_trace(go.Heatmap(
-        x=sheet.u, y=sheet.v, z=np.asarray(panel.values, dtype=np.float32).T,
-        coloraxis=f"coloraxis{_number(used.index(panel.scale))}",
-        xaxis=f"x{name}", yaxis=f"y{name}", hoverinfo="skip", name=panel.title,
-    ))  # fmt: skip
-    _pick_layer(fig, sheet, panel, name, scale, dark)
+    axes = {"xaxis": f"x{name}", "yaxis": f"y{name}"}
+    traces: list[dict[str, Any]] = [
+        {
+            "type": "heatmap",
+            "x": sheet.u,
+            "y": sheet.v,
+            "z": np.ascontiguousarray(np.asarray(panel.values, dtype=np.float32).T),
+            "coloraxis": f"coloraxis{_number(used.index(panel.scale))}",
+            "hoverinfo": "skip",
+            "name": panel.title,
+            **axes,
+        },
+        {**_pick_layer(sheet, panel, sheet.scales[panel.scale], dark), **axes},
+    ]
     if sheet.point is not None:
-        fig.add_trace(go.Scatter(
-            x=[sheet.point[0]], y=[sheet.point[1]], mode="markers", xaxis=f"x{name}", yaxis=f"y{name}",
-            hoverinfo="skip",
-            marker={"symbol": "circle" if sheet.on_plane else "circle-open", "size": 7, "color": p.text,
-                    "line": {"color": p.background, "width": 1.4 if sheet.on_plane else 2}},
-            selected={"marker": {"opacity": 1}}, unselected={"marker": {"opacity": 1}},
-        ))  # fmt: skip
-    if sheet.outline is not None:
-        (u0, v0), (u1, v1) = sheet.outline
-        fig.add_shape(type="rect", x0=u0, y0=v0, x1=u1, y1=v1, xref=f"x{name}", yref=f"y{name}",
-                      line={"color": p.text, "width": 1.4, "dash": "dash"})  # fmt: skip
-    _axes(fig, sheet, panel, index, place, titled, dark)
+        size = {"size": 7, "color": p.text, "line": {"color": p.background, "width": 1.4 if sheet.on_plane else 2}}
+        traces.append(
+            {
+                "type": "scatter",
+                "x": [sheet.point[0]],
+                "y": [sheet.point[1]],
+                "mode": "markers",
+                "hoverinfo": "skip",
+                "marker": {"symbol": "circle" if sheet.on_plane else "circle-open", **size},
+                "selected": {"marker": {"opacity": 1}},
+                "unselected": {"marker": {"opacity": 1}},
+                **axes,
+            }
+        )
+    return traces
 
 
-def _pick_layer(fig: go.Figure, sheet: MapSheet, panel: Map, name: str, scale: Scale, dark: bool) -> None:
+def _pick_layer(sheet: MapSheet, panel: Map, scale: Scale, dark: bool) -> dict[str, Any]:
     """Unseen points over the map: a heat map alone returns no clicks. They carry the hover text, too."""
     every = max(1, int(np.ceil(np.sqrt(len(sheet.u) * len(sheet.v) / PICKED_PER_MAP))))
     iu, iv = _thin(len(sheet.u), every), _thin(len(sheet.v), every)
     U, V = np.meshgrid(sheet.u[iu], sheet.v[iv], indexing="ij")
     values = np.asarray(panel.values)[np.ix_(iu, iv)].ravel()
-    text = [hover_text(value, panel.unit, scale) for value in values]
-    fig.add_trace(go.Scatter(
-        x=U.ravel().astype(np.float32), y=V.ravel().astype(np.float32), mode="markers", text=text, name=panel.title,
-        xaxis=f"x{name}", yaxis=f"y{name}", marker={"size": 7, "opacity": 0, "color": palette(dark).text},
-        selected={"marker": {"opacity": 0}}, unselected={"marker": {"opacity": 0}},
-        hovertemplate=f"<b>{panel.title} %{{text}}</b><br>{sheet.u_title.partition(',')[0]} %{{x:.4g}}, "
-                      f"{sheet.v_title.partition(',')[0]} %{{y:.4g}}<extra></extra>",
-    ))  # fmt: skip
+    across, up = (title.partition(",")[0] for title in (sheet.u_title, sheet.v_title))
+    return {
+        "type": "scatter",
+        "x": U.ravel().astype(np.float32),
+        "y": V.ravel().astype(np.float32),
+        "mode": "markers",
+        "text": [hover_text(value, panel.unit, scale) for value in values.tolist()],
+        "name": panel.title,
+        "marker": {"size": 7, "opacity": 0, "color": palette(dark).text},
+        "selected": {"marker": {"opacity": 0}},
+        "unselected": {"marker": {"opacity": 0}},
+        "hovertemplate": f"<b>{panel.title}</b><br>%{{text}}<br>{across} %{{x:.4g}}, {up} %{{y:.4g}}<extra></extra>",
+    }
 
 
 def hover_text(value: float, unit: str, scale: Scale) -> str:
     """A value of a map in words, as its hover text says it."""
-    if not np.isfinite(value):
+    if not math.isfinite(value):
         return "not reached"
     if scale.kind == "joints":
         return f"joint {scale.joints[int(value)]}"
@@ -202,35 +226,61 @@ def _thin(count: int, every: int) -> IntArray:
     return np.arange(start, count, every)
 
 
-def _axes(
-    fig: go.Figure, sheet: MapSheet, panel: Map, index: int,
-    place: tuple[tuple[float, float], tuple[float, float]], titled: tuple[bool, bool], dark: bool,
-) -> None:  # fmt: skip
+def _decorate(
+    layout: dict[str, Any],
+    sheet: MapSheet,
+    panel: Map,
+    index: int,
+    place: tuple[tuple[float, float], tuple[float, float]],
+    titled: tuple[bool, bool],
+    dark: bool,
+) -> None:
+    """Axes, title and outline of one panel; ``titled`` says whether it is the lowest and the leftmost."""
     p = palette(dark)
     name = _number(index)
     (x0, x1), (y0, y1) = place
     lowest, leftmost = titled
-    link: dict[str, Any] = {} if index == 0 else {"matches": "x"}
-    link_y: dict[str, Any] = {} if index == 0 else {"matches": "y"}
-    half_u, half_v = _half_step(sheet.u), _half_step(sheet.v)
-    common: dict[str, Any] = {"showgrid": False, "nticks": 5}
-    across = axis("", dark=dark, **common, **link) | {
-        "domain": [x0, x1], "anchor": f"y{name}", "showticklabels": lowest, "title": None, "automargin": False,
-        "range": [float(sheet.u[0] - half_u), float(sheet.u[-1] + half_u)],
-    }  # fmt: skip
-    upwards = axis("", dark=dark, **common, **link_y) | {
-        "domain": [y0, y1], "anchor": f"x{name}", "showticklabels": leftmost, "title": None,
-        "range": [float(sheet.v[0] - half_v), float(sheet.v[-1] + half_v)], "automargin": leftmost,
-    }  # fmt: skip
-    if lowest:
-        across["title"] = {"text": sheet.u_title, "standoff": 4, "font": {"size": 12, "color": p.muted}}
-    if leftmost:
-        upwards["title"] = {"text": sheet.v_title, "standoff": 4, "font": {"size": 12, "color": p.muted}}
-    fig.update_layout({f"xaxis{name}": across, f"yaxis{name}": upwards})
-    fig.add_annotation(
-        x=x0, y=y1, xref="paper", yref="paper", xanchor="left", yanchor="bottom", yshift=2, text=panel.title,
-        showarrow=False, align="left", font={"size": 13, "color": p.text},
-    )  # fmt: skip
+    for letter, other, domain, points, shown, title in (
+        ("x", "y", [x0, x1], sheet.u, lowest, sheet.u_title),
+        ("y", "x", [y0, y1], sheet.v, leftmost, sheet.v_title),
+    ):
+        half = _half_step(points)
+        layout[f"{letter}axis{name}"] = {
+            **axis("", dark=dark, showgrid=False, nticks=5),
+            **({} if index == 0 else {"matches": letter}),
+            "domain": domain,
+            "anchor": f"{other}{name}",
+            "showticklabels": shown,
+            "range": [float(points[0] - half), float(points[-1] + half)],
+            "automargin": letter == "y" and shown,
+            "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
+        }
+    layout["annotations"].append(
+        {
+            "x": x0,
+            "y": y1,
+            "xref": "paper",
+            "yref": "paper",
+            "xanchor": "left",
+            "yanchor": "bottom",
+            "yshift": 2,
+            "text": panel.title,
+            "showarrow": False,
+            "align": "left",
+            "font": {"size": 13, "color": p.text},
+        }
+    )
+    if sheet.outline is not None:
+        (u0, v0), (u1, v1) = sheet.outline
+        corners = {"x0": u0, "y0": v0, "x1": u1, "y1": v1, "xref": f"x{name}", "yref": f"y{name}"}
+        layout["shapes"].append(
+            {
+                "type": "rect",
+                **corners,
+                "line": {"color": p.text, "width": 1.4, "dash": "dash"},
+                "fillcolor": "rgba(0,0,0,0)",
+            }
+        )
 
 
 def _half_step(points: FloatArray) -> float:

@@ -1,0 +1,268 @@
+"""Workspace, compliance and learn pages: every picture, every kind of robot, every refusal in one sentence."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+from conftest import errors, go, store, words
+from streamlit.testing.v1 import AppTest
+
+from robomill.io.robots import load_robot
+from robomill.robot.model import Robot
+from robomill.ui.compliance_sheets import SHEETS
+from robomill.ui.maps_state import KEY, MapView
+from robomill.ui.workspace_panel import QUANTITIES
+
+WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
+
+
+def put(app: AppTest, robot: Robot) -> None:
+    """Another robot in the project."""
+    kept = store(app)
+    kept.project = dataclasses.replace(kept.project, setup=kept.project.setup.replace(robot=robot))
+
+
+def view(app: AppTest) -> MapView:
+    return app.session_state[KEY]  # type: ignore[no-any-return]
+
+
+def look(app: AppTest, **fields: object) -> AppTest:
+    """Change what the map pages look at, and run."""
+    app.session_state[KEY] = dataclasses.replace(view(app), **fields)
+    return app.run()
+
+
+def charts(app: AppTest) -> list[dict[str, object]]:
+    return [json.loads(chart.proto.spec) for chart in app.get("plotly_chart")]
+
+
+def seven() -> Robot:
+    """A redundant arm with seven joints, tool turned down, as lightweight arms are built."""
+    return Robot(
+        name="seven", convention="modified", alpha=np.radians([0, -90, 90, 90, -90, -90, 90]), a=np.zeros(7),
+        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]), theta_offset=np.zeros(7),
+        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]), C_theta_all=np.full(7, 5e-6),
+        T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("picture", ["plane", "pair", "solid"])
+def test_workspace_pictures(app: AppTest, picture: str) -> None:
+    go(app, WORKSPACE)
+    look(app, picture=picture)
+    assert not app.exception
+    assert errors(app) == []
+    assert len(app.get("plotly_chart")) == 1
+    assert "reaches all of this region and meets no singularity" in words(app)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_every_quantity_says_its_formula_and_meaning(app: AppTest, quantity: str) -> None:
+    go(app, WORKSPACE)
+    look(app, quantity=quantity)
+    assert not app.exception
+    assert "<br>" in words(app)
+    assert charts(app)[0]["data"][0]["type"] == "heatmap"  # type: ignore[index]
+
+
+def test_two_planes_are_those_of_fig_4_on_one_scale(app: AppTest) -> None:
+    go(app, WORKSPACE)
+    look(app, picture="pair")
+    titles = [a["text"] for a in charts(app)[0]["layout"]["annotations"]]  # type: ignore[index]
+    assert any("−400 mm" in t for t in titles)
+    assert any("100 mm" in t for t in titles)
+
+
+def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
+    go(app, WORKSPACE)
+    assert "1200 × 600 × 500 mm" in words(app)
+    assert "holds the paper" in words(app)
+
+
+@pytest.mark.parametrize("sheet", SHEETS)
+def test_compliance_sheets(app: AppTest, sheet: str) -> None:
+    go(app, COMPLIANCE)
+    look(app, sheet=sheet)
+    assert not app.exception
+    assert errors(app) == []
+    assert len(app.get("plotly_chart")) == 4  # the sheet, the arm, the shares, what stiffness buys
+
+
+def test_the_milling_point_in_words(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    said = words(app)
+    assert "100 N along Y move the tip 0.230 mm in Y and 0.102 mm down; joint 3 gives most." in said
+    assert "2.295" in said
+    assert "1.134" in said
+
+
+def test_nine_maps_in_one_figure(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    data = charts(app)[0]["data"]
+    assert sum(trace["type"] == "heatmap" for trace in data) == 9  # type: ignore[index,attr-defined]
+
+
+def test_a_picked_cell_becomes_the_point(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    look(app, point=(0.2, -1.1, 0.0))
+    assert "The pose at (200, −1100, 0) mm" in [s.value for s in app.subheader]
+
+
+def test_stiffer_joints_leave_a_ghost_and_can_be_put_into_the_robot(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    before = store(app).project.setup.robot.C_theta.copy()
+    look(app, factors=(1.0, 1.0, 2.0, 1.0, 1.0))
+    said = words(app)
+    assert '<span class="rm-was">2.295' in said
+    names = [t.get("name") for t in charts(app)[2]["data"]]  # type: ignore[attr-defined]
+    assert "sum before" in names
+    app.button(key="maps:adopt").click().run()
+    after = store(app).project.setup.robot.C_theta
+    np.testing.assert_allclose(after, before / [1, 1, 2, 1, 1])
+    assert view(app).factors is None
+    app.button(key="undo").click().run()
+    np.testing.assert_allclose(store(app).project.setup.robot.C_theta, before)
+
+
+def test_table_2_against_table_3_is_one_click(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    look(app, sheet="compare")
+    titles = [a["text"] for a in charts(app)[0]["layout"]["annotations"]]  # type: ignore[index]
+    assert any(t == "Table 3 − Table 2" for t in titles)
+    assert "+16 % against Table 2" in words(app)
+
+
+def test_three_robots_side_by_side(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    look(app, sheet="compare", against=("set:table_2", "robot:kuka_kr500", "robot:planar_2r"))
+    assert not app.exception
+    assert sum(trace["type"] == "heatmap" for trace in charts(app)[0]["data"]) == 5  # type: ignore[index,attr-defined]
+
+
+@pytest.mark.parametrize("normal", ["x", "y"])
+def test_upright_planes_and_tilted_tools(app: AppTest, normal: str) -> None:
+    go(app, COMPLIANCE)
+    look(app, normal=normal, at=None, A=np.radians(15), B=np.radians(-20))
+    assert not app.exception
+    assert errors(app) == []
+    go(app, WORKSPACE)
+    assert not app.exception
+
+
+@pytest.mark.parametrize("page", [WORKSPACE, COMPLIANCE, LEARN])
+@pytest.mark.parametrize("name", ["planar_2r", "kuka_kr500", "seven"])
+def test_any_robot_gives_a_page(app: AppTest, page: str, name: str) -> None:
+    put(app, seven() if name == "seven" else load_robot(name))
+    go(app, page)
+    assert not app.exception
+    assert errors(app) == []
+    assert len(app.get("plotly_chart")) >= 1
+
+
+def test_a_planar_arm_has_one_plane(app: AppTest) -> None:
+    put(app, load_robot("planar_2r"))
+    go(app, COMPLIANCE)
+    assert "only XY can be shown" in words(app)
+    look(app, sheet="lines")
+    assert not app.exception
+
+
+def test_a_robot_that_reaches_nothing_here(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    look(app, region="own", lower=(5.0, 5.0, 5.0), upper=(6.0, 6.0, 6.0))
+    assert not app.exception
+    assert any("No cell of this plane is reached" in i.value for i in app.info)
+    assert "does not get to" in words(app)
+    go(app, WORKSPACE)
+    assert not app.exception
+    assert "reaches nothing of this region" in words(app)
+
+
+def test_a_tilt_nothing_reaches(app: AppTest) -> None:
+    robot = load_robot("slavkovic_5r")
+    put(app, robot.replace(limits=np.radians([[-5, 5]] * 5)))
+    for page in (WORKSPACE, COMPLIANCE, LEARN):
+        go(app, page)
+        if page == WORKSPACE:
+            look(app, region="largest", A=np.radians(170.0))
+        assert not app.exception
+        if page != LEARN:
+            assert any("brings its tool nowhere at A = 170.0°" in e for e in errors(app))
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"lower": (0.5, -1.6, -0.4), "upper": (-0.5, -1.0, 0.1)}, "X ends before it begins"),
+        ({"step": 0.0005}, "is more than a picture takes"),
+        ({"step": 1e-6}, "use a larger step"),
+    ],
+)
+def test_bad_regions_are_one_sentence(app: AppTest, fields: dict[str, object], sentence: str) -> None:
+    go(app, COMPLIANCE)
+    look(app, region="own", **fields)
+    assert not app.exception
+    assert any(sentence in e for e in errors(app))
+
+
+def test_the_region_is_kept_over_a_page_change_and_made_anew_with_another_robot(app: AppTest) -> None:
+    go(app, WORKSPACE)
+    look(app, A=0.1)
+    go(app, COMPLIANCE)
+    assert view(app).A == 0.1
+    put(app, load_robot("kuka_kr500"))
+    app.run()
+    assert view(app).A == 0.0
+    assert view(app).region == "largest"
+
+
+def test_inches(app: AppTest) -> None:
+    kept = store(app)
+    kept.project = dataclasses.replace(kept.project, view=dataclasses.replace(kept.project.view, units="in"))
+    go(app, COMPLIANCE)
+    assert "(0.0, −51.2, 0.0) in" in words(app)
+    assert not app.exception
+
+
+def test_the_lesson_asks_then_reveals(app: AppTest) -> None:
+    go(app, LEARN)
+    assert "Where does the tip go?" in words(app)
+    assert "<b>0.102 mm</b>" not in words(app)
+    app.radio(key="learn:answer").set_value("y").run()
+    app.button(key="learn:reveal").click().run()
+    said = words(app)
+    assert "<b>0.102 mm</b> down" in said
+    assert '<td class="off">−1.024</td>' in said, "the off-diagonal term lights up"
+    assert "Look again" in said
+    app.radio(key="learn:answer").set_value("down").run()
+    assert "Right." in words(app)
+
+
+def test_the_ellipsoid_stretches_towards_the_edge(app: AppTest) -> None:
+    go(app, LEARN)
+    assert "3.39 µm/N" in words(app)
+    slider = app.select_slider[0]
+    slider.set_value(len(slider.options) - 1).run()
+    assert not app.exception
+    said = words(app)
+    assert "6.83 µm/N" in said
+    assert "A singularity: one direction is lost." in said
+
+
+def test_equations_hold_the_numbers_of_now(app: AppTest) -> None:
+    go(app, LEARN)
+    tex = "\n".join(e.value for e in app.get("latex")) if app.get("latex") else words(app)
+    assert "2.295" in tex
+    assert "-1.024" in tex
+    assert "229.5" in tex
+
+
+def test_the_reproduction_table_is_on_the_page(app: AppTest) -> None:
+    go(app, LEARN)
+    said = words(app)
+    for item in ("Table 1", "Table 3", "Fig. 5", "Fig. 16"):
+        assert item in said
+    assert "0.2644 mm from Table 3" in said

@@ -1,0 +1,190 @@
+"""Maps, voxels, ellipsoid and bars: the figures hold the numbers they are given."""
+
+from __future__ import annotations
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+from robomill.arrays import FloatArray
+from robomill.viz.arm import ArmScene, arm_figure
+from robomill.viz.ellipsoid import ellipsoid_mesh, ellipsoid_scale, ellipsoid_traces
+from robomill.viz.lesson import ray_figure
+from robomill.viz.maps import Map, MapSheet, Scale, hover_text, picked_point, sheet_figure, symmetric_limit
+from robomill.viz.shares import LinePanel, gain_bars, line_panels, share_bars
+from robomill.viz.voxels import outer_faces, voxel_trace, widen, wire_box
+
+U, V = np.linspace(-600, 600, 13), np.linspace(-1600, -1000, 7)
+
+
+def values(seed: int = 0) -> FloatArray:
+    return np.random.default_rng(seed).normal(size=(13, 7))
+
+
+def nine(**more: object) -> MapSheet:
+    rows = [[Map(f"C{i}{j}", values(3 * i + j), unit="µm/N") for j in range(3)] for i in range(3)]
+    return MapSheet(rows, U, V, "X, mm", "Y, mm", {"main": Scale("C", -4, 3, "diverging")}, **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_a_sheet_is_a_figure_that_plotly_accepts(dark: bool) -> None:
+    """The figure is made without plotly's own checks for speed; here they are made."""
+    sheet = nine(point=(0.0, -1300.0), outline=((-100.0, -1500.0), (100.0, -1200.0)))
+    fig = sheet_figure(sheet, dark=dark, panel_height=100, revision="a")
+    checked = go.Figure(fig.to_plotly_json())
+    assert checked.layout.dragmode == "pan", "clicks arrive only with dragmode pan or zoom"
+    assert checked.layout.uirevision == "a"
+    assert len(checked.layout.shapes) == 9
+
+
+def test_nine_maps_share_one_scale_centred_on_zero() -> None:
+    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
+    maps = [t for t in fig.data if t.type == "heatmap"]
+    assert len(maps) == 9
+    assert {t.coloraxis for t in maps} == {"coloraxis"}
+    assert (fig.layout.coloraxis.cmin, fig.layout.coloraxis.cmax) == (-4, 4)
+
+
+def test_the_first_index_of_a_map_runs_across() -> None:
+    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
+    np.testing.assert_allclose(fig.data[0].z, values(0).T, rtol=1e-6)
+    np.testing.assert_array_equal(fig.data[0].x, U)
+
+
+def test_over_every_map_lie_points_to_click() -> None:
+    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
+    picks = [t for t in fig.data if t.type == "scatter"]
+    assert len(picks) == 9
+    assert all(len(t.x) == 91 and t.marker.opacity == 0 for t in picks)
+    assert all("customdata" not in t.to_plotly_json() for t in picks)
+
+
+def test_a_large_plane_has_few_points_to_click() -> None:
+    u, v = np.linspace(0, 1, 121), np.linspace(0, 1, 61)
+    sheet = MapSheet([[Map("a", np.zeros((121, 61)))]], u, v, "u", "v", {"main": Scale("a", 0, 1)})
+    fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
+    assert len(fig.data[1].x) <= 450
+
+
+def test_two_scales_have_a_bar_each() -> None:
+    scales = {"main": Scale("a", 0, 1), "difference": Scale("b", -1, 1, "diverging")}
+    sheet = MapSheet([[Map("a", values()), Map("b", values(), "difference")]], U, V, "u", "v", scales)
+    fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
+    bars = [fig.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
+    assert bars[0].len == bars[1].len == 0.5
+    assert bars[0].y != bars[1].y
+
+
+def test_a_pick_snaps_to_the_grid() -> None:
+    event = {"selection": {"points": [{"x": 48.0, "y": -1290.0}]}}
+    assert picked_point(U, V, event) == (0.0, -1300.0)
+    assert picked_point(U, V, {"selection": {"points": []}}) is None
+    assert picked_point(U, V, None) is None
+
+
+def test_hover_words() -> None:
+    assert hover_text(float("nan"), "µm/N", Scale("", 0, 1)) == "not reached"
+    assert hover_text(-1.0244, "µm/N", Scale("", 0, 1)) == "−1.024 µm/N"
+    assert hover_text(1.0, "", Scale("", 0, 1, "joints", joints=(1, 3))) == "joint 3"
+    assert hover_text(1.0, "", Scale("", 0, 1, "reach")) == "reached"
+
+
+def test_symmetric_limit_of_what_is_nowhere_reached() -> None:
+    assert symmetric_limit([np.full((2, 2), np.nan)]) == 1.0
+    assert symmetric_limit([np.array([1.0, -3.0, np.nan])]) == 3.0
+
+
+def test_voxels_show_only_outer_faces() -> None:
+    assert len(outer_faces(np.ones((1, 1, 1), bool))[0]) == 6
+    assert len(outer_faces(np.ones((2, 3, 4), bool))[0]) == 2 * (2 * 3 + 3 * 4 + 2 * 4)
+    hollow = np.ones((3, 3, 3), bool)
+    hollow[1, 1, 1] = False
+    assert len(outer_faces(hollow)[0]) == 54 + 6
+
+
+def test_voxels_close_their_volume() -> None:
+    """Divergence theorem over the triangles: the signed volume is that of the cells."""
+    mask = np.random.default_rng(1).random((4, 5, 3)) > 0.4
+    axes = tuple(np.arange(n) * step for n, step in zip(mask.shape, (0.1, 0.2, 0.3), strict=True))
+    trace = voxel_trace(mask, axes, dark=False)  # type: ignore[arg-type]
+    points = np.stack([trace.x, trace.y, trace.z], axis=-1).astype(float)
+    a, b, c = (points[np.asarray(getattr(trace, k))] for k in "ijk")
+    volume = abs(np.einsum("fi,fi->f", a, np.cross(b, c)).sum()) / 6.0
+    assert volume == pytest.approx(mask.sum() * 0.1 * 0.2 * 0.3, rel=1e-5)
+
+
+def test_voxels_carry_the_values_of_their_cells() -> None:
+    mask = np.ones((2, 1, 1), bool)
+    shown = np.array([1.0, 2.0]).reshape(2, 1, 1)
+    trace = voxel_trace(mask, (np.array([0.0, 1.0]), np.zeros(1), np.zeros(1)), dark=True, values=shown)
+    assert sorted(np.asarray(trace.intensity).tolist()) == [1.0] * 10 + [2.0] * 10
+
+
+def test_a_box_has_twelve_edges_and_a_name() -> None:
+    edges, word = wire_box(np.zeros(3), np.ones(3), "#123456", "the box")
+    assert np.isnan(edges.x).sum() == 12
+    assert word.text == ("the box",)
+
+
+def test_a_widened_scene_holds_the_box_to_scale() -> None:
+    frames = np.stack([np.eye(4), np.eye(4)])
+    frames[1, :3, 3] = [0.0, -1.0, 0.5]
+    fig = arm_figure(ArmScene(frames=frames), dark=False)
+    widen(fig, np.array([-3.0, -3.0, -3.0]), np.array([1.0, 1.0, 4.0]))
+    spans = [np.ptp(fig.layout.scene[f"{a}axis"].range) for a in "xyz"]
+    ratios = [fig.layout.scene.aspectratio[a] for a in "xyz"]
+    np.testing.assert_allclose(np.array(ratios) / spans, ratios[0] / spans[0])
+    assert fig.layout.scene.zaxis.range[1] >= 4.0
+
+
+def test_every_point_of_the_ellipsoid_is_where_a_unit_force_leads() -> None:
+    A = np.random.default_rng(2).normal(size=(3, 3))
+    C = A @ A.T * 1e-6
+    centre = np.array([0.1, -1.3, 0.2])
+    times = ellipsoid_scale(C, 0.2)
+    points, _ = ellipsoid_mesh(C, centre, times)
+    forces = np.linalg.solve(C, (points - centre).T / times)
+    np.testing.assert_allclose(np.linalg.norm(forces, axis=0), 1.0, atol=1e-9)
+    assert np.linalg.norm(points - centre, axis=1).max() == pytest.approx(0.2, rel=0.02)
+
+
+def test_no_ellipsoid_for_an_arm_that_does_not_give() -> None:
+    assert ellipsoid_traces(np.zeros((3, 3)), np.zeros(3), 1.0, dark=False, width=0.01) == []
+
+
+def test_share_bars_end_at_the_sum_and_show_the_ghost() -> None:
+    shares = np.array([[1.0, -0.5], [0.3, 0.2]])
+    fig = share_bars(["a", "b"], shares, (1, 3), "µm/N", dark=False, old=np.array([2.0, 0.0]))
+    bars = [t for t in fig.data if t.type == "bar"]
+    np.testing.assert_allclose(np.sum([t.x for t in bars], axis=0), [1.3, -0.3])
+    marks = {t.name: list(t.x) for t in fig.data if t.type == "scatter"}
+    assert marks == {"sum before": [2.0, 0.0], "sum": [1.3, -0.3]}
+    assert [a.text for a in fig.layout.annotations] == ["+1.300", "−0.300"]
+
+
+def test_no_ghost_without_a_change() -> None:
+    shares = np.array([[1.0], [0.3]])
+    fig = share_bars(["a"], shares, (1, 2), "µm/N", dark=True, old=shares.sum(axis=0))
+    assert "sum before" not in {t.name for t in fig.data}
+
+
+def test_gains_and_lines_are_drawn() -> None:
+    gains = gain_bars(
+        [("point", np.array([0.1, 0.0]), "µm/N"), ("path", np.array([2.0, -1.0]), "µm")], (1, 2), dark=False
+    )
+    assert len(gains.data) == 2
+    s = np.linspace(0, 1, 5)
+    by_joint = np.stack([s, 2 * s], axis=-1)
+    panels = [LinePanel(f"line {i}", s, by_joint.sum(axis=1), by_joint, old=s) for i in range(6)]
+    fig = line_panels(panels, (1, 2), ["X"] * 6, "mm", dark=False)
+    assert len(fig.data) == 6 * 4
+    assert fig.layout.yaxis.range == fig.layout.yaxis6.range
+    empty = line_panels([LinePanel("", s, s * np.nan, by_joint * np.nan)], (1, 2), ["X"], "mm", dark=False)
+    assert empty.layout.yaxis.range is not None
+
+
+def test_the_lesson_marks_where_the_arm_is() -> None:
+    s = np.linspace(0, 1, 5)
+    fig = ray_figure(s, s**2, 1 - s, 3, "r", "det", "soft", dark=True)
+    marks = [t for t in fig.data if t.mode == "markers"]
+    assert [(t.x[0], t.y[0]) for t in marks] == [(0.75, 0.5625), (0.75, 0.25)]

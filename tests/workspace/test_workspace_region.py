@@ -1,0 +1,67 @@
+"""Regions robomill proposes: planar arms, everything in reach, the largest box, the paper's box."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.workspace.grid import PAPER_BOX_SIZE
+from robomill.workspace.reach import reach
+from robomill.workspace.region import coarse_grid, flat_axis, holds_paper_box, largest_region, reach_extent
+
+
+def test_planar_arms_lie_in_a_plane_and_others_do_not() -> None:
+    assert flat_axis(rm.load_robot("planar_2r")) == 2
+    assert flat_axis(rm.load_robot("slavkovic_5r")) is None
+
+
+def test_a_planar_arm_turned_upright_lies_in_xz() -> None:
+    arm = rm.load_robot("planar_2r")
+    turned = np.eye(4)
+    turned[:3, :3] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+    assert flat_axis(arm.replace(T_base=turned)) == 1
+
+
+def test_the_extent_of_a_two_link_arm_is_its_ring() -> None:
+    arm = rm.load_robot("planar_2r")
+    extent = reach_extent(arm)
+    assert extent is not None
+    np.testing.assert_allclose(extent.upper[:2], 0.9, atol=0.02)
+    assert extent.size[2] == 0.0
+
+
+def test_nothing_outside_the_extent_is_reached() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    extent = reach_extent(robot)
+    assert extent is not None
+    grid = coarse_grid(robot, extent.lower - 0.5, extent.upper + 0.5, 4000)
+    points = grid.points()[reach(robot, grid)]
+    slack = 0.15  # a cell of the coarse grid
+    assert (points >= extent.lower - slack).all()
+    assert (points <= extent.upper + slack).all()
+
+
+def test_the_largest_region_is_reached_and_holds_the_papers_box() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    box = largest_region(robot)
+    assert box is not None
+    assert box.holds(PAPER_BOX_SIZE)
+    inside = coarse_grid(robot, box.lower, box.upper, 3000)
+    assert reach(robot, inside).mean() > 0.97
+    assert holds_paper_box(robot)
+
+
+def test_no_region_at_a_tilt_that_is_never_reached() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    stiff = robot.replace(limits=np.radians([[-5, 5]] * 5))
+    assert reach_extent(stiff, A=np.radians(170)) is None
+    assert largest_region(stiff, A=np.radians(170)) is None
+
+
+@pytest.mark.parametrize("cells", [50, 500])
+def test_a_coarse_grid_has_about_the_cells_it_is_asked_for(cells: int) -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    grid = coarse_grid(robot, np.array([-0.6, -1.6, -0.4]), np.array([0.6, -1.0, 0.1]), cells)
+    assert cells / 2 < grid.cells < 3 * cells
+    assert coarse_grid(robot, np.zeros(3), np.zeros(3)).cells == 1
