@@ -65,8 +65,7 @@ class ComplianceField:
         """(reached cells, r), falling: of the task Jacobian, rows as named by ``dexterity.square_rows``."""
         pose = pose_from_world([0.0, 0.0, 0.0, self.A, self.B])
         task = dexterity.square_matrix(self.robot, pose, self.J[self.reached])
-        values: FloatArray = np.linalg.svd(task, compute_uv=False)
-        return values
+        return np.asarray(np.linalg.svd(task, compute_uv=False), dtype=np.float64)
 
     def C(self) -> FloatArray:
         """Compliance (nx, ny, nz, 3, 3) m/N."""
