@@ -23,7 +23,9 @@ Rules of the house:
 - Numbers are shown through ``format_si`` in the units of ``project.view`` (``view.length``, ``view.feed``,
   ``view.joint_unit``).
 - What a person typed and the model refuses stays in its box with the sentence beneath (``ui.refuse``/``ui.accept``).
-- Figures have a fixed height, a key and a ``revision``; pass ``dark=ui.dark()``.
+- Figures have a fixed height, a key and a ``revision``; pass ``dark=ui.dark()``. ``ui.kept_figure(name, key, make)``
+  builds a figure once for equal keys: plotly takes longer to build one than most results take to compute.
+- ``ui.split`` and ``ui.thirds`` are columns that stand under each other in a narrow window; name each once a page.
 - Catch ``RobomillError`` only, best with ``ui.attempt``.
 - Provenance: ``ui.badge("paper" | "measured" | "assumed" | "user" | "computed")`` gives HTML for ``ui.note``,
   ``ui.headline`` and ``ui.facts``.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from robomill.viz.scene import Camera, SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
 PICTURE_CELLS = 160_000
+LEVELS = 12
 SEARCHED_CELLS = 24  # how far sideways, in cells, a displaced wall is looked for
 
 
@@ -52,8 +53,61 @@ def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)
-    reach = min(1.3 * times * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell, SEARCHED_CELLS * cell)
-    return Exaggerated(ideal, drawn, deviation(ideal, drawn, reach=reach).error / times, times)
+    reach = 1.3 * times * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
+    if reach <= SEARCHED_CELLS * cell:
+        error = deviation(ideal, drawn, reach=reach).error
+    else:
+        error = np.where(ideal.cut_mask | drawn.cut_mask, far_error(ideal, drawn, reach), np.nan)
+    return Exaggerated(ideal, drawn, error / times, times)
+
+
+def far_error(ideal: ZMap, drawn: ZMap, reach: float) -> FloatArray:
+    """Signed distance (nx, ny) m of ``drawn`` to ``ideal`` where walls have moved by many cells.
+
+    As ``surface.deviation`` has it, but by distance transforms to the ideal's levels (at most ``LEVELS``): exact for
+    flat floors, on slopes to a level's height.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    error = drawn.z - ideal.z
+    size = min(ideal.dx, ideal.dy)
+    far = np.abs(error) > size
+    levels = np.unique(np.round(ideal.z, 7))
+    if len(levels) > LEVELS:
+        levels = np.linspace(levels[0], levels[-1], LEVELS)
+    best = np.abs(error)
+    for level in levels:
+        for sign, column in ((1.0, ideal.z >= level - 1e-7), (-1.0, ideal.z <= level + 1e-7)):
+            cells = far & (np.sign(error) == sign)
+            if not cells.any() or not column.any():
+                continue
+            sideways = distance_transform_edt(~column, sampling=(ideal.dx, ideal.dy))[cells] - 0.5 * size
+            still = np.maximum(0.0, sign * (drawn.z[cells] - level))
+            near = np.where(sideways <= reach, np.hypot(np.maximum(sideways, 0.0), still), np.inf)
+            best[cells] = np.minimum(best[cells], near)
+    return np.where(far, np.sign(error) * best, error)
+
+
+def so_far(result: SimulationResult, shown: Exaggerated, index: int) -> Exaggerated:
+    """``shown`` as it stands once sample ``index`` is reached; what is not cut yet carries no error."""
+    setup, path = result.setup, result.path
+    if index < 1 or not result.removes[1 : index + 1].any():
+        heights = np.broadcast_to(shown.ideal.z_stock, shown.ideal.z.shape)
+        return replace(shown, drawn=replace(shown.drawn, z=heights), error=np.full(heights.shape, np.nan))
+    p = path.p + shown.times * (result.p_machined - path.p)
+    upto = slice(0, index + 1)
+    drawn = cut(
+        setup.stock_block, shown.drawn.cell, setup.cutter, p[upto], path.k[upto], result.removes[upto],
+        must_touch=False,
+    )  # fmt: skip
+    return replace(shown, drawn=drawn, error=np.where(drawn.z == shown.drawn.z, shown.error, np.nan))
+
+
+def tip_drawn(result: SimulationResult, shown: Exaggerated, index: int) -> FloatArray:
+    """(3,) m in {W}: the tool's tip at sample ``index`` as the picture shows it, its displacement enlarged."""
+    p = result.path.p[index]
+    moved = shown.times * (result.p_machined[index] - p)
+    return np.asarray(p + np.where(np.isfinite(moved), moved, 0.0))
 
 
 def surface_picture(
@@ -65,13 +119,23 @@ def surface_picture(
     station: float | None,
     size: tuple[int, int] = (1280, 720),
     words: bool = True,
+    at: float | None = None,
+    **more: Any,
 ) -> SurfacePicture:
     """What the drawing process needs for the machined surface; ``station`` (m of length cut) marks the section.
 
-    ``words=False`` leaves the captions out, where they stand beside the picture.
+    ``words=False`` leaves the captions out, where they stand beside the picture; ``at`` (m of length cut, default the
+    station or the middle) gives the direction that the camera presets go by; ``more`` are fields of SurfacePicture.
     """
     setup = result.setup
-    where, along = place(result, station if station is not None else 0.5 * float(result.path.s[-1]))
+    middle = 0.5 * float(result.path.s[-1])
+    where, along = place(result, station if station is not None else middle)
+    if station is None and at is not None:
+        along = place(result, at)[1]
+    if np.hypot(along[0], along[1]) < 1e-9:
+        along = np.array([1.0, 0.0, 0.0])
+    if more.get("solids") and "headroom" not in more:
+        more["headroom"] = 4.0 * float(from_si(setup.cutter.diameter, "mm"))
     direction = along[:2] / (np.linalg.norm(along[:2]) or 1.0)
     captions = [
         f"Displacement shown x {shown.times:g}" if shown.times != 1 else "True displacement",
@@ -83,7 +147,7 @@ def surface_picture(
         limit_um=float(from_si(setup.tolerance, "um")), bottom=float(from_si(setup.stock_block.lower[2], "mm")),
         camera=camera, dark=dark, size=size, direction=(float(direction[0]), float(direction[1])),
         station=None if station is None else tuple(from_si(where, "mm").tolist()),
-        captions=tuple(captions) if words else (),
+        captions=tuple(captions) if words else (), **more,
     )  # fmt: skip
 
 
