@@ -90,27 +90,55 @@ def spun(T_MT: FloatArray, angle: FloatArray | float) -> FloatArray:
     return result
 
 
-def join_path(
-    robot: Robot, every: FloatArray, possible: BoolArray, start: FloatArray
-) -> tuple[FloatArray, IntArray, float]:
-    """(theta (m, n), index (m,), motion): one solution a pose, so that the sum of squared joint motions is least.
+Score = tuple[int, int, float]
 
-    every (m, 8, n). Dynamic programming over the solutions; poses with none keep index -1 and are bridged.
+
+def path_score(robot: Robot, every: FloatArray, possible: BoolArray, start: FloatArray) -> Score:
+    """How well the solutions every (m, 8, n) serve a path, less is better: poses none reaches, poses the best single
+    branch misses, and that branch's sum of squared joint motions.
     """
     turned, within = settle(robot, every, start)
-    turned = _unwrapped(robot, turned)
-    within = within & possible
+    return _score(_unwrapped(robot, turned), within & possible, start)[0]
+
+
+def _score(turned: FloatArray, within: BoolArray, start: FloatArray) -> tuple[Score, int]:
+    missed = (~within).sum(axis=0)
+    motion = (np.diff(turned, axis=0) ** 2).sum(axis=(0, 2)) + _first_cost(turned[0], start)
+    branch = min(range(len(missed)), key=lambda k: (missed[k], motion[k]))
+    return (int((~within.any(axis=1)).sum()), int(missed[branch]), float(motion[branch])), branch
+
+
+def _first_cost(theta: FloatArray, start: FloatArray) -> FloatArray:
+    """(8,) what the first pose of a path adds: a little for its distance from home, shoulder and elbow included."""
+    return 1e-3 * ((theta - start) ** 2).sum(axis=-1) + 1e-3 * ARM_ORDER
+
+
+def join_path(robot: Robot, every: FloatArray, possible: BoolArray, start: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(theta (m, n), index (m,)): one solution a pose, so that the sum of squared joint motions is least.
+
+    every (m, 8, n). A single branch that reaches all there is to reach serves the whole path; otherwise dynamic
+    programming over the solutions. Poses with none keep index -1 and are bridged.
+    """
+    turned, within = settle(robot, every, start)
+    turned, within = _unwrapped(robot, turned), within & possible
+    m = len(within)
+    (nowhere, missed, _), branch = _score(turned, within, start)
+    index = np.where(within[:, branch], branch, -1) if missed == nowhere else _least_motion(turned, within, start)
+    return turned[np.arange(m), np.maximum(index, 0)], index
+
+
+def _least_motion(turned: FloatArray, within: BoolArray, start: FloatArray) -> IntArray:
+    """index (m,) of the solutions turned (m, 8, n) by dynamic programming; -1 where none is within limits."""
     m, k = within.shape
-    total = np.where(within[0], ((turned[0] - start) ** 2).sum(axis=-1) * 1e-3 + 1e-3 * ARM_ORDER[:k], np.inf)
+    total = np.where(within[0], _first_cost(turned[0], start), np.inf)
     came = np.zeros((m, k), dtype=np.int64)
-    last = turned[0].copy()
+    last = turned[0]
     for i in range(1, m):
+        came[i] = np.arange(k)
         if not within[i].any():
-            came[i] = np.arange(k)
             continue
         if not np.isfinite(total).any():
-            total = np.where(within[i], ((turned[i] - start) ** 2).sum(axis=-1) * 1e-3, np.inf)
-            came[i] = np.arange(k)
+            total = np.where(within[i], _first_cost(turned[i], start), np.inf)
         else:
             step = ((turned[i][:, None] - last[None]) ** 2).sum(axis=-1) + total
             came[i] = np.argmin(step, axis=1)
@@ -122,8 +150,7 @@ def join_path(
         if within[i, current]:
             index[i] = current
         current = int(came[i, current])
-    theta = turned[np.arange(m), np.maximum(index, 0)]
-    return theta, index, float(total.min())
+    return index
 
 
 def _unwrapped(robot: Robot, turned: FloatArray) -> FloatArray:

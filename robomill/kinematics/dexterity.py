@@ -72,7 +72,8 @@ def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:
     """sqrt(det(J J^T)) (...,), Yoshikawa's measure, of the arm's task Jacobian; |det(J)| where that is square."""
     J = task_matrix(robot, theta)
-    return np.sqrt(np.maximum(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0))
+    with np.errstate(invalid="ignore"):  # NaN in, NaN out
+        return np.sqrt(np.maximum(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0))
 
 
 def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:

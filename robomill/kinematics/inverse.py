@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.choice import SPIN_STEPS, choose, choose_spin, join_path, spun
+from robomill.kinematics.choice import SPIN_STEPS, Score, choose, choose_spin, join_path, path_score, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.numeric import bent_home, solve_numerically
@@ -184,21 +184,26 @@ def _along_path(
     theta = np.empty((len(flat), robot.n))
     index = np.empty(len(flat), dtype=np.int64)
     turn = np.zeros(len(flat)) if free_spin else None
-    spins = np.radians(np.arange(0.0, 360.0, 15.0)) if free_spin and not arm.spindle_on_last_axis else np.zeros(1)
-    for start in range(0, len(flat), length):
+
+    def every(T_MT: FloatArray, angle: float) -> tuple[FloatArray, BoolArray]:
+        found, possible = solutions(robot, arm, spun(T_MT, angle))
+        if free_spin and arm.spindle_on_last_axis:
+            found[..., 5] = robot.home[5]
+        return found, possible & wanted
+
+    def score(T_MT: FloatArray, angle: float) -> Score:
+        return path_score(robot, *every(T_MT, angle), robot.home)
+
+    choose_it = free_spin and not arm.spindle_on_last_axis
+    for start in range(0, len(flat), max(length, 1)):
         run = slice(start, start + length)
-        best: tuple[float, float] | None = None
-        for angle in spins:
-            every, possible = solutions(robot, arm, spun(flat[run], float(angle)))
-            if free_spin and arm.spindle_on_last_axis:
-                every[..., 5] = robot.home[5]
-            found, which, motion = join_path(robot, every, possible & wanted, robot.home)
-            score = (float((which < 0).sum()), motion)
-            if best is None or score < best:
-                best = score
-                theta[run], index[run] = found, which
-                if turn is not None:
-                    turn[run] = angle
+        best = 0.0
+        if choose_it:
+            angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
+            best = min(angles, key=partial(score, flat[run]))
+        theta[run], index[run] = join_path(robot, *every(flat[run], best), robot.home)
+        if turn is not None:
+            turn[run] = best
     return theta, index, turn
 
 
@@ -211,7 +216,7 @@ def _numerical(
     theta = np.empty((len(flat), robot.n))
     found = np.empty(len(flat), dtype=bool)
     length = lead[-1]
-    for start in range(0, len(flat), length):
+    for start in range(0, len(flat), max(length, 1)):
         near = goal
         for i in range(start, start + length):
             theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, flat[i : i + 1], near, mode)

@@ -1,0 +1,71 @@
+"""Arms that are not milling robots: SCARA, gantry, empty batches, unreached configurations."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.kinematics import dexterity
+from robomill.workspace.fields import compliance_field
+from robomill.workspace.grid import box_grid, plane_grid
+
+SCARA = {
+    "name": "scara", "convention": "standard", "alpha": [0, np.pi, 0, 0], "a": [0.4, 0.3, 0, 0], "d": [0.4, 0, 0, 0.05],
+    "theta_offset": [0] * 4, "prismatic": [0, 0, 1, 0], "limits_all": [[-2.5, 2.5], [-2.5, 2.5], [0, 0.3], [-3, 3]],
+    "C_theta_all": [1e-6, 1e-6, 1e-9, 1e-6],
+}  # fmt: skip
+
+
+def test_scara():
+    robot = rm.Robot(**SCARA)
+    assert dexterity.square_rows(robot) == ("v_x", "v_y", "v_z", "omega_z")
+    theta = np.random.default_rng(0).uniform(robot.limits[:, 0], robot.limits[:, 1], (300, 4))
+    T_MT = rm.tool_pose(robot, theta)
+    result = rm.inverse_kinematics(robot, T_MT)
+    assert result.reached.all()
+    np.testing.assert_allclose(rm.tool_pose(robot, result.theta)[:, :3, 3], T_MT[:, :3, 3], atol=1e-9)
+    field = compliance_field(robot, box_grid([-0.6, -0.6, 0.1], [0.6, 0.6, 0.3], 0.3))
+    # Only the slide gives in Z, by its compliance in m/N.
+    np.testing.assert_allclose(field.values("C_zz")[field.reached], 1e-9)
+
+
+def test_gantry():
+    robot = rm.Robot(
+        name="gantry", convention="modified", alpha=[0, np.pi / 2, np.pi / 2], a=[0] * 3, d=[0] * 3,
+        theta_offset=[0, np.pi / 2, np.pi / 2], prismatic=[1, 1, 1], limits_all=[[0, 1]] * 3, C_theta_all=[1e-9] * 3,
+    )  # fmt: skip
+    theta = [0.2, 0.3, 0.4]
+    np.testing.assert_allclose(rm.inverse_kinematics(robot, rm.tool_pose(robot, theta)).theta, theta, atol=1e-9)
+    assert abs(dexterity.determinant(robot, theta)) == pytest.approx(1.0)
+    np.testing.assert_allclose(rm.cartesian_compliance(robot, theta), 1e-9 * np.eye(3), atol=1e-22)
+
+
+def test_empty_batches():
+    robot = rm.load_robot("slavkovic_5r")
+    assert rm.tool_pose(robot, np.empty((0, 5))).shape == (0, 4, 4)
+    assert rm.geometric_jacobian(robot, np.empty((2, 0, 5))).shape == (2, 0, 6, 5)
+    for near in (None, "path"):
+        assert rm.inverse_kinematics(robot, np.empty((0, 4, 4)), near=near).theta.shape == (0, 5)
+
+
+def test_what_is_not_reached_is_nan_in_every_law():
+    robot = rm.load_robot("slavkovic_5r")
+    theta = rm.inverse_kinematics(robot, rm.pose_from_world([[0, -1.3, 0, 0, 0], [0, -9, 0, 0, 0]])).theta
+    laws = (
+        rm.cartesian_compliance, dexterity.determinant, dexterity.manipulability, dexterity.inverse_condition,
+        dexterity.smallest_singular_value, dexterity.limit_distance,
+    )  # fmt: skip
+    for law in laws:
+        values = law(robot, theta)
+        assert np.isfinite(values[0]).all(), law.__name__
+        assert np.isnan(values[1]).all(), law.__name__
+
+
+def test_a_planar_arm_keeps_its_elbow_side_over_a_map():
+    robot = rm.load_robot("planar_2r")
+    field = compliance_field(robot, plane_grid("z", 0.0, [-0.8, -0.8, 0], [0.8, 0.8, 0], 0.1))
+    theta = field.theta[field.reached]
+    other = theta[theta[:, 1] < 0]
+    # Where the elbow is on the other side, the first joint would be past its limit with it on this one.
+    mirrored = other[:, 0] + 2 * np.arctan2(0.4 * np.sin(other[:, 1]), 0.5 + 0.4 * np.cos(other[:, 1]))
+    mirrored = (mirrored + np.pi) % (2 * np.pi) - np.pi
+    assert (np.abs(mirrored) > robot.limits[0, 1] - 1e-9).all()
