@@ -142,7 +142,10 @@ def test_maps_of_the_paper_box_and_plane():
         [
             (f"paper's box, 10 mm, {box.cells} poses", f"{of_box:9.3f} s"),
             (f"plane 121 x 61, {plane.cells} poses", f"{of_plane * 1e3:9.2f} ms"),
-            (f"EAIK {version('eaik')} + Pinocchio {version('pin')} loop, same poses, without shares", f"{of_peers * box.cells:9.3f} s"),
+            (
+                f"EAIK {version('eaik')} + Pinocchio {version('pin')} loop, same poses, without shares",
+                f"{of_peers * box.cells:9.3f} s",
+            ),
             ("ratio on the box", f"{of_peers * box.cells / of_box:9.1f}"),
         ],
     )
