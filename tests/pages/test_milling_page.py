@@ -10,7 +10,7 @@ from streamlit.testing.v1 import AppTest
 def test_it_runs_with_every_figure(app: AppTest) -> None:
     go(app, "6_Milling")
     assert not app.exception
-    assert len(app.get("plotly_chart")) == 4
+    assert len(app.get("plotly_chart")) == 5
     assert [b.label for b in app.get("download_button") if b.label in ("Surface STL", "Deviation CSV", "Picture PNG")]
 
 
@@ -77,7 +77,7 @@ def test_cutter_kinds_and_force_kinds_switch(app: AppTest) -> None:
         app.button_group(key="cutter.kind").set_value(kind).run()
         assert not app.exception
         assert store(app).project.setup.cutter.kind == kind
-    app.button_group(key="force.kind").set_value("constant").run()
+    app.selectbox(key="force.kind").set_value("constant").run()
     assert not app.exception
     assert app.number_input(key="in:force.vector_M[1]:N").value == pytest.approx(100.0)
     assert "0.23 mm off in Y" in words(app)

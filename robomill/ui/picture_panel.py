@@ -1,0 +1,133 @@
+"""Pictures of the machined surface: rendered, beside the ideal one, or turnable; surfaces to take away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.io.meshes import FORMATS, mesh_bytes
+from robomill.report.tables import csv_text, deviation_columns
+from robomill.simulation.result import SimulationResult
+from robomill.ui import cache, inputs, linked, parts, render, state
+from robomill.units import format_si, from_si
+from robomill.viz.posed import posed
+from robomill.viz.scene import CAMERAS, SurfacePicture
+from robomill.viz.surfaces import surface_figure
+from robomill.viz.views import so_far, surface_picture, tip_drawn
+
+HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
+EXTRAS = {
+    "plane": "Section plane", "away": "Cut open", "ghost": "Ideal as ghost", "tool": "Tool", "arm": "Arm",
+    "so_far": "Cut so far",
+}  # fmt: skip
+EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
+HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
+SIZE = (1360, 720)
+
+
+def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
+    """The picture with its controls."""
+    how = _controls()
+    view = state.project().view
+    shown = parts.attempt(cache.pictured, result.setup, view.exaggeration)
+    if shown is None:
+        return
+    png = _rendered(result, i, dark) if how != "turn" else None
+    if png is not None:
+        st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
+    else:
+        unit = view.length
+        heights = shown.drawn
+        parts.figure(
+            surface_figure(
+                from_si(heights.x, unit), from_si(heights.y, unit), from_si(heights.z, unit),
+                from_si(shown.error, "um"), float(from_si(result.setup.tolerance, "um")), dark=dark, height=height,
+                unit=unit,
+            ), "surface", alt="The machined surface, to be turned with the mouse.",
+        )  # fmt: skip
+    times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
+    parts.note(
+        f"{times}; colours are true distances from the ideal groove and end at the tolerance, "
+        f"± {format_si(result.setup.tolerance, 'um', 0)}."
+    )
+
+
+def _controls() -> str:
+    view = state.project().view
+    how = st.session_state.get(HOW_KEY, "one")
+    first, camera, times = parts.split([2.1, 1.3, 0.9], "picture", gap="small")
+    with first:
+        inputs.choice("View", "picture.how", HOW, how, lambda v: st.session_state.update({HOW_KEY: v}))
+    how = st.session_state.get(HOW_KEY, "one")
+    with camera:
+        inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: state.look(camera=c), horizontal=False)
+    with times:
+        known = view.exaggeration in EXAGGERATIONS
+        options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: f"× {view.exaggeration:g}"}
+        inputs.choice("Exaggeration", "view.exaggeration", options, view.exaggeration,
+                      lambda v: state.look(exaggeration=float(v)), horizontal=False)  # fmt: skip
+    if how != "turn":
+        chosen = st.session_state.get(EXTRAS_KEY, ["plane"])
+        inputs.seed("picture.extras", list(chosen))
+        st.pills("With", list(EXTRAS), selection_mode="multi", key="picture.extras", format_func=lambda k: EXTRAS[k],
+                 label_visibility="collapsed", on_change=_take_extras)  # fmt: skip
+    return str(how)
+
+
+def _take_extras() -> None:
+    st.session_state[EXTRAS_KEY] = list(st.session_state["picture.extras"])
+
+
+def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
+    """What is drawn, and the key it is kept under: all that it depends on."""
+    view = state.project().view
+    extras = frozenset(st.session_state.get(EXTRAS_KEY, ["plane"]))
+    pair = st.session_state.get(HOW_KEY, "one") == "pair"
+    shown = cache.pictured(result.setup, view.exaggeration)
+    moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
+    station = linked.station_m(result)
+    camera: Any = view.camera
+    picture = surface_picture(
+        result, so_far(result, shown, i) if "so_far" in extras else shown, camera=camera, dark=dark,
+        station=station if extras & {"plane", "away"} else None, at=station, size=SIZE, words=True,
+        layout="pair" if pair else "one", cutaway="away" in extras, ghost="ghost" in extras,
+        solids=posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras)
+        if extras & {"tool", "arm"} and i >= 0 else (),
+    )  # fmt: skip
+    key = (result.setup.digest(), view.exaggeration, round(station, 6) if moves else None, tuple(sorted(extras)), pair)
+    return ("milling", *key), picture
+
+
+def _rendered(result: SimulationResult, i: int, dark: bool) -> bytes | None:
+    return render.picture(*scene(result, i, dark))
+
+
+def downloads(result: SimulationResult, i: int) -> None:
+    """Deviation as CSV, picture as PNG, the surface in the formats people ask for."""
+    setup = result.setup
+    with st.container(horizontal=True, gap="small"):
+        parts.download("Deviation CSV", lambda: csv_text(deviation_columns(result)), "deviation.csv", "text/csv",
+                       key="get:deviation")  # fmt: skip
+        parts.download("Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png",
+                       key="get:png")  # fmt: skip
+        for kind in FORMATS:
+            parts.download(f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind],
+                           key=f"get:{kind}")  # fmt: skip
+    parts.note(
+        f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
+        "VTP carries the signed error."
+    )
+
+
+MIME = {"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"}
+
+
+def _mesh(result: SimulationResult, kind: str) -> Callable[[], bytes]:
+    def made() -> bytes:
+        error = np.asarray(result.error.error) if kind == "vtp" else None
+        return mesh_bytes(result.machined, kind, error=error)
+
+    return made

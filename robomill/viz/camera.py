@@ -1,0 +1,71 @@
+"""Where the camera stands: presets in parallel projection, fitted to the block and to what stands on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from robomill.viz.scene import SurfacePicture
+
+# Shares of the picture that the block may fill: the rest of the width is for the colour bar, of the height for words.
+WIDE, HIGH = 0.79, 0.84
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def look(plotter: Any, picture: SurfacePicture, *, aspect: float, bar: bool = True) -> None:
+    """Point the camera of the plotter's current renderer; ``aspect`` is that renderer's, ``bar`` leaves room."""
+    along = np.array([picture.direction[0], picture.direction[1], 0.0])
+    across = np.array([-along[1], along[0], 0.0])
+    low, high = bounds(picture)
+    wide = WIDE if bar else 0.9
+    view = {
+        "iso": best_angle(high - low, along, across, aspect, wide),
+        "along": -1.0 * along + 0.32 * UP,
+        "top": UP,
+        "front": -across + 0.02 * UP,
+    }[picture.camera]
+    view_up = across if picture.camera == "top" else UP
+    centre = 0.5 * (low + high)
+    view = view / np.linalg.norm(view)
+    distance = 4.0 * float(np.linalg.norm(high - low))
+    right = np.cross(view_up, view)
+    right /= np.linalg.norm(right)
+    upward = np.cross(view, right)
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    half_w = float(np.abs((corners - centre) @ right).max())
+    half_h = float(np.abs((corners - centre) @ upward).max())
+    scale = max(half_h / HIGH, half_w / aspect / wide)
+    shift = (0.105 * scale * aspect if bar else 0.0) * right
+    if picture.captions:
+        scale *= 1.07
+        shift = shift - 0.07 * scale * upward  # the block moves up to make room for the words below it
+    plotter.camera_position = [centre + shift + distance * view, centre + shift, view_up]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = scale
+    plotter.camera.clipping_range = (0.05 * distance, 6.0 * distance)
+
+
+def bounds(picture: SurfacePicture) -> tuple[FloatArray, FloatArray]:
+    """Corners (3,), (3,) mm of what must be seen: the block, and ``headroom`` above it."""
+    low = np.array([picture.x[0], picture.y[0], picture.bottom])
+    high = np.array([picture.x[-1], picture.y[-1], float(np.nanmax(picture.z)) + picture.headroom])
+    return low, high
+
+
+def best_angle(size: FloatArray, along: FloatArray, across: FloatArray, aspect: float, wide: float) -> FloatArray:
+    """The angled view from the front left under which a block of ``size`` (3,) fills the picture best."""
+    views = []
+    for degrees in range(25, 70, 5):
+        turn = np.radians(degrees)
+        view = -np.cos(turn) * along - np.sin(turn) * across + 0.72 * UP
+        view /= np.linalg.norm(view)
+        right = np.cross(UP, view)
+        right /= np.linalg.norm(right)
+        upward = np.cross(view, right)
+        need = max(float(np.abs(upward) @ size) / HIGH, float(np.abs(right) @ size) / aspect / wide)
+        views.append((need, degrees, view))
+    return min(views, key=lambda v: (round(v[0], 6), v[1]))[2]
