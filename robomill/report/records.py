@@ -132,7 +132,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "verdict": verdict.level,
         "verdict_sentence": verdict.sentence,
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
-        "notes": list(result.notes),
+        "notes": [*result.notes, *result.surface_notes],
         "findings": [finding_record(f) for f in result.setup.toolpath.findings],
         "digest": result.setup.digest(),
     }

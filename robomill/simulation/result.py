@@ -14,6 +14,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.kinematics.inverse import IKResult
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
+from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
@@ -166,6 +167,16 @@ class SimulationResult:
     def error(self) -> Deviation:
         """Signed error of the machined surface against the ideal one: + material left, - cut too deep."""
         return deviation(self.ideal, self.machined)
+
+    @cached_property
+    def surface_notes(self) -> tuple[str, ...]:
+        """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material."""
+        found = list(self.machined.notes())
+        lines = rapids_through_material(self.setup, self.setup.toolpath)
+        if lines:
+            named = ", ".join(map(str, lines[:5])) + (" and more" if len(lines) > 5 else "")
+            found.append(f"Line {named}: a rapid runs through material that no cut removes; lift the tool first.")
+        return tuple(found)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup

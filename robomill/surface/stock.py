@@ -13,6 +13,7 @@ from robomill.errors import SurfaceError
 from robomill.units import format_si
 
 AXES = ("X", "Y", "Z")
+SMALLEST, LARGEST = 2e-3, 5.0  # m: a part outside these was probably given in another unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +83,9 @@ class Stock:
     def warnings(self, cutter: Cutter) -> tuple[str, ...]:
         """What is odd about this stock with this cutter, one sentence each."""
         found = []
+        longest = float(self.size.max())
+        if not SMALLEST <= longest <= LARGEST:
+            found.append(f"Stock: the block is {format_si(longest, 'mm', 2)} long; check the unit of its numbers.")
         width = float(self.size[:2].min())
         if cutter.diameter > width:
             found.append(

@@ -152,3 +152,10 @@ def test_a_measured_map_replaces_the_joint_model_and_says_where_it_ends(setup) -
     assert 0 < outside.judged.sum() < outside.path.cutting.sum()
     assert "lie outside the measured map" in outside.verdict.sentence
     assert np.isnan(outside.delta[outside.path.cutting & ~outside.answered]).all()
+
+
+def test_a_rapid_through_the_part_is_said_with_its_line(setup, result) -> None:
+    assert result.surface_notes == ()
+    rash = setup.source.text.replace("N60 G0 Z20", "N60 G0 X0 Y15")
+    run = simulate(setup.replace(source=GCodeSource(rash)))
+    assert run.surface_notes == ("Line 8: a rapid runs through material that no cut removes; lift the tool first.",)

@@ -1,0 +1,47 @@
+"""Rapids that run through material: a machine would break the tool there, and the simulation must say so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robomill.simulation.setup import SimulationSetup
+from robomill.surface.zmap import cut
+from robomill.toolpath.path import Toolpath
+
+LEAST_VOLUME = 1e-12  # m^3: less than this is rounding at a wall
+MANY = 2000
+
+
+def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int, ...]:
+    """Source lines of rapids that pass through material which no cut of the program removes, in order.
+
+    Told by cutting the stock once with the feed moves and once with all; so a rapid through material that is cut
+    only later is not found. Looks at most at ``MANY`` rapids one by one.
+    """
+    moves = path.step_length > 0
+    feed, rapid = moves & path.cutting, moves & ~path.cutting
+    rapid[0] = False
+    low, high = setup.stock_block.lower, setup.stock_block.upper
+    reach = np.array([setup.cutter.radius, setup.cutter.radius, 0.0])
+    ends = np.stack([np.roll(path.p, 1, axis=0), path.p])
+    near = (ends.min(axis=0) <= high + reach).all(axis=1) & (ends.max(axis=0)[:, :2] >= (low - reach)[:2]).all(axis=1)
+    suspects = np.flatnonzero(rapid & near)
+    if not len(suspects):
+        return ()
+
+    def volume(chosen: np.ndarray) -> float:
+        if not chosen.any():
+            return 0.0
+        zmap = cut(setup.stock_block, setup.cell, setup.cutter, path.p, path.k, chosen, must_touch=False)
+        return zmap.removed_volume
+
+    def with_rapids(indices: np.ndarray) -> float:
+        chosen = feed.copy()
+        chosen[indices] = True
+        return volume(chosen)
+
+    base = volume(feed)
+    if with_rapids(suspects) - base <= LEAST_VOLUME:
+        return ()
+    bad = [int(path.block[i]) for i in suspects[:MANY] if with_rapids(np.array([i])) - base > LEAST_VOLUME]
+    return tuple(sorted(set(bad)))
