@@ -62,7 +62,7 @@ def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, f
         )  # fmt: skip
         robot_choice(kept)
     with second:
-        upload("Your measured map (CSV)", "ident:map:file", kept.take_map)
+        upload("Your measured map (CSV)", "ident:map:file", kept.take_map, kept.map_revision)
         parts.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
         component = _kept_choice("component", {c: c.replace("_", " ") for c in COMPONENTS}, "C_yy")

@@ -56,7 +56,7 @@ def source(kept: Bench, robot: Robot) -> None:
         "Load tests", "ident:sample", samples, kept.sample or OWN,
         lambda name: None if name == OWN else take_sample(kept, name), horizontal=False,
     )  # fmt: skip
-    upload("Your load tests (CSV)", "ident:file", kept.take)
+    upload("Your load tests (CSV)", "ident:file", kept.take, kept.revision)
     _templates(robot)
     if len(kept.text) > EDITABLE:
         parts.note(f"{kept.name}: {len(kept.text.splitlines()):,} lines; files of this size are edited outside.")
@@ -71,16 +71,20 @@ def source(kept: Bench, robot: Robot) -> None:
         parts.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
 
 
-def upload(label: str, key: str, take: Callable[[str, str], None]) -> None:
-    """A file that is put on the bench as text; what is not text is refused in a sentence."""
+def upload(label: str, key: str, take: Callable[[str, str], None], revision: int) -> None:
+    """A file that is put on the bench as text; what is not text is refused in a sentence.
+
+    ``revision`` changes when the file was taken: the box is empty again then.
+    """
+    box = f"{key}:{revision}"
 
     def taken() -> None:
-        file: Any = st.session_state.get(key)
+        file: Any = st.session_state.get(box)
         if file is not None:
-            inputs.attempt(key + ":said", None, lambda: take(decoded(file.getvalue(), file.name), file.name))
+            inputs.attempt(key, None, lambda: take(decoded(file.getvalue(), file.name), file.name))
 
-    st.file_uploader(label, key=key, max_upload_size=MAX_MB, on_change=taken)
-    inputs.sentence(key + ":said")
+    st.file_uploader(label, key=box, max_upload_size=MAX_MB, on_change=taken)
+    inputs.sentence(key)
 
 
 def _templates(robot: Robot) -> None:

@@ -59,7 +59,9 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
             key="ident:sheet",
         )  # fmt: skip
         parts.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
-    upload("Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name))
+    upload(
+        "Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name), kept.revision
+    )  # fmt: skip
 
 
 def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> None:

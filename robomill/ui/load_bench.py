@@ -44,7 +44,8 @@ MAP_SAMPLES = {"grid_45x6": SAMPLES["grid_45x6"], "nine_points_compliances": SAM
 class Bench:
     """Text and name of the tests, the model asked for, what was left out, the plan's goal; ``sample`` "" if own.
 
-    robot_name "": the project's robot. Lengths m, angles rad, forces N. ``revision`` counts changes of the text.
+    robot_name "": the project's robot; seen_robot: its name when last looked. Lengths m, angles rad, forces N.
+    ``revision`` counts changes of the text.
     """
 
     text: str = ""
@@ -52,6 +53,7 @@ class Bench:
     sample: str = ""
     revision: int = 0
     robot_name: str = ""
+    seen_robot: str = ""
     model: str = "joints"
     bending: tuple[int, ...] = (2, 3)
     robust: bool = False
@@ -99,13 +101,21 @@ def bench() -> Bench:
         take_sample(new, "nine_points")
         new.take_map(sample_text("grid_45x6"), "grid_45x6.csv", "grid_45x6")
         st.session_state[KEY] = new
-    return st.session_state[KEY]  # type: ignore[no-any-return]
+    kept: Bench = st.session_state[KEY]
+    if kept.sample and kept.seen_robot != state.project().setup.robot.name:
+        _sample_robot(kept)
+    return kept
 
 
 def take_sample(kept: Bench, sample: str) -> None:
     """Put a sample on the bench, with the robot that it was made for."""
     kept.take(sample_text(sample), f"{sample}.csv", sample)
-    kept.robot_name = "" if state.project().setup.robot.name == SAMPLE_ROBOT else SAMPLE_ROBOT
+    _sample_robot(kept)
+
+
+def _sample_robot(kept: Bench) -> None:
+    kept.seen_robot = state.project().setup.robot.name
+    kept.robot_name = "" if kept.seen_robot == SAMPLE_ROBOT else SAMPLE_ROBOT
 
 
 @st.cache_data(max_entries=8, show_spinner=False)

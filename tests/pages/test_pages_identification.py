@@ -444,6 +444,19 @@ def test_a_pose_out_of_reach_costs_nothing_and_is_explained(page: AppTest) -> No
 
 
 # ---- words ---------------------------------------------------------------------------------------------------------
+def test_a_sample_keeps_its_robot_when_the_project_has_another(among_pages: AppTest) -> None:
+    page = among_pages
+    page.switch_page("pages/1_Robot.py").run()
+    page.selectbox(key="robot.name").set_value("kuka_kr270").run()
+    page.switch_page("pages/4_Identification.py").run()
+    assert not page.exception
+    assert not page.error
+    assert page.selectbox(key="ident:robot").value == "slavkovic_5r"
+    for section in ("map", "laboratory"):
+        pick(page, "ident:section", section)
+        assert not page.exception
+
+
 def test_stiffness_turns_intervals_over() -> None:
     low, high = words.interval(np.array([8e-7, 1e-6]), "kN m/rad")
     assert low == pytest.approx(1000.0)
