@@ -52,33 +52,35 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_million_lines(program: Path) -> None:
     code = (
-        "import sys,time,resource\nfrom pathlib import Path\nt=time.perf_counter()\n"
+        "import sys,time,resource\nfrom pathlib import Path\nt=time.perf_counter(),time.process_time()\n"
         "from robomill.toolpath.gcode import interpret\np=interpret(Path(sys.argv[1]))\n"
-        "print(time.perf_counter()-t, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss/1024, len(p))"
+        "memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss/1024\n"
+        "print(time.process_time()-t[1], time.perf_counter()-t[0], memory, len(p))"
     )
     command = [sys.executable, "-c", code, str(program)]
     runs = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(3)]
-    seconds, memory, moves = min(tuple(map(float, run.split())) for run in runs)
+    seconds, wall, memory, moves = min(tuple(map(float, run.split())) for run in runs)
     print(
-        f"\nrobomill: {LINES / seconds:,.0f} lines/s ({seconds:.2f} s, imports included), {memory:.0f} MiB, {moves:.0f} moves"
+        f"\nrobomill: {LINES / seconds:,.0f} lines per second of CPU ({seconds:.2f} s with imports; {wall:.2f} s by the"
     )
+    print(f"clock), {memory:.0f} MiB, {moves:.0f} moves")
     assert seconds < 8.0
     assert memory < 1024
 
 
 def test_line_by_line(program: Path) -> None:
     text = "\n".join(program.read_text().splitlines()[:50_000]) + "\nM2\n"
-    began = time.perf_counter()
+    began = time.process_time()
     interpret(text, fast=False)
-    print(f"\nrobomill, line by line: {50_000 / (time.perf_counter() - began):,.0f} lines/s")
+    print(f"\nrobomill, line by line: {50_000 / (time.process_time() - began):,.0f} lines/s")
 
 
 def test_peer_gcodeparser(program: Path) -> None:
     gcodeparser = pytest.importorskip("gcodeparser")
     text = "\n".join(program.read_text().splitlines()[:200_000])
-    began = time.perf_counter()
+    began = time.process_time()
     gcodeparser.GcodeParser(text).lines  # noqa: B018
-    print(f"\ngcodeparser (words only): {200_000 / (time.perf_counter() - began):,.0f} lines/s")
+    print(f"\ngcodeparser (words only): {200_000 / (time.process_time() - began):,.0f} lines/s")
 
 
 def test_peer_rs274(program: Path, tmp_path: Path) -> None:

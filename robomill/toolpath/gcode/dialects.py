@@ -12,6 +12,9 @@ from robomill.toolpath.gcode.words import Block
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
 
+SAMPLE = 200_000
+"""Bytes at the start of a program from which its dialect is guessed."""
+
 HARMLESS: dict[str, dict[int, str]] = {
     "fanuc": {
         50: "high-speed mode", 90: "exact stop", 150: "polar coordinates off", 220: "stored stroke check",
@@ -97,11 +100,10 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         if wanted not in NAMES:
             raise GCodeError(f"Dialect {wanted!r} is not known; expected auto, {', '.join(NAMES)}.")
         return Dialect(wanted, guessed=False)
-    sample = text[:200_000]
-    if _LINUXCNC.search(sample):
+    if _LINUXCNC.search(text):
         return Dialect("linuxcnc")
     for name, pattern in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
-        if pattern.search(sample):
+        if pattern.search(text):
             return Dialect(name)
     return Dialect("linuxcnc")
 

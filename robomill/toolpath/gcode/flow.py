@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from robomill.errors import GCodeError
@@ -66,7 +67,7 @@ def split(text: str) -> tuple[str, str, str] | None:
     return label, "", rest
 
 
-def scan(lines: list[str]) -> Structure:
+def scan(lines: Sequence[str]) -> Structure:
     """The structure of a file. Mismatches become problems of their line, raised only if it is executed."""
     structure = Structure()
     open_nodes: dict[tuple[str, str], list[Node]] = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ class File:
     """Lines of a program or subroutine file, and its O words."""
 
     name: str
-    lines: list[str]
+    lines: Sequence[str]
     folder: Path | None = None
     structure: flow.Structure | None = None
 

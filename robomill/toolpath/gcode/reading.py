@@ -9,13 +9,13 @@ import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
-from robomill.toolpath.gcode.dialects import choose_dialect
+from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.fastpath import MIN_LINES, FastPath
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import ARC, FEED, Program
-from robomill.toolpath.gcode.source import Source, read_source
+from robomill.toolpath.gcode.source import Source, read_source, split_lines
 from robomill.toolpath.gcode.tools import ToolTable, read_tool_table
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, to_si
@@ -57,11 +57,10 @@ def interpret(
     programs be read as arrays; the result is the same. Raises GCodeError naming the line that is refused.
     """
     data, name = read_source(source)
-    text = data.decode("utf-8", "replace")
-    lines = text.split("\n")
+    lines = split_lines(data)
     if isinstance(tools, str | Path):
         tools = read_tool_table(tools)
-    chosen = choose_dialect(text, dialect)
+    chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     machine = Machine(tools)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None

@@ -31,7 +31,7 @@ def gcode_report(program: Program) -> dict[str, Any]:
         "moves": counts,
         "length_mm": lengths,
         "extents_mm": None if extents is None else [[from_si(float(v), "mm") for v in corner] for corner in extents],
-        "units": program.units,
+        "units": program.units or "mm",
         "dialect": program.dialect,
         "lines": program.lines,
         "dwells": program.dwells,
