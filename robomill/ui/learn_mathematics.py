@@ -110,7 +110,9 @@ def reproduced() -> None:
         f"<td>{html.escape(r.reason)}</td></tr>"
         for r in found
     )
-    st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{head}</tr>{body}</table></div>')
+    st.html(
+        f'<div style="overflow-x:auto"><table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table></div>'
+    )
     parts.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
 
 

@@ -78,6 +78,9 @@ def default_point(view: MapView, box: Box, known: ComplianceField) -> Point:
     middle = 0.5 * (np.asarray(box.lower) + box.upper)
     if not known.reached.any():
         return tuple(map(float, middle))  # type: ignore[return-value]
+    rounded = tuple(float(v) for v in np.round(middle, 2) + 0.0)
+    if bool(inverse_kinematics(known.robot, pose_from_world([*rounded, view.A, view.B])).reached):
+        return rounded  # type: ignore[return-value]
     points = known.grid.points()[known.reached]
     return tuple(map(float, points[np.linalg.norm(points - middle, axis=-1).argmin()]))  # type: ignore[return-value]
 
@@ -164,7 +167,7 @@ def _shares(found: PointReport, old: PointReport) -> None:
         "point-shares",
         table=lambda: share_columns(found),
         alt="Joint shares of each compliance component at this pose.",
-        caption="Bars add up to the black mark, eq. (13). Grey mark: before the change.",
+        caption="Bars add up to the sum, eq. (13). A grey mark is the sum before the change.",
     )
 
 

@@ -39,7 +39,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     limit = known.values("limit_distance")
     nearest = f"{100 * float(np.nanmin(limit)):.0f} %" if np.isfinite(limit).any() else "not reached"
     largest = maps_fields.proposed_box(robot, view.A, view.B)
-    size = "none" if largest is None else " × ".join(f"{v:.2f}" for v in largest.size if v > 1e-6) + " m"
+    size = "none" if largest is None else " × ".join(f"{v:.1f}" for v in largest.size if v > 1e-6) + " m"
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
     return [
@@ -62,7 +62,8 @@ def _against(box: Box, robot: Robot, unit: str) -> str:
     if maps_fields.flat(robot) is not None:
         return "in the plane of the arm"
     ratio = against_paper(box)
-    words = "holds" if ratio["holds_paper_box"] else "does not hold"
+    turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
+    words = "holds" if ratio["holds_paper_box"] else "turned by 90° holds" if turned else "does not hold"
     return f"{words} the paper's {box_size(PAPER_BOX_SIZE, unit)} · {ratio['volume_ratio']:.1f} × its volume"
 
 
@@ -258,7 +259,7 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
 def _level(low: float, high: float, view: MapView, unit: str) -> float:
     key = "maps:level"
     inputs.slider(
-        f"Show cells from the lowest value ({low:.3g}) up to the highest ({high:.3g} {unit})", key, 0.0, 1.0,
+        f"Show cells from the lowest value ({low:.3g}) up to the highest ({high:.3g} {unit})".replace("(-", "(−"), key, 0.0, 1.0,
         view.level, lambda v: see(level=v), step=0.02, form="percent",
     )  # fmt: skip
     return float(st.session_state.get(key, view.level))

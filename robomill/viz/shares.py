@@ -71,6 +71,11 @@ def share_bars(
     return fig
 
 
+def _amount(value: float, top: float) -> str:
+    """Two digits beside the largest; what is a thousandth of it or less is none."""
+    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-3 * top else "0"
+
+
 def _signed(value: float) -> str:
     text = f"{value:+.3f}"
     return (text[1:] if float(text) == 0 else text).replace("-", "−")
@@ -91,13 +96,13 @@ def gain_bars(
         suffix = "" if g == 0 else str(g + 1)
         width = (1 - gap * (count - 1)) / count
         start = g * (width + gap)
+        top = float(np.nanmax(gain, initial=0.0)) or 1.0
         fig.add_trace(go.Bar(
             y=names, x=gain, orientation="h", xaxis=f"x{suffix}", yaxis=f"y{suffix}",
             marker={"color": [colours[j % 7] for j in range(len(joints))]},
-            text=[f"{v:.3g}" if abs(v) > 1e-12 else "0" for v in gain], textposition="outside", cliponaxis=False,
+            text=[_amount(v, top) for v in gain], textposition="outside", cliponaxis=False,
             textfont={"color": p.text, "size": 12.5}, hovertemplate=f"%{{y}}: %{{x:.4g}} {unit}<extra></extra>",
         ))  # fmt: skip
-        top = float(np.nanmax(gain, initial=0.0)) or 1.0
         low = float(np.nanmin(gain, initial=0.0))
         fig.update_layout(
             {

@@ -16,7 +16,9 @@ REDRAWN = """() => {
     i.getAttributeNS('http://www.w3.org/1999/xlink', 'href')).join('');
   const before = shown(), start = performance.now();
   window.redrawn = null;
-  const look = () => { if (shown() !== before) window.redrawn = performance.now() - start; else requestAnimationFrame(look); };
+  const look = () => {
+    if (shown() !== before) window.redrawn = performance.now() - start; else requestAnimationFrame(look);
+  };
   requestAnimationFrame(look);
 }"""
 
@@ -52,7 +54,8 @@ def test_a_click_on_a_map_opens_the_report_of_its_pose(page: Any) -> None:
     assert "(0, −1300, 0) mm" in report.inner_text()
     click_map(page, 4, 0.8, 0.3)
     page.wait_for_function(
-        "() => [...document.querySelectorAll('h3')].some(h => /The pose at \\((3|4)\\d\\d, −11\\d\\d, 0\\) mm/.test(h.innerText))",
+        "() => [...document.querySelectorAll('h3')]"
+        ".some(h => /The pose at \\((3|4)\\d\\d, −11\\d\\d, 0\\) mm/.test(h.innerText))",
         timeout=30_000,
     )
     tile = page.locator(".rm-tile").first.inner_text()
