@@ -178,3 +178,12 @@ def test_toolpath_marks_cuts_feeds_tools_and_lines() -> None:
     assert set(path.tool.tolist()) == {2}
     assert path.p[3] * 1e3 == pytest.approx((25.4, 0, 0))
     assert np.array_equal(path.k, np.broadcast_to([0, 0, 1.0], path.k.shape))
+
+
+def test_a_partial_reading_keeps_the_moves_before_the_refusal() -> None:
+    program = interpret("G21 F60\nG1 X1\nX2\nG2 X3\nX4\n", partial=True)
+    assert len(program) == 2
+    assert not program.ok
+    assert gcode_report(program)["ok"] is False
+    assert (program.findings[0].level, program.findings[0].line) == ("error", 4)
+    assert len(program.toolpath()) == 3

@@ -83,7 +83,9 @@ def _steps(counts: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _spread(values: Any, counts: IntArray, first: Any) -> Any:
-    """A value of each move for each of its points, with ``first`` in front for the start."""
+    """A value of each move for each of its points, with ``first`` in front for the start (one value if all agree)."""
+    if values[0] == first and (values == first).all():
+        return values[:1]
     out = np.empty(int(counts.sum()) + 1, dtype=values.dtype)
     out[0] = first
     out[1:] = np.repeat(values, counts)

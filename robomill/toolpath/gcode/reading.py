@@ -49,12 +49,14 @@ def interpret(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     fast: bool = True,
+    partial: bool = False,
 ) -> Program:
     """Canonical moves of a program: a path, the text itself, or its bytes (see ``source.read_source``).
 
     ``tools`` is a tool table or its file; without one every tool is accepted, of unknown size. ``progress`` is
     called with the share that is done, ``cancel`` asked whether to stop. ``fast`` lets plain stretches of long
-    programs be read as arrays; the result is the same. Raises GCodeError naming the line that is refused.
+    programs be read as arrays; the result is the same. Raises GCodeError naming the line that is refused; with
+    ``partial`` the moves before it are returned instead, and the refusal is an error among the findings.
     """
     data, name = read_source(source)
     lines = split_lines(data)
@@ -67,8 +69,10 @@ def interpret(
     interpreter = Interpreter(machine, File(name, lines, folder), chosen, progress, cancel)
     try:
         interpreter.run(FastPath(data, len(lines)) if fast and len(lines) >= MIN_LINES else None)
-    except RecursionError:
-        raise GCodeError(f"Line {machine.line}: too deeply nested to read.", line=machine.line) from None
+    except GCodeError as exc:
+        if not partial:
+            raise
+        machine.findings.add("error", exc.line, str(exc))
     if chosen.guessed and chosen.name != "linuxcnc":
         machine.findings.add("info", 0, f"read as {chosen.name} code; this is a guess from how it looks")
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
