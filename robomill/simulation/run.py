@@ -36,7 +36,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     path = resample(setup.toolpath, setup.step)
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
-    ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path))
+    ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path), near="path")
     C_joint, C_spring = compliances(setup, ik.theta)
     sag = None if setup.links is None else gravity_sag(setup.robot, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
