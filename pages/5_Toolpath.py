@@ -34,7 +34,7 @@ kind = kind_of(source)
 ui.headline(f"Toolpath · {source.name}", shown.sentence(path, reach, result, unit, kind))
 shown.tiles(path, reach, result, unit, kind)
 
-left, right = ui.split([1.2, 1.75], "page", gap="large") if drawing else ui.thirds()
+left, right = ui.thirds() if kind == "program" else ui.split([1.2, 1.75], "page", gap="large")
 with left:
     kind_switch()
     if isinstance(source, GCodeSource):
@@ -88,8 +88,7 @@ with right:
     with st.container(border=True):
         st.markdown("**The path in figures**")
         details.path_facts(setup, unit)
-    if not drawing:
+    if isinstance(source, GCodeSource):
         with st.container(border=True):
             details.findings_list(path.findings)
-            if isinstance(source, GCodeSource):
-                details.support_table()
+            details.support_table()

@@ -40,7 +40,9 @@ def _by_numbers() -> None:
     left, right = st.columns(2)
     for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
         with column:
-            inputs.number(axis, f"T_MW[{i},3]", unit, step=10.0 if unit == "mm" else 1.0, digits=2)
+            inputs.number(
+                axis, f"T_MW[{i},3]", unit, step=10.0 if unit == "mm" else 1.0, digits=2 if unit == "mm" else 4
+            )
     T_MW = state.project().setup.T_MW
     key = "part.rotation"
     inputs.seed(key, float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9)))

@@ -1,0 +1,69 @@
+"""Reading beside the page: progress, cancel, refusals; and the summary of a path against plain counting."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.source import GCodeSource
+from robomill.ui.path_summary import distinct, path_summary
+from robomill.ui.reading import Reading
+
+
+def program(lines: int) -> str:
+    body = "\n".join(f"G1 X{i % 100} Y{i % 7}" for i in range(lines))
+    return f"G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\n{body}\nG0 Z5\nM2\n"
+
+
+def finished(reading: Reading) -> Reading:
+    reading.start()
+    assert reading.done.wait(60)
+    return reading
+
+
+def test_a_program_is_read_and_kept_for_the_page() -> None:
+    source = GCodeSource(program(30_000), "long.nc")
+    reading = finished(Reading(source))
+    assert reading.error is None
+    assert reading.bug is None
+    assert reading.share > 0.9
+    assert source.read() is GCodeSource(program(30_000), "long.nc").read(), "what was read is not read again"
+
+
+def test_a_refusal_is_handed_over_with_its_line() -> None:
+    reading = finished(Reading(GCodeSource(program(2_000).replace("M2", "G2 X55.5"))))
+    assert isinstance(reading.error, GCodeError)
+    assert reading.error.line == 2006
+
+
+def test_a_reading_that_is_given_up_stops() -> None:
+    reading = Reading(GCodeSource(program(60_000).replace("G21", "G21 "), "stopped.nc"))
+    reading.stop.set()
+    finished(reading)
+    assert isinstance(reading.error, GCodeError)
+    assert "cancelled" in str(reading.error)
+
+
+def test_the_summary_is_what_plain_counting_says() -> None:
+    path = GCodeSource(program(500)).read()
+    summary = path_summary(path)
+    assert summary.moves == len(path) - 1
+    assert summary.cuts == sum(bool(c) for c in path.cutting)
+    assert summary.blocks == len({int(b) for b, c in zip(path.block, path.cutting, strict=True) if c})
+    assert summary.rapids == pytest.approx(
+        sum(float(s) for s, c in zip(path.step_length, path.cutting, strict=True) if not c)
+    )
+    assert summary.feeds == pytest.approx((0.01, 0.01))
+    assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
+
+
+def test_distinct_values_by_counting_are_those_by_sorting() -> None:
+    rng = np.random.default_rng(0)
+    for values in (
+        rng.integers(0, 50, 1000),
+        rng.integers(-5, 5, 99),
+        np.array([7, 10**12]),
+        np.empty(0, dtype=np.int64),
+    ):
+        np.testing.assert_array_equal(distinct(values), np.unique(values))
