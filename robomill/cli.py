@@ -260,7 +260,7 @@ def run_simulate(arguments: Any) -> int:
     if arguments.out:
         from robomill.io.meshes import mesh_bytes
 
-        files = {
+        files: dict[str, str | bytes] = {
             "result.json": json_text(jsonable(record)),
             "deviation.csv": csv_text(deviation_columns(result)),
             "sections.csv": csv_text(section_columns(result)),
