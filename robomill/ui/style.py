@@ -6,7 +6,8 @@ from __future__ import annotations
 CSS = """
 <style>
 :root { --rm-hair: color-mix(in srgb, currentColor 14%, transparent); }
-[data-testid="stMainBlockContainer"] { max-width: 1600px; padding-left: 2.4rem; padding-right: 2.4rem; }
+[data-testid="stMainBlockContainer"] { max-width: 1600px; padding-left: 2.4rem; padding-right: 2.4rem;
+  padding-top: 1.1rem; }
 /* Streamlit names the first page after its file. */
 [data-testid="stSidebarNavItems"] span[label="app"] p { font-size: 0; }
 [data-testid="stSidebarNavItems"] span[label="app"] p::after { content: "Start"; font-size: .95rem; }
@@ -20,7 +21,11 @@ textarea { font-family: "Source Code Pro", "Source Code", monospace !important; 
   [class*="st-key-split-"] > [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
     flex: 1 1 100%; min-width: 100%; }
 }
-[data-testid="stHeader"] { background: transparent; }
+/* The page begins beside the menu, not below it; with the sidebar folded away its button needs the room. */
+[data-testid="stHeader"] { background: transparent; pointer-events: none; }
+[data-testid="stHeader"] button, [data-testid="stHeader"] a { pointer-events: auto; }
+[data-testid="stApp"]:has([data-testid="stExpandSidebarButton"]) [data-testid="stMainBlockContainer"] {
+  padding-top: 3.2rem; }
 h1, h2, h3 { letter-spacing: -0.012em; }
 h3 { margin-top: .35rem; }
 sub { line-height: 0; }

@@ -30,7 +30,7 @@ class SurfacePicture:
     +-``limit_um``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm, where a section plane is drawn or,
     with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows ideal and machined side by side under
     one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand beside them (tool, arm), ``headroom`` mm
-    above the block stays in the picture for them.
+    above the block stays in the picture for them, with ``whole`` they are seen from end to end.
     """
 
     x: FloatArray
@@ -51,6 +51,7 @@ class SurfacePicture:
     cutaway: bool = False
     solids: tuple[Solid, ...] = ()
     headroom: float = 0.0
+    whole: bool = False
 
 
 def load() -> None:

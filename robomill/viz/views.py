@@ -21,7 +21,6 @@ from robomill.viz.sections import SectionDrawing
 
 PICTURE_CELLS = 160_000
 LEVELS = 12
-SEARCHED_CELLS = 24  # how far sideways, in cells, a displaced wall is looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,39 +52,45 @@ def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)
-    reach = 1.3 * times * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
-    if reach <= SEARCHED_CELLS * cell:
-        error = deviation(ideal, drawn, reach=reach).error
-    else:
-        error = np.where(ideal.cut_mask | drawn.cut_mask, far_error(ideal, drawn, reach), np.nan)
-    return Exaggerated(ideal, drawn, error / times, times)
+    if times <= 1.0:
+        reach = 1.3 * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
+        return Exaggerated(ideal, drawn, deviation(ideal, drawn, reach=reach).error / (times or 1.0), times)
+    judged = result.judged
+    moved, raised = (
+        times * float(np.abs(v[judged]).max(initial=0.0))
+        for v in (result.deviation, (result.p_machined - path.p)[:, 2])
+    )
+    error = far_error(ideal, drawn, 1.3 * moved + 2 * cell, 1.02 * raised)
+    return Exaggerated(ideal, drawn, np.where(ideal.cut_mask | drawn.cut_mask, error / times, np.nan), times)
 
 
-def far_error(ideal: ZMap, drawn: ZMap, reach: float) -> FloatArray:
-    """Signed distance (nx, ny) m of ``drawn`` to ``ideal`` where walls have moved by many cells.
+def far_error(ideal: ZMap, drawn: ZMap, reach: float, raised: float) -> FloatArray:
+    """Signed distance (nx, ny) m of ``drawn``, an enlarged picture, to ``ideal``.
 
-    As ``surface.deviation`` has it, but by distance transforms to the ideal's levels (at most ``LEVELS``): exact for
-    flat floors, on slopes to a level's height.
+    Heights that differ by no more than ``raised`` (m, how far the tip moved up or down) are errors of height; where
+    they differ by more a wall has moved, and the error is the way sideways to the ideal wall, at most ``reach``: a
+    groove is not enlarged, so its depth says nothing of the error there. By distance transforms to the ideal's
+    levels, at most ``LEVELS``.
     """
     from scipy.ndimage import distance_transform_edt
 
     error = drawn.z - ideal.z
     size = min(ideal.dx, ideal.dy)
-    far = np.abs(error) > size
+    far = np.abs(error) > max(size, raised)
     levels = np.unique(np.round(ideal.z, 7))
     if len(levels) > LEVELS:
         levels = np.linspace(levels[0], levels[-1], LEVELS)
-    best = np.abs(error)
+    best = np.where(far, np.inf, np.abs(error))
     for level in levels:
         for sign, column in ((1.0, ideal.z >= level - 1e-7), (-1.0, ideal.z <= level + 1e-7)):
             cells = far & (np.sign(error) == sign)
             if not cells.any() or not column.any():
                 continue
             sideways = distance_transform_edt(~column, sampling=(ideal.dx, ideal.dy))[cells] - 0.5 * size
-            still = np.maximum(0.0, sign * (drawn.z[cells] - level))
+            still = np.maximum(0.0, sign * (drawn.z[cells] - level) - raised)
             near = np.where(sideways <= reach, np.hypot(np.maximum(sideways, 0.0), still), np.inf)
             best[cells] = np.minimum(best[cells], near)
-    return np.where(far, np.sign(error) * best, error)
+    return np.where(far, np.sign(error) * np.where(np.isfinite(best), best, reach), error)
 
 
 def so_far(result: SimulationResult, shown: Exaggerated, index: int) -> Exaggerated:
