@@ -197,10 +197,12 @@ def banded(fig: go.Figure, result: SimulationResult, unit: str, *, dark: bool) -
         return False
     band = deviation_band(result, given)
     s = from_si(result.path.s, unit)
-    add_band(fig, s, from_si(result.deviation, unit), from_si(size_band(result, band), unit), "", dark=dark)
-    half = from_si(band.half_width(LEVEL), unit)
+    cutting = np.where(result.judged, 1.0, np.nan)  # rapids push nothing: a band of zero width would say otherwise
+    half = from_si(size_band(result, band) * cutting, unit)
+    add_band(fig, s, from_si(result.deviation, unit), half, "", dark=dark)
+    halves = from_si(band.half_width(LEVEL) * cutting[:, None], unit)
     for i, axis in enumerate("xyz"):
-        add_band(fig, s, from_si(result.delta[:, i], unit), half[:, i], axis, dark=dark)
+        add_band(fig, s, from_si(result.delta[:, i], unit), halves[:, i], axis, dark=dark)
     return True
 
 

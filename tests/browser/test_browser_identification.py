@@ -80,17 +80,3 @@ def test_a_refused_file_is_named_by_row_and_column_and_mended_in_place(page: Any
     page.keyboard.press("Control+Enter")
     page.get_by_text("200 tests").wait_for()
     assert page.get_by_test_id("stAlert").filter(has_text="soft").count() == 0
-
-
-def test_the_view_and_the_rows_survive_a_visit_elsewhere(page: Any, tmp_path: Path) -> None:
-    open_identification(page)
-    upload(page, own_tests(tmp_path))
-    page.get_by_text("199 tests").wait_for()
-    choose(page, "Models")
-    page.get_by_text("predict poses left out best").or_(page.get_by_text("predict as well as")).first.wait_for()
-    page.get_by_test_id("stSidebarNavLink").filter(has_text="Milling").click()
-    page.wait_for_selector(".rm-kicker:has-text('Milling')")
-    idle(page)
-    page.get_by_test_id("stSidebarNavLink").filter(has_text="Identification").click()
-    page.get_by_text("199 tests").wait_for()
-    page.get_by_text("on poses left out").first.wait_for()

@@ -340,6 +340,40 @@ def test_the_band_agrees_with_monte_carlo() -> None:
     assert inside == pytest.approx(0.95, abs=0.012)
 
 
+def test_bands_are_laid_into_the_path_plot_only_where_something_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    import streamlit as st
+
+    from robomill.viz.theme import figure
+
+    monkeypatch.setattr(st, "session_state", {})
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    fit = identify(setup.robot, read_load_tests(sample_text("nine_points"), setup.robot))
+    used = adopted(setup, setup.robot, fit, "a.csv")
+    result = simulate(used)
+    fig = figure(dark=False, height=200)
+    assert not uncertainty.banded(fig, result, "mm", dark=False)
+    uncertainty.keep(used, uncertainty.knowledge(fit, setup.robot, "from 27 load tests"))
+    assert uncertainty.banded(fig, result, "mm", dark=False)
+    assert len(fig.data) == 4
+    assert uncertainty.band_caption(used) == "Shaded: 95 % band, from 27 load tests."
+    assert uncertainty.known(used.replace(tolerance=1e-4)) is not None, "another tolerance changes no compliance"
+    assert uncertainty.known(setup) is None
+
+
+@pytest.mark.parametrize(("units", "joint_unit"), [("in", "kN m/rad"), ("in", "1e-7 rad/(N m)")])
+def test_every_section_runs_in_every_unit(page: AppTest, units: str, joint_unit: str) -> None:
+    pick(page, "view.units", units)
+    page.selectbox(key="view.joint_unit").set_value(joint_unit).run()
+    page.selectbox(key="ident:model").set_value("joints+bending+tool").run()
+    for view in ("compliances", "residuals", "models", "next", "cut"):
+        pick(page, "ident:view", view)
+        assert not page.exception
+    for section in ("map", "laboratory"):
+        pick(page, "ident:section", section)
+        assert not page.exception
+        assert not page.error
+
+
 def test_what_is_known_goes_through_the_project_file(monkeypatch: pytest.MonkeyPatch) -> None:
     import tomllib
 
