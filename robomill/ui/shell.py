@@ -12,6 +12,7 @@ from robomill.ui import cache, inputs, render, state
 from robomill.ui.files import SUFFIX, project_to_toml
 from robomill.ui.parts import error
 from robomill.ui.style import CSS, LOGO
+from robomill.ui.theme_watch import theme_watch
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
@@ -34,6 +35,7 @@ def begin(title: str) -> state.Project:
         st.stop()
     with st.sidebar:
         _sidebar()
+        theme_watch()
     return state.project()
 
 

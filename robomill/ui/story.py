@@ -66,7 +66,8 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
     png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
     alt = "The machined groove coloured by its signed error against the ideal one."
     if png is not None:
-        st.image(png, width="stretch", alt=alt)
+        with st.container(key="picture-groove"):
+            st.image(png, width="stretch", alt=alt)
     else:
         limit = float(from_si(result.setup.tolerance, "um"))
         unit = view.length

@@ -32,6 +32,8 @@ sub { line-height: 0; }
 [data-testid="stMetricValue"], .rm-value, .rm-num { font-variant-numeric: tabular-nums; }
 [data-testid="stSidebarNav"] a span { font-size: .95rem; }
 
+[class*="st-key-picture-"] img { max-height: 440px; object-fit: contain; }
+
 .rm-kicker { font-size: .78rem; letter-spacing: .08em; text-transform: uppercase; opacity: .62; margin: 0 0 .1rem 0; }
 .rm-title { font-size: 1.75rem; line-height: 1.22; font-weight: 600; letter-spacing: -0.018em; margin: 0 0 .3rem 0;
   max-width: 62rem; text-wrap: balance; }

@@ -20,6 +20,8 @@ from robomill.viz.theme import diverging, palette
 Camera = Literal["iso", "top", "front", "along"]
 CAMERAS: dict[str, str] = {"iso": "Angled", "along": "Along the cut", "top": "From above", "front": "From the front"}
 Layout = Literal["one", "pair"]
+# Share of a picture's width that the colour bar takes.
+ROOM, ROOM_PAIR = 0.21, 0.30
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +90,12 @@ def image(picture: SurfacePicture) -> Any:
         plotter.subplot(0, 0)
         _fill(plotter, replace(picture, solids=(), ghost=False), colours, ideal=True)
         stage.words(plotter, picture, "Ideal")
-        cameras.look(plotter, picture, aspect=aspect, bar=False)
+        cameras.look(plotter, picture, aspect=aspect, room=ROOM_PAIR, beside=False)
         plotter.subplot(0, 1)
     _fill(plotter, picture, colours, ideal=False)
-    stage.colour_bar(plotter, picture, colours, 0.72 if pair else 0.835)
+    stage.colour_bar(plotter, picture, colours, 0.74 if pair else 0.835)
     stage.words(plotter, replace(picture, captions=()) if pair else picture, "Machined" if pair else "")
-    cameras.look(plotter, picture, aspect=aspect, bar=not pair)
+    cameras.look(plotter, picture, aspect=aspect, room=ROOM_PAIR if pair else ROOM)
     plotter.enable_anti_aliasing("ssaa")
     shot = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()

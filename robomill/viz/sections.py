@@ -79,6 +79,10 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     centre = 0.5 * (d.wall_left + d.wall_right)
     ideal_centre = centre - d.centre_offset
     over = d.top + 0.95 * step
+    seen = float(np.nanmin(d.u)), float(np.nanmax(d.u))
+    if min(d.wall_left, d.wall_right) < seen[0] or max(d.wall_left, d.wall_right) > seen[1]:
+        _wide(fig, d, over, seen, dark)
+        return
     for x in (d.wall_left, d.wall_right):
         _line(fig, x, d.top + 0.08 * step, x, over + 0.14 * step, p.muted)
     _arrow(fig, (centre, over), (d.wall_left, over), p.text)
@@ -107,6 +111,24 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     _text(
         fig, away, d.floor, f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}", p.warm, p.background,
     )  # fmt: skip
+
+
+def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:
+    """A groove wider than the drawing: its numbers in words, a dimension line that runs out of the picture."""
+    p = palette(dark)
+    inside = [w for w in (d.wall_left, d.wall_right) if seen[0] <= w <= seen[1]]
+    ends = [*inside, *[seen[0] if w < seen[0] else seen[1] for w in (d.wall_left, d.wall_right) if w not in inside]]
+    middle = 0.5 * (min(ends) + max(ends))
+    for wall in inside:
+        _line(fig, wall, d.top, wall, over, p.muted)
+        _arrow(fig, (middle, over), (wall, over), p.text)
+    for end in ends[len(inside) :]:
+        _line(fig, middle, over, end, over, p.text)
+    words = f"width {format_value(d.width, d.unit, 3)}, depth {format_value(d.depth, d.unit, 3)}"
+    _text(fig, middle, over, words, p.text, p.background)
+    off = f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}"
+    floor = f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}"
+    _text(fig, middle, d.top - 0.35 * (over - d.top), f"{off}, {floor}", p.warm, p.background)
 
 
 def _line(fig: go.Figure, x0: float, y0: float, x1: float, y1: float, colour: str, dash: str = "solid") -> None:

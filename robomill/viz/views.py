@@ -20,15 +20,14 @@ from robomill.viz.scene import Camera, SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
 PICTURE_CELLS = 160_000
-LEVELS = 12
 
 
 @dataclass(frozen=True, eq=False)
 class Exaggerated:
     """The machined surface with the deflection enlarged ``times`` times, beside the ideal one, on a grid for pictures.
 
-    ``error`` (nx, ny) m is the signed distance from the ideal surface, measured in the enlarged picture and divided by
-    ``times``: what the true surface has there. NaN where nothing was cut.
+    ``error`` (nx, ny) m is the true signed error at each cell: of a floor in height, of a wall sideways. NaN where
+    nothing was cut.
     """
 
     ideal: ZMap
@@ -55,42 +54,34 @@ def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
     if times <= 1.0:
         reach = 1.3 * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
         return Exaggerated(ideal, drawn, deviation(ideal, drawn, reach=reach).error / (times or 1.0), times)
-    judged = result.judged
-    moved, raised = (
-        times * float(np.abs(v[judged]).max(initial=0.0))
-        for v in (result.deviation, (result.p_machined - path.p)[:, 2])
-    )
-    error = far_error(ideal, drawn, 1.3 * moved + 2 * cell, 1.02 * raised)
-    return Exaggerated(ideal, drawn, np.where(ideal.cut_mask | drawn.cut_mask, error / times, np.nan), times)
+    raised = times * float(np.abs((result.p_machined - path.p)[result.judged, 2]).max(initial=0.0))
+    error = enlarged_error(result, ideal, drawn, times, max(cell, 1.02 * raised))
+    return Exaggerated(ideal, drawn, np.where(ideal.cut_mask | drawn.cut_mask, error, np.nan), times)
 
 
-def far_error(ideal: ZMap, drawn: ZMap, reach: float, raised: float) -> FloatArray:
-    """Signed distance (nx, ny) m of ``drawn``, an enlarged picture, to ``ideal``.
+def enlarged_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float, raised: float) -> FloatArray:
+    """True signed error (nx, ny) m, told by an enlarged picture.
 
-    Heights that differ by no more than ``raised`` (m, how far the tip moved up or down) are errors of height; where
-    they differ by more a wall has moved, and the error is the way sideways to the ideal wall, at most ``reach``: a
-    groove is not enlarged, so its depth says nothing of the error there. By distance transforms to the ideal's
-    levels, at most ``LEVELS``.
+    Where the heights differ by no more than ``raised`` (m, how far the enlarged path rises or sinks) it is an error of
+    height. Where they differ by more a wall has moved, by as much as the tip did sideways at the nearest sample:
+    material is left beside the commanded path (+) and cut away beside the deflected one (-).
     """
-    from scipy.ndimage import distance_transform_edt
+    from scipy.spatial import cKDTree
 
-    error = drawn.z - ideal.z
-    size = min(ideal.dx, ideal.dy)
-    far = np.abs(error) > max(size, raised)
-    levels = np.unique(np.round(ideal.z, 7))
-    if len(levels) > LEVELS:
-        levels = np.linspace(levels[0], levels[-1], LEVELS)
-    best = np.where(far, np.inf, np.abs(error))
-    for level in levels:
-        for sign, column in ((1.0, ideal.z >= level - 1e-7), (-1.0, ideal.z <= level + 1e-7)):
-            cells = far & (np.sign(error) == sign)
-            if not cells.any() or not column.any():
-                continue
-            sideways = distance_transform_edt(~column, sampling=(ideal.dx, ideal.dy))[cells] - 0.5 * size
-            still = np.maximum(0.0, sign * (drawn.z[cells] - level) - raised)
-            near = np.where(sideways <= reach, np.hypot(np.maximum(sideways, 0.0), still), np.inf)
-            best[cells] = np.minimum(best[cells], near)
-    return np.where(far, np.sign(error) * np.where(np.isfinite(best), best, reach), error)
+    error = (drawn.z - ideal.z) / times
+    far = np.abs(drawn.z - ideal.z) > raised
+    i = np.flatnonzero(result.judged)
+    if not far.any() or not len(i):
+        return error
+    told, moved = result.path.p[i], (result.p_machined - result.path.p)[i]
+    aside = np.linalg.norm(moved[:, :2], axis=1)
+    x, y = np.meshgrid(drawn.x, drawn.y, indexing="ij")
+    for sign, points in ((1.0, told), (-1.0, told + times * moved)):
+        cells = far & (np.sign(error) == sign)
+        if cells.any():
+            nearest = cKDTree(points[:, :2]).query(np.column_stack([x[cells], y[cells]]))[1]
+            error[cells] = sign * aside[nearest]
+    return error
 
 
 def so_far(result: SimulationResult, shown: Exaggerated, index: int) -> Exaggerated:
