@@ -6,6 +6,7 @@ import html
 from dataclasses import dataclass
 
 import numpy as np
+import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
@@ -16,8 +17,9 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.ui import inputs, maps_fields, parts, shell, state
-from robomill.ui.learn_panel import SIDE, go, lesson
+from robomill.ui import cache, inputs, maps_fields, parts, shell, state
+from robomill.ui.learn_panel import SIDE, lesson
+from robomill.ui.learn_panel import go as step_on
 from robomill.ui.point_panel import FORCE, PointReport, report
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure
@@ -105,7 +107,7 @@ def edge(found: PointReport) -> None:
         list(range(len(radius))),
         key=key,
         format_func=lambda k: f"{radius[k]:.0f}" if unit == "mm" else f"{radius[k]:.1f}",
-        on_change=lambda: go(out=float(way.radius[st.session_state[key]])),
+        on_change=lambda: step_on(out=float(way.radius[st.session_state[key]])),
     )
     here = report(found.robot, tuple(map(float, way.p[i])), 0.0, 0.0)  # type: ignore[arg-type]
     left, right = parts.split([1.35, 1], "edge", gap="large")
@@ -120,14 +122,19 @@ def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         parts.note(html.escape(here.reason))
         return
     dark = shell.dark()
-    fig = arm_figure(ArmScene(frames=here.frames), dark=dark, height=480, revision="learn-edge", zoom=1.1)
+    frames = here.frames
     yardstick = float(np.linalg.norm(np.diff(found.frames[:, :3, 3], axis=0), axis=1).sum())
     # One scale for the whole ray, so that the body is seen to stretch.
     times = ellipsoid_scale(found.C, 0.13 * yardstick)
-    fig.add_traces(ellipsoid_traces(here.C, here.frames[-1][:3, 3], times, dark=dark, width=0.005 * yardstick))
-    low, high = way.p.min(axis=0) - 0.12 * yardstick, way.p.max(axis=0) + 0.12 * yardstick
-    widen(fig, low, high, room=2.6)
-    fig.update_layout(scene_camera=SIDE)
+
+    def draw() -> go.Figure:
+        fig = arm_figure(ArmScene(frames=frames), dark=dark, height=480, revision="learn-edge", zoom=1.1)
+        fig.add_traces(ellipsoid_traces(here.C, frames[-1][:3, 3], times, dark=dark, width=0.005 * yardstick))
+        low, high = way.p.min(axis=0) - 0.12 * yardstick, way.p.max(axis=0) + 0.12 * yardstick
+        widen(fig, low, high, room=2.6)
+        return fig.update_layout(scene_camera=SIDE)
+
+    fig = cache.kept_figure("learn-edge", (found.robot.digest(), digest(here.theta), way.start, dark), draw)
     grown = int(float(f"{times / FORCE:.2g}"))
     parts.figure(
         fig,

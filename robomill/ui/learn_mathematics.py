@@ -110,9 +110,8 @@ def reproduced() -> None:
         f"<td>{html.escape(r.reason)}</td></tr>"
         for r in found
     )
-    st.html(
-        f'<div style="overflow-x:auto"><table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table></div>'
-    )
+    table = f'<table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table>'
+    st.html(f'<div style="overflow-x:auto">{table}</div>')
     parts.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
 
 

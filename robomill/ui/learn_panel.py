@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, digest
 from robomill.robot.model import Robot
-from robomill.ui import compliance_sheets, inputs, maps_fields, parts, shell, state
+from robomill.ui import cache, compliance_sheets, inputs, maps_fields, parts, shell, state
 from robomill.ui.learn_style import BIG
 from robomill.ui.maps_state import maps
 from robomill.ui.point_panel import FORCE, PointReport, default_point, report, signed
@@ -141,13 +141,19 @@ def compliance_table(C: FloatArray) -> str:
 def _push(found: PointReport, revealed: bool) -> None:
     assert found.frames is not None
     delta = FORCE * found.C[:, 1]
+    unit, dark = state.project().view.length, shell.dark()
     scene = ArmScene(
         frames=found.frames, force=np.array([0.0, FORCE, 0.0]), force_label="100 N",
         displacement=delta if revealed else None,
-        displacement_label=format_si(float(np.linalg.norm(delta)), state.project().view.length, 3),
+        displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
     )  # fmt: skip
-    fig = arm_figure(scene, dark=shell.dark(), height=520, revision="learn-push", zoom=1.1)
-    fig.update_layout(scene_camera=SIDE)
+    key = (found.robot.digest(), digest(found.theta), revealed, unit, dark)
+    more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
+    fig = cache.kept_figure(
+        "learn-push",
+        key,
+        lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
+    )
     drawn = int(float(f"{displacement_scale(delta, found.frames):.2g}"))
     parts.figure(
         fig,

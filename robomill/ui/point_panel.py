@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import plotly.graph_objects as go
 import streamlit as st
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, digest
 from robomill.compliance.cartesian import full_compliance, joint_contributions
 from robomill.compliance.deflection import deflection, soft_direction
 from robomill.kinematics.dexterity import determinant, limit_distance
@@ -18,7 +19,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.ui import parts, shell
+from robomill.ui import cache, parts, shell
 from robomill.ui.maps_state import MapView, Point
 from robomill.units import format_si, format_value, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
@@ -140,18 +141,22 @@ def _arm(found: PointReport, component: str, unit: str) -> None:
         displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
     )  # fmt: skip
     dark = shell.dark()
-    fig = arm_figure(scene, dark=dark, height=430, revision="point-arm", zoom=0.95)
-    yardstick = float(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1).sum())
-    times = ellipsoid_scale(found.C, 0.16 * yardstick)
-    fig.add_traces(ellipsoid_traces(found.C, frames[-1][:3, 3], times, dark=dark, width=0.0065 * yardstick, away=delta))
+
+    def draw() -> go.Figure:
+        fig = arm_figure(scene, dark=dark, height=430, revision="point-arm", zoom=0.95)
+        size = float(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1).sum())
+        times = ellipsoid_scale(found.C, 0.16 * size)
+        tip = frames[-1][:3, 3]
+        return fig.add_traces(ellipsoid_traces(found.C, tip, times, dark=dark, width=0.0065 * size, away=delta))
+
+    fig = cache.kept_figure("point-arm", (found.robot.digest(), digest(found.theta), component, unit, dark), draw)
     drawn = int(float(f"{displacement_scale(delta, frames):.2g}"))
     parts.figure(
         fig,
         "point-arm",
         alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
         caption=f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} "
-        f"push and "
-        f"displacement, shown × {drawn:,}.",
+        f"push and displacement, shown × {drawn:,}.",
     )
 
 

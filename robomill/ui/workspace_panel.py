@@ -258,10 +258,8 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
 
 def _level(low: float, high: float, view: MapView, unit: str) -> float:
     key = "maps:level"
-    inputs.slider(
-        f"Show cells from the lowest value ({low:.3g}) up to the highest ({high:.3g} {unit})".replace("(-", "(−"), key, 0.0, 1.0,
-        view.level, lambda v: see(level=v), step=0.02, form="percent",
-    )  # fmt: skip
+    label = f"Cells from the lowest value, {low:.3g}, up to the highest, {high:.3g} {unit}".replace("-", "−")
+    inputs.slider(label, key, 0.0, 1.0, view.level, lambda v: see(level=v), step=0.02, form="percent")
     return float(st.session_state.get(key, view.level))
 
 

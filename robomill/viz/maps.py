@@ -11,7 +11,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette
+from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
+from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
 
 PICKED_PER_MAP = 420  # points that can be clicked; each is an element of the page
 
@@ -76,9 +77,18 @@ def sheet_figure(
     inner = height - top - bottom
     width = (1.0 - gap_x * (n_columns - 1)) / n_columns
     used = list(dict.fromkeys(m.scale for row in sheet.rows for m in row if m is not None))
-    # Plain dictionaries: nine panels made by plotly's checking classes take ten times as long, at every slider step.
     data: list[dict[str, Any]] = []
-    layout = _layout(dark, height, revision, top, bottom)
+    layout = house_layout(
+        dark=dark,
+        height=height,
+        revision=revision,
+        dragmode="pan",
+        hovermode="closest",
+        hoverdistance=-1,
+        clickmode="event+select",
+        showlegend=False,
+        margin={"l": 8, "r": 8, "t": top, "b": bottom},
+    )
     for name in used:
         layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, dark)
     index = 0
@@ -93,22 +103,7 @@ def sheet_figure(
             data += _traces(sheet, panel, index, used, dark)
             _decorate(layout, sheet, panel, index, place, titled, dark)
             index += 1
-    return go.Figure(data=data, layout=layout, _validate=False)
-
-
-def _layout(dark: bool, height: int, revision: str, top: int, bottom: int) -> dict[str, Any]:
-    base = figure(
-        dark=dark,
-        height=height,
-        revision=revision,
-        dragmode="pan",
-        hovermode="closest",
-        hoverdistance=-1,
-        clickmode="event+select",
-        showlegend=False,
-        margin={"l": 8, "r": 8, "t": top, "b": bottom},
-    )
-    return {**base.to_plotly_json()["layout"], "annotations": [], "shapes": []}
+    return unchecked(data, layout)
 
 
 def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, event: Any) -> tuple[float, float] | None:
@@ -255,21 +250,7 @@ def _decorate(
             "automargin": letter == "y" and shown,
             "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
         }
-    layout["annotations"].append(
-        {
-            "x": x0,
-            "y": y1,
-            "xref": "paper",
-            "yref": "paper",
-            "xanchor": "left",
-            "yanchor": "bottom",
-            "yshift": 2,
-            "text": panel.title,
-            "showarrow": False,
-            "align": "left",
-            "font": {"size": 13, "color": p.text},
-        }
-    )
+    layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=2, align="left", **ABOVE))
     if sheet.outline is not None:
         (u0, v0), (u1, v1) = sheet.outline
         corners = {"x0": u0, "y0": v0, "x1": u1, "y1": v1, "xref": f"x{name}", "yref": f"y{name}"}
