@@ -107,7 +107,7 @@ def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("small_budgets")
 def test_mutated_programs_are_read_or_refused() -> None:
     accepted, slowest = run(1200, seed=1)
-    assert accepted > 50
+    assert accepted > 20
     assert slowest < 5.0
 
 

@@ -28,6 +28,7 @@ class Node:
     start: int
     end: int = -1
     branches: list[int] = field(default_factory=list)
+    has_break: bool = False
 
     def next_branch(self, index: int) -> int:
         """The branch (or the end) after line ``index``."""
@@ -138,9 +139,15 @@ def _place(stack: list[Node], seen: dict[str, int], entry: OLine, index: int) ->
             entry.problem = f"O{label} {keyword} belongs to no O{label} if."
         else:
             entry.node = top
+            top.has_break |= keyword == "break"
+            if top.kind == "repeat":
+                entry.problem = f"O{label} {keyword} is in a repeat loop; it works in while and do loops only."
             top.branches.append(index)
     elif keyword in ("break", "continue"):
         if top is None or top.kind == "if":
             entry.problem = f"O{label} {keyword} is in no O{label} loop."
         else:
             entry.node = top
+            top.has_break |= keyword == "break"
+            if top.kind == "repeat":
+                entry.problem = f"O{label} {keyword} is in a repeat loop; it works in while and do loops only."

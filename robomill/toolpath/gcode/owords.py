@@ -171,6 +171,7 @@ class OWords:
         elif not holds:
             self.pc = self._end_of(entry, argument) + 1
             self.continued = False
+            self.broke |= entry.node.has_break
 
     def _do_endwhile(self, entry: flow.OLine, argument: Reader, index: int) -> None:
         assert entry.node is not None
