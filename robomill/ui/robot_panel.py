@@ -96,13 +96,12 @@ def _compliances(robot: Robot, unit: str) -> None:
 
 def _write_geometry(frame: pd.DataFrame) -> None:
     robot = tables.with_geometry(state.project().setup.robot, frame)
-    marked = {**robot.provenance, "geometry": state.EDITED, "lengths": state.EDITED}
-    state.change(robot=robot.replace(provenance=marked), from_editor=True)
+    state.change(robot=robot, from_editor=True)
 
 
 def _write_limits(frame: pd.DataFrame) -> None:
     robot = tables.with_limits(state.project().setup.robot, frame)
-    state.change(robot=robot.replace(provenance={**robot.provenance, "limits": state.EDITED}), from_editor=True)
+    state.change(robot=robot, from_editor=True)
 
 
 def _tool(robot: Robot) -> None:

@@ -7,16 +7,18 @@
 from __future__ import annotations
 
 import dataclasses
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.robot.model import Provenance
+from robomill.robot.model import Provenance, Robot
 from robomill.simulation.setup import SimulationSetup
 
 KEY = "robomill"
@@ -25,8 +27,13 @@ EDITED = Provenance("user", "entered in the app")
 BLOCKS = {
     "source": "path", "T_MW": "part", "cutter": "cutter", "force": "force", "stock": "stock", "tolerance": "tolerance",
 }  # fmt: skip
+ROBOT_BLOCKS = {
+    "geometry": ("alpha", "a", "d", "theta_offset", "sign"), "lengths": ("a", "d"), "limits": ("limits_all",),
+    "tool": ("T_tool",), "base": ("T_base",),
+}  # fmt: skip
 DEFAULT_PRESET = "paper_flute"
 MAX_HISTORY = 60
+ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one step back
 
 
 @dataclass(frozen=True)
@@ -76,6 +83,7 @@ class Store:
     refused: dict[str, tuple[Any, str]] = field(default_factory=dict)
     frames: dict[str, Any] = field(default_factory=dict)
     last_label: str = ""
+    last_time: float = 0.0
     page: str = ""
     seeded: set[str] = field(default_factory=set)
 
@@ -119,24 +127,39 @@ def before() -> Project | None:
 
 
 def change(*, label: str = "", from_editor: bool = False, **fields: Any) -> None:
-    """Replace fields of the set-up; remembered for undo. Changes with one ``label`` in a row count as one.
+    """Replace fields of the set-up; remembered for undo. Quick changes with one ``label`` count as one.
 
     Raises the RobomillError of the field that refuses; the project then stays as it was.
     """
     kept = store()
     given = kept.project.setup
     marked = dict(given.provenance) | {BLOCKS[name]: EDITED for name in fields if name in BLOCKS}
+    if isinstance(fields.get("robot"), Robot):
+        fields["robot"] = _marked(given.robot, fields["robot"])
     new = given.replace(**{"provenance": marked, **fields})
     if new.digest() != given.digest():
         replace(dataclasses.replace(kept.project, setup=new), label, from_editor)
 
 
+def _marked(old: Robot, new: Robot) -> Robot:
+    """``new`` with the blocks that were changed by hand said to be the user's own."""
+    if old.name != new.name or dict(old.provenance) != dict(new.provenance):
+        return new
+    changed = {
+        block: EDITED
+        for block, names in ROBOT_BLOCKS.items()
+        if block in new.provenance and not all(np.array_equal(getattr(old, n), getattr(new, n)) for n in names)
+    }
+    return new.replace(provenance={**new.provenance, **changed}) if changed else new
+
+
 def replace(new: Project, label: str = "", from_editor: bool = False) -> None:
     """Put a whole new project in force; the old one can be had back with ``undo``."""
     kept = store()
-    if not (label and label == kept.last_label and kept.past):
+    now = time.monotonic()
+    if not (label and label == kept.last_label and kept.past and now - kept.last_time < ONE_GESTURE_S):
         kept.past = [*kept.past, kept.project][-MAX_HISTORY:]
-    kept.project, kept.future, kept.last_label = new, [], label
+    kept.project, kept.future, kept.last_label, kept.last_time = new, [], label, now
     if not from_editor:
         kept.revision += 1
 

@@ -128,7 +128,7 @@ def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, flo
     _text(fig, middle, over, words, p.text, p.background)
     off = f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}"
     floor = f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}"
-    _text(fig, middle, d.top - 0.35 * (over - d.top), f"{off}, {floor}", p.warm, p.background)
+    _text(fig, middle, d.floor - 0.4 * (over - d.top), f"{off}, {floor}", p.warm, p.background)
 
 
 def _line(fig: go.Figure, x0: float, y0: float, x1: float, y1: float, colour: str, dash: str = "solid") -> None:

@@ -54,27 +54,26 @@ def exaggerated(result: SimulationResult, times: float) -> Exaggerated:
     if times <= 1.0:
         reach = 1.3 * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
         return Exaggerated(ideal, drawn, deviation(ideal, drawn, reach=reach).error / (times or 1.0), times)
-    raised = times * float(np.abs((result.p_machined - path.p)[result.judged, 2]).max(initial=0.0))
-    error = enlarged_error(result, ideal, drawn, times, max(cell, 1.02 * raised))
+    error = enlarged_error(result, ideal, drawn, times)
     return Exaggerated(ideal, drawn, np.where(ideal.cut_mask | drawn.cut_mask, error, np.nan), times)
 
 
-def enlarged_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float, raised: float) -> FloatArray:
+def enlarged_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float) -> FloatArray:
     """True signed error (nx, ny) m, told by an enlarged picture.
 
-    Where the heights differ by no more than ``raised`` (m, how far the enlarged path rises or sinks) it is an error of
-    height. Where they differ by more a wall has moved, by as much as the tip did sideways at the nearest sample:
-    material is left beside the commanded path (+) and cut away beside the deflected one (-).
+    Where the heights differ by no more than the enlarged path rises or sinks it is an error of height. Where they
+    differ by more a wall has moved, by as much as the tip did sideways at the nearest sample: material is left beside
+    the commanded path (+) and cut away beside the deflected one (-).
     """
     from scipy.spatial import cKDTree
 
     error = (drawn.z - ideal.z) / times
-    far = np.abs(drawn.z - ideal.z) > raised
     i = np.flatnonzero(result.judged)
-    if not far.any() or not len(i):
+    if not len(i):
         return error
     told, moved = result.path.p[i], (result.p_machined - result.path.p)[i]
-    aside = np.linalg.norm(moved[:, :2], axis=1)
+    aside, slack = np.linalg.norm(moved[:, :2], axis=1), drawn.cell / times
+    far = (error > 1.02 * max(moved[:, 2].max(), 0.0) + slack) | (error < 1.02 * min(moved[:, 2].min(), 0.0) - slack)
     x, y = np.meshgrid(drawn.x, drawn.y, indexing="ij")
     for sign, points in ((1.0, told), (-1.0, told + times * moved)):
         cells = far & (np.sign(error) == sign)

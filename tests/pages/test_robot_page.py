@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
@@ -75,3 +76,23 @@ def test_every_robot_of_the_samples_opens(app: AppTest) -> None:
     app.selectbox(key="robot.name").set_value("planar_2r").run()
     assert not app.exception
     assert store(app).project.setup.robot.name == "planar_2r"
+
+
+def test_edited_blocks_become_the_users_own(app: AppTest) -> None:
+    go(app, "1_Robot")
+    app.number_input(key="in:robot.T_tool[2,3]:mm").set_value(5.0).run()
+    robot = store(app).project.setup.robot
+    assert robot.T_tool[2, 3] == 0.005
+    assert robot.provenance["tool"].kind == "user"
+    assert robot.provenance["lengths"].kind == "assumed"
+    app.button(key="undo").click().run()
+    assert store(app).project.setup.robot.provenance["tool"].kind == "paper"
+
+
+def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
+    go(app, "1_Robot")
+    monkeypatch.setattr(state, "ONE_GESTURE_S", 0.0)
+    for value in (5.0, 6.0):
+        app.number_input(key="in:robot.T_tool[2,3]:mm").set_value(value).run()
+    app.button(key="undo").click().run()
+    assert store(app).project.setup.robot.T_tool[2, 3] == 0.005
