@@ -187,3 +187,13 @@ def test_a_partial_reading_keeps_the_moves_before_the_refusal() -> None:
     assert gcode_report(program)["ok"] is False
     assert (program.findings[0].level, program.findings[0].line) == ("error", 4)
     assert len(program.toolpath()) == 3
+
+
+def test_words_of_other_controls_that_move_nothing_are_noted() -> None:
+    five_axis = interpret("%\nO1000 (BLADE)\nG21 G0 X1\nG43.4 H1\nG1 X2 A5 F60\nM30\n%\n")
+    assert any("tip points" in f.message for f in five_axis.findings)
+    siemens = interpret("G71\nTRAORI\nCYCLE832(0.01)\nG0 X=1\nM30\n")
+    assert {f.message.split()[0] for f in siemens.findings if f.level == "ignored"} == {"TRAORI", "CYCLE832"}
+    with pytest.raises(GCodeError, match="Line 2: [$]H") as caught:
+        interpret("G21\n$H\n")
+    assert caught.value.line == 2

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.modal import g_name
 from robomill.toolpath.gcode.words import Block
@@ -53,14 +54,16 @@ class Dialect:
     name: str
     guessed: bool = True
 
-    def line(self, raw: str) -> str:
-        """The line in LinuxCNC's words."""
+    def line(self, raw: str, number: int, findings: Findings) -> str:
+        """The line in LinuxCNC's words; what is left out on the way is noted."""
         if self.name == "sinumerik":
-            return _from_sinumerik(raw)
+            return _from_sinumerik(raw, number, findings)
         if self.name == "fanuc":
-            return _DWELL.sub(r"\1P", "O" + raw[1:] if raw[:1] == ":" else raw)
-        if self.name == "grbl" and raw.lstrip()[:1] in "$!~?":
-            return _from_grbl(raw)
+            if _TIP.search(raw):
+                findings.add("info", number, "G43.4 (tool centre point control) is read as G43: points are tip points")
+            return _TIP.sub("G43", _DWELL.sub(r"\1P", "O" + raw[1:] if raw[:1] == ":" else raw))
+        if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
+            return _from_grbl(raw, number, findings)
         return raw
 
     def unknown(self, machine: Machine, block: Block) -> None:
@@ -108,13 +111,22 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     return Dialect("linuxcnc")
 
 
+_TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
+_SILENT = re.compile(
+    r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|STOPRE|CFTCP|CFC|ORIWKS|ORIAXES|ORIVECT)\b|"
+    r"\bCYCLE832\s*\([^()]*\)",
+    re.IGNORECASE,
+)
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
 
 
-def _from_sinumerik(raw: str) -> str:
+def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
     code, mark, comment = raw.partition(";")
+    for found in _SILENT.findall(code):
+        findings.add("ignored", number, f"{found.split('(')[0].upper()} is left out: it moves nothing")
+    code = _SILENT.sub("", code)
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
@@ -129,8 +141,10 @@ def _from_sinumerik(raw: str) -> str:
     return code + (";" + comment if mark else "")
 
 
-def _from_grbl(raw: str) -> str:
+def _from_grbl(raw: str, number: int, findings: Findings) -> str:
     text = raw.strip().upper()
     if text.startswith(("$H", "$J")):
-        raise GCodeError(f"{text.split()[0]} moves the machine in a way the program does not say; remove it.")
+        raise GCodeError(f"Line {number}: {text[:2]} moves the machine in a way the program does not say; remove it.",
+                         line=number)  # fmt: skip
+    findings.add("ignored", number, "lines for the controller ($, !, ~, ?) are left out")
     return ""

@@ -61,7 +61,7 @@ class Interpreter(OWords):
         line = machine.line = index + 1
         if len(raw) > MAX_LINE:
             raise GCodeError(f"Line {line}: {len(raw)} characters long; at most {MAX_LINE} can be read.", line=line)
-        text = normalise(self.dialect.line(raw), line)
+        text = normalise(self.dialect.line(raw, line, machine.findings), line)
         if not text:
             return
         if text[0] == "%":
