@@ -18,7 +18,8 @@ if result is None:
     right.info("Nothing was computed: mend the value named above. What you typed is kept.")
     st.stop()
 
-ui.headline(f"Milling · {setup.name}", ui.verdict_sentence(result, unit))
-panel.verdict_link(result)
+with st.container(gap=None):
+    ui.headline(f"Milling · {setup.name}", ui.verdict_sentence(result, unit))
+    panel.verdict_link(result)
 ui.tiles(panel.tiles(result, ui.verdict_tiles(result, unit)))
 panel.workbench(setup.digest(), dark)

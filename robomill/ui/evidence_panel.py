@@ -36,7 +36,7 @@ def claims(project: state.Project) -> list[Claim]:
         _computed("process data and Table 3", process.replace(robot=third)),
     ]
     known = {plain.digest(), process.digest()}
-    if project.preset == PAPER and project.setup.digest() not in known:
+    if project.setup.source == plain.source and project.setup.digest() not in known:
         rows.append(dataclasses.replace(_computed("your set-up", project.setup), kind="user"))
     return rows
 

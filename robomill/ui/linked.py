@@ -45,8 +45,7 @@ def scrubber(result: SimulationResult) -> int:
     view, unit = state.project().view, state.project().view.length
     top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
     i = sample_at(result, station_m(result))
-    with st.container(key="split-scrub"):
-        slide, back, on, worst = st.columns([6, 0.75, 0.75, 1.5], vertical_alignment="bottom", gap="small")
+    slide, back, on, worst = st.columns([5, 1.15, 1.15, 1.5], vertical_alignment="bottom", gap="small")
     with slide:
         inputs.slider(
             f"Station: {unit} of cut", "view.station", 0.0, round(top, 3), round(view.station * top, 3),
@@ -54,12 +53,12 @@ def scrubber(result: SimulationResult) -> int:
         )  # fmt: skip
     lines = cut_lines(result)
     place = int(np.searchsorted(lines, result.path.block[i])) if i >= 0 else 0
-    for column, step, icon, words in (
-        (back, -1, ":material/chevron_left:", "previous line"), (on, 1, ":material/chevron_right:", "next line"),
+    for column, step, label, words in (
+        (back, -1, "Back", "previous line"), (on, 1, "Next", "next line"),
     ):  # fmt: skip
         other = place + step
         column.button(
-            "", key=f"scrub:{words}", icon=icon, help=words.capitalize(), width="stretch",
+            label, key=f"scrub:{label.lower()}", help=f"To the {words} that cuts", width="stretch",
             disabled=not 0 <= other < len(lines), on_click=_to_line, args=(result, lines, other),
         )  # fmt: skip
     worst.button(
@@ -262,11 +261,16 @@ def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> N
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
     s = from_si(result.path.s, unit)
+    fig = shares_figure(
+        s, from_si(at_feed(result, every), unit), names, from_si(at_feed(result, result.delta), unit)[:, column], axis,
+        unit, dark=dark, station=float(s[i]) if i >= 0 else None, height=height,
+    )  # fmt: skip
+    named: set[str] = set()
+    for trace in fig.data:  # a joint that pushes both ways has two areas and needs one name
+        trace.showlegend = trace.name not in named
+        named.add(trace.name)
     parts.figure(
-        shares_figure(
-            s, from_si(at_feed(result, every), unit), names, from_si(at_feed(result, result.delta), unit)[:, column],
-            axis, unit, dark=dark, station=float(s[i]) if i >= 0 else None, height=height,
-        ), f"shares-{axis}", name=f"joint-shares-{axis}", table=lambda: deviation_columns(result),
+        fig, f"shares-{axis}", name=f"joint-shares-{axis}", table=lambda: deviation_columns(result),
         caption="Shares stack to the total line.", alt="Deviation along the path stacked by joint and spring.",
     )  # fmt: skip
 

@@ -25,6 +25,7 @@ EXTRAS = {
 }  # fmt: skip
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
 HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
+STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
 
 
@@ -50,7 +51,7 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
         )  # fmt: skip
     times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
     parts.note(
-        f"{times}; colours are true distances from the ideal groove and end at the tolerance, "
+        f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
     )
 
@@ -90,12 +91,12 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
     camera: Any = view.camera
+    solids = posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras) if extras & STANDING and i >= 0 else ()
     picture = surface_picture(
         result, so_far(result, shown, i) if "so_far" in extras else shown, camera=camera, dark=dark,
         station=station if extras & {"plane", "away"} else None, at=station, size=SIZE, words=True,
-        layout="pair" if pair else "one", cutaway="away" in extras, ghost="ghost" in extras,
-        solids=posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras)
-        if extras & {"tool", "arm"} and i >= 0 else (),
+        layout="pair" if pair else "one", cutaway="away" in extras, ghost="ghost" in extras, solids=solids,
+        whole="arm" in extras and bool(solids),
     )  # fmt: skip
     key = (result.setup.digest(), view.exaggeration, round(station, 6) if moves else None, tuple(sorted(extras)), pair)
     return ("milling", *key), picture

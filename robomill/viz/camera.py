@@ -11,17 +11,20 @@ from robomill.arrays import FloatArray
 if TYPE_CHECKING:
     from robomill.viz.scene import SurfacePicture
 
-# Shares of the picture that the block may fill: the rest of the width is for the colour bar, of the height for words.
-WIDE, HIGH = 0.79, 0.84
+# Share of the picture's height that the block may fill: the rest is for words.
+HIGH = 0.84
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def look(plotter: Any, picture: SurfacePicture, *, aspect: float, bar: bool = True) -> None:
-    """Point the camera of the plotter's current renderer; ``aspect`` is that renderer's, ``bar`` leaves room."""
+def look(plotter: Any, picture: SurfacePicture, *, aspect: float, room: float, beside: bool = True) -> None:
+    """Point the camera of the plotter's current renderer, whose width is ``aspect`` times its height.
+
+    ``room`` is the share of the width kept free, for a colour bar; with ``beside`` it lies on the right.
+    """
     along = np.array([picture.direction[0], picture.direction[1], 0.0])
     across = np.array([-along[1], along[0], 0.0])
     low, high = bounds(picture)
-    wide = WIDE if bar else 0.9
+    wide = 1.0 - room
     view = {
         "iso": best_angle(high - low, along, across, aspect, wide),
         "along": -1.0 * along + 0.32 * UP,
@@ -39,7 +42,7 @@ def look(plotter: Any, picture: SurfacePicture, *, aspect: float, bar: bool = Tr
     half_w = float(np.abs((corners - centre) @ right).max())
     half_h = float(np.abs((corners - centre) @ upward).max())
     scale = max(half_h / HIGH, half_w / aspect / wide)
-    shift = (0.105 * scale * aspect if bar else 0.0) * right
+    shift = (0.5 * room * scale * aspect if beside else 0.0) * right
     if picture.captions:
         scale *= 1.07
         shift = shift - 0.07 * scale * upward  # the block moves up to make room for the words below it
@@ -50,9 +53,12 @@ def look(plotter: Any, picture: SurfacePicture, *, aspect: float, bar: bool = Tr
 
 
 def bounds(picture: SurfacePicture) -> tuple[FloatArray, FloatArray]:
-    """Corners (3,), (3,) mm of what must be seen: the block, and ``headroom`` above it."""
+    """Corners (3,), (3,) mm of what must be seen: the block with ``headroom`` above it, or ``whole`` all solids too."""
     low = np.array([picture.x[0], picture.y[0], picture.bottom])
     high = np.array([picture.x[-1], picture.y[-1], float(np.nanmax(picture.z)) + picture.headroom])
+    if picture.whole:
+        every = np.concatenate([np.asarray(solid.points) for solid in picture.solids])
+        low, high = np.minimum(low, every.min(axis=0)), np.maximum(high, every.max(axis=0))
     return low, high
 
 

@@ -66,7 +66,7 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
     fig.add_annotation(x=0, y=-1.72, text=words + down, showarrow=False, font={"size": 13, "color": p.text})
     fig.update_layout(
         showlegend=False, hovermode="closest",
-        xaxis={"visible": False, "range": [-2.15, 2.15], "fixedrange": True, "constrain": "domain"},
+        xaxis={"visible": False, "range": [-1.75, 1.75], "fixedrange": True, "constrain": "domain"},
         yaxis={"visible": False, "range": [-1.95, 2.0], "scaleanchor": "x", "fixedrange": True},
     )  # fmt: skip
     return fig

@@ -8,7 +8,7 @@ import plotly.graph_objects as go
 from robomill.arrays import FloatArray
 
 MAX_PICKS = 800
-_FAINT = {"marker": {"opacity": 0.01}}
+_FAINT = {"marker": {"color": "rgba(0,0,0,0)", "opacity": 1}}
 
 
 def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray) -> None:
@@ -18,7 +18,7 @@ def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray) -> None:
         good = good[np.linspace(0, len(good) - 1, MAX_PICKS).astype(int)]
     fig.add_scatter(
         x=s[good], y=value[good], mode="markers", name="pick", showlegend=False, hoverinfo="skip",
-        marker={"size": 14, "opacity": 0.01}, selected=_FAINT, unselected=_FAINT,
+        marker={"size": 14, "color": "rgba(0,0,0,0)", "line": {"width": 0}}, selected=_FAINT, unselected=_FAINT,
     )  # fmt: skip
     fig.update_layout(dragmode="pan", clickmode="event+select")
 

@@ -62,7 +62,7 @@ def tool_solids(cutter: Cutter, tip: FloatArray, k: FloatArray, reach: float) ->
     shank = turned(np.array([0.92 * R, 0.92 * R]), np.array([flutes, out]), tip, k)
     top = max(out + 3.0 * cutter.diameter, min(reach, out + 12.0 * cutter.diameter))
     nose = turned(
-        np.array([1.5 * R, 2.4 * R, 3.4 * R, 3.4 * R]), np.array([out, out + 2.4 * R, out + 2.8 * R, top]), tip, k
+        np.array([1.25 * R, 1.9 * R, 2.4 * R, 2.4 * R]), np.array([out, out + 2.4 * R, out + 2.8 * R, top]), tip, k
     )
     return [_solid(cutting, "cutter"), _solid(shank, "shank"), _solid(nose, "spindle")]
 
@@ -75,8 +75,10 @@ def arm_solids(result: SimulationResult, index: int) -> list[Solid]:
     origin = (frames[:, :3, 3] - t) @ R
     axis = frames[:, :3, 2] @ R
     n = len(frames) - 1
-    size = max(float(np.linalg.norm(np.diff(origin, axis=0), axis=1).sum()), 1e-3)
-    found = []
+    size = _size(result, index)
+    tip, k = origin[-1], axis[-1]
+    spindle = solids.tube(tip + 0.045 * size * k, tip + 0.12 * size * k, 0.014 * size, 0.024 * size)
+    found = [_solid(spindle, "spindle")]
     for i in range(n):
         radius = 0.034 * size * (1.0 - 0.45 * i / max(n - 1, 1))
         end = origin[i + 1] + (0.09 * size * axis[-1] if i == n - 1 else 0.0)
@@ -89,9 +91,15 @@ def arm_solids(result: SimulationResult, index: int) -> list[Solid]:
     return found
 
 
+def _size(result: SimulationResult, index: int) -> float:
+    """Sum of the link lengths, m: the yardstick of the drawn arm."""
+    origin = joint_frames(result.setup.robot, result.theta[index])[:, :3, 3]
+    return max(float(np.linalg.norm(np.diff(origin, axis=0), axis=1).sum()), 1e-3)
+
+
 def posed(result: SimulationResult, index: int, tip: FloatArray, *, arm: bool) -> tuple[Solid, ...]:
     """The tool with its tip at ``tip`` (3,) m in {W} as at sample ``index``; with ``arm`` the arm that holds it."""
-    reach = to_si(90.0, "mm") if not arm else to_si(160.0, "mm")
+    reach = to_si(90.0, "mm") if not arm else 0.1 * _size(result, index)
     found = tool_solids(result.setup.cutter, tip, result.path.k[index], reach)
     return (*found, *(arm_solids(result, index) if arm else []))
 

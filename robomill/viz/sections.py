@@ -94,7 +94,7 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     middle = 0.5 * (d.top + d.floor)
     _arrow(fig, (beside, middle), (beside, d.top), p.text)
     _arrow(fig, (beside, middle), (beside, d.floor), p.text)
-    _text(fig, beside, middle, f"depth {format_value(d.depth, d.unit, 3)}", p.text, p.background, xanchor="left")
+    _text(fig, beside, middle, f"depth {format_value(d.depth, d.unit, 3)}", p.text, p.background)
 
     under = d.floor - 0.42 * step
     for x, colour in ((ideal_centre, p.accent), (centre, p.warm)):

@@ -29,7 +29,7 @@ def lights(plotter: Any) -> None:
         light = pv.Light(position=position, focal_point=(0, 0, 0), intensity=intensity, light_type="camera light")
         if intensity > 0.5:
             light = pv.Light(position=position, focal_point=(0, 0, 0), intensity=intensity)
-        plotter.add_light(light)
+        plotter.add_light(light, only_active=True)
 
 
 def block(plotter: Any, picture: SurfacePicture, z: FloatArray, error: FloatArray | None, colours: Any) -> None:
@@ -137,6 +137,8 @@ def ghost(plotter: Any, picture: SurfacePicture) -> None:
     shell = sheet(picture, ideal + 0.01 * (top - float(ideal.min())), None)
     shell["cut"] = (ideal < top - 1e-6).ravel(order="F").astype(np.float32)
     shell = shell.threshold(0.5, scalars="cut", all_scalars=False)
+    if shell.n_points and picture.cutaway and picture.station is not None:
+        shell = shell.clip((*picture.direction, 0.0), origin=picture.station, invert=False)
     if shell.n_points:
         plotter.add_mesh(shell, color=palette(picture.dark).accent, opacity=0.38, lighting=False)
 
