@@ -44,6 +44,14 @@ class _State:
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
 
+_GOTO = re.compile(rb"^\s*(?:GOTO|FROM)\s*/", re.IGNORECASE | re.MULTILINE)
+
+
+def is_apt(data: bytes) -> bool:
+    """True if the bytes of a file look like APT-CL (a GOTO/ or FROM/ statement near the start)."""
+    return _GOTO.search(data[:200_000]) is not None
+
+
 def read_apt(path_or_text: Source) -> Toolpath:
     """The toolpath of an APT-CL file: a path, its text or its bytes. Axes i, j, k become unit tool axes.
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.apt import read_apt
+from robomill.toolpath.apt import is_apt, read_apt
 
 FILE = """PARTNO/ BLADE
 $$ a comment
@@ -39,6 +39,11 @@ def test_points_axes_feeds_and_units() -> None:
     assert path.n_s[-1] == pytest.approx(100)
     assert path.tool.tolist() == [7, 7, 7, 7]
     assert [(f.level, f.line) for f in path.findings] == [("ignored", 15)]
+
+
+def test_apt_files_are_told_from_programs() -> None:
+    assert is_apt(FILE.encode())
+    assert not is_apt(b"G21\nG0 X1 (GOTO/1,2,3)\nM2\n")
 
 
 @pytest.mark.parametrize(

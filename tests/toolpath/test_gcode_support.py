@@ -6,7 +6,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Tool, interpret
-from robomill.toolpath.gcode.support import SUPPORT, Support
+from robomill.toolpath.gcode.support import DIFFERENCES, SUPPORT, Support
 
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, n * 1e-2)) for n in range(1, 9)}
 
@@ -28,3 +28,14 @@ def test_row_holds(row: Support) -> None:
 def test_rows_are_distinct() -> None:
     names = [row.words for row in SUPPORT]
     assert len(set(names)) == len(names)
+
+
+def test_differences_are_as_stated() -> None:
+    assert any("ends without" in f.message for f in interpret("G0 X1\n").findings)
+    assert len(interpret("G0 X1 (" + "long " * 100 + ")\n")) == 1
+    assert len(interpret("T77 M6 G43 H77\nG0 X1\n")) == 1
+    assert len(interpret("O1 if [1]\nG0 X1\nO1 elseif [1/0]\nO1 endif\n")) == 1
+    for text in ("G71 Q1", "G0 U1", "G10 L2 P1 R5\nG18 F9\nG2 X2 I1", "G1 X1", "T1 M6\nG41"):
+        with pytest.raises(GCodeError):
+            interpret(text + "\n")
+    assert all(text.endswith(".") for text in DIFFERENCES)

@@ -146,4 +146,16 @@ SUPPORT: tuple[Support, ...] = (
     _row("$ lines", "settings of grbl are left out", "$10=1\nG0 X1", (1, 0, 0), 1, dialect="grbl"),
     Support("$H $J", "grbl's own motion", "refused", "$H\nG0 X1", says="moves the machine", dialect="grbl"),
 )
-"""The table. Differences from LinuxCNC by design: a program may end without M2; unknown M codes are counted."""
+"""The table: what a page shows, and what the tests run."""
+
+DIFFERENCES: tuple[str, ...] = (
+    "A program may end without M2, M30 or %: LinuxCNC stops with an error, here it is a finding.",
+    "M codes that LinuxCNC does not know are counted as ignored; G codes that it does not know stop the reading.",
+    "Lines may be longer than 255 characters.",
+    "Without a tool table every tool is accepted, of unknown size; G41 and G42 then need one.",
+    "Lathe roughing G70, G71, G72, the axes U, V, W and arcs in G18 or G19 of a rotated system are refused.",
+    "A condition after ELSEIF is reckoned only if no branch before it was taken.",
+    "A G1, G2 or G3 without a feed rate is refused, as on the machine; LinuxCNC's preview takes a feed of 1.",
+    "Probing is taken to travel its whole way and to touch nothing.",
+)
+"""Where reading differs from LinuxCNC 2.9, by design."""
