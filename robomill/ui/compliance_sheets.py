@@ -8,15 +8,14 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import RobomillError, WorkspaceError
+from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.robot.model import Robot
-from robomill.ui import compare_panel, inputs, maps_fields, maps_inputs, parts, shell, state
+from robomill.ui import compare_panel, inputs, lines_panel, maps_fields, maps_inputs, maps_table, parts, shell, state
 from robomill.ui.maps_state import MapView, factors, maps, see
 from robomill.ui.point_panel import default_point
 from robomill.units import from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
-from robomill.viz.shares import LinePanel, line_panels
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import COMPONENTS
@@ -46,7 +45,7 @@ def picture() -> None:
     try:
         box = maps_fields.region(robot, view)
         if view.sheet == "lines":
-            _lines(robot, view, box, unit)
+            lines_panel.show(robot, view, box, unit)
             return
         normal, at = maps_fields.plane_at(robot, view, box)
         maps_inputs.plane_slider(robot, box, normal, at, unit)
@@ -100,7 +99,7 @@ def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, captio
         if found is not None:
             st.session_state["maps:clicked"] = (normal, at, found)
 
-    parts.figure(fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take)
+    maps_table.figure(fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take)
     clicked = st.session_state.pop("maps:clicked", None)
     if clicked is not None:
         _open(clicked)
@@ -263,62 +262,6 @@ def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, norm
         lambda: columns,
     )
     parts.facts(rows_of_text)
-
-
-def _lines(robot: Robot, view: MapView, box: Box, unit: str) -> None:
-    if maps_fields.flat(robot) not in (None, 2):
-        raise WorkspaceError("The six lines lie in a plane of constant Z_M; this arm moves in another plane.")
-    _, at = (
-        maps_fields.plane_at(robot, view, box)
-        if view.normal == "z"
-        else ("z", min(max(0.0, box.lower[2]), box.upper[2]))
-    )
-    maps_inputs.plane_slider(robot, box, "z", at, unit)
-    _, at = maps_fields.plane_at(robot, maps(robot), box) if view.normal == "z" else ("z", at)
-    found = maps_fields.lines(robot, box, at)
-    scale = factors(view, robot)
-    changed = bool((scale != 1.0).any())
-    panels = []
-    for line in found:
-        by_joint = from_si(line.along_normal(), unit)
-        now = by_joint / scale
-        axis = 0 if abs(line.feed[0]) > 0.5 else 1
-        fixed = "YX"[axis]
-        panels.append(
-            LinePanel(
-                f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = "
-                f"{from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
-                from_si(line.p[:, axis], unit),
-                now.sum(axis=1),
-                now,
-                by_joint.sum(axis=1) if changed else None,
-            )
-        )
-    if not any(np.isfinite(q.total).any() for q in panels):
-        st.info("None of the six lines is reached in this plane: move the slider or change the region.")
-        return
-    titles = [f"{'X' if abs(line.feed[0]) > 0.5 else 'Y'}<sub>M</sub>, {unit_label(unit)}" for line in found]
-    parts.figure(
-        line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()),
-        "lines",
-        name="path-lines",
-        table=lambda: _line_columns(panels, robot),
-        alt="Deviation along six straight lines, total and by joint.",
-        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
-        "deviation along "
-        "that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
-    )
-
-
-def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:
-    columns: dict[str, Any] = {
-        "line": np.repeat([p.title.replace("<sub>M</sub>", "_M") for p in panels], [len(p.s) for p in panels]),
-        "s": np.concatenate([p.s for p in panels]),
-        "total": np.concatenate([p.total for p in panels]),
-    }
-    for j, number in enumerate(robot.joint_numbers):
-        columns[f"joint {number}"] = np.concatenate([p.by_joint[:, j] for p in panels])
-    return columns
 
 
 _SHEETS = {"nine": _nine, "shares": _shares, "dominant": _dominant, "compare": _compare}

@@ -13,7 +13,7 @@ from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
-from robomill.ui import inputs, maps_fields, maps_inputs, parts, shell, state
+from robomill.ui import inputs, maps_fields, maps_inputs, maps_table, parts, shell, state
 from robomill.ui.maps_state import MapView, maps, see
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure
@@ -202,7 +202,7 @@ def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float],
     width = 760 if len(ats) == 1 else 370
     height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
     fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
-    parts.figure(
+    maps_table.figure(
         fig, f"workspace-{key}", name=f"workspace-{what.name}", alt=f"{what.title} over a plane of the workspace.",
         table=lambda: plane_columns(robot, view, grid, what),
         caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
@@ -289,8 +289,14 @@ def _solid_figure(
         fig.add_traces(wire_box(*PAPER_BOX, p.warm, "the paper's box"))
         low, high = np.minimum(low, PAPER_BOX[0]), np.maximum(high, PAPER_BOX[1])
     widen(fig, low, high)
-    parts.figure(fig, "workspace-solid", caption=caption, alt="The arm with the cells of its workspace as voxels.",
-                 table=lambda: plane_columns(robot, view, grid, what))  # fmt: skip
+    maps_table.figure(
+        fig,
+        "workspace-solid",
+        name=f"workspace-{what.name}",
+        caption=caption,
+        alt="The arm with the cells of its workspace as voxels.",
+        table=lambda: plane_columns(robot, view, grid, what),
+    )
 
 
 def _standing(robot: Robot, view: MapView, box: Box) -> FloatArray:
