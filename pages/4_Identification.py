@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import streamlit as st
 
 from robomill import ui
@@ -15,8 +17,8 @@ from robomill.ui import identification_words as words
 from robomill.ui.load_bench import Bench, bench, fit_of, robot_of, tests_of
 
 
-def load_tests(kept: Bench, view: ui.View, dark: bool) -> None:
-    """Measurements and model on the left, what they say on the right."""
+def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
+    """The sentence at the ``top``; measurements and model on the left, what they say on the right."""
     robot = robot_of(kept)
     tests = result = refusal = None
     try:
@@ -25,10 +27,9 @@ def load_tests(kept: Bench, view: ui.View, dark: bool) -> None:
     except RobomillError as exc:
         refusal = exc
     kicker = f"Identification · {kept.name}"
-    if result is None:
-        ui.headline(kicker, "Nothing can be identified from these load tests yet.")
-    else:
-        ui.headline(kicker, words.title(result))
+    with top:
+        ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
+    if result is not None:
         ui.tiles(words.tiles(result, view.joint_unit, plan.cut_tile(kept, robot, result, view.length)))
     left, right = ui.split([1, 2.3], "page", gap="large")
     with left:
@@ -56,10 +57,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool) -> None:
 
 
 project = ui.begin("Identification")
+top = st.container()
 section = panel.choose("section", panel.SECTIONS)
-if section == "tests":
-    load_tests(bench(), project.view, ui.dark())
-elif section == "map":
-    measured_map.page(bench(), project.view, ui.dark())
-else:
-    laboratory.page(bench(), project.view, ui.dark())
+show = {"tests": load_tests, "map": measured_map.page, "laboratory": laboratory.page}[section]
+show(bench(), project.view, ui.dark(), top)

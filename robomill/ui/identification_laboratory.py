@@ -30,8 +30,8 @@ START: dict[str, Any] = {"pose": (0.0, -1.3, 0.0, 0.0, 0.0), "push": "Y", "load"
 BUDGET, NOISE, SEED = 12, 5e-6, 1
 
 
-def page(kept: Bench, view: state.View, dark: bool) -> None:
-    """The whole section: what is left, the pose, the readings, the fit, the score."""
+def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
+    """The whole section: what is left (its sentence at the ``top``), the pose, the readings, the fit, the score."""
     robot = robot_of(kept)
     if kept.laboratory is None or kept.laboratory.robot.name != robot.name:
         _open(kept, robot, SEED, NOISE, BUDGET)
@@ -42,7 +42,8 @@ def page(kept: Bench, view: state.View, dark: bool) -> None:
     task = (
         "The compliances of this robot's joints are hidden. Hang weights on the tool, read the dial gauge, find them."
     )
-    parts.headline("Virtual laboratory", title(lab, done, result, kept.handed_in), "" if done else task)
+    with top:
+        parts.headline("Virtual laboratory", title(lab, done, result, kept.handed_in), "" if done else task)
     parts.tiles(tiles(lab, done, result, kept.handed_in))
     left, right = parts.split([1, 1.9], "laboratory", gap="large")
     with left:

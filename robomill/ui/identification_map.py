@@ -26,8 +26,8 @@ CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
 
 
-def page(kept: Bench, view: state.View, dark: bool) -> None:
-    """The whole section: headline, tiles, inputs, three maps."""
+def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
+    """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
     robot = robot_of(kept)
     field, refusal = None, None
     try:
@@ -37,10 +37,10 @@ def page(kept: Bench, view: state.View, dark: bool) -> None:
         refusal = exc
     except RobomillError:
         cut = None
-    if field is None:
-        parts.headline(f"Measured map · {kept.map_name}", "These measurements do not make a map yet.")
-    else:
-        parts.headline(f"Measured map · {kept.map_name}", title(field, robot))
+    sentence = "These measurements do not make a map yet." if field is None else title(field, robot)
+    with top:
+        parts.headline(f"Measured map · {kept.map_name}", sentence)
+    if field is not None:
         parts.tiles(tiles(field, robot, cut, view.length))
     chosen = _inputs(kept, field, view.length)
     if refusal is not None:
