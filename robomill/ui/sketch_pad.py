@@ -58,7 +58,7 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
         "elements": pad_elements(sketch, view.length, view.feed),
         "grid": _plain(sketch.grid, view.length), "depth": _plain(sketch.depth, view.length),
         "feed": _plain(sketch.v_f, view.feed), "cutter": _plain(cutter, view.length), "reach": reach,
-        "undo": bool(kept.past), "redo": bool(kept.future),
+        "undo": _leads_to_a_sketch(kept.past), "redo": _leads_to_a_sketch(kept.future),
     }  # fmt: skip
     _component(key=KEY, data=data, on_sketch_change=_take, on_history_change=_history)
     inputs.sentence(KEY)
@@ -84,9 +84,17 @@ def _write(sent: dict[str, Any], source: SketchSource, memory: PadMemory) -> Non
 
 
 def _history() -> None:
-    asked = st.session_state[KEY].get("history")
-    if asked:
-        (state.undo if asked.get("way") == "undo" else state.redo)()
+    asked, kept = st.session_state[KEY].get("history"), state.store()
+    if not asked:
+        return
+    back = asked.get("way") == "undo"
+    if _leads_to_a_sketch(kept.past if back else kept.future):
+        (state.undo if back else state.redo)()
+
+
+def _leads_to_a_sketch(steps: list[state.Project]) -> bool:
+    """The board's own undo stays with the sketch; the one in the sidebar goes on."""
+    return bool(steps) and isinstance(steps[-1].setup.source, SketchSource)
 
 
 def _fingerprint(sketch: Sketch, unit: str) -> str:

@@ -58,25 +58,35 @@ def ask_button(setup: SimulationSetup) -> None:
         parts.note(f"Not simulated yet: {words}. Until then the path is coloured by reach.")
 
 
-def sentence(
-    path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str
-) -> str:
-    """What was read, whether it can be reached, and how far off it is."""
+def headline(
+    name: str, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str
+) -> None:
+    """Whether the path can be reached and how far off it is; beneath, what was read.
+
+    Always two lines, so that the board beneath does not move while one draws.
+    """
     if path is None:
-        return "There is no path yet."
+        parts.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
+        return
     summary = path_summary(path)
-    low, high = summary.low, summary.high
-    size = " × ".join(format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in high - low)
-    text = f"{counted(summary.blocks, NOUNS[noun])} within {size} {unit_label(unit)}"
+    size = " × ".join(
+        format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in summary.high - summary.low
+    )
+    lead = f"{counted(summary.blocks, NOUNS[noun])} within {size} {unit_label(unit)}."
+    parts.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
+
+
+def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str) -> str:
+    """The page's one sentence."""
     if reach is None:
-        return text + "."
+        return "The path was read; the arm was not asked."
     missed, length, _ = missed_blocks(reach)
     if missed:
-        return f"{text}; {format_si(length, unit, 1)} of them cannot be reached."
+        return f"{format_si(length, unit, 1)} of the cut cannot be reached."
     if result is None or result.worst < 0:
-        return f"{text}, all in reach."
+        return "The arm reaches all of the path."
     worst = format_si(result.max_deviation, unit, 2 if unit == "mm" else 4)
-    return f"{text}, all in reach; at most {worst} off, at {PLACES[noun]} {result.worst_block:,}."
+    return f"All in reach; at most {worst} off, at {PLACES[noun]} {result.worst_block:,}."
 
 
 def tiles(
@@ -84,6 +94,7 @@ def tiles(
 ) -> None:
     """Length and time, reach, deviation, findings."""
     if path is None:
+        parts.tiles([parts.Tile(label, "–") for label in ("At feed", "Reach", "Max deviation", "Shapes")])
         return
     summary = path_summary(path)
     moves, cuts = summary.moves, summary.cuts

@@ -18,7 +18,8 @@ def type_program(app: AppTest, text: str) -> None:
 def test_it_says_what_was_read(app: AppTest) -> None:
     go(app, "5_Toolpath")
     assert not app.exception
-    assert "1 cut within 100.0 × 0.0 × 0.0 mm, all in reach; at most 0.25 mm off, at line 7." in words(app)
+    assert "All in reach; at most 0.25 mm off, at line 7." in words(app)
+    assert "1 cut within 100.0 × 0.0 × 0.0 mm." in words(app)
 
 
 def test_a_pasted_program_is_in_force_everywhere(app: AppTest) -> None:
@@ -49,7 +50,7 @@ def test_what_cannot_be_reached_is_counted_and_named(app: AppTest) -> None:
     type_program(app, "G21 G90\nG0 X0 Y0 Z-2\nG1 Y-1500 F1800\n")
     assert not app.exception
     text = words(app)
-    assert "mm of them cannot be reached" in text
+    assert "mm of the cut cannot be reached" in text
     assert "out of reach at line 3" in text
     go(app, "app")
     assert not app.exception
