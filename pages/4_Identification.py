@@ -8,8 +8,10 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
+from robomill.ui import identification_cut as cut
 from robomill.ui import identification_laboratory as laboratory
 from robomill.ui import identification_map as measured_map
+from robomill.ui import identification_models as models
 from robomill.ui import identification_panel as panel
 from robomill.ui import identification_plan as plan
 from robomill.ui import identification_results as results
@@ -30,7 +32,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
     with top:
         ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
     if result is not None:
-        ui.tiles(words.tiles(result, view.joint_unit, plan.cut_tile(kept, robot, result, view.length)))
+        ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length)))
     left, right = ui.split([1, 2.3], "page", gap="large")
     with left:
         panel.source(kept, robot)
@@ -49,11 +51,11 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         elif view_name == "residuals":
             results.residuals(kept, result, dark)
         elif view_name == "models":
-            results.models(kept, robot, view.joint_unit, dark)
+            models.models(kept, robot, view.joint_unit, dark)
         elif view_name == "next":
             plan.measure_next(kept, robot, result, view.length, dark)
         else:
-            plan.in_the_cut(kept, robot, result, view.length, dark)
+            cut.in_the_cut(kept, robot, result, view.length, dark)
 
 
 project = ui.begin("Identification")

@@ -13,8 +13,8 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, parts, state
+from robomill.ui.identification_cut import cut_of
 from robomill.ui.identification_panel import OWN, robot_choice, upload
-from robomill.ui.identification_plan import cut_of
 from robomill.ui.load_bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.measured_maps import both_figure, level_figure
