@@ -116,7 +116,7 @@ def evidence(project: state.Project) -> None:
     bars(rows, project.view.length)
     parts.note(
         "Sideways error of the groove. 0.29 mm is read off a map whose raw data are not printed; "
-        "Table 3 alone cannot give it, and nothing here is tuned to."
+        "Table 3 alone cannot give it, and nothing here is tuned to match."
     )
 
 
