@@ -14,7 +14,8 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
 
-PICKED_PER_MAP = 420  # points that can be clicked; each is an element of the page
+PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
+LEFT, RIGHT = 62, 84  # px for tick labels and colour bar, fixed: measuring them would draw everything twice
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def sheet_figure(
         hoverdistance=-1,
         clickmode="event+select",
         showlegend=False,
-        margin={"l": 8, "r": 8, "t": top, "b": bottom},
+        margin={"l": LEFT, "r": RIGHT, "t": top, "b": bottom, "autoexpand": False},
     )
     for name in used:
         layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, dark)
@@ -247,7 +248,8 @@ def _decorate(
             "anchor": f"{other}{name}",
             "showticklabels": shown,
             "range": [float(points[0] - half), float(points[-1] + half)],
-            "automargin": letter == "y" and shown,
+            "automargin": False,
+            "ticks": "outside" if shown else "",
             "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
         }
     layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=2, align="left", **ABOVE))

@@ -63,7 +63,7 @@ def test_a_large_plane_has_few_points_to_click() -> None:
     u, v = np.linspace(0, 1, 121), np.linspace(0, 1, 61)
     sheet = MapSheet([[Map("a", np.zeros((121, 61)))]], u, v, "u", "v", {"main": Scale("a", 0, 1)})
     fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
-    assert len(fig.data[1].x) <= 450
+    assert len(fig.data[1].x) <= 220
 
 
 def test_two_scales_have_a_bar_each() -> None:
