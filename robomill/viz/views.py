@@ -89,13 +89,17 @@ def so_far(result: SimulationResult, shown: Exaggerated, index: int) -> Exaggera
     if index < 1 or not result.removes[1 : index + 1].any():
         heights = np.broadcast_to(shown.ideal.z_stock, shown.ideal.z.shape)
         return replace(shown, drawn=replace(shown.drawn, z=heights), error=np.full(heights.shape, np.nan))
-    p = path.p + shown.times * (result.p_machined - path.p)
     upto = slice(0, index + 1)
-    drawn = cut(
-        setup.stock_block, shown.drawn.cell, setup.cutter, p[upto], path.k[upto], result.removes[upto],
-        must_touch=False,
-    )  # fmt: skip
-    return replace(shown, drawn=drawn, error=np.where(drawn.z == shown.drawn.z, shown.error, np.nan))
+
+    def at(p: FloatArray) -> ZMap:
+        return cut(
+            setup.stock_block, shown.drawn.cell, setup.cutter, p[upto], path.k[upto], result.removes[upto],
+            must_touch=False,
+        )  # fmt: skip
+
+    drawn, told = at(path.p + shown.times * (result.p_machined - path.p)), at(path.p)
+    done = (drawn.z == shown.drawn.z) & (told.z == shown.ideal.z)
+    return replace(shown, drawn=drawn, error=np.where(done, shown.error, np.nan))
 
 
 def tip_drawn(result: SimulationResult, shown: Exaggerated, index: int) -> FloatArray:
