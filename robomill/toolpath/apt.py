@@ -44,7 +44,7 @@ class _State:
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
 
-_GOTO = re.compile(rb"^\s*(?:GOTO|FROM)\s*/", re.IGNORECASE | re.MULTILINE)
+_GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
 
 
 def is_apt(data: bytes) -> bool:

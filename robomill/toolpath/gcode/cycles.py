@@ -164,7 +164,7 @@ def _one(
     if motion == 890:
         hole.go(FEED, a, b, clear)
     elif motion == 880:
-        machine.findings.add("warning", block.line, "G88 stops for a retract by hand; the tool is taken to be clear")
+        machine.findings.add("warning", block.line, "G88 stops for a retract by hand, which the path leaves out")
     else:
         hole.go(TRAVERSE, a, b, clear)
 

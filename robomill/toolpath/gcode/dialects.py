@@ -16,6 +16,9 @@ NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
 SAMPLE = 200_000
 """Bytes at the start of a program from which its dialect is guessed."""
 
+LONGEST = 300
+"""Characters of a line that are looked at for signs of a dialect."""
+
 HARMLESS: dict[str, dict[int, str]] = {
     "fanuc": {
         50: "high-speed mode", 90: "exact stop", 150: "polar coordinates off", 220: "stored stroke check",
@@ -34,17 +37,21 @@ HARMLESS: dict[str, dict[int, str]] = {
 """G words that move nothing, by dialect; they are counted as ignored."""
 
 _FLAGS = re.IGNORECASE | re.MULTILINE
+_COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
+_SINUMERIK_TEXT = re.compile(r"\bMSG[ \t]*\([ \t]*\"|^[ \t]*;[ \t]*\$PATH", _FLAGS)
 _SINUMERIK = re.compile(
-    r"\b(?:CR|AR|TURN)\s*=|\b[XYZIJKABCFS]\d?\s*=|\bG(?:71|70|710|700|500|601|64[1-5])\b|\bMSG\s*\(\s*\"|"
-    r"^\s*;\s*\$PATH|\bM17\b|\bDEF\s+(?:REAL|INT)",
+    r"\b(?:CR|AR|TURN)[ \t]*=|\b[XYZIJKABCFS]\d?[ \t]*=|\bG(?:710|700|500|601|64[1-5])\b|\bM17\b|"
+    r"\bDEF[ \t]+(?:REAL|INT)|"
+    r"^[^\n]*\bG7[01]\b(?![^\n]*[QPUWRD][ \t]*[-.\d#\[])",
     _FLAGS,
 )
 _FANUC = re.compile(
-    r"^\s*(?::|O)\d{4,}\s*(?:\(|$)|\bM98\s*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|\bIF\s*\[.*\bGOTO\b|\bG28\s*U0",
+    r"^[ \t]*(?::|O)\d{4,}[ \t]*$|\bM98[ \t]*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|"
+    r"\bIF[ \t]*\[.*\bGOTO\b|\bG28[ \t]*U0",
     _FLAGS,
 )
-_GRBL = re.compile(r"^\s*\$(?:H|X|\d+=|J=)", _FLAGS)
-_LINUXCNC = re.compile(r"^\s*o\s*(?:<[^>]+>|\d+)\s*(?:sub|if|while|do|repeat|call)|#<", _FLAGS)
+_GRBL = re.compile(r"^[ \t]*\$(?:H|X|\d+=|J=)", _FLAGS)
+_LINUXCNC = re.compile(r"^[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)|#<", _FLAGS)
 
 
 @dataclass(frozen=True)
@@ -56,7 +63,7 @@ class Dialect:
 
     def line(self, raw: str, number: int, findings: Findings) -> str:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
-        if self.name == "sinumerik":
+        if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
             return _from_sinumerik(raw, number, findings)
         if self.name == "fanuc":
             if _TIP.search(raw):
@@ -103,8 +110,12 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         if wanted not in NAMES:
             raise GCodeError(f"Dialect {wanted!r} is not known; expected auto, {', '.join(NAMES)}.")
         return Dialect(wanted, guessed=False)
+    text = "\n".join(line[:LONGEST] for line in text.split("\n"))
     if _LINUXCNC.search(text):
         return Dialect("linuxcnc")
+    if _SINUMERIK_TEXT.search(text):
+        return Dialect("sinumerik")
+    text = _COMMENT.sub("", text)
     for name, pattern in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if pattern.search(text):
             return Dialect(name)
