@@ -19,21 +19,12 @@ SAMPLE = 200_000
 LONGEST = 300
 """Characters of a line that are looked at for signs of a dialect."""
 
-HARMLESS: dict[str, dict[int, str]] = {
-    "fanuc": {
-        50: "high-speed mode", 90: "exact stop", 150: "polar coordinates off", 220: "stored stroke check",
-        230: "stored stroke check off", 401: "normal direction control off", 501: "mirror image off",
-        500: "scaling off", 620: "corner override", 630: "tapping mode", 670: "macro call off",
-        690: "rotation off", 94: "", 1000: "",
-    },
-    "grbl": {},
-    "sinumerik": {
-        600: "exact stop", 601: "exact stop fine", 602: "exact stop coarse", 6010: "exact stop", 6020: "exact stop",
-        6410: "smoothing", 6420: "smoothing", 6430: "smoothing", 6440: "smoothing", 6450: "smoothing",
-        4500: "continuous", 4510: "", 4500_0: "", 5000: "no work offset",
-    },
-    "linuxcnc": {},
-}  # fmt: skip
+HARMLESS: dict[str, frozenset[int]] = {
+    "linuxcnc": frozenset(),
+    "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 620, 630, 670, 690}),
+    "grbl": frozenset(),
+    "sinumerik": frozenset({600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
+}
 """G words that move nothing, by dialect; they are counted as ignored."""
 
 _FLAGS = re.IGNORECASE | re.MULTILINE
