@@ -121,10 +121,12 @@ def export() -> None:
     """The path as a G-code file."""
     if not sketch_source().sketch.elements:
         return
+    # Taken now: when the file is asked for, there is no session to ask for its project.
+    setup = state.project().setup
 
     def text() -> str:
         from robomill.io.gcode_out import write_gcode
 
-        return write_gcode(state.project().setup.toolpath)
+        return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
 
     parts.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="sketch.export")

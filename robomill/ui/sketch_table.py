@@ -103,7 +103,7 @@ def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
 
 
 def _clean(value: Any, unit: str) -> Any:
-    shown = np.round(from_si(np.asarray(value, dtype=float), unit), 6)
+    shown = np.round(from_si(np.asarray(value, dtype=float), unit), 6) + 0.0  # no minus before a zero
     return shown if shown.ndim else float(shown)
 
 

@@ -106,7 +106,7 @@ def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Milling").click()
     page.wait_for_selector(".rm-title:has-text('0.23 mm off in Y')", timeout=30_000)
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Toolpath").click()
-    page.wait_for_selector(f"{PAD} .line", timeout=30_000)
+    page.wait_for_selector(f"{PAD} .line", state="attached", timeout=30_000)
     idle(page)
     see(page, ["-40, 10; 40, 10"])
 
@@ -156,20 +156,20 @@ def test_quick_clicks_are_all_kept_and_keys_draw_too(toolpath: Any, board: Any) 
     see(page, ["; ".join(f"{x}, {y}" for x, y in corners)])
 
     # And without a mouse: letters choose tools, arrows move the cursor, Enter sets a point.
-    board.click(button="right", position={"x": 2, "y": 2})
-    for _ in range(11):
+    for _ in range(14):
         page.keyboard.press("Control+z")
         page.wait_for_timeout(350)
-    see(page, [])
+    see(page, ["-50, 0; 50, 0"])
+    assert board.is_visible(), "the board's own undo stays with the sketch"
     board.focus()
     for key in ("l", "ArrowLeft", "ArrowLeft", "Enter", *(["ArrowRight"] * 6), "ArrowUp", "Enter"):
         page.keyboard.press(key)
-    see(page, ["-10, 0; 20, 5"])
+    see(page, ["-50, 0; 50, 0", "15, 10; 45, 15"])
     page.keyboard.press("v")
     for key in ("Enter", "ArrowUp", "Enter"):
         page.keyboard.press(key)
-    see(page, ["-10, 0; 20, 10"])
-    assert "Sketch pad with 1 shape" in str(board.get_attribute("aria-label"))
+    see(page, ["-50, 0; 50, 0", "15, 10; 45, 20"])
+    assert "Sketch pad with 2 shapes" in str(board.get_attribute("aria-label"))
 
 
 def test_a_finding_leads_to_its_line(toolpath: Any, tmp_path: Path) -> None:
