@@ -58,7 +58,8 @@ class Toolpath:
         length = np.linalg.norm(k, axis=1, keepdims=True)
         if (np.abs(length - 1.0) > 1e-6).any():
             raise ToolpathError("Tool axis: expected unit vectors, found a length that is not 1.")
-        values: dict[str, Any] = {"p": frozen(p), "k": frozen(k / length)}
+        exact = np.array_equal(length, np.ones_like(length))
+        values: dict[str, Any] = {"p": frozen(p), "k": frozen(k if exact else k / length)}
         for name, dtype in (("v_f", float), ("cutting", bool), ("block", int), ("n_s", float), ("tool", int)):
             values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)
         if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():

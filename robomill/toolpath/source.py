@@ -34,9 +34,14 @@ class GCodeSource:
             if self in _KEPT:
                 _KEPT.move_to_end(self)
                 return _KEPT[self]
-        from robomill.toolpath.gcode import read_gcode  # the interpreter loads only where a program is read
+        from robomill.toolpath.apt import is_apt, read_apt  # the readers load only where a program is read
+        from robomill.toolpath.gcode import read_gcode
 
-        path = read_gcode(self.text.encode(), dialect=self.dialect, progress=progress, cancel=cancel)
+        data = self.text.encode()
+        if is_apt(data):
+            path = read_apt(data)
+        else:
+            path = read_gcode(data, dialect=self.dialect, progress=progress, cancel=cancel)
         with _LOCK:
             _KEPT[self] = path
             while len(_KEPT) > MAX_KEPT:

@@ -10,23 +10,33 @@ import tomli_w
 from robomill.errors import ProjectError
 from robomill.io.projects import open_project, setup_to_toml
 from robomill.io.tables import parse_toml
+from robomill.ui import uncertainty
 from robomill.ui.state import Project, View
 
 WHERE = "project file"
 SUFFIX = ".robomill.toml"
 
 
-def project_to_toml(project: Project) -> str:
-    """The project as text that ``project_from_toml`` reads back to the same set-up and view."""
+def project_to_toml(project: Project, known: dict[str, Any] | None = None) -> str:
+    """The project as text that ``project_from_toml`` reads back to the same set-up and view.
+
+    ``known``: how sure the compliances are, as ``uncertainty.to_table`` gives it.
+    """
     view = {k: v for k, v in dataclasses.asdict(project.view).items() if v is not None}
-    return setup_to_toml(project.setup) + "\n" + tomli_w.dumps({"view": {**view, "preset": project.preset}})
+    return (
+        setup_to_toml(project.setup)
+        + "\n"
+        + tomli_w.dumps({"view": {**view, "preset": project.preset}, **({"uncertainty": known} if known else {})})
+    )
 
 
 def project_from_toml(text: str, view: View | None = None) -> Project:
     """A project from its file, or from a bare set-up (then with ``view``). Raises ProjectError with the reason."""
     data = parse_toml(text, WHERE)
-    table = data.pop("view", None)
+    table, known = data.pop("view", None), data.pop("uncertainty", None)
     setup = open_project(tomli_w.dumps(data), WHERE)
+    if known is not None:
+        uncertainty.from_table(setup, known)
     if table is None:
         return Project(setup, dataclasses.replace(view or View(), theta=None))
     if not isinstance(table, dict):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, digest
 from robomill.errors import LoadTestError, RobomillError
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
@@ -50,6 +50,7 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
             st.warning(finding.message, icon=":material/visibility:")
         _maps(field, robot, *chosen, view.length, dark)
         _cut(field, cut, view.length, dark)
+        _use(field)
 
 
 def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
@@ -250,3 +251,19 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
         )
         if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
             parts.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
+
+
+def _use(field: MeasuredField) -> None:
+    """Let the simulation run from the map instead of the joint model, or go back to the joints."""
+    setup = state.project().setup
+    in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
+    if in_force:
+        st.button(
+            "Go back to the joint model", key="map:drop", on_click=state.change, kwargs={"measured_map": None},
+            help="The simulation runs from this map now.",
+        )  # fmt: skip
+        return
+    st.button(
+        "Simulate from this map", key="map:use", type="primary", on_click=state.change, kwargs={"measured_map": field},
+        help="Deflections then come from the measured map; the joints' shares are still shown.",
+    )  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.ui import cache, inputs, render, state
+from robomill.ui import cache, inputs, render, state, uncertainty
 from robomill.ui.files import SUFFIX, project_to_toml
 from robomill.ui.parts import error
 from robomill.ui.style import CSS, LOGO
@@ -80,11 +80,12 @@ def _preset() -> None:
 def _project(kept: state.Store) -> None:
     project = kept.project
     st.caption("Project")
+    known = uncertainty.to_table(project.setup)  # here, since a download's callable runs outside the session
     with st.container(horizontal=True, gap="small"):
         with st.popover("Open", icon=":material/folder_open:", width="stretch", key="open"):
             _open(kept)
         st.download_button(
-            "Save", data=lambda: project_to_toml(project), file_name=_file_name(project.setup.name),
+            "Save", data=lambda: project_to_toml(project, known), file_name=_file_name(project.setup.name),
             mime="application/toml", icon=":material/save:", on_click="ignore", width="stretch", key="save",
         )  # fmt: skip
     waiting = kept.refused.get("open")

@@ -6,7 +6,7 @@ import numpy as np
 
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cache, state
+from robomill.ui import cache, state, uncertainty
 from robomill.ui.parts import Tile
 from robomill.units import format_si
 
@@ -36,8 +36,9 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
             f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
         )
     share = f"{100 * verdict.share:.0f} % of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
+    largest = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
     return [
-        Tile("Max deviation", shown(result.max_deviation), parts, *was("max_deviation"), kind="computed"),
+        Tile("Max deviation", largest, parts, *was("max_deviation"), kind="computed"),
         Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut", *was("rms_deviation")),
         Tile("Worst line", f"Line {result.worst_block}" if i >= 0 else "none reached", _where(result, unit)),
         Tile("Verdict", WORDS[verdict.level], share if np.isfinite(verdict.share) else "nothing reached",

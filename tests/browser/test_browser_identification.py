@@ -60,6 +60,11 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     said = page.get_by_text("off its path, with 95 % probability").inner_text()
     assert "from the compliances" in said
 
+    page.get_by_test_id("stSidebarNavLink").first.click()
+    page.locator(".rm-tile .rm-value", has_text=re.compile(r"0\.29\d* ± 0\.0\d+\s*mm")).wait_for()
+    page.get_by_test_id("stSidebarNavLink").filter(has_text="Identification").click()
+    choose(page, "In the cut")
+
     page.get_by_role("spinbutton", name=re.compile("Force known to")).fill("10")
     page.keyboard.press("Enter")
     page.get_by_text("from the force").wait_for()
