@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import RobomillError
+from robomill.errors import RobomillError, WorkspaceError
 from robomill.io.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, maps_fields, parts
@@ -73,6 +73,8 @@ def panels(
         except RobomillError as exc:
             parts.error(exc)
     keys = list(values)
+    if not keys:
+        raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
     cross = view.component[0] != view.component[1]
     every = [v for v in values.values() if np.isfinite(v).any()]
     top = symmetric_limit(every)
