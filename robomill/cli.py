@@ -179,14 +179,30 @@ def run_ik(arguments: Any) -> int:
 
 def run_gcode(arguments: Any) -> int:
     from robomill.report.plain import gcode_lines
+    from robomill.report.records import path_record
+    from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    program = interpret(Path(arguments.file), dialect=arguments.dialect, tools=arguments.tools)
-    record = gcode_report(program)
-    if arguments.moves:
-        write_moves_jsonl(program, arguments.moves)
+    file = Path(arguments.file)
+    if _reads_as_apt(file):
+        record = path_record(read_apt(file))
+    else:
+        program = interpret(file, dialect=arguments.dialect, tools=arguments.tools)
+        record = gcode_report(program)
+        if arguments.moves:
+            write_moves_jsonl(program, arguments.moves)
     say(arguments, record, gcode_lines(record))
     return 0
+
+
+def _reads_as_apt(file: Path) -> bool:
+    from robomill.toolpath.apt import is_apt
+
+    try:
+        with file.open("rb") as stream:
+            return is_apt(stream.read(200_000))
+    except OSError:
+        return False  # the interpreter says what is wrong with the file
 
 
 def run_map(arguments: Any) -> int:

@@ -19,6 +19,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.surface.groove import GrooveSection
+from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
 from robomill.workspace.fields import Field
 
@@ -196,6 +197,21 @@ def surface_record(result: SimulationResult) -> dict[str, Any]:
         "gouge_volume_mm3": float(from_si(error.gouge_volume, "mm3")),
         "area_out_of_tolerance_share": error.area_out(result.setup.tolerance)[1],
         "cells": int(result.machined.z.size),
+    }
+
+
+def path_record(path: Toolpath) -> dict[str, Any]:
+    """A toolpath without canonical moves (APT-CL) in the shape of ``gcode_report``."""
+    moved = path.step_length > 0
+    kinds = {"traverse": moved & ~path.cutting, "feed": moved & path.cutting, "arc": np.zeros(len(path), dtype=bool)}
+    low, high = path.extents
+    return {
+        "moves": {kind: int(chosen.sum()) for kind, chosen in kinds.items()},
+        "length_mm": {kind: float(from_si(path.step_length[chosen].sum(), "mm")) for kind, chosen in kinds.items()},
+        "extents_mm": [shown(low, "mm"), shown(high, "mm")],
+        "units": path.units,
+        "findings": [finding_record(finding) for finding in path.findings],
+        "ok": all(finding.level != "error" for finding in path.findings),
     }
 
 

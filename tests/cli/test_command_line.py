@@ -176,3 +176,11 @@ def test_identify_the_papers_sample(capsys) -> None:
     }  # fmt: skip
     assert keys <= set(r)
     assert len(r["C_theta"]) == 5
+
+
+def test_an_apt_file_is_read_too(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "part.apt"
+    file.write_text("UNITS/MM\nFEDRAT/600,MMPM\nGOTO/0,0,0,0,0,1\nGOTO/100,0,0,0,0,1\nFINI\n")
+    r = record(capsys, "gcode", file)
+    assert r["length_mm"]["feed"] == pytest.approx(100.0)
+    assert r["units"] == "mm"
