@@ -101,7 +101,9 @@ def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board
     tile = page.locator(".rm-tile", has_text="Max deviation").locator(".rm-value")
     slot = Sketch((Element("line", np.array([[-0.04, 0.01], [0.04, 0.01]]), 2e-3, 30e-3),))
     setup = load_setup(samples_dir() / "paper_flute").replace(source=SketchSource(slot), stock=None)
-    assert tile.inner_text().replace("\n", " ").split("mm")[0].strip() == f"{simulate(setup).max_deviation * 1e3:.3f}"
+    expected = f"{simulate(setup).max_deviation * 1e3:.3f}"
+    shown = tile.inner_text().replace("\n", " ").split("mm")[0].strip()
+    assert shown == expected, page.locator(".rm-title, .rm-lead, .rm-tile").all_inner_texts()
 
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Milling").click()
     page.wait_for_selector(".rm-title:has-text('0.23 mm off in Y')", timeout=30_000)
