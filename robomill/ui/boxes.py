@@ -6,6 +6,7 @@ They follow the rule of ``inputs``: seeded from the project, refused input stays
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import streamlit as st
 
@@ -47,7 +48,10 @@ def number_box(
     inputs.seed(key, shown)
     decimals = UNITS[unit].digits if digits is None else digits
     name = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
+    # Without a default an emptied box stays empty; with one it would fall back to it.
+    default: Any = {"value": None} if optional else {}
     st.number_input(
         name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, placeholder=placeholder,
+        **default,
     )  # fmt: skip
     inputs.sentence(key)

@@ -26,6 +26,7 @@ from robomill.viz.theme import palette
 from robomill.viz.views import arm_scene, sample_at, section_drawing
 
 AROUND = 5
+MAX_HOVERED = 100_000
 
 
 def station_m(result: SimulationResult) -> float:
@@ -118,7 +119,16 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     p = palette(dark)
     if i >= 0:
         add_point(fig, float(s[i]), float(size[i]), p.accent, p.background)
-    add_picks(fig, s, size)
+    words = (
+        [
+            f"line {line}, after {at:.2f} {unit}<br><b>{off:.4f} {unit}</b><br>δ<sub>X</sub> {d[0]:+.4f}, "
+            f"δ<sub>Y</sub> {d[1]:+.4f}, δ<sub>Z</sub> {d[2]:+.4f}"
+            for line, at, off, d in zip(result.path.block, s, size, delta, strict=True)
+        ]
+        if len(s) < MAX_HOVERED
+        else [""] * len(s)
+    )
+    add_picks(fig, s, size, words)
     key = "linked-deviation"
     parts.figure(
         fig, key, name="deviation", table=lambda: deviation_columns(result), caption=caption,
