@@ -12,10 +12,14 @@ import subprocess
 import sys
 import threading
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
+
+from robomill.compiled import cache_folder, cached_in
 
 LARGE = 20_000  # configurations from which a call starts the compiling for those that follow
 # The modules that hold a ``Kernels``; imported before compiling, so that one warm-up serves all.
+PACKAGE = Path(__file__).parents[1]
 HOLDERS = ("robomill.kinematics.forward", "robomill.kinematics.solutions", "robomill.workspace.solve")
 _registered: list[Kernels] = []
 _lock = threading.Lock()
@@ -72,9 +76,14 @@ def _load(pending: list[Kernels]) -> None:
     global _failure
     try:
         names = [kernels.module for kernels in pending]
+        folder = cache_folder(sorted([*PACKAGE.glob("kinematics/kernel*.py"), *PACKAGE.glob("workspace/kernel*.py")]))
+        there = {"NUMBA_CACHE_DIR": str(folder)} if folder is not None else {}
         command = f"import sys; sys.path[:0] = {sys.path!r}; import {', '.join(names)}"
-        subprocess.run([sys.executable, "-c", command], check=False, capture_output=True, timeout=600)
-        for kernels in pending:
-            kernels.loaded = import_module(kernels.module)
+        subprocess.run(
+            [sys.executable, "-c", command], check=False, capture_output=True, timeout=600, env={**there, **os.environ}
+        )
+        with cached_in(folder):
+            for kernels in pending:
+                kernels.loaded = import_module(kernels.module)
     except Exception as exc:  # no numba, no writable cache, no processes: NumPy serves
         _failure = f"compiled kernels are not available ({type(exc).__name__}: {exc})"

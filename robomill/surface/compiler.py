@@ -7,7 +7,6 @@ for work that would take NumPy longer than loading them. ROBOMILL_NUMPY=1 stays 
 
 from __future__ import annotations
 
-import hashlib
 import os
 import subprocess
 import sys
@@ -17,11 +16,13 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from robomill.compiled import cache_folder, cached_in
+
 Engine = Literal["auto", "compiled", "numpy"]
 
 # Work that would take NumPy longer than this waits for the kernels (half a second from the cache on disk).
 WORTH_WAITING_SECONDS = 3.0
-SOURCES = ("kernels.py", "tilted_kernels.py", "engagement_kernels.py")
+SOURCES = [Path(__file__).with_name(name) for name in ("kernels.py", "tilted_kernels.py", "engagement_kernels.py")]
 
 
 class Kernels(NamedTuple):
@@ -80,7 +81,7 @@ def kernels(engine: Engine = "auto", numpy_seconds: float = 0.0) -> Kernels | No
 def _build_apart() -> None:
     """Fill the cache from another process, then load from it."""
     try:
-        folder = cache_folder()
+        folder = cache_folder(SOURCES)
         if folder is None or not any(folder.rglob("*.nbi")):
             command = f"import sys; sys.path[:0] = {sys.path!r}; from robomill.surface import compiler as c; c._build()"
             subprocess.run([sys.executable, "-c", command], check=False, capture_output=True, timeout=600)
@@ -104,35 +105,9 @@ def _build() -> None:
 
 
 def _load() -> Kernels:
-    import numba
-
-    config: Any = numba.config
-    before, folder = config.CACHE_DIR, cache_folder()
-    config.CACHE_DIR = before if before or folder is None else str(folder)
-    try:
+    with cached_in(cache_folder(SOURCES)):
         from robomill.surface import engagement_kernels, kernels, tilted_kernels
-    finally:
-        config.CACHE_DIR = before
     return Kernels(kernels.cut_moves, tilted_kernels.cut_tilted, engagement_kernels.engage_moves)
-
-
-def cache_folder() -> Path | None:
-    """Where compiled code is kept, or None for the compiler's own choice.
-
-    The name holds a digest of all kernel sources: the compiler by itself looks only at a function's own file, and
-    would keep running old code of the functions it calls.
-    """
-    here = Path(__file__).parent
-    key = hashlib.sha256(b"".join((here / name).read_bytes() for name in SOURCES)).hexdigest()[:12]
-    for root in (here / "__pycache__", Path.home() / ".cache" / "robomill"):
-        folder = root / f"kernels-{key}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
-    return None
 
 
 def _exercise(module: Kernels) -> None:
