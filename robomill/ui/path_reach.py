@@ -16,10 +16,11 @@ from robomill.simulation.run import tool_frames
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import resample
-from robomill.units import from_si, to_si
+from robomill.units import from_si
 
 MAX_SAMPLES = 400_000
-BOARD_CELLS = (72, 48)
+BOARD_CELLS = (80, 80)
+BOARD_HALF = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +58,15 @@ def _path_reach(key: str, _setup: SimulationSetup) -> PathReach:
 
 def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] | None:
     """Cells of the board (the plane z m in {W}, around the part zero) that the tool cannot reach, for the pad."""
-    low, high = -0.2, 0.2
+    low, high = -BOARD_HALF, BOARD_HALF
     source = getattr(setup.source, "sketch", None)
     if source is not None and source.elements:
         points = np.vstack([e.outline() for e in source.elements])
         extent = float(np.abs(points).max())
         # A board that grows in steps, so that drawing does not move the grid.
-        low, high = (side * 0.2 * 2.0 ** max(0.0, np.ceil(np.log2(1.6 * extent / 0.2))) for side in (-1.0, 1.0))
+        low, high = (
+            side * BOARD_HALF * 2.0 ** max(0.0, np.ceil(np.log2(3.0 * extent / BOARD_HALF))) for side in (-1.0, 1.0)
+        )
     key = digest((setup.robot.digest(), setup.T_MW, low, high, round(z, 6)))
     runs = _board_runs(key, setup.robot, setup.T_MW, low, high, z)
     nx, ny = BOARD_CELLS
@@ -85,8 +88,3 @@ def _board_runs(key: str, _robot: Robot, _T_MW: FloatArray, low: float, high: fl
     rows, starts = np.nonzero(edges == 1)
     ends = np.nonzero(edges == -1)[1]
     return np.column_stack([rows, starts, ends]).tolist()
-
-
-def snap_default(unit: str) -> float:
-    """m: what a new board snaps to."""
-    return float(to_si(0.1, "in") if unit == "in" else to_si(5.0, "mm"))

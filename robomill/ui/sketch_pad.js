@@ -463,7 +463,9 @@ class Pad {
       const [u1, v0] = this.toScreen([reach.x + to * reach.dx, reach.y + (row + 1) * reach.dy]);
       d += `M${u0.toFixed(1)} ${v0.toFixed(1)}H${u1.toFixed(1)}V${v1.toFixed(1)}H${u0.toFixed(1)}Z`;
     }
-    if (d) node("path", { d, class: "far" }, into);
+    if (!d) return;
+    node("path", { d, class: "far" }, into);
+    node("text", { x: 42, y: this.size()[1] - 26, class: "tick" }, into, "hatched: out of the arm's reach");
   }
 
   drawShapes(into) {
