@@ -199,8 +199,6 @@ def _pick_layer(sheet: MapSheet, panel: Map, scale: Scale, dark: bool) -> dict[s
         "text": [hover_text(value, panel.unit, scale) for value in values.tolist()],
         "name": panel.title,
         "marker": {"size": 7, "opacity": 0, "color": palette(dark).text},
-        "selected": {"marker": {"opacity": 0}},
-        "unselected": {"marker": {"opacity": 0}},
         "hovertemplate": f"<b>{panel.title}</b><br>%{{text}}<br>{across} %{{x:.4g}}, {up} %{{y:.4g}}<extra></extra>",
     }
 
@@ -249,7 +247,8 @@ def _decorate(
             "showticklabels": shown,
             "range": [float(points[0] - half), float(points[-1] + half)],
             "automargin": False,
-            "ticks": "outside" if shown else "",
+            "visible": shown,
+            "showline": False,
             "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
         }
     layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=2, align="left", **ABOVE))
