@@ -82,7 +82,8 @@ def stock_inputs() -> None:
     setup, unit = state.project().setup, state.project().view.length
     stock = setup.stock
     given = "path" if stock is None else "stl" if stock.triangles is not None else "block"
-    current = st.session_state.get(PENDING) or given
+    # Asked for, but no file yet; any change of the project makes an end of the wait.
+    current = "stl" if st.session_state.get(PENDING) == setup.digest() else given
     inputs.choice("Stock", "stock.kind", STOCKS, current, _switch_stock, label_visibility="collapsed")
     if current == "stl":
         _stl(stock if given == "stl" else None)
@@ -109,7 +110,7 @@ def _switch_stock(kind: str) -> None:
         block = setup.stock_block
         state.change(stock=Stock(np.round(block.lower, 9), np.round(block.upper, 9)))
     elif setup.stock is None or setup.stock.triangles is None:
-        st.session_state[PENDING] = "stl"
+        st.session_state[PENDING] = setup.digest()
 
 
 def _stl(stock: Stock | None) -> None:

@@ -53,7 +53,9 @@ def inputs_panel() -> None:
     """Model, numbers, engagement, coupling."""
     setup = state.project().setup
     force = setup.force
-    current = st.session_state.get(PENDING) or kind_of(force)
+    # Asked for, but no record yet; any change of the project makes an end of the wait.
+    waits = st.session_state.get(PENDING) == setup.digest()
+    current = "measured" if waits else kind_of(force)
     inputs.choice("Model", "force.kind", KINDS, current, _switch, horizontal=False)
     if current == "measured":
         _measured(force if isinstance(force, MeasuredForce) else None)
@@ -99,7 +101,7 @@ def _switch(kind: str) -> None:
     st.session_state.pop(PENDING, None)
     if kind == "measured":
         if not isinstance(state.project().setup.force, MeasuredForce):
-            st.session_state[PENDING] = "measured"
+            st.session_state[PENDING] = state.project().setup.digest()
         return
     if kind in DEFAULT_ROW:
         row = material_panel.rows(kind)[DEFAULT_ROW[kind]]

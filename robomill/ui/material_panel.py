@@ -72,7 +72,7 @@ def _coefficients(force: ProcessForce) -> None:
     st.markdown(f"**{material.title}**")
     table_editor(
         f"material:{material.name}", lambda: coefficient_frame(material),
-        lambda frame: _keep(with_coefficients(material, frame), force.axial),
+        lambda frame: _keep(with_coefficients(material, frame), force.axial, from_editor=True),
         columns={"value": st.column_config.NumberColumn("value", format="%.6g")}, locked=("coefficient", "unit"),
     )  # fmt: skip
     parts.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
@@ -119,10 +119,10 @@ def _from_file(file: object) -> None:
     inputs.attempt("material:add", None, put)
 
 
-def _keep(material: Material, axial: bool = True) -> None:
+def _keep(material: Material, axial: bool = True, from_editor: bool = False) -> None:
     """Add or replace a row of this session and put it in force."""
     st.session_state[OWN] = {**st.session_state.get(OWN, {}), material.name: material}
-    state.change(force=model(material, axial=axial))
+    state.change(force=model(material, axial=axial), from_editor=from_editor)
 
 
 def coefficient_frame(material: Material) -> pd.DataFrame:

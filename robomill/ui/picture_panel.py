@@ -16,7 +16,7 @@ from robomill.units import format_si, from_si
 from robomill.viz.posed import posed
 from robomill.viz.scene import CAMERAS, SurfacePicture
 from robomill.viz.surfaces import surface_figure
-from robomill.viz.views import so_far, surface_picture, tip_drawn
+from robomill.viz.views import Exaggerated, so_far, surface_picture, tip_drawn
 
 HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
 EXTRAS = {
@@ -25,6 +25,12 @@ EXTRAS = {
 }  # fmt: skip
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
 HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
+EYES = {
+    "iso": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "up": {"x": 0, "y": 0, "z": 1}},
+    "along": {"eye": {"x": -1.6, "y": 0.0, "z": 0.55}, "up": {"x": 0, "y": 0, "z": 1}},
+    "top": {"eye": {"x": 0.0, "y": 0.0, "z": 1.8}, "up": {"x": 0, "y": 1, "z": 0}},
+    "front": {"eye": {"x": 0.0, "y": -1.8, "z": 0.05}, "up": {"x": 0, "y": 0, "z": 1}},
+}
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
 
@@ -40,20 +46,31 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     if png is not None:
         st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
     else:
-        unit = view.length
-        heights = shown.drawn
         parts.figure(
-            surface_figure(
-                from_si(heights.x, unit), from_si(heights.y, unit), from_si(heights.z, unit),
-                from_si(shown.error, "um"), float(from_si(result.setup.tolerance, "um")), dark=dark, height=height,
-                unit=unit,
-            ), "surface", alt="The machined surface, to be turned with the mouse.",
+            turnable(result, shown, view, dark, height), "surface",
+            alt="The machined surface, to be turned with the mouse.",
         )  # fmt: skip
     times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
     parts.note(
         f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
     )
+
+
+def turnable(result: SimulationResult, shown: Exaggerated, view: state.View, dark: bool, height: int) -> Any:
+    """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
+    unit, z = view.length, shown.drawn
+    fig = surface_figure(
+        from_si(z.x, unit), from_si(z.y, unit), from_si(z.z, unit), from_si(shown.error, "um"),
+        float(from_si(result.setup.tolerance, "um")), dark=dark, height=height, unit=unit,
+        revision=f"surface-{view.camera}",
+    )  # fmt: skip
+    ratio = fig.layout.scene.aspectratio
+    fig.update_layout(
+        scene_camera={**EYES[view.camera], "projection": {"type": "orthographic"}},
+        scene_aspectratio={a: 1.4 * float(getattr(ratio, a)) for a in "xyz"},
+    )
+    return fig
 
 
 def _controls() -> str:

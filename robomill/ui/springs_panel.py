@@ -23,7 +23,7 @@ from robomill.units import format_si, from_si, to_si, unit_label
 
 SPINDLE = SpindleSpring(
     to_si(0.05, "um/N"), to_si(0.02, "um/N"),
-    provenance=Provenance("assumed", "20 N/um across and 50 N/um along, typical of a milling spindle with its holder"),
+    provenance=Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder"),
 )  # fmt: skip
 BENDING_ON, WEIGHT_ON = "milling.bending", "milling.weight"
 TYPED = Provenance("user", "entered in the app")
@@ -52,10 +52,10 @@ def _find(kind: type[Kind]) -> Kind | None:
     return next((s for s in state.project().setup.springs if isinstance(s, kind)), None)
 
 
-def _put(kind: type[Spring], *new: Spring) -> None:
+def _put(kind: type[Spring], *new: Spring, from_editor: bool = False) -> None:
     """Replace every spring of ``kind`` by ``new``."""
     kept = tuple(s for s in state.project().setup.springs if not isinstance(s, kind))
-    state.change(springs=(*kept, *new))
+    state.change(springs=(*kept, *new), from_editor=from_editor)
 
 
 def _tool() -> None:
@@ -125,7 +125,7 @@ def _bending() -> None:
         return
     table_editor(
         "springs.bending", lambda: bending_frame(n, springs),
-        lambda frame: _put(JointBending, *bending_from(frame)), locked=("joint",),
+        lambda frame: _put(JointBending, *bending_from(frame), from_editor=True), locked=("joint",),
         columns={c: st.column_config.NumberColumn(c, format="%.4g", min_value=0.0) for c in ("about x", "about y")},
     )  # fmt: skip
     parts.note(f"{parts.badge('user')} {unit_label(BENDING)}; 0 is rigid, which is what the paper assumes.")
@@ -165,8 +165,9 @@ def _weight() -> None:
         return
     table_editor(
         "springs.weight", lambda: weight_frame(setup.robot.n, links),
-        lambda frame: state.change(links=weight_from(frame)), locked=("joint",),
-        columns={c: st.column_config.NumberColumn(c, format="%.6g") for c in WEIGHT_COLUMNS},
+        lambda frame: _take_weight(frame), locked=("joint",),
+        columns={"joint": st.column_config.TextColumn("joint", width=44)} | {
+            c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS},
     )  # fmt: skip
     if links is None:
         parts.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
@@ -184,6 +185,12 @@ def _switch_weight(on: bool) -> None:
     if not on:
         state.change(links=None, add_sag=False)
     state.store().revision += 1
+
+
+def _take_weight(frame: pd.DataFrame) -> None:
+    links = weight_from(frame)
+    add_sag = state.project().setup.add_sag and links is not None
+    state.change(links=links, add_sag=add_sag, from_editor=True)
 
 
 def weight_frame(n: int, links: LinkMasses | None) -> pd.DataFrame:
