@@ -24,6 +24,7 @@ from robomill.ui import (
     picture_panel,
     springs_panel,
     state,
+    station_views,
 )
 from robomill.ui.parts import Tile
 
@@ -112,7 +113,7 @@ def workbench(digest: str, dark: bool) -> None:
             _code_and_arm(result, i, dark)
         else:
             with st.container(border=True):
-                metrology_panel.section_facts(linked.section(result, i, dark))
+                metrology_panel.section_facts(station_views.section(result, i, dark))
     if question == "force":
         st.subheader("How sure is the force?")
         force_view.alloy_table(result, i, spread)
@@ -131,9 +132,9 @@ def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:
     code, arm = parts.split([1, 1.15], "code-arm")
     with code, st.container(border=True, height="stretch"):
         st.markdown("**Program**")
-        linked.code(result, i)
+        station_views.code(result, i)
     with arm, st.container(border=True, height="stretch"):
-        linked.arm(result, i, dark)
+        station_views.arm(result, i, dark)
 
 
 def _engaged(
@@ -141,7 +142,7 @@ def _engaged(
 ) -> None:
     dial, along = parts.split([1, 1.35], "force-engagement")
     with dial, st.container(border=True, height="stretch"):
-        linked.dial(result, i, spread, peak, dark)
+        station_views.dial(result, i, spread, peak, dark)
     with along, st.container(border=True, height="stretch"):
         force_view.engagement_plot(result, i, dark)
         force_view.coupling_facts(result)
@@ -150,15 +151,15 @@ def _engaged(
 def _tip(result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool) -> None:
     dial, section = parts.split([1, 1.9], "dial-section")
     with dial, st.container(border=True, height="stretch"):
-        linked.dial(result, i, spread, peak, dark)
+        station_views.dial(result, i, spread, peak, dark)
     with section, st.container(border=True, height="stretch"):
-        linked.section(result, i, dark)
+        station_views.section(result, i, dark)
     shares, lines = parts.split([1.3, 1], "shares-lines")
     with shares, st.container(border=True, height="stretch"):
-        linked.shares(result, i, dark)
+        station_views.shares(result, i, dark)
     with lines, st.container(border=True, height="stretch"):
         st.markdown("**Line by line, at the station**")
-        linked.lines_of(result, i)
+        station_views.lines_of(result, i)
 
 
 def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
