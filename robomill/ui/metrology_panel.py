@@ -19,19 +19,21 @@ from robomill.ui.linked import station_m
 from robomill.units import format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 
-STATIONS = 41
+STATIONS, FEW_STATIONS = 41, 13
+MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
 MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
 
 
-@st.cache_resource(max_entries=16, show_spinner=False)
+@st.cache_resource(max_entries=16, show_spinner="Measuring the groove along its length")
 def _profile(digest: str, _result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
-    sections = _result.grooves(np.linspace(0.02, 0.98, STATIONS) * float(_result.path.s[-1]))
+    count = STATIONS if len(_result.path) <= MANY_SAMPLES else FEW_STATIONS
+    sections = _result.grooves(np.linspace(0.02, 0.98, count) * float(_result.path.s[-1]))
     return groove_profile(sections), np.array([s.block for s in sections])
 
 
 def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
-    """The groove at 41 stations and the line of each, from the cache."""
+    """The groove at its stations (fewer on a very long program) and the line of each, from the cache."""
     return _profile(result.setup.digest(), result)
 
 

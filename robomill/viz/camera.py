@@ -56,6 +56,10 @@ def bounds(picture: SurfacePicture) -> tuple[FloatArray, FloatArray]:
     """Corners (3,), (3,) mm of what must be seen: the block with ``headroom`` above it, or ``whole`` all solids too."""
     low = np.array([picture.x[0], picture.y[0], picture.bottom])
     high = np.array([picture.x[-1], picture.y[-1], float(np.nanmax(picture.z)) + picture.headroom])
+    if picture.cutaway and picture.station is not None:
+        for i, along in enumerate(picture.direction):  # what is taken away needs no room
+            if abs(along) > 0.99:
+                (low if along > 0 else high)[i] = picture.station[i]
     if picture.whole:
         every = np.concatenate([np.asarray(solid.points) for solid in picture.solids])
         low, high = np.minimum(low, every.min(axis=0)), np.maximum(high, every.max(axis=0))
