@@ -45,7 +45,7 @@ def _by_numbers() -> None:
             )
     T_MW = state.project().setup.T_MW
     key = "part.rotation"
-    inputs.seed(key, float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9)))
+    pin(key, float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9)))
     with right:
         st.number_input(
             "Turn about Z, °", key=key, step=5.0, format="%.2f",
@@ -58,6 +58,15 @@ def _by_numbers() -> None:
             f"The part is tilted by {format_si(tilt, 'deg', 3)} against the robot's base, as its three points say; "
             "a turn typed here sets it upright."
         )
+
+
+def pin(key: str, value: float) -> None:
+    """Send ``value`` to the box ``key`` at every run, unless refused input waits there.
+
+    A box that is put into another column by a run that was broken off would otherwise come up, and answer, with 0.
+    """
+    waiting = state.store().refused.get(key)
+    st.session_state[key] = value if waiting is None else waiting[0]
 
 
 def _turn(degrees: float) -> None:

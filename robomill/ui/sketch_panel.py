@@ -11,6 +11,7 @@ from robomill.toolpath.sketch import SHAPES
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.ui import inputs, parts, state
 from robomill.ui.editors import table_editor
+from robomill.ui.part_zero_panel import pin
 from robomill.ui.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.sources import put_sketch, sketch_source
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
@@ -69,7 +70,7 @@ def _settings() -> None:
 
 def _setting(label: str, field: str, unit: str, step: float) -> None:
     key = f"sketch.{field}:{unit}"
-    inputs.seed(key, float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}"))
+    pin(key, float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}"))
 
     def take() -> None:
         typed = st.session_state[key]
