@@ -135,8 +135,7 @@ def coupling_facts(result: SimulationResult) -> None:
     if coupling is None:
         return
     if not coupling.converged:
-        parts.error(coupling.sentence)
-        return
+        return  # said beside its switch
     known = not np.isnan(coupling.contraction)
     rate = f"each change {coupling.contraction:.2g} of the last" if known else "one step sufficed"
     parts.facts([

@@ -67,6 +67,8 @@ def inputs_column(result: SimulationResult | None) -> None:
     setup = state.project().setup
     with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
         force_panel.inputs_panel()
+        if result is not None and result.coupling is not None and not result.coupling.converged:
+            st.warning(result.coupling.sentence, icon=":material/warning:")
     with st.expander("**Cutter**", expanded=True, key="milling.open.cutter"):
         cut_panel.cutter_inputs()
         if result is not None:
