@@ -44,12 +44,15 @@ def as_floats(
 
 def frozen(array: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     """A read-only, C-contiguous copy, for fields of frozen dataclasses (an array that is one already stays)."""
-    if isinstance(array, np.ndarray) and array.base is None and array.dtype == np.dtype(dtype):
-        if array.flags.c_contiguous and not array.flags.writeable:
-            return array
+    if isinstance(array, np.ndarray) and array.dtype == np.dtype(dtype) and _is_frozen(array):
+        return array
     copy = np.array(array, dtype=dtype, order="C")
     copy.flags.writeable = False
     return copy
+
+
+def _is_frozen(array: NDArray[Any]) -> bool:
+    return array.base is None and bool(array.flags.c_contiguous) and not array.flags.writeable
 
 
 def digest(value: Any) -> str:

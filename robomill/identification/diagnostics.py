@@ -125,8 +125,9 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
 
 def half_share(fit: Fit, k: int) -> float:
     """Half the 95 % interval of parameter ``k`` as a share of its estimate."""
-    t = float(stdtrit(fit.dof, 0.975)) if fit.dof > 0 else np.inf
-    return float(t * fit.stderr[k] / fit.x[k]) if fit.x[k] > 0 else float("inf")
+    if fit.dof <= 0 or not fit.x[k] > 0:
+        return float("inf")
+    return float(stdtrit(fit.dof, 0.975) * fit.stderr[k] / fit.x[k])
 
 
 def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict[str, str]) -> list[Finding]:
