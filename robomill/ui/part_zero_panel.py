@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import streamlit as st
@@ -38,20 +41,16 @@ def part_zero() -> None:
 def _by_numbers() -> None:
     unit = state.project().view.length
     left, right = st.columns(2)
+    T_MW = state.project().setup.T_MW
+    step, digits = (10.0, 2) if unit == "mm" else (1.0, 4)
     for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
         with column:
-            inputs.number(
-                axis, f"T_MW[{i},3]", unit, step=10.0 if unit == "mm" else 1.0, digits=2 if unit == "mm" else 4
-            )
-    T_MW = state.project().setup.T_MW
-    key = "part.rotation"
-    pin(key, float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9)))
+            value = float(f"{from_si(float(T_MW[i, 3]), unit):.12g}")
+            name = f"zero:{axis}:{unit}"
+            kept_number(f"{axis}, {unit_label(unit)}", name, value, step, digits, partial(_move, i, unit))
     with right:
-        st.number_input(
-            "Turn about Z, °", key=key, step=5.0, format="%.2f",
-            on_change=lambda: inputs.attempt(key, st.session_state[key], lambda: _turn(float(st.session_state[key]))),
-        )  # fmt: skip
-        inputs.sentence(key)
+        turn = float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9))
+        kept_number("Turn about Z, °", "zero:turn", turn, 5.0, 2, _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
         parts.note(
@@ -60,13 +59,28 @@ def _by_numbers() -> None:
         )
 
 
-def pin(key: str, value: float) -> None:
-    """Send ``value`` to the box ``key`` at every run, unless refused input waits there.
+def kept_number(label: str, name: str, value: float, step: float, digits: int, write: Callable[[float], None]) -> None:
+    """A number box whose own default is the value in force; ``write`` gets what is typed.
 
-    A box that is put into another column by a run that was broken off would otherwise come up, and answer, with 0.
+    A box that moves to another column while a run is broken off comes up with its default and answers with it. So the
+    value is the default, not an entry of the session, and a new value is a new box: nothing can turn into 0.
     """
-    waiting = state.store().refused.get(key)
-    st.session_state[key] = value if waiting is None else waiting[0]
+    waiting = state.store().refused.get(name)
+    shown = value if waiting is None else waiting[0]
+    key = f"{name}={shown}"
+
+    def take() -> None:
+        typed = st.session_state[key]
+        inputs.attempt(name, typed, lambda: write(float(typed)))
+
+    st.number_input(label, value=shown, key=key, step=step, format=f"%.{digits}f", on_change=take)
+    inputs.sentence(name)
+
+
+def _move(i: int, unit: str, typed: float) -> None:
+    T_MW = np.array(state.project().setup.T_MW)
+    T_MW[i, 3] = to_si(typed, unit)
+    state.change(T_MW=T_MW)
 
 
 def _turn(degrees: float) -> None:

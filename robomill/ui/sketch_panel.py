@@ -11,7 +11,7 @@ from robomill.toolpath.sketch import SHAPES
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.ui import inputs, parts, state
 from robomill.ui.editors import table_editor
-from robomill.ui.part_zero_panel import pin
+from robomill.ui.part_zero_panel import kept_number
 from robomill.ui.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.sources import put_sketch, sketch_source
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
@@ -69,18 +69,13 @@ def _settings() -> None:
 
 
 def _setting(label: str, field: str, unit: str, step: float) -> None:
-    key = f"sketch.{field}:{unit}"
-    pin(key, float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}"))
-
-    def take() -> None:
-        typed = st.session_state[key]
-        inputs.attempt(
-            key, typed, lambda: put_sketch(sketch_source().sketch.replace(**{field: to_si(float(typed), unit)}))
-        )  # fmt: skip
-
+    value = float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}")
     digits = {"in": 3, "in/min": 1, "mm": 2}.get(unit, UNITS[unit].digits)
-    st.number_input(f"{label}, {unit_label(unit)}", key=key, step=step, format=f"%.{digits}f", on_change=take)
-    inputs.sentence(key)
+
+    def write(typed: float) -> None:
+        put_sketch(sketch_source().sketch.replace(**{field: to_si(typed, unit)}))
+
+    kept_number(f"{label}, {unit_label(unit)}", f"sketch.{field}:{unit}", value, step, digits, write)
 
 
 def _all() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -27,6 +29,11 @@ def sketching(app: AppTest) -> AppTest:
     app.button_group(key="source.kind").set_value("sketch").run()
     assert not app.exception
     return app
+
+
+def box(app: AppTest, label: str) -> Any:
+    """The number box with this label."""
+    return next(b for b in app.number_input if b.label == label)
 
 
 def sketch_of(app: AppTest) -> Sketch:
@@ -69,8 +76,8 @@ def test_a_word_that_cannot_be_cut_is_kept_and_explained(sketching: AppTest) -> 
 
 def test_feed_and_depth_of_new_shapes_are_no_step_to_undo(sketching: AppTest) -> None:
     steps, digest = len(store(sketching).past), store(sketching).project.setup.digest()
-    sketching.number_input(key="sketch.depth:mm").set_value(1.5).run()
-    sketching.number_input(key="sketch.v_f:mm/min").set_value(600.0).run()
+    box(sketching, "Depth, mm").set_value(1.5).run()
+    box(sketching, "Feed, mm/min").set_value(600.0).run()
     assert sketch_of(sketching).depth == pytest.approx(1.5e-3)
     assert "that is 10.0 mm/s" in words(sketching)
     assert (len(store(sketching).past), store(sketching).project.setup.digest()) == (steps, digest)
@@ -80,7 +87,7 @@ def test_feed_and_depth_of_new_shapes_are_no_step_to_undo(sketching: AppTest) ->
 
 
 def test_a_feed_of_nothing_is_refused_beside_its_box(sketching: AppTest) -> None:
-    sketching.number_input(key="sketch.v_f:mm/min").set_value(0.0).run()
+    box(sketching, "Feed, mm/min").set_value(0.0).run()
     assert any("feed is 0 mm/min" in e for e in errors(sketching))
     assert sketch_of(sketching).v_f == pytest.approx(30e-3)
 

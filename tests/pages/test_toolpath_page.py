@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
+
+
+def box(app: AppTest, label: str) -> Any:
+    """The number box with this label."""
+    return next(b for b in app.number_input if b.label == label)
 
 
 def type_program(app: AppTest, text: str) -> None:
@@ -59,8 +66,8 @@ def test_what_cannot_be_reached_is_counted_and_named(app: AppTest) -> None:
 
 def test_part_zero_moves_the_cut(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.number_input(key="in:T_MW[1,3]:mm").set_value(-1200.0).run()
-    app.number_input(key="part.rotation").set_value(90.0).run()
+    box(app, "Y, mm").set_value(-1200.0).run()
+    box(app, "Turn about Z, °").set_value(90.0).run()
     assert not app.exception
     T_MW = store(app).project.setup.T_MW
     assert T_MW[1, 3] == pytest.approx(-1.2)
