@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray
 from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, parts, state, uncertainty
 from robomill.units import format_si, format_value, from_si
 from robomill.viz.engagement import shade
 from robomill.viz.paths import components_figure
@@ -109,6 +109,8 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
         at = from_si(at_feed(result, spread.deviation.T), unit)
         shade(fig, s, at.min(axis=1), at.max(axis=1), palette(dark).text, "alloy's rows")
         caption = "Deflected minus commanded, in {M}; shaded: the alloy's other coefficient rows. Click to go there."
+    if uncertainty.banded(fig, result, unit, dark=dark):
+        caption = f"{caption} {uncertainty.band_caption(result.setup)}"
     p = palette(dark)
     if i >= 0:
         add_point(fig, float(s[i]), float(size[i]), p.accent, p.background)
