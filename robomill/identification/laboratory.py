@@ -113,7 +113,7 @@ class Laboratory:
         marks = np.interp(np.nan_to_num(error, nan=np.inf), [0.0, 0.1, 0.4], [1.0, 0.5, 0.0])
         points = 100.0 * float(marks.mean())
         worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
-        off = "was not seen" if np.isnan(error[worst]) else f"is {error[worst]:.0%} off"
+        off = "was not seen" if np.isnan(error[worst]) else f"is {100 * error[worst]:.0f} % off"
         text = f"{points:.0f} of 100 points: joint {self.robot.joint_numbers[worst]} {off}."
         return Score(error, covered, points, text)
 

@@ -130,7 +130,8 @@ class MeasuredField:
         if crooked.any():
             k = int(np.argmax(self.asymmetry))
             text = (
-                f"{int(crooked.sum())} of {len(self.p)} matrices are not symmetric (worst {self.asymmetry[k]:.0%} at "
+                f"{int(crooked.sum())} of {len(self.p)} matrices are not symmetric (worst "
+                f"{100 * self.asymmetry[k]:.0f} % at "
                 f"{_point(self.p[k])}): an elastic arm's is, so look for a wrong sign, gauge or axis there."
             )
             found.append(Finding("suspicious", 0, text, int(crooked.sum())))

@@ -79,7 +79,7 @@ class Plan:
         with np.errstate(invalid="ignore", divide="ignore"):
             gain = np.where(np.isfinite(self.half_before), 1.0 - self.half_after / self.half_before, 1.0)
         k = int(np.nanargmax(np.where(self.half_before > 0, gain, -1.0)))
-        text = f"{len(self.F)} more tests should narrow the interval of {self.labels[k].label} by {gain[k]:.0%}"
+        text = f"{len(self.F)} more tests should narrow the interval of {self.labels[k].label} by {100 * gain[k]:.0f} %"
         if np.isfinite(self.path_before):
             was, now = format_si(self.path_before, "um"), format_si(self.path_after, "um")
             text += f", and the path's predicted deviation from ±{was} to ±{now} (one standard deviation)"

@@ -145,7 +145,7 @@ def _table_of(robot: Robot, name: str, single: IdentificationResult) -> Row:
     return Row(
         "Table 2",
         _joints(TABLES["table_2"]),
-        f"{_joints(C)}; loading one joint at a time gives them back to {worst:.1%}",
+        f"{_joints(C)}; loading one joint at a time gives them back to {100 * worst:.1f} %",
         "reproduced",
         "The values are the paper's; the load tests are synthetic, since its readings are not printed.",
         holds and worst < 0.02,
@@ -174,7 +174,8 @@ def _figure_6(plane: ComplianceField) -> Row:
     return Row(
         "Fig. 6 (claim 2)",
         "C_xx, C_yy from joints 1, 3, 5; C_zz from joints 2 and 3 only",
-        f"joints 1, 3, 5 make {part[0]:.0%} of C_xx and {part[1]:.0%} of C_yy; others in C_zz: {_nothing(others)}",
+        f"joints 1, 3, 5 make {100 * part[0]:.0f} % of C_xx and {100 * part[1]:.0f} % of C_yy; others in C_zz: "
+        f"{_nothing(others)}",
         "assumed",
         "Mean over the plane Z = 0.",
         min(part) >= 0.9 and others < 1e-12,
@@ -187,7 +188,7 @@ def _figure_7(plane: ComplianceField) -> Row:
     rest = float(sizes[[0, 1, 3, 4]][:, [4, 5]].max() / sizes[2, [4, 5]].min())
     return Row(
         "Fig. 7 (claim 3)", "C_xy from joints 1, 3, 5; C_xz and C_zy from joint 3 only",
-        f"joints 1, 3, 5 make {part:.0%} of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}", "assumed",
+        f"joints 1, 3, 5 make {100 * part:.0f} % of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}", "assumed",
         "At Z = 0 joints 2 and 3 alone move the tip vertically.", part >= 0.9 and rest < 1e-12,
     )  # fmt: skip
 

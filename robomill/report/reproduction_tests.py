@@ -132,8 +132,8 @@ def machined(flute: SimulationResult, flute_3: SimulationResult) -> Row:
         f"groove {format_si(offsets[0], 'mm', 2)} off with Table 2, {format_si(offsets[1], 'mm', 2)} with Table 3, "
         f"and {format_si(abs(grooves[0].floor_error), 'mm', 2)} too deep",
         "gap",
-        f"Joints alone make {offsets[0] / MEASURED_OFFSET:.0%} to {offsets[1] / MEASURED_OFFSET:.0%} of what was "
-        f"measured; structure, "
+        f"Joints alone make {100 * offsets[0] / MEASURED_OFFSET:.0f} % to "
+        f"{100 * offsets[1] / MEASURED_OFFSET:.0f} % of what was measured; structure, "
         "spindle and tool give as well. Nothing is tuned.",
         0.22e-3 < offsets[0] < offsets[1] < 0.3e-3,
     )

@@ -96,7 +96,7 @@ def _progress() -> None:
     left = reading.left_s
     wait = f", about {left:.0f} s left" if left == left and left >= 1 else ""
     with st.container(border=True):
-        st.progress(reading.share, f"Reading {reading.source.name}: {reading.share:.0%} of {size:.1f} MB{wait}")
+        st.progress(reading.share, f"Reading {reading.source.name}: {100 * reading.share:.0f} % of {size:.1f} MB{wait}")
         if st.button("Cancel", icon=":material/close:", key="reading.cancel"):
             give_up()
             st.rerun()

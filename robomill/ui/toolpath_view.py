@@ -135,7 +135,7 @@ def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> pa
     tone = {"ok": "ok", "tight": "tight"}.get(result.verdict.level, "out")
     return parts.Tile(
         "Max deviation", format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
-        f"{PLACES[noun]} {result.worst_block:,} · {result.verdict.share:.0%} of the tolerance",
+        f"{PLACES[noun]} {result.worst_block:,} · {100 * result.verdict.share:.0f} % of the tolerance",
         tone=tone, kind="computed",
     )  # fmt: skip
 

@@ -220,7 +220,7 @@ def test_three_more_tests_shrink_joint_4_by_a_third(page: AppTest, goal: str) ->
     assert not page.exception
     said = next(m.value for m in page.markdown if "more tests should narrow" in m.value)
     if goal == "joint":
-        assert "joint 4 by 83%" in said
+        assert "joint 4 by 83 %" in said
     if goal == "path":
         assert "the path's predicted deviation from" in said
 
