@@ -90,8 +90,10 @@ class PathForce:
             object.__setattr__(self, name, float(value))
 
     def components(self, conditions: CutConditions) -> FloatArray:
-        """(m, 3) N, the same at every step."""
-        return np.tile([self.feed, self.feed_normal, self.axial], (len(conditions), 1))
+        """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""
+        force = np.tile([self.feed, self.feed_normal, self.axial], (len(conditions), 1))
+        force[conditions.across <= PLUNGE, :2] = 0.0
+        return force
 
 
 def feed_share(p: ArrayLike, k: ArrayLike) -> FloatArray:

@@ -49,8 +49,8 @@ def _signs(tests: LoadTests) -> list[Finding]:
     loaded = np.isfinite(moved).all(axis=1) & (size > 0)
     share = float((work[loaded] < 0).mean()) if loaded.any() else 0.0
     if share > 0.5:
-        tests = f"{100 * share:.0f} % of the tests"
-        text = f"The tool moves against its force in {tests}: is the sign of the displacements turned?"
+        many = f"{100 * share:.0f} % of the tests"
+        text = f"The tool moves against its force in {many}: is the sign of the displacements turned?"
         return [Finding("suspicious", 0, text)]
     return []
 

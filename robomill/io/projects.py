@@ -30,6 +30,7 @@ from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, Sketc
 
 FORMAT = "robomill-setup"
 VERSION = 1
+PROGRAMS = (".nc", ".ngc", ".tap", ".gcode", ".cnc")
 BLOCKS = ("path", "part", "stock", "cutter", "force", "tolerance")
 
 
@@ -41,6 +42,11 @@ def load_setup(path: str | Path) -> SimulationSetup:
     file = Path(path)
     if file.is_dir():
         file = file / "setup.toml"
+    if file.suffix.lower() in PROGRAMS:
+        raise ProjectError(
+            f"{file}: this is a program, not a set-up; read it with 'robomill gcode', or cut it with "
+            "'robomill simulate SETUP.toml --program'."
+        )
     try:
         text = file.read_text(encoding="utf-8")
     except FileNotFoundError:

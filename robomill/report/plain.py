@@ -39,6 +39,7 @@ def gcode_lines(record: dict[str, Any]) -> list[str]:
     lines = [f"units    {record['units']}"]
     lines += [f"{kind:8} {moves[kind]:8d} moves  {format_value(length.get(kind, 0.0), 'mm')}" for kind in moves]
     if extents:
+        lines.append("extents of the cuts (rapids may reach further)")
         for axis, low, high in zip(AXES, *extents, strict=True):
             lines.append(f"{axis}        {format_value(low, 'mm')} to {format_value(high, 'mm')}")
     for f in record["findings"]:

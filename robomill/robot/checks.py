@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError
-from robomill.units import from_si
+from robomill.units import format_si, from_si
 
 MIN_JOINTS, MAX_JOINTS = 2, 7
 
@@ -61,12 +61,12 @@ def limits(value: FloatArray, prismatic: Any, where: str) -> None:
             )
 
 
-def compliance(value: FloatArray, name: str, where: str) -> None:
+def compliance(value: FloatArray, name: str, where: str, prismatic: BoolArray) -> None:
     bad = np.flatnonzero(value < 0.0)
     if bad.size:
-        raise RobotError(
-            f"{where}: joint {bad[0] + 1}: {name} is {value[bad[0]]:g}; a compliance cannot be negative (0 is rigid)."
-        )
+        i = int(bad[0])
+        found = format_si(float(value[i]), "1e-9 m/N" if prismatic[i] else "1e-7 rad/(N m)")
+        raise RobotError(f"{where}: joint {i + 1}: {name} is {found}; a compliance cannot be negative (0 is rigid).")
 
 
 def frame(value: Any, name: str, where: str) -> FloatArray:

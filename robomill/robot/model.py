@@ -118,12 +118,12 @@ class Robot:
 
     def _check_compliance(self, rows: int, where: str) -> None:
         C_theta = checks.column(self.C_theta_all, "compliance", rows, where)
-        checks.compliance(C_theta, "compliance", where)
+        checks.compliance(C_theta, "compliance", where, self.prismatic)
         object.__setattr__(self, "C_theta_all", frozen(C_theta))
         sets = {}
         for key, value in self.compliance_sets.items():
             column = checks.column(value, f"compliance set {key!r}", rows, where)
-            checks.compliance(column, f"compliance set {key!r}", where)
+            checks.compliance(column, f"compliance set {key!r}", where, self.prismatic)
             sets[key] = frozen(column)
         object.__setattr__(self, "compliance_sets", MappingProxyType(sets))
         if self.compliance_set != USER_SET and self.compliance_set not in sets:

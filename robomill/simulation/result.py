@@ -23,12 +23,12 @@ from robomill.toolpath.path import Toolpath
 from robomill.units import format_si
 
 TIGHT_FROM = 0.8
-Level = Literal["ok", "tight", "out", "unreached"]
+Level = Literal["ok", "tight", "out", "unreached", "missed"]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """``level`` ok | tight | out | unreached; ``share`` of the tolerance used; one sentence for a foreman."""
+    """``level`` ok | tight | out | unreached | missed; ``share`` of the tolerance used; one sentence for a foreman."""
 
     level: Level
     share: float
@@ -36,7 +36,7 @@ class Verdict:
 
     @property
     def red(self) -> bool:
-        return self.level in ("out", "unreached")
+        return self.level in ("out", "unreached", "missed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +100,16 @@ class SimulationResult:
 
     @cached_property
     def judged(self) -> BoolArray:
-        """(m,) samples that count for the verdict: at feed and reached."""
-        return np.asarray(self.path.cutting & self.answered)
+        """(m,) samples that count for the verdict: at feed, with an answer, the cutter within the stock's block."""
+        return np.asarray(self.path.cutting & self.answered & self.over_stock)
+
+    @cached_property
+    def over_stock(self) -> BoolArray:
+        """(m,) samples where the cutter is within the block of the stock: what is further off cuts air."""
+        block, p = self.setup.stock_block, self.path.p
+        outside = np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2]
+        beside = np.linalg.norm(outside, axis=1) >= self.setup.cutter.radius - 1e-9
+        return np.asarray(~beside & (p[:, 2] < block.upper[2] - 1e-9))
 
     @cached_property
     def deviation(self) -> FloatArray:
@@ -213,6 +221,8 @@ class SimulationResult:
         tolerance = self.setup.tolerance
         missed = int((~self.answered).sum())
         if self.worst < 0:
+            if self.answered[self.path.cutting].any():
+                return Verdict("missed", float("nan"), "The path never touches the stock: move the stock or the path.")
             if self.reached.any():
                 return Verdict("unreached", float("nan"), "No point of the cut lies inside the measured map.")
             return Verdict("unreached", float("nan"), "No point of the cut can be reached: move the part zero.")

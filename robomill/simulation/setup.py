@@ -19,7 +19,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Provenance, Robot
-from robomill.surface.stock import Stock
+from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 from robomill.units import format_si
@@ -78,6 +78,8 @@ class SimulationSetup:
         if getattr(self.force, "cutter", self.cutter) != self.cutter:
             # A process force is computed for the cutter that cuts; a changed cutter changes it too.
             object.__setattr__(self, "force", dataclasses.replace(self.force, cutter=self.cutter))  # type: ignore[type-var]
+        if self.stock is not None:
+            stock_grid(self.stock, self.cell)  # refuses a cell size that would need too many cells
         names = [spring.name for spring in self.springs]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

@@ -37,6 +37,7 @@ class Toolpath:
     block    (m,) int        1-based source line of the move (row of the table for a table of lines)
     n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated
     tool     (m,) int        tool number, 0 where not stated
+    counts                   rapid moves, straight cuts and arcs of the program, None where there is none
     """
 
     p: FloatArray
@@ -48,6 +49,7 @@ class Toolpath:
     tool: IntArray
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     units: str = "mm"
+    counts: tuple[int, int, int] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         p = as_floats(self.p, "toolpath points", (None, 3), error=ToolpathError)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,11 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
     """Make ``source`` the project's path; ``words`` say where it comes from. Raises its refusal."""
     setup = state.project().setup
     provenance = {**setup.provenance, "path": Provenance("user", words)}
+    force = setup.provenance.get("force")
+    if force is not None and force.kind in ("paper", "measured"):
+        # What was measured on one cut is an assumption on another.
+        provenance["force"] = Provenance("assumed", f"carried over from {setup.name!r}: {force.source}")
+    more.setdefault("name", PurePath(source.name).stem if isinstance(source, GCodeSource) else "Drawn here")
     state.change(source=source, provenance=provenance, from_editor=from_editor, **more)
     program_view.select_line(0)
 

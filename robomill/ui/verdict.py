@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, state, uncertainty
 from robomill.ui.parts import Tile
 from robomill.units import format_si
 
-WORDS = {"ok": "In tolerance", "tight": "Tight", "out": "Out of tolerance", "unreached": "Out of reach"}
-TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out"}
+WORDS = {
+    "ok": "In tolerance", "tight": "Tight", "out": "Out of tolerance", "unreached": "Out of reach",
+    "missed": "Misses the stock",
+}  # fmt: skip
+TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out", "missed": "out"}
+STRAIGHT = 1e-6  # m: cuts that stay this close to one line are one groove
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
@@ -47,7 +52,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
 
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
-    """What the cut will be like, for a foreman: sideways and depth error of the groove at mid-cut."""
+    """What the cut will be like, for a foreman: sideways and depth error where it is worst."""
     i = result.worst
     if i < 0:
         return result.verdict.sentence
@@ -60,6 +65,12 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     if length < 1e-12:
         return result.verdict.sentence
     aside = float(plane @ left / length)
+    if not one_groove(result):
+        worst, sideways, down = (
+            format_si(abs(v), unit, digits) for v in (result.max_deviation, aside, float(delta[2]))
+        )
+        words = "too deep" if delta[2] < 0 else "too shallow"
+        return f"At worst {worst} off, at line {result.worst_block}: {sideways} aside and {down} {words}."
     axis = "Y" if abs(left[1]) > 0.999 * length else "X" if abs(left[0]) > 0.999 * length else ""
     name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
     depth = float(delta[2])
@@ -68,11 +79,24 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     return f"The groove is {sideways} off {name} and {down} {words}."
 
 
+def one_groove(result: SimulationResult) -> bool:
+    """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
+    points = result.path.p[result.path.cutting][:, :2]
+    along = points[-1] - points[0]
+    length = float(np.linalg.norm(along))
+    if length < STRAIGHT:
+        return False
+    off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
+    return bool(np.abs(off).max() <= STRAIGHT)
+
+
 def previous(result: SimulationResult) -> SimulationResult | None:
-    """The result before the last change of the project, if it is a different one that can be computed."""
+    """The result before the last change of the project, if it is a different one of the same path."""
     old = state.before()
     if old is None or old.setup.digest() == result.setup.digest():
         return None
+    if digest(old.setup.source) != digest(result.setup.source):
+        return None  # two different parts are not before and after
     try:
         return cache.result(old.setup)
     except RobomillError:

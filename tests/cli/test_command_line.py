@@ -184,3 +184,18 @@ def test_an_apt_file_is_read_too(capsys, tmp_path: Path) -> None:
     r = record(capsys, "gcode", file)
     assert r["length_mm"]["feed"] == pytest.approx(100.0)
     assert r["units"] == "mm"
+
+
+def test_a_program_in_place_of_a_setup_is_told_apart(capsys) -> None:
+    code, _, err = run(capsys, "simulate", FLUTE / "path.nc")
+    assert code == 2
+    assert "this is a program, not a set-up" in err
+
+
+def test_a_letter_o_for_a_zero_is_guessed(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "typed.nc"
+    file.write_text("G21 G90\nG1 X5O.0 F100\nM2\n")
+    code, _, err = run(capsys, "gcode", file)
+    assert code == 2
+    assert "letter O among its digits; write the digit 0" in err
+    assert "ine 2" in err

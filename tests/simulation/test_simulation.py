@@ -159,3 +159,38 @@ def test_a_rapid_through_the_part_is_said_with_its_line(setup, result) -> None:
     rash = setup.source.text.replace("N60 G0 Z20", "N60 G0 X0 Y15")
     run = simulate(setup.replace(source=GCodeSource(rash)))
     assert run.surface_notes == ("Line 8: a rapid runs through material that no cut removes; lift the tool first.",)
+
+
+def test_cuts_in_air_do_not_win_the_verdict(setup) -> None:
+    text = "G21 G90 S12000 M3\nG0 X-50 Y0 Z-2\nG1 X50 F1800\nG0 Z20\nG0 X60 Y400\nG0 Z-2\nG1 X-60\nM2\n"
+    run = simulate(setup.replace(source=GCodeSource(text)))
+    assert run.worst_block == 3
+    assert not run.judged[run.path.block == 7].any()
+    assert run.max_deviation == pytest.approx(simulate(setup).max_deviation, rel=1e-6)
+
+
+def test_a_path_beside_the_stock_misses_it(setup) -> None:
+    run = simulate(setup.replace(source=GCodeSource("G21 G90 S9000 M3\nG0 X0 Y90 Z-2\nG1 X50 F1800\nM2\n")))
+    assert run.verdict.level == "missed"
+    assert run.verdict.red
+    assert "never touches the stock" in run.verdict.sentence
+
+
+def test_a_plunge_is_not_pushed_sideways(setup) -> None:
+    text = "G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F600\nG1 X40 F1800\nM2\n"
+    force = PathForce(feed=-10.0, feed_normal=100.0, axial=-20.0)
+    run = simulate(setup.replace(source=GCodeSource(text), force=force))
+    plunge = run.path.cutting & (run.path.block == 3)
+    assert run.F[plunge] == pytest.approx(np.tile([0.0, 0.0, -20.0], (int(plunge.sum()), 1)), abs=1e-9)
+    assert run.F[run.path.block == 4] == pytest.approx(
+        np.tile([-10.0, 100.0, -20.0], (int((run.path.block == 4).sum()), 1)), abs=1e-9
+    )
+
+
+def test_with_engagement_a_stated_force_ends_with_the_material(setup) -> None:
+    longer = GCodeSource(setup.source.text.replace("X-50", "X-60"))
+    run = simulate(setup.replace(engagement=True, source=longer))
+    in_air = run.path.cutting & (run.conditions.a_p == 0.0)
+    assert in_air.any()
+    assert (run.F[in_air] == 0.0).all()
+    assert run.F[run.judged & (run.conditions.a_p > 0)][:, 1] == pytest.approx(100.0)

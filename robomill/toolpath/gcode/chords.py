@@ -50,6 +50,7 @@ def to_toolpath(program: Program, chord_error: float) -> Toolpath:
         cutting=_spread(cuts, counts, False), block=_spread(program.line, counts, program.line[0]),
         n_s=_spread(program.n_s, counts, program.n_s[0]), tool=_spread(program.tool, counts, program.tool[0]),
         findings=program.findings, units=program.units or "mm",
+        counts=(int((program.kind == 0).sum()), int((program.kind == 1).sum()), int((program.kind == 2).sum())),
     )  # fmt: skip
 
 

@@ -111,6 +111,8 @@ def _bad_character(text: str, at: int) -> str:
         return f"{text[max(at - 6, 0) : at + 3]!r} has a decimal comma; write a point."
     if letter == "n":
         return "N is not at the start of the line; a line number comes first."
+    if letter == "o" and at and text[at - 1].isdigit() and text[at + 1 : at + 2] in (".", ""):
+        return f"{text[max(at - 3, 0) : at + 3]!r} has a letter O among its digits; write the digit 0."
     if letter == "o":
         return "an O word is not at the start of the line; put it on a line of its own."
     shown = letter if letter.isprintable() else f"\\x{ord(letter):02x}"
