@@ -99,6 +99,7 @@ def _open(kept: state.Store) -> None:
         "A project or set-up file (.toml)", key=key, type=["toml"], max_upload_size=MAX_PROJECT_MB,
         on_change=lambda: _take(st.session_state.get(key)),
     )  # fmt: skip
+    inputs.sentence("open")  # here as well: the open popover lies over the sentence in the side bar
 
 
 def _take(file: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from conftest import go, store, words
+from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 
@@ -51,3 +51,16 @@ def test_the_sidebar_shows_the_units_on_every_page(app: AppTest) -> None:
         go(app, page)
         assert app.button_group(key="view.units").value in ("in", ["in"]), page
         assert app.selectbox(key="view.joint_unit").value == "1e-7 rad/(N m)"
+
+
+def test_a_broken_project_is_refused_where_it_was_opened(app: AppTest) -> None:
+    before = store(app).project.setup.digest()
+    box = next(b for b in app.file_uploader if b.label.startswith("A project"))
+    box.set_value(("mine.toml", b"format = [", "text/plain"))
+    app.run()
+    assert not app.exception
+    # Once inside the popover, once in the side bar for when the popover is closed.
+    said = [e for e in errors(app) if e.startswith("mine.toml was not opened.")]
+    assert len(said) == 2
+    assert said[0] == said[1]
+    assert store(app).project.setup.digest() == before
