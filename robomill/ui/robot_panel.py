@@ -17,6 +17,8 @@ from robomill.ui.pose import PoseNumbers
 from robomill.units import from_si, unit_label
 from robomill.viz.theme import joint_colours
 
+SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
+
 
 def editors(project: state.Project) -> None:
     """Compliances, geometry, limits and tool, each in its own tab."""
@@ -78,20 +80,26 @@ def _compliances(robot: Robot, unit: str) -> None:
             lambda name: None if name == USER_SET else state.change(
                 robot=state.project().setup.robot.with_compliance_set(name)),
         )  # fmt: skip
-    word = "Stiffness" if tables.is_stiffness(unit) else "Compliance"
+    stiff = tables.is_stiffness(unit)
+    heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
     table_editor(
         f"compliance:{unit}", lambda: tables.compliance_frame(state.project().setup.robot, unit),
-        lambda frame: state.change(
-            robot=tables.with_compliance(state.project().setup.robot, frame, unit), from_editor=True
-        ),
+        lambda frame: _write_compliance(frame, unit),
         columns={"joint": st.column_config.TextColumn("Joint", width="small"),
-                 "value": st.column_config.NumberColumn(f"{word}, {unit_label(unit)}", format="%.6g")},
+                 "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS)},
         locked=("joint",),
     )  # fmt: skip
     if robot.compliance_set == USER_SET:
         parts.note(f"{parts.badge('user')} entered in the app")
     else:
         _said(robot, f"compliance.{robot.compliance_set}")
+
+
+def _write_compliance(frame: pd.DataFrame, unit: str) -> None:
+    robot = tables.with_compliance(state.project().setup.robot, frame, unit)
+    # What was typed in SI comes back in the column's unit, so that the cell agrees with its heading.
+    spelled = not tables.is_stiffness(unit) and any(map(tables.is_si_text, frame["value"]))
+    state.change(robot=robot, from_editor=not spelled)
 
 
 def _write_geometry(frame: pd.DataFrame) -> None:

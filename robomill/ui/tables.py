@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,6 +17,9 @@ from robomill.units import from_si, to_si, unit_label
 
 PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
 GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
+RIGID = "∞"
+SI_BELOW = 1e-3
+_NUMBER = re.compile(r"[+\-−]?(\d+[.,]?\d*|[.,]\d+)([eE][+\-−]?\d+)?")
 LINE_COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
 
 
@@ -30,39 +34,58 @@ def is_stiffness(unit: str) -> bool:
 
 
 def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
-    """One row a joint: its compliance in ``unit`` (or stiffness; empty where a joint does not give at all)."""
-    units = _joint_units(robot, unit)
+    """One row a joint: its compliance in ``unit`` as text (or stiffness; ∞ where a joint does not give at all).
+
+    Text, since a column of numbers lets nobody type an exponent.
+    """
     values = []
-    for C, u in zip(robot.C_theta_all, units, strict=True):
-        if is_stiffness(u):
-            values.append(float(f"{from_si(1.0 / C, u):.10g}") if C > 0 else None)
-        else:
-            values.append(float(f"{from_si(C, u):.10g}"))
-    return pd.DataFrame({"joint": _names(robot), "value": values})
+    for C, u in zip(robot.C_theta_all, _joint_units(robot, unit), strict=True):
+        shown = C if not is_stiffness(u) else 1.0 / C if C > 0 else np.inf
+        values.append(f"{from_si(shown, u):.10g}" if np.isfinite(shown) else RIGID)
+    return pd.DataFrame({"joint": _names(robot), "value": pd.Series(values, dtype=object)})
 
 
 def with_compliance(robot: Robot, frame: pd.DataFrame, unit: str) -> Robot:
     """``robot`` with the table's compliances. Raises RobotError naming the joint that cannot be."""
-    C = np.empty(robot.rows)
-    for i, u in enumerate(_joint_units(robot, unit)):
-        typed = frame["value"].iloc[i]
-        word = "stiffness" if is_stiffness(u) else "compliance"
-        if _empty(typed):
-            if is_stiffness(u) and robot.C_theta_all[i] == 0:
-                C[i] = 0.0
-                continue
-            raise RobotError(f"Joint {i + 1}: the {word} is missing; type a number in {unit_label(u)}.")
-        value = float(typed)
-        if is_stiffness(u):
-            if not value > 0:
-                raise RobotError(f"Joint {i + 1}: stiffness is {value:g}; it must be greater than 0 {unit_label(u)}.")
-            C[i] = 1.0 / to_si(value, u)
-        else:
-            C[i] = to_si(value, u)
+    units = _joint_units(robot, unit)
+    C = np.array([compliance_from_text(frame["value"].iloc[i], u, f"Joint {i + 1}") for i, u in enumerate(units)])
     same = [k for k, known in robot.compliance_sets.items() if np.allclose(known, C, rtol=1e-9, atol=0.0)]
     if same:
         return robot.with_compliance_set(same[0])
     return robot.replace(C_theta_all=C)
+
+
+def compliance_from_text(typed: Any, unit: str, where: str) -> float:
+    """The compliance (rad/(N m), or m/N) that a cell in ``unit`` means; raises RobotError opening with ``where``.
+
+    Decimal point or comma. A compliance written with an exponent and below 1e-3 is in SI whatever the column's unit:
+    "7.14e-7" is what the column calls 7.14.
+    """
+    word = "stiffness" if is_stiffness(unit) else "compliance"
+    text = "" if _empty(typed) else str(typed).strip()
+    if not text:
+        raise RobotError(f"{where}: the {word} is missing; type a number in {unit_label(unit)}.")
+    if is_stiffness(unit) and text == RIGID:
+        return 0.0
+    if not _NUMBER.fullmatch(text):
+        raise RobotError(
+            f"{where}: the {word} {text[:40]!r} is not a number; type one in {unit_label(unit)}, like 7.14."
+        )
+    value = float(text.replace("−", "-").replace(",", "."))
+    if value < 0 or not np.isfinite(value) or (is_stiffness(unit) and value == 0):
+        least = "a finite number greater than 0" if is_stiffness(unit) else "a finite number, 0 or more"
+        raise RobotError(f"{where}: the {word} is {text[:40]}; expected {least} {unit_label(unit)}.")
+    if is_stiffness(unit):
+        return 1.0 / float(to_si(value, unit))
+    return value if is_si_text(text) else float(to_si(value, unit))
+
+
+def is_si_text(typed: Any) -> bool:
+    """Whether a compliance is written as a small number with an exponent, so that it is in SI."""
+    text = "" if _empty(typed) else str(typed).strip()
+    if not _NUMBER.fullmatch(text) or "e" not in text.lower():
+        return False
+    return abs(float(text.replace("−", "-").replace(",", "."))) < SI_BELOW
 
 
 def geometry_frame(robot: Robot) -> pd.DataFrame:

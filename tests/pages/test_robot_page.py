@@ -16,7 +16,7 @@ def halve_joint_5(app: AppTest) -> None:
     kept = store(app)
     robot = kept.project.setup.robot
     frame = tables.compliance_frame(robot, "1e-7 rad/(N m)")
-    frame.loc[4, "value"] = 45.675
+    frame.loc[4, "value"] = "45.675"
     new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame, "1e-7 rad/(N m)"))
     kept.past, kept.project = [kept.project], state.Project(new, kept.project.view, kept.project.preset)
 
