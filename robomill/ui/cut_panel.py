@@ -162,6 +162,6 @@ def judgement_inputs() -> None:
     inputs.number("Tolerance", "tolerance", unit, step=small)
     left, right = st.columns(2)
     with left:
-        inputs.number("Cell of the surface", "cell", unit, step=small)
+        inputs.number("Cell of the surface", "cell", unit, step=small, digits=4)
     with right:
         inputs.number("Step along the path", "step", unit, step=0.5 if unit == "mm" else 0.02)

@@ -12,6 +12,7 @@ from robomill.io.samples import samples_dir
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
+from robomill.toolpath.source import GCodeSource
 from robomill.ui import cache, parts, state
 from robomill.ui.story import PAPER, PAPER_MAP, PAPER_MEASURED, PAPER_TABLE_2
 from robomill.units import from_si
@@ -21,6 +22,14 @@ from robomill.viz.evidence import Claim, evidence_figure
 @st.cache_resource(show_spinner=False)
 def _process_setup() -> SimulationSetup:
     return load_setup(samples_dir() / PAPER / "setup_process.toml")
+
+
+def is_papers_path(project: state.Project) -> bool:
+    """Whether the project cuts the paper's slot, by the text of its program: beside another part the chart misleads."""
+    source, paper = project.setup.source, state.preset_setup(PAPER).source
+    if isinstance(source, GCodeSource) and isinstance(paper, GCodeSource):
+        return source.text == paper.text
+    return source == paper
 
 
 def claims(project: state.Project) -> list[Claim]:

@@ -172,9 +172,10 @@ def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bo
     with spread_over, st.container(border=True, height="stretch"):
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)
-    st.subheader("The paper's test, and ours")
-    with st.container(border=True):
-        evidence_panel.panel(state.project(), dark)
+    if evidence_panel.is_papers_path(state.project()):
+        st.subheader("The paper's test, and ours")
+        with st.container(border=True):
+            evidence_panel.panel(state.project(), dark)
     st.subheader("Take it away")
     picture_panel.downloads(result, i)
     with st.expander("Film of the cut", icon=":material/movie:", key="milling.open.film"):

@@ -6,6 +6,9 @@ import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import state
+
 
 def test_it_runs_with_every_figure(app: AppTest) -> None:
     go(app, "6_Milling")
@@ -92,3 +95,20 @@ def test_the_view_survives_pages(app: AppTest) -> None:
     assert app.selectbox(key="view.camera").value == "top"
     assert app.slider(key="view.station").value == pytest.approx(20.0)
     assert store(app).project.view.station == pytest.approx(0.2)
+
+
+def test_the_papers_test_is_shown_beside_the_papers_path_alone(app: AppTest) -> None:
+    go(app, "6_Milling")
+    assert "The paper's test, and ours" in [s.value for s in app.subheader]
+    kept = store(app)
+    setup = kept.project.setup.replace(source=GCodeSource("G21 G90\nG0 X-20 Y0 Z-2\nG1 X20 F1200\n", "mine.nc"))
+    kept.project = state.Project(setup, kept.project.view, kept.project.preset)
+    app.run()
+    assert not app.exception
+    assert "The paper's test, and ours" not in [s.value for s in app.subheader]
+    assert "Take it away" in [s.value for s in app.subheader]
+
+
+def test_a_small_cell_is_shown_as_it_is(app: AppTest) -> None:
+    go(app, "6_Milling")
+    assert app.number_input(key="in:cell:mm").proto.format == "%.4f"
