@@ -116,6 +116,10 @@ def groove_sections(
     return tuple(found)
 
 
+MANY_PASSES = 1.2  # cutter diameters: a cut wider than this was made by several passes
+WIDE = "wider than the cutter: several passes made it, so look at the walls; the middle and the tilt say little"
+
+
 def _section(
     stock: Stock, cutter: Cutter, paths: tuple[SweptPath, SweptPath], place: Station, tip: FloatArray,
     block: int, samples: int,
@@ -152,6 +156,7 @@ def _section(
         floor=machined.floor, floor_ideal=ideal.floor, floor_tilt=machined.floor_tilt,
         open_left=bool(np.isnan(machined.left)), open_right=bool(np.isnan(machined.right)),
         w=frozen(w), z_ideal=frozen(ideal.height(w)), z_machined=frozen(machined.height(w)),
+        note=WIDE if ideal.left - ideal.right > MANY_PASSES * cutter.diameter else "",
     )  # fmt: skip
 
 

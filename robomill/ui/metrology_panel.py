@@ -47,7 +47,7 @@ def straight(result: SimulationResult) -> bool:
 
 def section_facts(groove: GrooveSection | None) -> None:
     """The dimensions of the section, as a measuring report lists them."""
-    if groove is None or groove.note:
+    if groove is None or not len(groove.w):
         return
     unit = state.project().view.length
 
@@ -61,10 +61,21 @@ def section_facts(groove: GrooveSection | None) -> None:
         form = format_si(getattr(groove, f"wall_{side}_straightness"), "um")
         return f"{side.capitalize()} wall", angle, f"straight within {form}"
 
+    if groove.note:
+        parts.note(f"{groove.note.capitalize()}.")
+        sides = [
+            (f"{side.capitalize()} wall off", length(off, True), "its ideal place, positive to the left of the feed")
+            for side, off in (
+                ("left", groove.wall_left - groove.wall_left_ideal),
+                ("right", groove.wall_right - groove.wall_right_ideal),
+            )
+        ]
+    else:
+        sides = [("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed")]
     parts.facts([
         ("Width", length(groove.width), ""),
         ("Depth", length(groove.depth), ""),
-        ("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed"),
+        *sides,
         ("Floor", length(groove.floor_error, True), f"tilted by {format_si(groove.floor_tilt, 'deg', 3)} across"),
         wall("left"),
         wall("right"),

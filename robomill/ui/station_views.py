@@ -117,7 +117,7 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
     groove = parts.attempt(cache.groove, result.setup, station_m(result))
     if groove is None:
         return None
-    if groove.note:
+    if not len(groove.w):
         parts.note(f"No section here: {groove.note}.")
         return groove
     parts.figure(
