@@ -90,7 +90,8 @@ def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, captio
     """Show a sheet; a click in it makes its cell the point in hand and runs the page again."""
     ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
     most = {1: 400, 2: 240}.get(len(drawn.rows), 165)
-    panel = int(min(max(700 / columns * ratio, 88), most))
+    least = 88 if len(drawn.scales) == 1 else 130  # the title of a colour bar stands along it
+    panel = int(min(max(700 / columns * ratio, least), most))
     fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=f"{key}-{normal}", gap_x=0.03, gap_y=34)
     widget = f"sheet-{key}"
 

@@ -16,6 +16,7 @@ from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
 LEFT, RIGHT = 62, 84  # px for tick labels and colour bar, fixed: measuring them would draw everything twice
+BAR_ROOM = 110  # px of height that a colour bar with its title beside it needs; bars with less stand side by side
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ def sheet_figure(
     inner = height - top - bottom
     width = (1.0 - gap_x * (n_columns - 1)) / n_columns
     used = list(dict.fromkeys(m.scale for row in sheet.rows for m in row if m is not None))
+    beside = inner < BAR_ROOM * len(used)
     data: list[dict[str, Any]] = []
     layout = house_layout(
         dark=dark,
@@ -88,10 +90,10 @@ def sheet_figure(
         hoverdistance=-1,
         clickmode="event+select",
         showlegend=False,
-        margin={"l": LEFT, "r": RIGHT, "t": top, "b": bottom, "autoexpand": False},
+        margin={"l": LEFT, "r": RIGHT * (len(used) if beside else 1), "t": top, "b": bottom, "autoexpand": False},
     )
     for name in used:
-        layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, dark)
+        layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, beside, dark)
     index = 0
     for r, row in enumerate(sheet.rows):
         y1 = 1.0 - r * (panel_height + gap_y) / inner
@@ -127,11 +129,13 @@ def _below_empty(sheet: MapSheet, r: int, c: int) -> bool:
     return all(c >= len(row) or row[c] is None for row in sheet.rows[r + 1 :])
 
 
-def _colour_axis(sheet: MapSheet, name: str, used: list[str], dark: bool) -> dict[str, Any]:
+def _colour_axis(sheet: MapSheet, name: str, used: list[str], beside: bool, dark: bool) -> dict[str, Any]:
     scale = sheet.scales[name]
     place = used.index(name)
-    share = 1.0 / len(used)
-    bar = colour_bar(scale.title, dark=dark, x=1.005, len=share, y=1.0 - share * (place + 0.5))
+    share = 1.0 if beside else 1.0 / len(used)
+    bar = colour_bar(scale.title, dark=dark, x=1.005, len=share, y=0.5 if beside else 1.0 - share * (place + 0.5))
+    if beside:
+        bar["xpad"] += RIGHT * place
     if scale.kind == "joints":
         count = len(scale.joints)
         colours = joint_colours(count, dark)

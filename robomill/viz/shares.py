@@ -155,16 +155,18 @@ def line_panels(
     margin = {"l": 8, "r": 8, "t": 58, "b": 8}
     layout = house_layout(dark=dark, height=height, revision="lines", hovermode="x unified", margin=margin)
     layout["legend"] = {**layout["legend"], "y": 1.07}
-    width, tall = (1 - 0.05 * (columns - 1)) / columns, (1 - 0.2 * (rows - 1)) / rows
+    gap = 0.08  # with the room left and right of each line it keeps the end labels of two panels apart
+    width, tall = (1 - gap * (columns - 1)) / columns, (1 - 0.2 * (rows - 1)) / rows
     span = list(_span(panels))
     data: list[Trace] = []
     for index, panel in enumerate(panels):
         r, c = divmod(index, columns)
         suffix = "" if index == 0 else str(index + 1)
         data += _line_traces(panel, joints, unit, suffix, dark)
-        x0, y1 = c * (width + 0.05), 1 - r * (tall + 0.2)
+        x0, y1 = c * (width + gap), 1 - r * (tall + 0.2)
         layout[f"xaxis{suffix}"] = axis(s_titles[index], dark=dark, nticks=4, anchor=f"y{suffix}") | {
-            "domain": [x0, min(x0 + width, 1.0)]
+            "domain": [x0, min(x0 + width, 1.0)],
+            "range": _wider(panel.s),
         }
         title = f"deviation, {unit}" if c == 0 else ""
         layout[f"yaxis{suffix}"] = axis(title, dark=dark, range=span, nticks=5, anchor=f"x{suffix}") | {
@@ -173,6 +175,13 @@ def line_panels(
         }
         layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=3, **ABOVE))
     return unchecked(data, layout)
+
+
+def _wider(s: FloatArray) -> list[float]:
+    """The range of s with room at both ends, so that no tick label stands out over its panel."""
+    low, high = float(np.min(s)), float(np.max(s))
+    room = 0.06 * (high - low) or 1.0
+    return [low - room, high + room]
 
 
 def _line_traces(panel: LinePanel, joints: Sequence[int], unit: str, suffix: str, dark: bool) -> list[Trace]:

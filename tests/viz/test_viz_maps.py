@@ -69,10 +69,16 @@ def test_a_large_plane_has_few_points_to_click() -> None:
 def test_two_scales_have_a_bar_each() -> None:
     scales = {"main": Scale("a", 0, 1), "difference": Scale("b", -1, 1, "diverging")}
     sheet = MapSheet([[Map("a", values()), Map("b", values(), "difference")]], U, V, "u", "v", scales)
-    fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
+    fig = sheet_figure(sheet, dark=False, panel_height=300, revision="a")
     bars = [fig.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
     assert bars[0].len == bars[1].len == 0.5
     assert bars[0].y != bars[1].y
+    # In a low sheet they stand side by side, each as high as the sheet.
+    low = sheet_figure(sheet, dark=False, panel_height=130, revision="a")
+    bars = [low.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
+    assert bars[0].len == bars[1].len == 1.0
+    assert bars[1].xpad - bars[0].xpad >= 80
+    assert low.layout.margin.r == 2 * fig.layout.margin.r
 
 
 def test_a_pick_snaps_to_the_grid() -> None:
@@ -179,6 +185,8 @@ def test_gains_and_lines_are_drawn() -> None:
     fig = line_panels(panels, (1, 2), ["X"] * 6, "mm", dark=False)
     assert len(fig.data) == 6 * 4
     assert fig.layout.yaxis.range == fig.layout.yaxis6.range
+    assert fig.layout.xaxis.range == (-0.06, 1.06)
+    assert fig.layout.xaxis2.domain[0] - fig.layout.xaxis.domain[1] >= 0.07
     empty = line_panels([LinePanel("", s, s * np.nan, by_joint * np.nan)], (1, 2), ["X"], "mm", dark=False)
     assert empty.layout.yaxis.range is not None
 
