@@ -31,7 +31,7 @@ reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(shown.simulated, setup) if reach is not None else None
 
 kind = kind_of(source)
-shown.headline(source.name, path, reach, result, unit, kind)
+shown.headline(source, path, reach, result, unit)
 shown.tiles(path, reach, result, unit, kind)
 
 left, right = ui.thirds() if kind == "program" else ui.split([1.2, 1.75], "page", gap="large")

@@ -10,7 +10,8 @@ import streamlit as st
 
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.path import Finding
+from robomill.toolpath.apt import is_apt
+from robomill.toolpath.path import Finding, Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import parts
 from robomill.ui.path_reach import PathReach
@@ -19,6 +20,8 @@ from robomill.ui.program_view import LEVELS, program_lines, select_line, selecte
 from robomill.units import format_si, format_value, from_si, unit_label
 
 DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
+
+ASSUMED_UNITS = "lengths are taken as mm"
 
 
 def duration(seconds: float) -> str:
@@ -34,14 +37,42 @@ def counted(count: int, word: str) -> str:
     return f"{count:,} {word}{'' if count == 1 else 's'}"
 
 
+def worst_first(findings: Sequence[Finding]) -> list[Finding]:
+    """Findings in the order of the list: by level, then by line."""
+    order = list(LEVELS)
+    return sorted(findings, key=lambda f: (order.index(f.level), f.line))
+
+
+def finding_words(finding: Finding, most: int = 64) -> str:
+    """A finding in one line of about ``most`` characters, cut between words."""
+    said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
+    return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
+
+
+def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
+    """The program's units and who says so: ``mm (G21)``, ``mm, assumed (no G20 or G21)``."""
+    name = {"mm": "millimetres" if long else "mm", "in": "inches" if long else "in"}.get(path.units, path.units)
+    silent = [f.message.partition(":")[0] for f in path.findings if f.message.endswith(ASSUMED_UNITS)]
+    if silent:
+        return f"{name}, assumed ({silent[0]})"
+    return f"{name} ({'UNITS' if is_apt(source.text[:200_000].encode()) else {'mm': 'G21', 'in': 'G20'}.get(path.units, '')})"
+
+
+def move_words(path: Toolpath) -> str:
+    """``27 moves, 5 arcs``: every move of the program, an arc as one; without arcs where they are not known."""
+    counts = path.counts
+    if counts is None:
+        return counted(len(path) - 1, "move")
+    return f"{counted(sum(counts), 'move')}, {counted(counts[2], 'arc') if counts[2] else 'no arcs'}"
+
+
 def findings_list(findings: Sequence[Finding]) -> None:
     """What the reader noticed, worst first; a click on a row points at its line."""
     st.markdown("**What was read**")
     if not findings:
         parts.note("Every word was understood; nothing was skipped or guessed.")
         return
-    order = list(LEVELS)
-    found = sorted(findings, key=lambda f: (order.index(f.level), f.line))
+    found = worst_first(findings)
     shown = found[:500]
     frame = pd.DataFrame({
         "level": [LEVELS[f.level] for f in shown], "line": [f"{f.line:,}" if f.line else "all" for f in shown],
@@ -89,7 +120,8 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     if isinstance(setup.source, GCodeSource):
         tools = summary.tools
         words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
-        rows.append(("Written in", {"mm": "millimetres (G21)", "in": "inches (G20)"}.get(path.units, "mm"), words))
+        rows.append(("Written in", written_in(setup.source, path, long=True), words))
+        rows.append(("Moves", move_words(path), ""))
     body = "".join(f'<tr><td class="q">{a}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
     st.html(f'<table class="rm-facts">{body}</table>')
 

@@ -12,8 +12,9 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource, PathSource
 from robomill.ui import cache, parts, state
-from robomill.ui.path_details import counted, duration
+from robomill.ui.path_details import counted, duration, finding_words, move_words, worst_first, written_in
 from robomill.ui.path_reach import PathReach
 from robomill.ui.path_summary import missed_blocks, path_summary
 from robomill.ui.program_view import select_line, selected_line
@@ -59,12 +60,13 @@ def ask_button(setup: SimulationSetup) -> None:
 
 
 def headline(
-    name: str, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str
+    source: PathSource, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str
 ) -> None:
     """Whether the path can be reached and how far off it is; beneath, what was read.
 
     Always two lines, so that the board beneath does not move while one draws.
     """
+    name, noun = source.name, kind_of(source)
     if path is None:
         parts.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
@@ -73,6 +75,8 @@ def headline(
         format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in summary.high - summary.low
     )
     lead = f"{counted(summary.blocks, NOUNS[noun])} within {size} {unit_label(unit)}."
+    if isinstance(source, GCodeSource):
+        lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
     parts.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
 
 
@@ -97,11 +101,11 @@ def tiles(
         parts.tiles([parts.Tile(label, "–") for label in ("At feed", "Reach", "Max deviation", "Shapes")])
         return
     summary = path_summary(path)
-    moves, cuts = summary.moves, summary.cuts
+    rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
     found = [
         parts.Tile(
             "At feed", format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
-            f"{duration(float(path.t[-1]))} · {counted(moves, 'move')}, {moves - cuts:,} of them rapid",
+            f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
         )
     ]  # fmt: skip
     if reach is None:
@@ -122,7 +126,7 @@ def tiles(
         return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in path.findings)
-    words = f"{alarming:,} to look at" if alarming else "nothing to worry about" if count else "every word understood"
+    words = finding_words(worst_first(path.findings)[0]) if count else "every word understood"
     found.append(parts.Tile("Findings", f"{count:,}", words, tone="tight" if alarming else ""))
     parts.tiles(found)
 
