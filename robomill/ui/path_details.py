@@ -55,7 +55,9 @@ def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
     silent = [f.message.partition(":")[0] for f in path.findings if f.message.endswith(ASSUMED_UNITS)]
     if silent:
         return f"{name}, assumed ({silent[0]})"
-    return f"{name} ({'UNITS' if is_apt(source.text[:200_000].encode()) else {'mm': 'G21', 'in': 'G20'}.get(path.units, '')})"
+    if is_apt(source.text[:200_000].encode()):
+        return f"{name} (UNITS)"
+    return f"{name} ({'G20' if path.units == 'in' else 'G21'})"
 
 
 def move_words(path: Toolpath) -> str:
