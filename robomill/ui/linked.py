@@ -39,26 +39,23 @@ def scrubber(result: SimulationResult) -> int:
     view, unit = state.project().view, state.project().view.length
     top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
     i = sample_at(result, station_m(result))
-    slide, back, on, worst = st.columns([5, 1.15, 1.15, 1.5], vertical_alignment="bottom", gap="small")
-    with slide:
-        inputs.slider(
-            f"Station: {unit} of cut", "view.station", 0.0, round(top, 3), round(view.station * top, 3),
-            lambda v: state.look(station=min(max(v / top, 0.0), 1.0)), step=round(top / 200, 4) or 0.001, form="%.2f",
-        )  # fmt: skip
+    inputs.slider(
+        f"Station: {unit} of cut", "view.station", 0.0, round(top, 3), round(view.station * top, 3),
+        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)), step=round(top / 200, 4) or 0.001, form="%.2f",
+    )  # fmt: skip
     lines = cut_lines(result)
     place = int(np.searchsorted(lines, result.path.block[i])) if i >= 0 else 0
-    for column, step, label, words in (
-        (back, -1, "Back", "previous line"), (on, 1, "Next", "next line"),
-    ):  # fmt: skip
-        other = place + step
-        column.button(
-            label, key=f"scrub:{label.lower()}", help=f"To the {words} that cuts", width="stretch",
-            disabled=not 0 <= other < len(lines), on_click=_to_line, args=(result, lines, other),
+    with st.container(horizontal=True, gap="small"):  # a row that breaks where the window is narrow
+        for step, label, words in ((-1, "Back", "previous line"), (1, "Next", "next line")):
+            other = place + step
+            st.button(
+                label, key=f"scrub:{label.lower()}", help=f"To the {words} that cuts",
+                disabled=not 0 <= other < len(lines), on_click=_to_line, args=(result, lines, other),
+            )  # fmt: skip
+        st.button(
+            "Worst", key="scrub:worst", icon=":material/my_location:", on_click=go_to,
+            args=(result, result.worst), disabled=result.worst < 0, help="Land on the largest deviation",
         )  # fmt: skip
-    worst.button(
-        "Worst", key="scrub:worst", icon=":material/my_location:", width="stretch", on_click=go_to,
-        args=(result, result.worst), disabled=result.worst < 0, help="Land on the largest deviation",
-    )  # fmt: skip
     return sample_at(result, station_m(result))
 
 
