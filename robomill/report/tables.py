@@ -14,7 +14,7 @@ Columns = dict[str, FloatArray]
 def deviation_columns(result: SimulationResult) -> Columns:
     """Along the path: where, how far off in {M}, by which joint, under which force."""
     path = result.path
-    p_M = path.p @ result.setup.T_MW[:3, :3].T + result.setup.T_MW[:3, 3]
+    p_M = result.setup.in_base(path.p)
     columns: Columns = {
         "line": path.block.astype(float),
         "cutting": path.cutting.astype(float),

@@ -43,8 +43,8 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     R_MF = feed_directions(setup, path)
     C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
     if setup.measured_map is not None:
-        p_M = path.p @ setup.T_MW[:3, :3].T + setup.T_MW[:3, 3]
-        C = np.where(path.cutting[:, None, None], setup.measured_map.compliance(p_M), C)
+        measured = setup.measured_map.compliance(setup.in_base(path.p))
+        C = np.where(path.cutting[:, None, None], measured, C)
     conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
     delta_joint, delta_spring = deflection(C_joint, F), deflection(C_spring, F)
     return SimulationResult(

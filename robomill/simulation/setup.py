@@ -101,6 +101,10 @@ class SimulationSetup:
             return self.stock
         return Stock.from_path(self.toolpath.p, self.cutter)
 
+    def in_base(self, p: FloatArray) -> FloatArray:
+        """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""
+        return np.asarray(p @ self.T_MW[:3, :3].T + self.T_MW[:3, 3])
+
     @cached_property
     def _digest(self) -> str:
         return digest(self)

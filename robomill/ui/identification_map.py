@@ -144,7 +144,7 @@ def kind_of(field: MeasuredField) -> str:
 
 def along_cut(field: MeasuredField, cut: SimulationResult) -> FloatArray:
     """(m, 3) m: deflection along the path by the measured map; NaN where the map does not answer."""
-    p = cut.path.p @ cut.setup.T_MW[:3, :3].T + cut.setup.T_MW[:3, 3]
+    p = cut.setup.in_base(cut.path.p)
     return field.deflection(p, cut.F)
 
 

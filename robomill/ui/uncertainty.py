@@ -184,12 +184,6 @@ def band_digits(half: float, unit: str) -> int:
     return min(max(needed, 2), 4 if unit == "mm" else 5)
 
 
-def tile_note(result: SimulationResult) -> str:
-    """What the band on the tile means; "" where there is none."""
-    given = known(result.setup)
-    return "" if given is None else f"95 % band, {given.words}"
-
-
 def banded(fig: go.Figure, result: SimulationResult, unit: str, *, dark: bool) -> bool:
     """Add the 95 % band of the deviation's size and components to the path plot; False where there is none to add."""
     given = known(result.setup)

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.compliance.cartesian import joint_contributions
 from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.kinematics.transforms import pose_from_world
@@ -16,8 +15,6 @@ from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import COMPONENTS, Quantity, quantity
 from robomill.workspace.solve import solve_grid
-
-ROW = {"x": 0, "y": 1, "z": 2}
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,9 +150,3 @@ def _dominant(field: ComplianceField, size: FloatArray) -> FloatArray:
     numbers = np.array(field.robot.joint_numbers, dtype=np.float64)
     best = numbers[np.argmax(np.where(np.isnan(size), -1.0, size), axis=-1)]
     return np.where(field.reached, best, np.nan)
-
-
-def shares_from_jacobian(J: FloatArray, C_theta: FloatArray) -> FloatArray:
-    """Joint shares (..., n, 6) m/N of xx, yy, zz, xy, xz, yz from J (..., 6, n) and C_theta (n,). Eq. (14)."""
-    C_joint = joint_contributions(J[..., :3, :], C_theta)
-    return np.stack([C_joint[..., ROW[c[0]], ROW[c[1]]] for c in COMPONENTS], axis=-1)

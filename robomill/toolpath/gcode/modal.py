@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 NON_MODAL, MOTION, PLANE, DISTANCE, ARC_DISTANCE, FEED_MODE, UNITS, COMPENSATION = 0, 1, 2, 3, 4, 5, 6, 7
 LENGTH, RETRACT, COORDINATES, CONTROL, SPINDLE_MODE, DIAMETER = 8, 10, 12, 13, 14, 15
 
@@ -53,8 +51,3 @@ NEEDS_AXES = frozenset({100, 280, 300, 520, 920})
 def g_name(code: int) -> str:
     """``411`` -> ``"G41.1"``."""
     return f"G{code // 10}.{code % 10}" if code % 10 else f"G{code // 10}"
-
-
-def g_names(codes: Iterable[int]) -> str:
-    """Names of G codes, joined for messages."""
-    return ", ".join(g_name(code) for code in codes)
