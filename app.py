@@ -35,14 +35,16 @@ with left, st.container(border=True, height="stretch"):
         scene = arm_scene(result, index)
         drawn = displacement_scale(result.delta[index], scene.frames)
         arm = ui.kept_figure(
-            "start-arm", (setup.digest(), index, dark),
+            "start-arm",
+            (setup.digest(), index, dark),
             lambda: arm_figure(scene, dark=dark, height=HEIGHT, revision="start-arm"),
-        )  # fmt: skip
+        )
         ui.figure(
-            arm, "start-arm",
+            arm,
+            "start-arm",
             alt="The arm at the cut with the cutting force and the displacement of the tool tip.",
             caption=f"Blue: force on the tool. Orange: displacement, shown × {_round(drawn):,}.",
-        )  # fmt: skip
+        )
 with right, st.container(border=True, height="stretch"):
     story.groove_picture(result, project.view, HEIGHT, dark)
 

@@ -24,15 +24,29 @@ ui.headline(
 )
 cut = ui.verdict_tiles(result, view.length)[0] if result is not None else ui.Tile("Max deviation", "not computed")
 stiff = float(np.sqrt(np.linalg.eigvalsh(now.C)[-1] ** 2))
-ui.tiles([
-    ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, cut.change, kind="computed"),
-    ui.Tile("C_yy at this pose", format_si(now.C[1, 1], "um/N", 3), "direct compliance along Y",
-            format_si(old.C[1, 1], "um/N", 3) if old else ""),
-    ui.Tile("Softest direction", format_si(stiff, "um/N", 3), robot_panel.direction_words(now.C),
-            format_si(float(np.linalg.eigvalsh(old.C)[-1]), "um/N", 3) if old else ""),
-    ui.Tile("det(J)", format_si(now.det, "m3", 3) if np.isfinite(now.det) else "not square",
-            robot_panel.det_words(now), format_si(old.det, "m3", 3) if old and np.isfinite(old.det) else ""),
-])  # fmt: skip
+ui.tiles(
+    [
+        ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, cut.change, kind="computed"),
+        ui.Tile(
+            "C_yy at this pose",
+            format_si(now.C[1, 1], "um/N", 3),
+            "direct compliance along Y",
+            format_si(old.C[1, 1], "um/N", 3) if old else "",
+        ),
+        ui.Tile(
+            "Softest direction",
+            format_si(stiff, "um/N", 3),
+            robot_panel.direction_words(now.C),
+            format_si(float(np.linalg.eigvalsh(old.C)[-1]), "um/N", 3) if old else "",
+        ),
+        ui.Tile(
+            "det(J)",
+            format_si(now.det, "m3", 3) if np.isfinite(now.det) else "not square",
+            robot_panel.det_words(now),
+            format_si(old.det, "m3", 3) if old and np.isfinite(old.det) else "",
+        ),
+    ]
+)
 
 left, right = ui.split([5, 9], "page", gap="large")
 with left:
@@ -44,14 +58,16 @@ with right:
         scene = ArmScene(frames=now.frames, ghost=old.frames if old and old.moved else None)
         before = old.frames.tobytes() if old and old.moved else b""
         arm = ui.kept_figure(
-            "robot-arm", (now.frames.tobytes(), before, dark),
+            "robot-arm",
+            (now.frames.tobytes(), before, dark),
             lambda: arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8),
-        )  # fmt: skip
+        )
         ui.figure(
-            arm, "robot-arm",
+            arm,
+            "robot-arm",
             alt="The arm at the chosen joint angles.",
             caption=f"{tip_words(robot, theta, view.length)}. Foot and tube sizes are for the eye only.",
-        )  # fmt: skip
+        )
     with numbers:
         robot_panel.compliance_matrix(now, old)
         robot_panel.share_bars(robot, theta, dark)

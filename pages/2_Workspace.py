@@ -23,8 +23,12 @@ ui.headline(f"Workspace · {robot.title or robot.name}", panel.sentence(robot, k
 if known is not None and box is not None:
     ui.tiles(panel.tiles(robot, view, box, known, unit))
 else:
-    ui.tiles([ui.Tile(label, "none") for label in ("Region in reach", "Least |det(J)|", "Room to joint limits",
-                                                   "Largest box in reach")])  # fmt: skip
+    ui.tiles(
+        [
+            ui.Tile(label, "none")
+            for label in ("Region in reach", "Least |det(J)|", "Room to joint limits", "Largest box in reach")
+        ]
+    )
 
 left, right = ui.thirds()
 with left:

@@ -60,25 +60,32 @@ with right:
         thinned = f" {picture.caption}" if picture.caption else ""
         if seen == "plan":
             ui.figure(
-                plan_picture(picture, dark=dark, height=HEIGHT), key, name="toolpath",
-                table=lambda: shown.path_columns(reach, result), on_select=lambda: shown.take_pick(key),
+                plan_picture(picture, dark=dark, height=HEIGHT),
+                key,
+                name="toolpath",
+                table=lambda: shown.path_columns(reach, result),
+                on_select=lambda: shown.take_pick(key),
                 caption=f"From above; a click shows the line. Crosses: out of reach.{thinned}",
                 alt="The path from above; points out of reach are marked with crosses.",
-            )  # fmt: skip
+            )
         elif seen == "turn":
             figure, times = turnable_picture(picture, dark=dark, height=HEIGHT)
             ui.figure(
-                figure, key, name="toolpath", table=lambda: shown.path_columns(reach, result),
+                figure,
+                key,
+                name="toolpath",
+                table=lambda: shown.path_columns(reach, result),
                 caption=f"Heights shown × {times:g}, parallel projection.{thinned}",
                 alt="The path in space, to be turned.",
-            )  # fmt: skip
+            )
         elif result is not None:
             index = result.worst if result.worst >= 0 else sample_at(result, 0.0)
             ui.figure(
-                arm_figure(arm_scene(result, index), dark=dark, height=HEIGHT, revision="path-arm", zoom=0.85), key,
+                arm_figure(arm_scene(result, index), dark=dark, height=HEIGHT, revision="path-arm", zoom=0.85),
+                key,
                 caption="The arm at the worst point of the path. Grey dots: out of reach.",
                 alt="The arm, the part and the path in the robot's frame.",
-            )  # fmt: skip
+            )
         words = details.line_words(setup, reach, result, unit)
         if words:
             st.info(words, icon=":material/my_location:")

@@ -138,12 +138,15 @@ def run_robots(arguments: Any) -> int:
     record = {
         "robots": [
             {
-                "name": r.name, "title": r.title, "joints": r.n,
-                "compliance_sets": sorted(r.compliance_sets), "compliance_set": r.compliance_set,
+                "name": r.name,
+                "title": r.title,
+                "joints": r.n,
+                "compliance_sets": sorted(r.compliance_sets),
+                "compliance_set": r.compliance_set,
             }
             for r in robots
         ]
-    }  # fmt: skip
+    }
     say(arguments, record, [f"{r.name:18} {r.n} joints  {r.title}" for r in robots])
     return 0
 

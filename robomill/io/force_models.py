@@ -108,10 +108,16 @@ def force_to_table(force: ForceModel) -> dict[str, Any]:
     if isinstance(force, MeasuredForce):
         record = force.record
         return {
-            "kind": "measured", "cutoff_Hz": force.cutoff or 0.0, "start": force.start,
+            "kind": "measured",
+            "cutoff_Hz": force.cutoff or 0.0,
+            "start": force.start,
             "record": {
-                "axis": record.axis, "frame": record.frame, "source": record.source, "notes": list(record.notes),
-                "x": record.x[:, None].tolist(), "F_N": record.F.tolist(),
+                "axis": record.axis,
+                "frame": record.frame,
+                "source": record.source,
+                "notes": list(record.notes),
+                "x": record.x[:, None].tolist(),
+                "F_N": record.F.tolist(),
             },
-        }  # fmt: skip
+        }
     raise TypeError(f"no table for a force of type {type(force).__name__}")

@@ -35,6 +35,9 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
         return [[shown(v, unit) for v in row] for row in np.asarray(values)]
 
     return {
-        "p_mm": rows(field.p, "mm"), "C_m_N": rows(field.C.reshape(-1, 9), "m/N"), "tilt_deg": rows(field.AB, "deg"),
-        "reach_m": shown(field.reach, "m"), "source": field.source,
-    }  # fmt: skip
+        "p_mm": rows(field.p, "mm"),
+        "C_m_N": rows(field.C.reshape(-1, 9), "m/N"),
+        "tilt_deg": rows(field.AB, "deg"),
+        "reach_m": shown(field.reach, "m"),
+        "source": field.source,
+    }

@@ -149,7 +149,10 @@ def setup_to_toml(setup: SimulationSetup) -> str:
     """The set-up as one self-contained file that ``setup_from_toml`` reads back to the same digest."""
     T_MW = setup.T_MW
     data: dict[str, Any] = {
-        "format": FORMAT, "version": VERSION, "name": setup.name, "description": setup.description,
+        "format": FORMAT,
+        "version": VERSION,
+        "name": setup.name,
+        "description": setup.description,
         "tolerance_mm": shown(setup.tolerance, "mm"),
         "robot": _robot_table(setup.robot),
         "path": _source_table(setup.source),
@@ -157,11 +160,14 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "cutter": cutter_to_table(setup.cutter),
         "force": force_to_table(setup.force),
         "numerics": {
-            "step_mm": shown(setup.step, "mm"), "cell_mm": shown(setup.cell, "mm"),
-            "engagement": setup.engagement, "coupling": setup.coupling, "add_sag": setup.add_sag,
+            "step_mm": shown(setup.step, "mm"),
+            "cell_mm": shown(setup.cell, "mm"),
+            "engagement": setup.engagement,
+            "coupling": setup.coupling,
+            "add_sag": setup.add_sag,
         },
         "provenance": {key: {"kind": p.kind, "source": p.source} for key, p in setup.provenance.items()},
-    }  # fmt: skip
+    }
     if setup.stock is not None:
         data["stock"] = stock_to_table(setup.stock)
     if setup.springs:

@@ -17,12 +17,23 @@ FORMAT, VERSION = "robomill robot", 1
 # Accepted suffixes of a key and the unit each names. The writer takes the first that gives the number back exactly.
 LENGTH = {"mm": "mm", "m": "m"}
 ANGLE = {"deg": "deg", "rad": "rad"}
-JOINT_KEYS = {"type", "sign", "name"} | {
-    f"{stem}_{u}" for stem in ("alpha", "theta_offset", "limits", "blocked_at") for u in ANGLE
-} | {f"{stem}_{u}" for stem in ("a", "d", "limits", "blocked_at") for u in LENGTH}  # fmt: skip
+JOINT_KEYS = (
+    {"type", "sign", "name"}
+    | {f"{stem}_{u}" for stem in ("alpha", "theta_offset", "limits", "blocked_at") for u in ANGLE}
+    | {f"{stem}_{u}" for stem in ("a", "d", "limits", "blocked_at") for u in LENGTH}
+)
 TOP_KEYS = {
-    "format", "version", "name", "title", "convention", "joint", "base", "tool", "compliance", "provenance",
-}  # fmt: skip
+    "format",
+    "version",
+    "name",
+    "title",
+    "convention",
+    "joint",
+    "base",
+    "tool",
+    "compliance",
+    "provenance",
+}
 COMPLIANCE_KEYS = {
     "C_theta_1e-7_rad_per_Nm": lambda v: to_si(v, "1e-7 rad/(N m)"),
     "C_theta_SI": lambda v: v,

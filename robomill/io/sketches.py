@@ -46,15 +46,19 @@ def _element(entry: Table) -> Element:
 def sketch_to_table(sketch: Sketch, shown: Callable[[float, str], float]) -> dict[str, Any]:
     """What ``sketch_from_table`` reads back; ``shown(value, unit)`` writes an SI value so that it is read exactly."""
     return {
-        "plunge_mm_min": shown(sketch.v_plunge, "mm/min"), "clearance_mm": shown(sketch.clearance, "mm"),
-        "spindle_1_min": shown(sketch.n_s, "1/min"), "feed_mm_min": shown(sketch.v_f, "mm/min"),
-        "depth_mm": shown(sketch.depth, "mm"), "snap_mm": shown(sketch.grid, "mm"),
+        "plunge_mm_min": shown(sketch.v_plunge, "mm/min"),
+        "clearance_mm": shown(sketch.clearance, "mm"),
+        "spindle_1_min": shown(sketch.n_s, "1/min"),
+        "feed_mm_min": shown(sketch.v_f, "mm/min"),
+        "depth_mm": shown(sketch.depth, "mm"),
+        "snap_mm": shown(sketch.grid, "mm"),
         "elements": [
             {
                 "shape": element.shape,
                 "points_mm": [[shown(v, "mm") for v in point] for point in element.points.tolist()],
-                "depth_mm": shown(element.depth, "mm"), "feed_mm_min": shown(element.v_f, "mm/min"),
+                "depth_mm": shown(element.depth, "mm"),
+                "feed_mm_min": shown(element.v_f, "mm/min"),
             }
             for element in sketch.elements
         ],
-    }  # fmt: skip
+    }

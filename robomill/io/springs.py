@@ -22,9 +22,12 @@ def spring_from_table(table: Table) -> Spring:
         given["provenance"] = table.provenance("source")
     if kind == "tool_bending":
         spring: Spring = ToolBending(
-            table.number("diameter_mm", "mm"), table.number("stick_out_mm", "mm"),
-            table.number("E_N_mm2", "N/mm2", ToolBending.E), table.number("core", "1", ToolBending.core), **given,
-        )  # fmt: skip
+            table.number("diameter_mm", "mm"),
+            table.number("stick_out_mm", "mm"),
+            table.number("E_N_mm2", "N/mm2", ToolBending.E),
+            table.number("core", "1", ToolBending.core),
+            **given,
+        )
     elif kind == "spindle":
         spring = SpindleSpring(table.number("lateral_um_N", "um/N"), table.number("axial_um_N", "um/N", 0.0), **given)
     elif kind == "joint_bending":
@@ -41,19 +44,25 @@ def spring_to_table(spring: Spring) -> dict[str, Any]:
     source = {"source": {"kind": spring.provenance.kind, "source": spring.provenance.source}}
     if isinstance(spring, ToolBending):
         return {
-            "kind": "tool_bending", "diameter_mm": from_si(spring.diameter, "mm"),
-            "stick_out_mm": from_si(spring.stick_out, "mm"), "E_N_mm2": from_si(spring.E, "N/mm2"),
-            "core": spring.core, **source,
-        }  # fmt: skip
+            "kind": "tool_bending",
+            "diameter_mm": from_si(spring.diameter, "mm"),
+            "stick_out_mm": from_si(spring.stick_out, "mm"),
+            "E_N_mm2": from_si(spring.E, "N/mm2"),
+            "core": spring.core,
+            **source,
+        }
     if isinstance(spring, SpindleSpring):
         lateral, axial = (from_si(v, "um/N") for v in (spring.lateral, spring.axial))
         return {"kind": "spindle", "lateral_um_N": lateral, "axial_um_N": axial, **source}
     if isinstance(spring, JointBending):
         C_x, C_y = (from_si(v, BENDING) for v in (spring.C_x, spring.C_y))
         return {
-            "kind": "joint_bending", "joint": spring.joint, "C_x_1e-7_rad_per_Nm": C_x, "C_y_1e-7_rad_per_Nm": C_y,
+            "kind": "joint_bending",
+            "joint": spring.joint,
+            "C_x_1e-7_rad_per_Nm": C_x,
+            "C_y_1e-7_rad_per_Nm": C_y,
             **source,
-        }  # fmt: skip
+        }
     raise TypeError(f"no table for a spring of type {type(spring).__name__}")
 
 

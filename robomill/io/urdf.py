@@ -138,11 +138,14 @@ def _robot(chain: list[Any], name: str, where: str) -> Robot:
         limits_all=np.array([_limits(joint, where) for joint in moving]),
         C_theta_all=np.full(len(moving), DEFAULT_COMPLIANCE),
         provenance={
-            "geometry": file, "limits": file, "base": file, "tool": file,
+            "geometry": file,
+            "limits": file,
+            "base": file,
+            "tool": file,
             "compliance": Provenance("assumed", "a URDF holds no compliances; 1e-6 rad/(N m) (m/N) for every joint"),
         },
         **table,
-    )  # fmt: skip
+    )
 
 
 def _limits(joint: Any, where: str) -> list[float]:
@@ -178,9 +181,13 @@ def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, Fl
         theta[i] = np.arctan2(-E[0, 1], E[0, 0])
         d[i] = -E[1, 3] * np.sin(alpha[i]) + E[2, 3] * np.cos(alpha[i])
     return {
-        "alpha": alpha, "a": a, "d": d, "theta_offset": theta,
-        "T_base": _rigid(frames[0]), "T_tool": _rigid(np.linalg.inv(frames[-1]) @ T_MT),
-    }  # fmt: skip
+        "alpha": alpha,
+        "a": a,
+        "d": d,
+        "theta_offset": theta,
+        "T_base": _rigid(frames[0]),
+        "T_tool": _rigid(np.linalg.inv(frames[-1]) @ T_MT),
+    }
 
 
 def _common_perpendicular(k: FloatArray, p: FloatArray, i: int, before: FloatArray) -> tuple[FloatArray, FloatArray]:

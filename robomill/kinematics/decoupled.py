@@ -58,9 +58,20 @@ class Decoupled:
     def packed(self) -> FloatArray:
         """All constants in one row, in the order the compiled kernel reads them."""
         parts = (
-            self.S.ravel(), self.W.ravel(), self.origin, [self.a_1, self.h], self.l_2, self.l_3,
-            self.u, self.g, self.gn, self.c_u, self.c_g, self.c_w, self.direction,
-        )  # fmt: skip
+            self.S.ravel(),
+            self.W.ravel(),
+            self.origin,
+            [self.a_1, self.h],
+            self.l_2,
+            self.l_3,
+            self.u,
+            self.g,
+            self.gn,
+            self.c_u,
+            self.c_g,
+            self.c_w,
+            self.direction,
+        )
         return frozen(np.concatenate(parts))
 
     @property

@@ -190,15 +190,47 @@ def check_block(theta, n, T_0, E, sign, offset, prismatic, target, tool, axes, e
 
 @njit(
     void(
-        IN3, IN1, *CHAIN, IN2, IN2, boolean, IN_FLAGS, boolean, int64, float64, boolean,
-        OUT3, FLAGS2, OUT2, INDEX, OUT2,
+        IN3,
+        IN1,
+        *CHAIN,
+        IN2,
+        IN2,
+        boolean,
+        IN_FLAGS,
+        boolean,
+        int64,
+        float64,
+        boolean,
+        OUT3,
+        FLAGS2,
+        OUT2,
+        INDEX,
+        OUT2,
     ),
     **OPTIONS,
-)  # fmt: skip
+)
 def solve(
-    T_MT, P, T_0, E, sign, offset, prismatic, limits, goals, arm_first, wanted, last_free, spins, tolerance, every,
-    theta_every, sound, theta_near, index, fit,
-):  # fmt: skip
+    T_MT,
+    P,
+    T_0,
+    E,
+    sign,
+    offset,
+    prismatic,
+    limits,
+    goals,
+    arm_first,
+    wanted,
+    last_free,
+    spins,
+    tolerance,
+    every,
+    theta_every,
+    sound,
+    theta_near,
+    index,
+    fit,
+):
     """The solutions of poses T_MT (m, 4, 4): all of them, or of each pose the one nearest its goal.
 
     With ``every``: theta_every (m, 8, n) and sound (m, 8), checked by forward kinematics to ``tolerance`` (m and rad)
@@ -221,9 +253,24 @@ def solve(
             for j in range(n):
                 goal[j, lane] = goals[row, j]
         search_block(
-            target, P, n, limits, goal, arm_first, wanted, last_free, spins, every,
-            arm, theta, possible, trial, found, best, cost,
-        )  # fmt: skip
+            target,
+            P,
+            n,
+            limits,
+            goal,
+            arm_first,
+            wanted,
+            last_free,
+            spins,
+            every,
+            arm,
+            theta,
+            possible,
+            trial,
+            found,
+            best,
+            cost,
+        )
         if every:
             if tolerance >= 0.0:
                 check_block(

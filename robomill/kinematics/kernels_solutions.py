@@ -24,8 +24,21 @@ TARGET_ROWS = 23
 ARM_ROWS = 14
 # Where ``decoupled.packed`` puts the constants.
 P_S, P_W, P_O, P_A1, P_H, P_L2, P_L3, P_U, P_G, P_GN, P_CU, P_CG, P_CW, P_DIR = (
-    0, 9, 18, 21, 22, 23, 25, 27, 30, 33, 36, 39, 42, 45,
-)  # fmt: skip
+    0,
+    9,
+    18,
+    21,
+    22,
+    23,
+    25,
+    27,
+    30,
+    33,
+    36,
+    39,
+    42,
+    45,
+)
 
 
 @njit(**INLINE)

@@ -37,9 +37,21 @@ def compiled_solutions(
         return None
     theta, sound = np.empty((m, 8, arm.n)), np.empty((m, 8), dtype=bool)
     compiled.solve(
-        np.ascontiguousarray(T_MT), arm.packed, *chain_arguments(robot.chain), robot.limits, robot.home[None], False,
-        ANY_BRANCH, False, 0, tolerance, True, theta, sound, *NOT_NEAR,
-    )  # fmt: skip
+        np.ascontiguousarray(T_MT),
+        arm.packed,
+        *chain_arguments(robot.chain),
+        robot.limits,
+        robot.home[None],
+        False,
+        ANY_BRANCH,
+        False,
+        0,
+        tolerance,
+        True,
+        theta,
+        sound,
+        *NOT_NEAR,
+    )
     return theta, sound
 
 
@@ -59,7 +71,20 @@ def nearest_solutions(
     whole = 1.0 if robot.n == 6 and spins == 0 else UNCHECKED
     last_free = spins > 0 and arm.spindle_on_last_axis
     compiled.solve(
-        np.ascontiguousarray(T_MT), arm.packed, *chain_arguments(robot.chain), robot.limits, np.ascontiguousarray(goal),
-        arm_first, wanted, last_free, 0 if last_free else spins, whole, False, *NOT_EVERY, theta, index, fit,
-    )  # fmt: skip
+        np.ascontiguousarray(T_MT),
+        arm.packed,
+        *chain_arguments(robot.chain),
+        robot.limits,
+        np.ascontiguousarray(goal),
+        arm_first,
+        wanted,
+        last_free,
+        0 if last_free else spins,
+        whole,
+        False,
+        *NOT_EVERY,
+        theta,
+        index,
+        fit,
+    )
     return theta, index, fit

@@ -79,10 +79,13 @@ def _table_1(robot: Robot) -> Row:
     holds = all(np.allclose(s, t) for s, t in zip(shown, TABLE_1[:2])) and np.allclose(robot.sign, TABLE_1[2])
     angles = ", ".join(f"{v:g}" for v in shown[0]).replace("-", "−")
     return Row(
-        "Table 1, eq. (4)", "D-H angles, offsets and signs of five links",
-        f"α = {angles}°; joint 4 counted backwards; all entries equal" if holds else "entries differ", "reproduced",
-        "Typed from the table.", holds,
-    )  # fmt: skip
+        "Table 1, eq. (4)",
+        "D-H angles, offsets and signs of five links",
+        f"α = {angles}°; joint 4 counted backwards; all entries equal" if holds else "entries differ",
+        "reproduced",
+        "Typed from the table.",
+        holds,
+    )
 
 
 def _lengths(robot: Robot) -> Row:
@@ -108,10 +111,13 @@ def _jacobian(robot: Robot) -> Row:
     numeric = np.swapaxes((ahead - behind) / (2 * h), -1, -2)
     error = float(np.abs(numeric - geometric_jacobian(robot, theta)[:, :3]).max())
     return Row(
-        "Eqs. (5) to (9)", "tool pose and geometric Jacobian",
-        f"J equals the numeric derivative of the pose to {error:.0e} m/rad at 40 configurations", "reproduced",
-        "Closed form against differences.", error < 1e-8,
-    )  # fmt: skip
+        "Eqs. (5) to (9)",
+        "tool pose and geometric Jacobian",
+        f"J equals the numeric derivative of the pose to {error:.0e} m/rad at 40 configurations",
+        "reproduced",
+        "Closed form against differences.",
+        error < 1e-8,
+    )
 
 
 def _workspace(robot: Robot) -> Row:
@@ -119,10 +125,13 @@ def _workspace(robot: Robot) -> Row:
     share = float(field.reached.mean())
     size = " × ".join(f"{from_si(float(v), 'mm'):.0f}" for v in Box(*PAPER_BOX).size)
     return Row(
-        "Fig. 3, eq. (10)", "A = B = 0: the adopted part of the workspace is 1200 × 600 × 500 mm",
-        f"{100 * share:.0f} % of the {size} mm box is in reach", "assumed",
-        "Joint limits and the place of the box in Y are not printed; plausible ones are assumed.", share == 1.0,
-    )  # fmt: skip
+        "Fig. 3, eq. (10)",
+        "A = B = 0: the adopted part of the workspace is 1200 × 600 × 500 mm",
+        f"{100 * share:.0f} % of the {size} mm box is in reach",
+        "assumed",
+        "Joint limits and the place of the box in Y are not printed; plausible ones are assumed.",
+        share == 1.0,
+    )
 
 
 def _determinant(robot: Robot) -> Row:
@@ -131,11 +140,13 @@ def _determinant(robot: Robot) -> Row:
     low, high = (np.abs(det[:, :, k]) for k in (0, -1))
     same = bool((np.sign(det) == np.sign(det.flat[0])).all())
     return Row(
-        "Fig. 4", "det(J) at Z = −400 and 100 mm: good throughout, no singularity",
+        "Fig. 4",
+        "det(J) at Z = −400 and 100 mm: good throughout, no singularity",
         f"|det J| {_span(low)} m³ at −400, {_span(high)} at 100 mm; {'never' if same else 'somewhere'} zero in the box",
-        "assumed", "Rows v_x, v_y, v_z, ω_x', ω_y'. The figure's own numbers cannot be read from its text.",
+        "assumed",
+        "Rows v_x, v_y, v_z, ω_x', ω_y'. The figure's own numbers cannot be read from its text.",
         same and bool(field.reached.all()),
-    )  # fmt: skip
+    )
 
 
 def _table_of(robot: Robot, name: str, single: IdentificationResult) -> Row:
@@ -161,10 +172,13 @@ def _figure_5(plane: ComplianceField) -> Row:
     yy = bool((np.diff(values["yy"][inner], axis=1) > 0).all() and (np.diff(values["yy"][right], axis=0) < 0).all())
     ranges = ", ".join(f"C_{c} {_span(from_si(v, 'um/N'))}" for c, v in values.items())
     return Row(
-        "Fig. 5 (claim 1)", "C_xx, C_zz fall with Y and grow with |X|; C_yy grows with Y and falls with |X|",
-        f"{ranges} µm/N; {'all trends hold' if falls and yy else 'a trend fails'}", "assumed",
-        "C_yy grows with Y for |X| up to 400 mm with these lengths.", falls and yy,
-    )  # fmt: skip
+        "Fig. 5 (claim 1)",
+        "C_xx, C_zz fall with Y and grow with |X|; C_yy grows with Y and falls with |X|",
+        f"{ranges} µm/N; {'all trends hold' if falls and yy else 'a trend fails'}",
+        "assumed",
+        "C_yy grows with Y for |X| up to 400 mm with these lengths.",
+        falls and yy,
+    )
 
 
 def _figure_6(plane: ComplianceField) -> Row:
@@ -187,10 +201,13 @@ def _figure_7(plane: ComplianceField) -> Row:
     part = float(sizes[[0, 2, 4], 3].sum() / sizes[:, 3].sum())
     rest = float(sizes[[0, 1, 3, 4]][:, [4, 5]].max() / sizes[2, [4, 5]].min())
     return Row(
-        "Fig. 7 (claim 3)", "C_xy from joints 1, 3, 5; C_xz and C_zy from joint 3 only",
-        f"joints 1, 3, 5 make {100 * part:.0f} % of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}", "assumed",
-        "At Z = 0 joints 2 and 3 alone move the tip vertically.", part >= 0.9 and rest < 1e-12,
-    )  # fmt: skip
+        "Fig. 7 (claim 3)",
+        "C_xy from joints 1, 3, 5; C_xz and C_zy from joint 3 only",
+        f"joints 1, 3, 5 make {100 * part:.0f} % of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}",
+        "assumed",
+        "At Z = 0 joints 2 and 3 alone move the tip vertically.",
+        part >= 0.9 and rest < 1e-12,
+    )
 
 
 def _figure_8(robot: Robot) -> Row:
@@ -198,11 +215,13 @@ def _figure_8(robot: Robot) -> Row:
     most = [max(float(np.abs(line.along_normal().sum(axis=1)).max()) for line in lines[i : i + 3]) for i in (0, 3)]
     sums = max(float(np.abs(line.delta_joint.sum(axis=1) - line.delta).max()) for line in lines)
     return Row(
-        "Fig. 8", "deviation along six lines, 100 N normal to the feed, total and by joint",
-        f"largest {_mm(most[0], 3)} along X and {_mm(most[1], 3)} along Y; joints add up to the total", "assumed",
+        "Fig. 8",
+        "deviation along six lines, 100 N normal to the feed, total and by joint",
+        f"largest {_mm(most[0], 3)} along X and {_mm(most[1], 3)} along Y; joints add up to the total",
+        "assumed",
         "The curves are printed without numbers; their shape follows from Figs. 5 and 6.",
         all(line.reached.all() for line in lines) and sums < 1e-15,
-    )  # fmt: skip
+    )
 
 
 def _photographs() -> Row:

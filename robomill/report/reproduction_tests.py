@@ -26,10 +26,13 @@ MEASURED_OFFSET = 0.3e-3  # m, about
 def measured_maps() -> Row:
     """Fig. 11."""
     return Row(
-        "Fig. 11, eq. (17)", "nine measured maps, 45 points at each of 6 levels",
-        "eq. (17) is in Identification; sample tests are synthetic and say so", "gap",
-        "The raw displacements are not printed, so the measured maps cannot be redrawn.", True,
-    )  # fmt: skip
+        "Fig. 11, eq. (17)",
+        "nine measured maps, 45 points at each of 6 levels",
+        "eq. (17) is in Identification; sample tests are synthetic and say so",
+        "gap",
+        "The raw displacements are not printed, so the measured maps cannot be redrawn.",
+        True,
+    )
 
 
 def nine_points(nine: IdentificationResult) -> Row:

@@ -171,9 +171,17 @@ class Robot:
     def chain(self) -> Chain:
         """The arm as constants between its free joints."""
         return build_chain(
-            self.convention, self.alpha, self.a, self.d, self.theta_offset, self.sign, self.prismatic,
-            self.T_base, self.T_tool, self.blocked,
-        )  # fmt: skip
+            self.convention,
+            self.alpha,
+            self.a,
+            self.d,
+            self.theta_offset,
+            self.sign,
+            self.prismatic,
+            self.T_base,
+            self.T_tool,
+            self.blocked,
+        )
 
     # ---- change is replacement ------------------------------------------------------------------------------------
     def replace(self, **changes: Any) -> Robot:

@@ -23,9 +23,14 @@ def cut_conditions(
     tip = path.p if p is None else p
     cutting = path.cutting & reached
     common: dict[str, Any] = {
-        "v_f": path.v_f, "n_s": path.n_s, "s": path.s, "t": path.t, "cutting": cutting,
-        "across": at_starts(path, feed_share(path.p, path.k)), "block": path.block,
-    }  # fmt: skip
+        "v_f": path.v_f,
+        "n_s": path.n_s,
+        "s": path.s,
+        "t": path.t,
+        "cutting": cutting,
+        "across": at_starts(path, feed_share(path.p, path.k)),
+        "block": path.block,
+    }
     if not setup.engagement:
         a_p = np.maximum(setup.stock_block.upper[2] - tip[:, 2], 0.0)
         return CutConditions.steady(a_p=np.nan_to_num(a_p), **common)

@@ -236,9 +236,10 @@ class SimulationResult:
             why = "cannot be reached" if not self.reached.all() else "lie outside the measured map"
             named = ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")
             return Verdict(
-                "unreached", share,
+                "unreached",
+                share,
                 f"{missed} of {len(self.path)} points {why} (line {named}); of the rest: {sentence}.",
-            )  # fmt: skip
+            )
         if share > 1.0:
             return Verdict("out", share, f"{sentence}: out of tolerance.")
         if share >= TIGHT_FROM:

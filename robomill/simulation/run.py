@@ -48,10 +48,21 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
     delta_joint, delta_spring = deflection(C_joint, F), deflection(C_spring, F)
     return SimulationResult(
-        setup=setup, path=path, ik=ik, C_joint=C_joint, C_spring=C_spring, conditions=conditions, R_MF=R_MF, F=F,
-        delta_joint=delta_joint, delta_spring=delta_spring, sag=sag,
-        C=C, delta=bend(C, F) + offset, coupling=coupling,
-    )  # fmt: skip
+        setup=setup,
+        path=path,
+        ik=ik,
+        C_joint=C_joint,
+        C_spring=C_spring,
+        conditions=conditions,
+        R_MF=R_MF,
+        F=F,
+        delta_joint=delta_joint,
+        delta_spring=delta_spring,
+        sag=sag,
+        C=C,
+        delta=bend(C, F) + offset,
+        coupling=coupling,
+    )
 
 
 def compliances(setup: SimulationSetup, theta: FloatArray) -> tuple[FloatArray, FloatArray]:

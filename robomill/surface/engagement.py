@@ -95,9 +95,17 @@ def engage(
 
 
 def _march(
-    shape: Shape, points: FloatArray, axes: FloatArray, used: BoolArray, grid: Grid, z: FloatArray, bottom: float,
-    result: FloatArray, start: int, stop: int,
-) -> None:  # fmt: skip
+    shape: Shape,
+    points: FloatArray,
+    axes: FloatArray,
+    used: BoolArray,
+    grid: Grid,
+    z: FloatArray,
+    bottom: float,
+    result: FloatArray,
+    start: int,
+    stop: int,
+) -> None:
     for n in range(max(start, 1), stop):
         if used[n]:
             axis = axes[n - 1] + axes[n]
@@ -159,9 +167,16 @@ def radius_at(shape: Shape, height: float) -> float:
 
 
 def depth_ahead(
-    middle: FloatArray, e_x: FloatArray, e_y: FloatArray, k: FloatArray, ahead: FloatArray, aside: FloatArray,
-    grid: Grid, z: FloatArray, bottom: float,
-) -> FloatArray:  # fmt: skip
+    middle: FloatArray,
+    e_x: FloatArray,
+    e_y: FloatArray,
+    k: FloatArray,
+    ahead: FloatArray,
+    aside: FloatArray,
+    grid: Grid,
+    z: FloatArray,
+    bottom: float,
+) -> FloatArray:
     """Material above points of the tool's tip plane, along the tool axis, m; 0 outside the stock."""
     point = middle + ahead[:, None] * e_x + aside[:, None] * e_y
     i = np.floor((point[:, 0] - grid.x0) / grid.dx + 0.5).astype(int)

@@ -108,9 +108,13 @@ def cut_centres_tilted(shape, a, b, k, grid, z):  # type: ignore[no-untyped-def]
     e1x, e1y = -k[1] / sine, k[0] / sine
     e2x, e2y = -k[2] * e1y, k[2] * e1x
     move = move_of(
-        a[0] * e1x + a[1] * e1y, a[0] * e2x + a[1] * e2y + a[2] * sine, a[0] * k[0] + a[1] * k[1] + a[2] * k[2],
-        b[0] * e1x + b[1] * e1y, b[0] * e2x + b[1] * e2y + b[2] * sine, b[0] * k[0] + b[1] * k[1] + b[2] * k[2],
-    )  # fmt: skip
+        a[0] * e1x + a[1] * e1y,
+        a[0] * e2x + a[1] * e2y + a[2] * sine,
+        a[0] * k[0] + a[1] * k[1] + a[2] * k[2],
+        b[0] * e1x + b[1] * e1y,
+        b[0] * e2x + b[1] * e2y + b[2] * sine,
+        b[0] * k[0] + b[1] * k[1] + b[2] * k[2],
+    )
     R = shape[1]
     up = max(0.0, z.max() - min(a[2], b[2]) + R * sine) / k[2]
     x_low, x_high = min(a[0], b[0]) + min(0.0, up * k[0]) - R, max(a[0], b[0]) + max(0.0, up * k[0]) + R
@@ -146,9 +150,17 @@ def engage_moves(shape, p, axes, used, grid, z, bottom, angles, result, start, s
             norm = math.sqrt(fx * fx + fy * fy + fz * fz)
             fx, fy, fz = fx / norm, fy / norm, fz / norm
             frame = (
-                0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]), fx, fy, fz,
-                ky * fz - kz * fy, kz * fx - kx * fz, kx * fy - ky * fx, kz,
-            )  # fmt: skip
+                0.5 * (a[0] + b[0]),
+                0.5 * (a[1] + b[1]),
+                0.5 * (a[2] + b[2]),
+                fx,
+                fy,
+                fz,
+                ky * fz - kz * fy,
+                kz * fx - kx * fz,
+                kx * fy - ky * fx,
+                kz,
+            )
             phi_st, phi_ex, a_p, a_e = step_engagement(shape, frame, look, angles, grid, z, bottom)
             result[n, 0], result[n, 1], result[n, 2], result[n, 3] = phi_st, phi_ex, a_p, a_e
         if math.hypot(kx, ky) > 1e-9:

@@ -105,9 +105,14 @@ def move_of(a: FloatArray, b: FloatArray) -> Move:
     if length < 1e-12:
         return Move(float(a[0]), float(a[1]), float(a[2]), 1.0, 0.0, 0.0, 0.0)
     return Move(
-        float(a[0]), float(a[1]), float(a[2]), (b[0] - a[0]) / length, (b[1] - a[1]) / length,
-        length, (b[2] - a[2]) / length,
-    )  # fmt: skip
+        float(a[0]),
+        float(a[1]),
+        float(a[2]),
+        (b[0] - a[0]) / length,
+        (b[1] - a[1]) / length,
+        length,
+        (b[2] - a[2]) / length,
+    )
 
 
 def moves_of(ends: FloatArray) -> Move:

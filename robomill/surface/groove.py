@@ -121,9 +121,14 @@ WIDE = "wider than the cutter: several passes made it, so look at the walls; the
 
 
 def _section(
-    stock: Stock, cutter: Cutter, paths: tuple[SweptPath, SweptPath], place: Station, tip: FloatArray,
-    block: int, samples: int,
-) -> GrooveSection:  # fmt: skip
+    stock: Stock,
+    cutter: Cutter,
+    paths: tuple[SweptPath, SweptPath],
+    place: Station,
+    tip: FloatArray,
+    block: int,
+    samples: int,
+) -> GrooveSection:
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():
@@ -144,20 +149,32 @@ def _section(
         which = "deflected" if machined is None else "commanded"
         return _empty(place, block, f"the {which} tool cuts nothing here")
     return GrooveSection(
-        station=place.station, block=block, centre=frozen(place.centre), normal=frozen(place.normal),
+        station=place.station,
+        block=block,
+        centre=frozen(place.centre),
+        normal=frozen(place.normal),
         width=machined.left - machined.right,
         depth=machined.top - machined.floor,
         centre_offset=0.5 * (machined.left + machined.right) - 0.5 * (ideal.left + ideal.right),
         floor_error=machined.floor - ideal.floor,
-        wall_left=machined.left, wall_right=machined.right,
-        wall_left_ideal=ideal.left, wall_right_ideal=ideal.right,
-        wall_left_angle=machined.left_angle, wall_right_angle=machined.right_angle,
-        wall_left_straightness=machined.left_straightness, wall_right_straightness=machined.right_straightness,
-        floor=machined.floor, floor_ideal=ideal.floor, floor_tilt=machined.floor_tilt,
-        open_left=bool(np.isnan(machined.left)), open_right=bool(np.isnan(machined.right)),
-        w=frozen(w), z_ideal=frozen(ideal.height(w)), z_machined=frozen(machined.height(w)),
+        wall_left=machined.left,
+        wall_right=machined.right,
+        wall_left_ideal=ideal.left,
+        wall_right_ideal=ideal.right,
+        wall_left_angle=machined.left_angle,
+        wall_right_angle=machined.right_angle,
+        wall_left_straightness=machined.left_straightness,
+        wall_right_straightness=machined.right_straightness,
+        floor=machined.floor,
+        floor_ideal=ideal.floor,
+        floor_tilt=machined.floor_tilt,
+        open_left=bool(np.isnan(machined.left)),
+        open_right=bool(np.isnan(machined.right)),
+        w=frozen(w),
+        z_ideal=frozen(ideal.height(w)),
+        z_machined=frozen(machined.height(w)),
         note=WIDE if ideal.left - ideal.right > MANY_PASSES * cutter.diameter else "",
-    )  # fmt: skip
+    )
 
 
 def _empty(place: Station, block: int, note: str) -> GrooveSection:

@@ -133,7 +133,13 @@ def compare_profile(profile: GrooveProfile, station: ArrayLike, measured: ArrayL
     difference = predicted - v
     mean = float(v.mean())
     return ProfileComparison(
-        frozen(s), frozen(v), frozen(predicted), frozen(difference), float(difference.mean()),
-        float(np.sqrt(np.mean(difference**2))), float(difference[np.argmax(np.abs(difference))]),
-        float(predicted.mean() / mean) if mean != 0.0 else float("nan"), int((~inside).sum()),
-    )  # fmt: skip
+        frozen(s),
+        frozen(v),
+        frozen(predicted),
+        frozen(difference),
+        float(difference.mean()),
+        float(np.sqrt(np.mean(difference**2))),
+        float(difference[np.argmax(np.abs(difference))]),
+        float(predicted.mean() / mean) if mean != 0.0 else float("nan"),
+        int((~inside).sum()),
+    )

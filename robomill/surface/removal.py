@@ -62,9 +62,14 @@ class Watch:
 
 
 def cut_upright(
-    z: FloatArray, grid: Grid, shape: Shape, ends: FloatArray, module: Kernels | None,
-    progress: Progress | None = None, cancel: Cancel | None = None,
-) -> EdgeCells:  # fmt: skip
+    z: FloatArray,
+    grid: Grid,
+    shape: Shape,
+    ends: FloatArray,
+    module: Kernels | None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> EdgeCells:
     """Cut moves ``ends`` (n, 6) m (start, end) of an upright cutter into ``z`` (nx, ny), in place."""
     reach = shape.R + grid.dx
     low = np.minimum(ends[:, 0], ends[:, 3]) - reach

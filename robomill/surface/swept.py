@@ -69,9 +69,11 @@ class SweptPath:
         along_a, along_b, across_a, across_b = a @ feed, b @ feed, a @ normal[:2], b @ normal[:2]
         low, high = np.minimum(across_a, across_b) - limit, np.maximum(across_a, across_b) + limit
         near = np.flatnonzero(
-            (np.minimum(along_a, along_b) <= limit) & (np.maximum(along_a, along_b) >= -limit)
-            & (low <= reach) & (high >= -reach)
-        )  # fmt: skip
+            (np.minimum(along_a, along_b) <= limit)
+            & (np.maximum(along_a, along_b) >= -limit)
+            & (low <= reach)
+            & (high >= -reach)
+        )
         return near, low[near], high[near]
 
 

@@ -91,9 +91,14 @@ def tilted_moves(shape: Shape, ends: FloatArray, axes: FloatArray, top: float) -
 
 
 def cut_tilted(
-    z: FloatArray, grid: Grid, shape: Shape, tilted: TiltedMoves, module: Kernels | None,
-    progress: Progress | None = None, cancel: Cancel | None = None,
-) -> BoolArray:  # fmt: skip
+    z: FloatArray,
+    grid: Grid,
+    shape: Shape,
+    tilted: TiltedMoves,
+    module: Kernels | None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> BoolArray:
     """Cut moves of a tilted cutter into ``z`` in place; returns the cells (nx, ny) left with an overhang."""
     boxes = tilted.boxes
     tiles = [(i, chosen) for i, chosen in tiles_of(z, grid, boxes[:, 0], boxes[:, 1]) if len(chosen)]
@@ -136,9 +141,12 @@ def cut_tilted_move(
         return
     i, j = (a.ravel() for a in np.mgrid[first[0] : last[0] + 1, first[1] : last[1] + 1])
     tilt = Tilt(
-        np.append(frame[0:2], 0.0), np.append(frame[2:4], frame[6]), np.append(frame[4:6], frame[7]),
-        float(frame[6]), float(frame[7]),
-    )  # fmt: skip
+        np.append(frame[0:2], 0.0),
+        np.append(frame[2:4], frame[6]),
+        np.append(frame[4:6], frame[7]),
+        float(frame[6]),
+        float(frame[7]),
+    )
     move = Move(*(float(value) for value in tilted.moves[n]))
     top = z[i, j]
     low, high = tilted_interval(shape, tilt, move, grid.x0 + i * grid.dx, grid.y0 + j * grid.dy, top)

@@ -20,15 +20,63 @@ from robomill.toolpath.path import Toolpath
 from robomill.units import to_si
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?$")
-_MOVES = frozenset({
-    "CIRCLE", "MOVARC", "CYCLE", "GOHOME", "GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "ARC",
-    "INDIRV", "INDIRP", "THREAD", "ROTATE", "ROTABL", "RETRCT", "TRACUT", "COPY", "CALL", "MACRO",
-})  # fmt: skip
-_SILENT = frozenset({
-    "PARTNO", "PPRINT", "REMARK", "INSERT", "MACHIN", "COOLNT", "CUTTER", "TLAXIS", "FINI", "END", "STOP", "OPSTOP",
-    "INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT", "SELCTL", "CATLOG", "TURRET", "DELAY", "PREFUN",
-    "AUXFUN", "SEQNO", "ORIGIN", "LEADER",
-})  # fmt: skip
+_MOVES = frozenset(
+    {
+        "CIRCLE",
+        "MOVARC",
+        "CYCLE",
+        "GOHOME",
+        "GOCLER",
+        "GOLFT",
+        "GORGT",
+        "GOFWD",
+        "GOBACK",
+        "GOUP",
+        "GODOWN",
+        "ARC",
+        "INDIRV",
+        "INDIRP",
+        "THREAD",
+        "ROTATE",
+        "ROTABL",
+        "RETRCT",
+        "TRACUT",
+        "COPY",
+        "CALL",
+        "MACRO",
+    }
+)
+_SILENT = frozenset(
+    {
+        "PARTNO",
+        "PPRINT",
+        "REMARK",
+        "INSERT",
+        "MACHIN",
+        "COOLNT",
+        "CUTTER",
+        "TLAXIS",
+        "FINI",
+        "END",
+        "STOP",
+        "OPSTOP",
+        "INTOL",
+        "OUTTOL",
+        "TOLER",
+        "CLEARP",
+        "DISPLY",
+        "PAINT",
+        "SELCTL",
+        "CATLOG",
+        "TURRET",
+        "DELAY",
+        "PREFUN",
+        "AUXFUN",
+        "SEQNO",
+        "ORIGIN",
+        "LEADER",
+    }
+)
 MAX_POINTS = 5_000_000
 
 
@@ -74,9 +122,16 @@ def read_apt(path_or_text: Source) -> Toolpath:
         findings.add("suspicious", 0, "no UNITS: lengths are taken as mm")
     table = np.array(state.rows)
     return Toolpath(
-        p=table[:, 0:3], k=table[:, 3:6], v_f=table[:, 6], cutting=table[:, 7] > 0, block=table[:, 8].astype(np.int64),
-        n_s=table[:, 9], tool=table[:, 10].astype(np.int64), findings=findings.freeze(), units=state.unit,
-    )  # fmt: skip
+        p=table[:, 0:3],
+        k=table[:, 3:6],
+        v_f=table[:, 6],
+        cutting=table[:, 7] > 0,
+        block=table[:, 8].astype(np.int64),
+        n_s=table[:, 9],
+        tool=table[:, 10].astype(np.int64),
+        findings=findings.freeze(),
+        units=state.unit,
+    )
 
 
 def _statements(text: str) -> list[tuple[int, str]]:

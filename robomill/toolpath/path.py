@@ -137,6 +137,11 @@ def toolpath_from_lines(
             v.append(float(feed[i]) if is_cut else 0.0)
             n.append(float(speed[i]))
     return Toolpath(
-        p=np.array(points), k=np.asarray(k, dtype=float), v_f=np.array(v), cutting=np.array(cutting),
-        block=np.array(rows), n_s=np.array(n), tool=np.zeros(len(points), dtype=np.int64),
-    )  # fmt: skip
+        p=np.array(points),
+        k=np.asarray(k, dtype=float),
+        v_f=np.array(v),
+        cutting=np.array(cutting),
+        block=np.array(rows),
+        n_s=np.array(n),
+        tool=np.zeros(len(points), dtype=np.int64),
+    )

@@ -46,9 +46,15 @@ def resample(path: Toolpath, step: float) -> Toolpath:
     last = index == counts[owner]
     p[last] = path.p[owner[last]]
     return dataclasses.replace(
-        path, p=p, k=_slerp(path.k[before], path.k[owner], fraction), v_f=path.v_f[owner],
-        cutting=path.cutting[owner], block=path.block[owner], n_s=path.n_s[owner], tool=path.tool[owner],
-    )  # fmt: skip
+        path,
+        p=p,
+        k=_slerp(path.k[before], path.k[owner], fraction),
+        v_f=path.v_f[owner],
+        cutting=path.cutting[owner],
+        block=path.block[owner],
+        n_s=path.n_s[owner],
+        tool=path.tool[owner],
+    )
 
 
 def _begins(path: Toolpath) -> BoolArray:

@@ -26,8 +26,13 @@ SHAPES: tuple[Shape, ...] = get_args(Shape)
 
 # Fewest and most points of each shape; 0 means any number.
 POINTS: dict[str, tuple[int, int]] = {
-    "line": (2, 2), "polyline": (2, 0), "polygon": (3, 0), "rectangle": (2, 2), "arc": (3, 3), "circle": (2, 2),
-}  # fmt: skip
+    "line": (2, 2),
+    "polyline": (2, 0),
+    "polygon": (3, 0),
+    "rectangle": (2, 2),
+    "arc": (3, 3),
+    "circle": (2, 2),
+}
 CLOSED = ("polygon", "rectangle", "circle")
 
 APPROACH = 0.5e-3
@@ -128,10 +133,13 @@ class Sketch:
                 f"{MAX_POINTS} points are kept. Write a program for more."
             )
         for field, name, unit, least in (
-            ("v_plunge", "plunge feed", "mm/min", 1e-9), ("clearance", "clearance", "mm", APPROACH),
-            ("v_f", "feed", "mm/min", 1e-9), ("depth", "depth", "mm", 1e-9), ("n_s", "spindle", "1/min", 0.0),
+            ("v_plunge", "plunge feed", "mm/min", 1e-9),
+            ("clearance", "clearance", "mm", APPROACH),
+            ("v_f", "feed", "mm/min", 1e-9),
+            ("depth", "depth", "mm", 1e-9),
+            ("n_s", "spindle", "1/min", 0.0),
             ("grid", "snap", "mm", 0.0),
-        ):  # fmt: skip
+        ):
             value = getattr(self, field)
             if not (math.isfinite(value) and value >= least):
                 found = format_si(value, unit) if math.isfinite(value) else "not a number"
@@ -153,9 +161,14 @@ class Sketch:
         rows = list(self._moves())
         columns = [np.array(column) for column in zip(*rows, strict=True)]
         return Toolpath(
-            p=columns[0], k=np.array([0.0, 0.0, 1.0]), v_f=columns[1], cutting=columns[1] > 0, block=columns[2],
-            n_s=np.full(len(rows), self.n_s), tool=np.zeros(len(rows), dtype=np.int64),
-        )  # fmt: skip
+            p=columns[0],
+            k=np.array([0.0, 0.0, 1.0]),
+            v_f=columns[1],
+            cutting=columns[1] > 0,
+            block=columns[2],
+            n_s=np.full(len(rows), self.n_s),
+            tool=np.zeros(len(rows), dtype=np.int64),
+        )
 
     def _moves(self) -> Iterator[tuple[list[float], float, int]]:
         """Point, feed (0 for a rapid) and number of the shape, move by move."""
@@ -223,8 +236,13 @@ def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise
         return np.array([[point[0], point[1], 0.0]])
 
     geometry = (
-        lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([1]), np.array([clockwise]),
-    )  # fmt: skip
+        lifted(start),
+        lifted(end),
+        lifted(centre),
+        np.array([17]),
+        np.array([1]),
+        np.array([clockwise]),
+    )
     _, sweep, radius, _ = arcs.sweeps(*geometry)
     counts = arcs.chord_counts(sweep, radius, arcs.CHORD_ERROR)
     return np.vstack([lifted(start), arcs.chord_points(*geometry, counts=counts)])[:, :2]

@@ -79,9 +79,7 @@ def zigzag(length: float, width: float, stepover: float) -> FloatArray:
     rows = int(np.ceil(width / stepover - 1e-9)) + 1
     y = np.linspace(-width / 2.0, width / 2.0, rows)
     half = length / 2.0
-    return np.array([
-        [side * half, v] for row, v in enumerate(y) for side in ((-1, 1) if row % 2 == 0 else (1, -1))
-    ])  # fmt: skip
+    return np.array([[side * half, v] for row, v in enumerate(y) for side in ((-1, 1) if row % 2 == 0 else (1, -1))])
 
 
 def spiral(radius: float, pitch: float, chord: float = 5e-6) -> FloatArray:

@@ -15,23 +15,39 @@ from robomill.units import UNITS, from_si, to_si, unit_label
 
 
 def switch(
-    label: str, key: str, current: bool, write: Callable[[bool], None], *, hint: str | None = None,
+    label: str,
+    key: str,
+    current: bool,
+    write: Callable[[bool], None],
+    *,
+    hint: str | None = None,
     disabled: bool = False,
-) -> None:  # fmt: skip
+) -> None:
     """An on/off switch; ``write`` gets the new state."""
     inputs.seed(key, bool(current))
     st.toggle(
-        label, key=key, help=hint, disabled=disabled,
+        label,
+        key=key,
+        help=hint,
+        disabled=disabled,
         on_change=lambda: inputs.attempt(key, st.session_state[key], lambda: write(bool(st.session_state[key]))),
-    )  # fmt: skip
+    )
     inputs.sentence(key)
 
 
 def number_box(
-    label: str, key: str, value: float | None, unit: str, write: Callable[[float | None], None], *,
-    optional: bool = False, step: float | None = None, digits: int | None = None, hint: str | None = None,
+    label: str,
+    key: str,
+    value: float | None,
+    unit: str,
+    write: Callable[[float | None], None],
+    *,
+    optional: bool = False,
+    step: float | None = None,
+    digits: int | None = None,
+    hint: str | None = None,
     placeholder: str = "not given",
-) -> None:  # fmt: skip
+) -> None:
     """A number in ``unit`` (SI inside) whose new value goes to ``write``; empty means None where ``optional``."""
     shown = None if value is None else float(f"{from_si(float(value), unit):.12g}")
 
@@ -51,7 +67,13 @@ def number_box(
     # Without a default an emptied box stays empty; with one it would fall back to it.
     default: Any = {"value": None} if optional else {}
     st.number_input(
-        name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, placeholder=placeholder,
+        name,
+        key=key,
+        step=step,
+        format=f"%.{decimals}f",
+        on_change=take,
+        help=hint,
+        placeholder=placeholder,
         **default,
-    )  # fmt: skip
+    )
     inputs.sentence(key)

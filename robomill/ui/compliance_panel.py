@@ -36,16 +36,31 @@ def tiles(
     worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if known else None
     where = tuple(float(axis[i]) for axis, i in zip((now.grid.x, now.grid.y, now.grid.z), worst)) if worst else None
     return [
-        parts.Tile(f"C_{component} at the point", _um(found.component(component)) if found.reached else "not reached",
-                   f"at {point}", _um(old.component(component)) if old.reached else "", kind="computed"),
-        parts.Tile("Softest direction there", _um(_softest(found)) if found.reached else "not reached",
-                   "what 1 N moves the tip at most", _um(_softest(old)) if old.reached else ""),
-        parts.Tile("Softest place of the region", _um(float(soft[worst])) if worst else "not reached",
-                   f"at {place(where, unit)}" if where else "",  # type: ignore[arg-type]
-                   _um(float(np.nanmax(before.values("C_soft")))) if known else ""),
-        parts.Tile("Stiffness pays most in", f"joint {found.robot.joint_numbers[best]}" if known else "nothing reached",
-                   f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else ""),
-    ]  # fmt: skip
+        parts.Tile(
+            f"C_{component} at the point",
+            _um(found.component(component)) if found.reached else "not reached",
+            f"at {point}",
+            _um(old.component(component)) if old.reached else "",
+            kind="computed",
+        ),
+        parts.Tile(
+            "Softest direction there",
+            _um(_softest(found)) if found.reached else "not reached",
+            "what 1 N moves the tip at most",
+            _um(_softest(old)) if old.reached else "",
+        ),
+        parts.Tile(
+            "Softest place of the region",
+            _um(float(soft[worst])) if worst else "not reached",
+            f"at {place(where, unit)}" if where else "",  # type: ignore[arg-type]
+            _um(float(np.nanmax(before.values("C_soft")))) if known else "",
+        ),
+        parts.Tile(
+            "Stiffness pays most in",
+            f"joint {found.robot.joint_numbers[best]}" if known else "nothing reached",
+            f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else "",
+        ),
+    ]
 
 
 def _softest(found: PointReport) -> float:
@@ -59,15 +74,32 @@ def _um(value: float) -> str:
 def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None:
     """Region, tilt, plane; component; point; scale."""
     maps_inputs.where(robot, view, unit)
-    inputs.choice("Component for comparing and ranking", "maps:component", WORDS, view.component,
-                  lambda c: see(component=c), horizontal=False)  # fmt: skip
+    inputs.choice(
+        "Component for comparing and ranking",
+        "maps:component",
+        WORDS,
+        view.component,
+        lambda c: see(component=c),
+        horizontal=False,
+    )
     st.markdown("**The point in hand**")
     for i, column in enumerate(st.columns(3)):
         with column:
-            maps_inputs.value("XYZ"[i], f"maps:point:{i}:{unit}", found.point[i], unit,
-                              lambda v, i=i: _put(found, i, v), 50.0 if unit == "mm" else 1.0)  # type: ignore[misc]  # fmt: skip
-    inputs.choice("Colours of the 3 × 3 maps", "maps:common", {True: "One scale", False: "Direct and cross apart"},
-                  view.common, lambda c: see(common=c))  # fmt: skip
+            maps_inputs.value(
+                "XYZ"[i],
+                f"maps:point:{i}:{unit}",
+                found.point[i],
+                unit,
+                lambda v, i=i: _put(found, i, v),
+                50.0 if unit == "mm" else 1.0,
+            )  # type: ignore[misc]
+    inputs.choice(
+        "Colours of the 3 × 3 maps",
+        "maps:common",
+        {True: "One scale", False: "Direct and cross apart"},
+        view.common,
+        lambda c: see(common=c),
+    )
 
 
 def _put(found: PointReport, i: int, value: float) -> None:
@@ -96,13 +128,26 @@ def what_if(robot: Robot, view: MapView) -> None:
         name.markdown(f"Joint {number} **× {scale[i]:.2f}**")
         with slider:
             inputs.slider(
-                f"Joint {number}, times its stiffness", f"maps:factor:{i}", 0.5, 4.0, float(scale[i]),
-                lambda v, i=i: _factor(robot, i, v), step=0.05, form="%.2f", label_visibility="collapsed",  # type: ignore[misc]
-            )  # fmt: skip
+                f"Joint {number}, times its stiffness",
+                f"maps:factor:{i}",
+                0.5,
+                4.0,
+                float(scale[i]),
+                lambda v, i=i: _factor(robot, i, v),
+                step=0.05,
+                form="%.2f",
+                label_visibility="collapsed",  # type: ignore[misc]
+            )
     st.button(
-        "Put these joints into the robot", on_click=_adopt, args=(robot,), disabled=not changed, key="maps:adopt",
-        icon=":material/check:", width="stretch", help="The milling result follows; undo leads back.",
-    )  # fmt: skip
+        "Put these joints into the robot",
+        on_click=_adopt,
+        args=(robot,),
+        disabled=not changed,
+        key="maps:adopt",
+        icon=":material/check:",
+        width="stretch",
+        help="The milling result follows; undo leads back.",
+    )
 
 
 def _factor(robot: Robot, i: int, value: float) -> None:
@@ -143,12 +188,13 @@ def where_it_pays(
         return
     with st.container(border=True):
         parts.figure(
-            gain_bars(groups, joints, dark=shell.dark(), height=88 + 34 * len(joints)), "gains",
+            gain_bars(groups, joints, dark=shell.dark(), height=88 + 34 * len(joints)),
+            "gains",
             table=lambda: {"joint": list(map(str, joints)), **{f"{_plain(t)}, {u}": g for t, g, u in groups}},
             alt="How much smaller compliance and deviation become with each joint 10 % stiffer.",
             caption="What each joint 10 % stiffer takes off. Exact: C is linear in the joints' compliances, eq. (13)."
             + ("" if along is not None else " The path of this project has no result to rank by."),
-        )  # fmt: skip
+        )
 
 
 def _plain(title: str) -> str:

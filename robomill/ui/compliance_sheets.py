@@ -72,18 +72,30 @@ def slab(values: FloatArray, normal: str) -> FloatArray:
 
 
 def sheet(
-    rows: list[list[Map | None]], grid: Grid, normal: str, at: float, unit: str, scales: dict[str, Scale],
-    view: MapView, box: Box, known: ComplianceField,
-) -> MapSheet:  # fmt: skip
+    rows: list[list[Map | None]],
+    grid: Grid,
+    normal: str,
+    at: float,
+    unit: str,
+    scales: dict[str, Scale],
+    view: MapView,
+    box: Box,
+    known: ComplianceField,
+) -> MapSheet:
     """Panels over a plane with the point in hand marked."""
     i = "xyz".index(normal)
     u_name, v_name = (a for a in "xyz" if a != normal)
     point = default_point(view, box, known)
     u, v = (float(from_si(point["xyz".index(a)], unit)) for a in (u_name, v_name))
     return MapSheet(
-        rows, from_si(getattr(grid, u_name), unit), from_si(getattr(grid, v_name), unit),
-        *maps_inputs.axes_titles(normal, unit), scales, point=(u, v), on_plane=abs(point[i] - at) < 1e-6,
-    )  # fmt: skip
+        rows,
+        from_si(getattr(grid, u_name), unit),
+        from_si(getattr(grid, v_name), unit),
+        *maps_inputs.axes_titles(normal, unit),
+        scales,
+        point=(u, v),
+        on_plane=abs(point[i] - at) < 1e-6,
+    )
 
 
 def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, caption: str, alt: str, table: Any) -> None:
@@ -156,11 +168,15 @@ def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal:
         else "Direct terms on a scale of sizes, cross terms on one centred on zero."
     )
     draw(
-        sheet(rows, known.grid, normal, at, unit, scales, view, box, known), "nine", 3, normal, at,
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
+        "nine",
+        3,
+        normal,
+        at,
         f"{about} Click a cell for the report of that pose.",
         "The nine components of the compliance matrix over the plane.",
         lambda: _columns(now, [f"C_{c}" for c in COMPONENTS]),
-    )  # fmt: skip
+    )
 
 
 def span(values: FloatArray) -> str:

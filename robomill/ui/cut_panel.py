@@ -47,9 +47,13 @@ def cutter_inputs() -> None:
     left, right = st.columns(2)
     with left:
         inputs.choice(
-            "Helix", "cutter.helix", HANDS, cutter.helix, lambda v: state.change(cutter=_cutter().replace(helix=v)),
+            "Helix",
+            "cutter.helix",
+            HANDS,
+            cutter.helix,
+            lambda v: state.change(cutter=_cutter().replace(helix=v)),
             hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
-        )  # fmt: skip
+        )
     with right:
         inputs.number("Helix angle", "cutter.helix_angle", "deg", step=5.0, digits=1)
 
@@ -61,10 +65,16 @@ def _cutter() -> Cutter:
 def _length(label: str, field: str, hint: str) -> None:
     unit = state.project().view.length
     boxes.number_box(
-        label, f"cutter.{field}:{unit}", getattr(_cutter(), field), unit,
-        lambda v: state.change(cutter=_cutter().replace(**{field: v})), optional=True,
-        step=1.0 if unit == "mm" else 0.05, digits=1 if unit == "mm" else 3, hint=hint,
-    )  # fmt: skip
+        label,
+        f"cutter.{field}:{unit}",
+        getattr(_cutter(), field),
+        unit,
+        lambda v: state.change(cutter=_cutter().replace(**{field: v})),
+        optional=True,
+        step=1.0 if unit == "mm" else 0.05,
+        digits=1 if unit == "mm" else 3,
+        hint=hint,
+    )
 
 
 def _switch(kind: str) -> None:
@@ -114,11 +124,21 @@ def _switch_stock(kind: str) -> None:
 
 
 def _stl(stock: Stock | None) -> None:
-    inputs.choice("Unit of the file", "stock.unit", STL_UNITS, st.session_state.get("milling.stock.unit", "mm"), _unit,
-                  hint="STL carries no unit.")  # fmt: skip
+    inputs.choice(
+        "Unit of the file",
+        "stock.unit",
+        STL_UNITS,
+        st.session_state.get("milling.stock.unit", "mm"),
+        _unit,
+        hint="STL carries no unit.",
+    )
     key = "stock:file"
-    st.file_uploader("Stock as a closed solid (.stl), placed in {W}", key=key, max_upload_size=MAX_STL_MB,
-                     on_change=lambda: _take(st.session_state.get(key)))  # fmt: skip
+    st.file_uploader(
+        "Stock as a closed solid (.stl), placed in {W}",
+        key=key,
+        max_upload_size=MAX_STL_MB,
+        on_change=lambda: _take(st.session_state.get(key)),
+    )
     inputs.sentence("stock:file")
     for words in st.session_state.get(ODD, ()) if stock is not None else ():
         st.warning(words, icon=":material/straighten:")

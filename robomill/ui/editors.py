@@ -42,7 +42,14 @@ def table_editor(
         inputs.attempt(f"table:{name}", frame, lambda: write(frame))
 
     st.data_editor(
-        start, key=key, column_config=columns, disabled=list(locked), hide_index=True, on_change=take,
-        num_rows="dynamic" if dynamic else "fixed", height=height, width="stretch",
-    )  # fmt: skip
+        start,
+        key=key,
+        column_config=columns,
+        disabled=list(locked),
+        hide_index=True,
+        on_change=take,
+        num_rows="dynamic" if dynamic else "fixed",
+        height=height,
+        width="stretch",
+    )
     inputs.sentence(f"table:{name}")

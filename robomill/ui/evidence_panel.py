@@ -79,13 +79,18 @@ def panel(project: state.Project, dark: bool) -> None:
         Claim(c.label, c.kind, _shown(c.value, unit), _shown(c.low, unit), _shown(c.high, unit), c.note) for c in found
     ]
     parts.figure(
-        evidence_figure(shown, unit, dark=dark), "evidence", name="paper-evidence",
-        table=lambda: {"what": [c.label for c in shown], "kind": [c.kind for c in shown],
-                       **{f"{k}_{unit}": [getattr(c, k) for c in shown] for k in lengths}},
+        evidence_figure(shown, unit, dark=dark),
+        "evidence",
+        name="paper-evidence",
+        table=lambda: {
+            "what": [c.label for c in shown],
+            "kind": [c.kind for c in shown],
+            **{f"{k}_{unit}": [getattr(c, k) for c in shown] for k in lengths},
+        },
         caption="Bars: every coefficient row of 7075 in the literature. The paper names neither alloy nor helix; "
         "7075-T6 and a right-hand helix are assumed, and nothing is tuned.",
         alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
-    )  # fmt: skip
+    )
 
 
 def _shown(value: float, unit: str) -> float:

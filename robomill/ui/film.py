@@ -64,9 +64,14 @@ class Film:
     def _make(self, worker: RenderWorker) -> None:
         shown = cache.pictured(self.result.setup, self.times)
         picture = surface_picture(
-            self.result, shown, camera=self.camera, dark=self.dark, station=None, size=SIZE,
+            self.result,
+            shown,
+            camera=self.camera,
+            dark=self.dark,
+            station=None,
+            size=SIZE,
             headroom=4.0 * float(from_si(self.result.setup.cutter.diameter, "mm")),
-        )  # fmt: skip
+        )
         worker.render(FilmStart("cut", picture))
         for index in film_samples(self.result, self.frames):
             if self.stop.is_set():
@@ -95,15 +100,25 @@ def panel(result: SimulationResult, dark: bool) -> None:
     view = state.project().view
     kind, frames, make = st.columns([1, 2, 1.2], vertical_alignment="bottom")
     with kind:
-        chosen: Any = st.segmented_control("Film as", list(KINDS), format_func=lambda k: KINDS[k], default="gif",
-                                           required=True, key="film:kind", width="stretch")  # fmt: skip
+        chosen: Any = st.segmented_control(
+            "Film as",
+            list(KINDS),
+            format_func=lambda k: KINDS[k],
+            default="gif",
+            required=True,
+            key="film:kind",
+            width="stretch",
+        )
     with frames:
         count = st.slider("Pictures", *FRAMES, 36, step=4, key="film:frames")
     camera: Any = view.camera
     make.button(
-        "Make the film", icon=":material/movie:", key="film:make", width="stretch",
+        "Make the film",
+        icon=":material/movie:",
+        key="film:make",
+        width="stretch",
         on_click=lambda: _begin(Film(result, chosen, count, view.exaggeration, camera, dark)),
-    )  # fmt: skip
+    )
     _progress()
 
 

@@ -67,8 +67,9 @@ def inputs_panel() -> None:
         _three([("Feed", "force.feed"), ("Feed-normal", "force.feed_normal"), ("Axial", "force.axial")])
         parts.note("Feed-normal is to the left of the feed; axial is positive out of the part.")
     if current != "measured":
-        provenance = force.provenance if isinstance(force, ProcessForce) else setup.provenance.get(
-            "force", force.provenance)  # fmt: skip
+        provenance = (
+            force.provenance if isinstance(force, ProcessForce) else setup.provenance.get("force", force.provenance)
+        )
         source = "" if isinstance(force, ProcessForce) else provenance.source
         if source:
             parts.note(f"{parts.badge(provenance.kind)} {parts.subscripts(source)}")
@@ -84,17 +85,22 @@ def _three(fields: list[tuple[str, str]]) -> None:
 def _process_switches(process: bool) -> None:
     setup = state.project().setup
     boxes.switch(
-        "Engagement from the part", "setup.engagement", setup.engagement,
+        "Engagement from the part",
+        "setup.engagement",
+        setup.engagement,
         lambda on: state.change(engagement=on, coupling=setup.coupling and on),
         hint="The arc and depth of each step come from the stock as it stands: no force in air, less in a side cut. "
         "Off: a full slot everywhere. Models with fixed numbers push wherever the path is at feed.",
-    )  # fmt: skip
+    )
     boxes.switch(
-        "Deflection changes the cut", "setup.coupling", setup.coupling, lambda on: state.change(coupling=on),
+        "Deflection changes the cut",
+        "setup.coupling",
+        setup.coupling,
+        lambda on: state.change(coupling=on),
         disabled=not (setup.engagement and process),
         hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
         "from the part.",
-    )  # fmt: skip
+    )
 
 
 def _switch(kind: str) -> None:
@@ -131,13 +137,26 @@ def _measured(force: MeasuredForce | None) -> None:
     key = f"force:file:{state.store().revision if force is None else 'kept'}"
     st.file_uploader(
         "Force record (.csv): t_s or s_mm, then F_feed_N, F_feed_normal_N, F_axial_N, or F_x_N, F_y_N, F_z_N",
-        key=key, max_upload_size=MAX_FORCE_MB, on_change=lambda: _take(st.session_state.get(key)),
-    )  # fmt: skip
+        key=key,
+        max_upload_size=MAX_FORCE_MB,
+        on_change=lambda: _take(st.session_state.get(key)),
+    )
     left, right = st.columns(2)
-    left.segmented_control("The sensor felt the force on the", ["tool", "part"], default="tool", required=True,
-                           key="force:on", on_change=_again, width="stretch")  # fmt: skip
-    right.checkbox("Trust the unit", key="force:trust", on_change=_again,
-                   help="Accept forces whose size looks like another unit (mN, kN).")  # fmt: skip
+    left.segmented_control(
+        "The sensor felt the force on the",
+        ["tool", "part"],
+        default="tool",
+        required=True,
+        key="force:on",
+        on_change=_again,
+        width="stretch",
+    )
+    right.checkbox(
+        "Trust the unit",
+        key="force:trust",
+        on_change=_again,
+        help="Accept forces whose size looks like another unit (mN, kN).",
+    )
     inputs.sentence("force:file")
     if force is None:
         if not state.store().refused.get("force:file"):
@@ -145,18 +164,24 @@ def _measured(force: MeasuredForce | None) -> None:
         return
     record = force.record
     boxes.switch(
-        "Low-pass, zero phase", "force:filter", force.cutoff is not None,
+        "Low-pass, zero phase",
+        "force:filter",
+        force.cutoff is not None,
         lambda on: state.change(force=MeasuredForce(record, PAPER_CUTOFF if on else None, force.start)),
-    )  # fmt: skip
+    )
     left, right = st.columns(2)
     with left:
         if force.cutoff is not None:
             inputs.number("Cut-off (Hz)", "force.cutoff", "1", step=10.0, digits=1)
     with right:
         boxes.number_box(
-            "Path starts at", "force:start", force.start, "s" if record.axis == "time" else "mm",
-            lambda v: state.change(force=MeasuredForce(record, force.cutoff, float(v or 0.0))), digits=3,
-        )  # fmt: skip
+            "Path starts at",
+            "force:start",
+            force.start,
+            "s" if record.axis == "time" else "mm",
+            lambda v: state.change(force=MeasuredForce(record, force.cutoff, float(v or 0.0))),
+            digits=3,
+        )
     parts.note(f"{parts.badge('measured')} {force.provenance.source}: {len(record.x):,} samples against {record.axis}.")
 
 

@@ -19,23 +19,32 @@ NAMES = ("feed", "feed-normal", "axial")
 
 
 def force_plot(
-    result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool,
+    result: SimulationResult,
+    i: int,
+    spread: AlloySpread | None,
+    peak: ForceSpread | None,
+    dark: bool,
     height: int = 360,
-) -> None:  # fmt: skip
+) -> None:
     """Mean force by component along the cut; shaded: the alloy's rows; dotted: the extremes of a revolution."""
     unit = state.project().view.length
     s = from_si(result.path.s, unit)
     curves = ForceCurves(
-        s, linked.at_feed(result, result.force_components), unit,
+        s,
+        linked.at_feed(result, result.force_components),
+        unit,
         peak=None if peak is None else (linked.at_feed(result, peak.low), linked.at_feed(result, peak.high)),
         alloy=_band(result, spread),
-    )  # fmt: skip
+    )
     words = "Mean force on the tool; feed-normal is the left of the feed, axial positive out of the part."
     parts.figure(
-        force_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None), "force",
-        name="force", table=lambda: force_columns(result, peak), caption=words,
+        force_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
+        "force",
+        name="force",
+        table=lambda: force_columns(result, peak),
+        caption=words,
         alt="Mean force on the tool along the path by component, with the peak of a turn and the alloy's band.",
-    )  # fmt: skip
+    )
 
 
 def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatArray, FloatArray] | None:
@@ -49,10 +58,12 @@ def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[st
     """The force along the path as columns."""
     c = result.conditions
     columns: dict[str, FloatArray] = {
-        "line": result.path.block.astype(float), "station_mm": from_si(result.path.s, "mm"),
+        "line": result.path.block.astype(float),
+        "station_mm": from_si(result.path.s, "mm"),
         "depth_mm": from_si(c.a_p, "mm"),
-        "phi_st_deg": from_si(c.phi_st, "deg"), "phi_ex_deg": from_si(c.phi_ex, "deg"),
-    }  # fmt: skip
+        "phi_st_deg": from_si(c.phi_st, "deg"),
+        "phi_ex_deg": from_si(c.phi_ex, "deg"),
+    }
     for k, name in enumerate(NAMES):
         columns[f"F_{name.replace('-', '_')}_N"] = result.force_components[:, k]
         if peak is not None:
@@ -69,13 +80,23 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
     rows = [("Mean force", format_si(float(np.linalg.norm(mean)), "N"), _three(mean) + ", what deflects here")]
     if peak is not None:
         worst = peak.at_peak[i]
-        rows.append(("Peak of a turn", format_si(float(np.linalg.norm(worst)), "N"),
-                     _three(worst) + ", what shakes: teeth alike, no run-out"))  # fmt: skip
+        rows.append(
+            (
+                "Peak of a turn",
+                format_si(float(np.linalg.norm(worst)), "N"),
+                _three(worst) + ", what shakes: teeth alike, no run-out",
+            )
+        )
     c = result.conditions
     if bool(c.engaged[i]) and bool(c.n_s[i] > 0):
         f_z = c.v_f[i] / c.n_s[i] / result.setup.cutter.flutes
-        rows.append(("Chip", format_si(float(f_z), "mm/tooth", 3),
-                     f"{format_si(float(c.n_s[i]), '1/min')}, {format_si(float(c.v_f[i]), 'mm/min')}"))  # fmt: skip
+        rows.append(
+            (
+                "Chip",
+                format_si(float(f_z), "mm/tooth", 3),
+                f"{format_si(float(c.n_s[i]), '1/min')}, {format_si(float(c.v_f[i]), 'mm/min')}",
+            )
+        )
     parts.facts(rows)
 
 
@@ -93,12 +114,21 @@ def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 
     source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
     parts.figure(
         engagement_figure(
-            s, from_si(arc[:, 0], "deg"), from_si(arc[:, 1], "deg"), depth, unit, dark=dark, height=height,
+            s,
+            from_si(arc[:, 0], "deg"),
+            from_si(arc[:, 1], "deg"),
+            depth,
+            unit,
+            dark=dark,
+            height=height,
             station=float(s[i]) if i >= 0 else None,
-        ), "engagement", name="engagement", table=lambda: force_columns(result, None),
+        ),
+        "engagement",
+        name="engagement",
+        table=lambda: force_columns(result, None),
         caption=f"Arc of engagement and depth, {source}.",
         alt="Arc of engagement and axial depth along the path.",
-    )  # fmt: skip
+    )
 
 
 def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
@@ -138,10 +168,12 @@ def coupling_facts(result: SimulationResult) -> None:
         return  # said beside its switch
     known = not np.isnan(coupling.contraction)
     rate = f"each change {coupling.contraction:.2g} of the last" if known else "one step sufficed"
-    parts.facts([
-        ("Coupling", f"{coupling.iterations} iterations", rate),
-        ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
-    ])  # fmt: skip
+    parts.facts(
+        [
+            ("Coupling", f"{coupling.iterations} iterations", rate),
+            ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
+        ]
+    )
 
 
 def worth_knowing(result: SimulationResult) -> None:

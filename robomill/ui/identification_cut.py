@@ -78,11 +78,13 @@ def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: st
     s, value, half, before = (from_si(v, unit) for v in _curves(found, now, known, axis))
     with st.container(border=True):
         parts.figure(
-            band_figure(s, value, half, before, axis, unit, dark=dark), "ident-band", name="deviation-band",
+            band_figure(s, value, half, before, axis, unit, dark=dark),
+            "ident-band",
+            name="deviation-band",
             table=lambda: band_columns(found, known),
             caption="Shaded: 95 % band by linear propagation. Dashed: the compliances of the project now.",
             alt="Deviation along the path with its 95 % band.",
-        )  # fmt: skip
+        )
     parts.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
 
 

@@ -57,11 +57,13 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
             with st.container(border=True):
                 for k, drawn in enumerate(words.intervals(result, _bare(robot), view.joint_unit, truth)):
                     parts.figure(
-                        intervals_figure(drawn, dark=dark), f"lab-intervals-{k}", name="laboratory",
+                        intervals_figure(drawn, dark=dark),
+                        f"lab-intervals-{k}",
+                        name="laboratory",
                         table=lambda: words.parameter_columns(result, _bare(robot), view.joint_unit),
                         caption="Crosses: the truth." if kept.handed_in else "Bars: 95 % intervals.",
                         alt="What the readings say of each joint.",
-                    )  # fmt: skip
+                    )
             _hand_in(kept, lab, result)
         elif done:
             st.info(reason, icon=":material/lightbulb:")
@@ -95,13 +97,20 @@ def tiles(lab: Laboratory, done: int, result: IdentificationResult | None, hande
     tone = "" if score is None else "ok" if score.points >= 80 else "tight" if score.points >= 50 else "out"
     return [
         parts.Tile("Readings left", f"{lab.budget}", f"{done} taken"),
-        parts.Tile("Dial gauge", f"± {format_si(lab.noise, 'um', 1)}",
-                   f"one standard deviation; reads to {format_si(lab.resolution, 'um', 0)}", kind="assumed"),
+        parts.Tile(
+            "Dial gauge",
+            f"± {format_si(lab.noise, 'um', 1)}",
+            f"one standard deviation; reads to {format_si(lab.resolution, 'um', 0)}",
+            kind="assumed",
+        ),
         least,
-        parts.Tile("Score", f"{score.points:.0f} of 100" if score else "not handed in",
-                   f"{covered} of {lab.robot.n} intervals hold the truth" if score else "up to 100, shared by joints",
-                   tone=tone),
-    ]  # fmt: skip
+        parts.Tile(
+            "Score",
+            f"{score.points:.0f} of 100" if score else "not handed in",
+            f"{covered} of {lab.robot.n} intervals hold the truth" if score else "up to 100, shared by joints",
+            tone=tone,
+        ),
+    ]
 
 
 def _open(kept: Bench, robot: Robot, seed: int, noise: float, budget: int) -> None:
@@ -158,14 +167,33 @@ def _measure(kept: Bench, robot: Robot, lab: Laboratory) -> None:
         inputs.seed("lab:load", float(choice["load"]))
         st.number_input("Load, N", key="lab:load", step=50.0, format="%.0f", on_change=_take_load)
     with right:
-        inputs.choice("Direction", "lab:push", {a: f"+{a}" for a in "XYZ"}, choice["push"],
-                      lambda a: st.session_state[KEPT].update(push=a))  # fmt: skip
+        inputs.choice(
+            "Direction",
+            "lab:push",
+            {a: f"+{a}" for a in "XYZ"},
+            choice["push"],
+            lambda a: st.session_state[KEPT].update(push=a),
+        )
     spent = lab.budget == 0 or kept.handed_in
     first, second = st.columns(2)
-    first.button("Measure", key="lab:measure", type="primary", width="stretch", disabled=spent,
-                 icon=":material/straighten:", on_click=_push, args=(kept, False))  # fmt: skip
-    second.button("Along X, Y and Z", key="lab:three", width="stretch", disabled=spent or lab.budget < 3,
-                  on_click=_push, args=(kept, True))  # fmt: skip
+    first.button(
+        "Measure",
+        key="lab:measure",
+        type="primary",
+        width="stretch",
+        disabled=spent,
+        icon=":material/straighten:",
+        on_click=_push,
+        args=(kept, False),
+    )
+    second.button(
+        "Along X, Y and Z",
+        key="lab:three",
+        width="stretch",
+        disabled=spent or lab.budget < 3,
+        on_click=_push,
+        args=(kept, True),
+    )
     inputs.sentence("lab:measure")
     if spent and not kept.handed_in:
         parts.note("The budget is spent: hand in what you have.")
@@ -220,15 +248,21 @@ def _arm(robot: Robot, dark: bool, height: int) -> None:
     force = np.eye(3)["XYZ".index(choice["push"])] * choice["load"]
     scene = ArmScene(frames=joint_frames(robot, solved.theta), force=force, force_label=f"{choice['load']:g} N")
     parts.figure(
-        arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9), "lab-arm",
-        caption="The pose to be measured and the weight on the tool.", alt="The arm at the chosen pose with its load.",
-    )  # fmt: skip
+        arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9),
+        "lab-arm",
+        caption="The pose to be measured and the weight on the tool.",
+        alt="The arm at the chosen pose with its load.",
+    )
 
 
 def _hand_in(kept: Bench, lab: Laboratory, result: IdentificationResult) -> None:
     if not kept.handed_in:
-        st.button("Hand in and see the truth", key="lab:hand", icon=":material/flag:",
-                  on_click=lambda: setattr(kept, "handed_in", True))  # fmt: skip
+        st.button(
+            "Hand in and see the truth",
+            key="lab:hand",
+            icon=":material/flag:",
+            on_click=lambda: setattr(kept, "handed_in", True),
+        )
         parts.note(result.explain(result.weakest_joint))
         return
     score = lab.score(result)
@@ -249,8 +283,9 @@ def _readings(tests: LoadTests | None) -> None:
         return
     assert tests.theta is not None
     with st.expander(f"Readings ({len(tests)})", icon=":material/table:"):
-        columns: dict[str, Any] = {f"θ{i + 1}, °": np.round(from_si(tests.theta[:, i], "deg"), 2)
-                                   for i in range(tests.theta.shape[1])}  # fmt: skip
+        columns: dict[str, Any] = {
+            f"θ{i + 1}, °": np.round(from_si(tests.theta[:, i], "deg"), 2) for i in range(tests.theta.shape[1])
+        }
         for i, axis in enumerate("xyz"):
             columns[f"F{axis}, N"] = tests.wrench[:, i]
         for i, axis in enumerate("xyz"):

@@ -58,9 +58,13 @@ def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, f
     first, second, third = parts.split([1, 1.1, 1], "map-inputs", gap="large")
     with first:
         inputs.choice(
-            "Measured compliances", "ident:map:sample", samples, kept.map_sample or OWN,
-            lambda n: None if n == OWN else kept.take_map(sample_text(n), f"{n}.csv", n), horizontal=False,
-        )  # fmt: skip
+            "Measured compliances",
+            "ident:map:sample",
+            samples,
+            kept.map_sample or OWN,
+            lambda n: None if n == OWN else kept.take_map(sample_text(n), f"{n}.csv", n),
+            horizontal=False,
+        )
         robot_choice(kept)
     with second:
         upload("Your measured map (CSV)", "ident:map:file", kept.take_map, kept.map_revision)
@@ -130,11 +134,14 @@ def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit
     text, note = cut_words(field, cut, unit)
     return [
         parts.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
-        parts.Tile("Off the joint model", f"{shown:.1f} %" if np.isfinite(shown) else "not reached",
-                   f"most at ({where}) {unit_label(unit)}: {100 * float(np.nanmax(gap)):.0f} %"),
+        parts.Tile(
+            "Off the joint model",
+            f"{shown:.1f} %" if np.isfinite(shown) else "not reached",
+            f"most at ({where}) {unit_label(unit)}: {100 * float(np.nanmax(gap)):.0f} %",
+        ),
         parts.Tile("Asymmetry", f"{100 * float(field.asymmetry.mean()):.1f} %", "of |C|, on average"),
         parts.Tile("The cut by the map", text, note),
-    ]  # fmt: skip
+    ]
 
 
 def kind_of(field: MeasuredField) -> str:
@@ -180,8 +187,11 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
     top = float(np.nanmax(np.abs(both)))
     limits = (-top, top) if signed else (float(np.nanmin(both)), float(np.nanmax(both)))
     far = float(np.nanmax(np.abs(sizes[2]))) if np.isfinite(sizes[2]).any() else 1.0
-    rows = (("Measured", sizes[0], limits, signed), ("Joint model", sizes[1], limits, signed),
-            ("Measured − joint model", sizes[2], (-far, far), True))  # fmt: skip
+    rows = (
+        ("Measured", sizes[0], limits, signed),
+        ("Joint model", sizes[1], limits, signed),
+        ("Measured − joint model", sizes[2], (-far, far), True),
+    )
     for k, (column, (name, values, ends, both_ways)) in enumerate(
         zip(parts.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
     ):
@@ -189,10 +199,22 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
             title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
             st.markdown(f"**{name}**")
             parts.figure(
-                level_figure(x, y, values, points if k != 1 else points[:0], ends, title_text, unit_label("um/N"),
-                             signed=both_ways, length_unit=unit_label(unit), dark=dark, revision=f"map-{k}"),
-                f"ident-map-{k}", alt=f"{name} of {component} at this level.",
-            )  # fmt: skip
+                level_figure(
+                    x,
+                    y,
+                    values,
+                    points if k != 1 else points[:0],
+                    ends,
+                    title_text,
+                    unit_label("um/N"),
+                    signed=both_ways,
+                    length_unit=unit_label(unit),
+                    dark=dark,
+                    revision=f"map-{k}",
+                ),
+                f"ident-map-{k}",
+                alt=f"{name} of {component} at this level.",
+            )
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         parts.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
         parts.table_twin(lambda: _columns(grid, sizes, component), "measured-map")
@@ -211,9 +233,10 @@ def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, A
     X, Y = np.meshgrid(grid.x, grid.y, indexing="ij")
     names = ("measured", "joint_model", "difference")
     return {
-        "X_mm": from_si(X.ravel(), "mm"), "Y_mm": from_si(Y.ravel(), "mm"),
+        "X_mm": from_si(X.ravel(), "mm"),
+        "Y_mm": from_si(Y.ravel(), "mm"),
         **{f"{component}_{n}_um_N": v.ravel() for n, v in zip(names, sizes, strict=True)},
-    }  # fmt: skip
+    }
 
 
 def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bool) -> None:
@@ -232,10 +255,13 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
     with left, st.container(border=True, height="stretch"):
         st.markdown("**The project's cut by both**")
         parts.figure(
-            both_figure(s, by_map, by_joints, unit, dark=dark), "ident-both", name="cut-by-map",
+            both_figure(s, by_map, by_joints, unit, dark=dark),
+            "ident-both",
+            name="cut-by-map",
             table=lambda: {f"station_{unit}": s, f"by_map_{unit}": by_map, f"by_joints_{unit}": by_joints},
-            caption="Size of the deviation along the path.", alt="Deviation along the path by map and joint model.",
-        )  # fmt: skip
+            caption="Size of the deviation along the path.",
+            alt="Deviation along the path by map and joint model.",
+        )
     with right, st.container(border=True, height="stretch"):
         st.markdown(f"**At its worst, line {cut.worst_block}**")
         digits = 3 if unit == "mm" else 4
@@ -259,11 +285,18 @@ def _use(field: MeasuredField) -> None:
     in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
     if in_force:
         st.button(
-            "Go back to the joint model", key="map:drop", on_click=state.change, kwargs={"measured_map": None},
+            "Go back to the joint model",
+            key="map:drop",
+            on_click=state.change,
+            kwargs={"measured_map": None},
             help="The simulation runs from this map now.",
-        )  # fmt: skip
+        )
         return
     st.button(
-        "Simulate from this map", key="map:use", type="primary", on_click=state.change, kwargs={"measured_map": field},
+        "Simulate from this map",
+        key="map:use",
+        type="primary",
+        on_click=state.change,
+        kwargs={"measured_map": field},
         help="Deflections then come from the measured map; the joints' shares are still shown.",
-    )  # fmt: skip
+    )

@@ -36,13 +36,18 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     with st.container(border=True):
         parts.figure(
             models_figure(
-                names, np.array([from_si(in_sample(r), "%") for r in results]),
+                names,
+                np.array([from_si(in_sample(r), "%") for r in results]),
                 np.array([from_si(r.cv_relative_error, "%") for r in results]),
-                next(k for k, r in enumerate(results) if r is best), dark=dark,
-            ), "ident-models", name="models", table=lambda: _model_columns(rows),
+                next(k for k, r in enumerate(results) if r is best),
+                dark=dark,
+            ),
+            "ident-models",
+            name="models",
+            table=lambda: _model_columns(rows),
             caption="In brackets: parameters. From ring to dot: over-fitting. Bold: simplest that predicts as well.",
             alt="Errors of the models on their own data and on poses left out.",
-        )  # fmt: skip
+        )
     absorbed = compared.absorbed()
     if absorbed:
         st.info(absorbed, icon=":material/lightbulb:")
@@ -51,9 +56,11 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     _side_by_side(results, rows, robot, joint_unit)
     if kept.model != best.model:
         st.button(
-            f"Take {words.MODEL_TITLES[best.model].lower()}", key="ident:best", icon=":material/thumb_up:",
+            f"Take {words.MODEL_TITLES[best.model].lower()}",
+            key="ident:best",
+            icon=":material/thumb_up:",
             on_click=lambda: setattr(kept, "model", best.model),
-        )  # fmt: skip
+        )
 
 
 def _judgement(compared: Comparison) -> str:

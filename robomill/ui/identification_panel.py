@@ -24,17 +24,22 @@ from robomill.units import from_si, to_si, unit_label
 
 SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual laboratory"}
 VIEWS = {
-    "compliances": "Compliances", "residuals": "Residuals", "models": "Models", "next": "Measure next",
+    "compliances": "Compliances",
+    "residuals": "Residuals",
+    "models": "Models",
+    "next": "Measure next",
     "cut": "In the cut",
-}  # fmt: skip
+}
 MAX_MB = 50
 EDITABLE = 60_000
 OWN = "own"
 IDENTIFIED = "identified from"
 TEMPLATES = {
-    "joints": "Poses as joint angles", "world": "Poses as X, Y, Z, A, B", "joint by joint": "One joint at a time",
+    "joints": "Poses as joint angles",
+    "world": "Poses as X, Y, Z, A, B",
+    "joint by joint": "One joint at a time",
     "compliances": "Measured compliances",
-}  # fmt: skip
+}
 
 
 def choose(key: str, options: dict[str, str]) -> str:
@@ -53,9 +58,13 @@ def source(kept: Bench, robot: Robot) -> None:
     """A sample, a file, or pasted rows; refused text stays with its sentence."""
     samples = {**SAMPLES, OWN: kept.name} if not kept.sample else SAMPLES
     inputs.choice(
-        "Load tests", "ident:sample", samples, kept.sample or OWN,
-        lambda name: None if name == OWN else take_sample(kept, name), horizontal=False,
-    )  # fmt: skip
+        "Load tests",
+        "ident:sample",
+        samples,
+        kept.sample or OWN,
+        lambda name: None if name == OWN else take_sample(kept, name),
+        horizontal=False,
+    )
     upload("Your load tests (CSV)", "ident:file", kept.take, kept.revision)
     _templates(robot)
     if len(kept.text) > EDITABLE:
@@ -65,9 +74,11 @@ def source(kept: Bench, robot: Robot) -> None:
         box = "ident:text"
         inputs.seed(box, kept.text)
         st.text_area(
-            "Header with units, then one row a test", key=box, height=220,
+            "Header with units, then one row a test",
+            key=box,
+            height=220,
             on_change=lambda: kept.take(st.session_state[box], "pasted rows"),
-        )  # fmt: skip
+        )
         parts.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
 
 
@@ -114,20 +125,23 @@ def model_choice(kept: Bench, robot: Robot) -> None:
 
     inputs.choice(
         "What gives", "ident:model", {m: MODEL_TITLES[m] for m in MODELS}, kept.model, take_model, horizontal=False
-    )  # fmt: skip
+    )
     if "bending" in kept.model:
         key = "ident:bending"
         inputs.seed(key, [j for j in kept.bending if j in robot.joint_numbers])
         st.multiselect(
-            "Links bend at joints", list(robot.joint_numbers), key=key,
+            "Links bend at joints",
+            list(robot.joint_numbers),
+            key=key,
             on_change=lambda: setattr(kept, "bending", tuple(sorted(st.session_state[key]))),
-        )  # fmt: skip
+        )
     key = "ident:robust"
     inputs.seed(key, kept.robust)
     st.toggle(
-        "Weigh down tests that do not fit", key=key,
+        "Weigh down tests that do not fit",
+        key=key,
         on_change=lambda: setattr(kept, "robust", bool(st.session_state[key])),
-    )  # fmt: skip
+    )
 
 
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
@@ -166,18 +180,24 @@ def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
     if in_force:
         uncertainty.keep(setup, _knowledge(kept, robot, result))  # force and lengths may have been stated since
     st.button(
-        "In force in the project" if in_force else "Use these compliances in the project", type="primary",
-        icon=":material/check:" if in_force else ":material/input:", key="ident:use", width="stretch",
-        disabled=in_force, on_click=_use, args=(kept, fitted, robot, result),
-    )  # fmt: skip
+        "In force in the project" if in_force else "Use these compliances in the project",
+        type="primary",
+        icon=":material/check:" if in_force else ":material/input:",
+        key="ident:use",
+        width="stretch",
+        disabled=in_force,
+        on_click=_use,
+        args=(kept, fitted, robot, result),
+    )
     if in_force:
         parts.note("Every page counts with them now, and shows its deviation with a band. Undo leads back.")
     else:
         springs = len(result.springs(robot))
         parts.note(
-            "Sets the joint compliances" + (f" and {springs} springs beside the joints" if springs else "")
+            "Sets the joint compliances"
+            + (f" and {springs} springs beside the joints" if springs else "")
             + " of the project's robot; their uncertainty goes along as bands."
-        )  # fmt: skip
+        )
     inputs.sentence("ident:use")
 
 
@@ -187,9 +207,7 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
     marked = {**result.applied_to(robot).provenance, "compliance.identified": Provenance("computed", words)}
     found = result.springs(robot)
     names = {spring.name for spring in found}
-    old = tuple(
-        s for s in setup.springs if s.name not in names and not s.provenance.source.startswith(IDENTIFIED)
-    )  # fmt: skip
+    old = tuple(s for s in setup.springs if s.name not in names and not s.provenance.source.startswith(IDENTIFIED))
     return setup.replace(robot=result.applied_to(robot).replace(provenance=marked), springs=old + found)
 
 
@@ -222,7 +240,10 @@ def field(label: str, kept: Bench, name: str, unit: str, low: float, high: float
 
     named = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
     st.number_input(
-        named, key=key, step=float(step), format=f"%.{digits}f",
+        named,
+        key=key,
+        step=float(step),
+        format=f"%.{digits}f",
         on_change=lambda: inputs.attempt(key, st.session_state[key], put),
-    )  # fmt: skip
+    )
     inputs.sentence(key)

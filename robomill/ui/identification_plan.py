@@ -44,22 +44,27 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
         with np.errstate(invalid="ignore", divide="ignore"):
             before, after = (100.0 * h / np.abs(result.parameters) for h in (plan.half_before, plan.half_after))
         parts.figure(
-            gain_figure([names[k] for k in live], before[live], after[live], dark=dark), "ident-gain",
-            name="plan-intervals", table=lambda: {"parameter": names, "half_now_%": before, "half_after_%": after},
+            gain_figure([names[k] for k in live], before[live], after[live], dark=dark),
+            "ident-gain",
+            name="plan-intervals",
+            table=lambda: {"parameter": names, "half_now_%": before, "half_after_%": after},
             caption="As the noise of these tests says; the new readings decide.",
             alt="Half widths of the 95 % intervals now and after the planned tests.",
-        )  # fmt: skip
+        )
     columns = plan_columns(plan, unit)
     st.dataframe(columns, hide_index=True)
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         parts.download(
-            "Measuring sheet (CSV)", lambda: measuring_sheet(plan, kept.name), "measuring-sheet.csv", "text/csv",
+            "Measuring sheet (CSV)",
+            lambda: measuring_sheet(plan, kept.name),
+            "measuring-sheet.csv",
+            "text/csv",
             key="ident:sheet",
-        )  # fmt: skip
+        )
         parts.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
     upload(
         "Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name), kept.revision
-    )  # fmt: skip
+    )
 
 
 def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
@@ -108,8 +113,15 @@ def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     if kept.goal == "path":
         cut = cut_of(robot)
         goal = PathLoad(cut.theta[cut.judged], cut.F[cut.judged])
-    key = ("plan", id(result), kept.goal, goal if isinstance(goal, int) else state.project().setup.digest(),
-           kept.count, kept.load, kept.tilt)  # fmt: skip
+    key = (
+        "plan",
+        id(result),
+        kept.goal,
+        goal if isinstance(goal, int) else state.project().setup.digest(),
+        kept.count,
+        kept.load,
+        kept.tilt,
+    )
 
     def make() -> tuple[IdentificationResult, Plan]:
         tips = tests.tool_poses(robot)[:, :3, 3]

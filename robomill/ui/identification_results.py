@@ -28,11 +28,13 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         for k, drawn in enumerate(words.intervals(result, robot, joint_unit)):
             first = k == 0
             parts.figure(
-                intervals_figure(drawn, dark=dark), f"ident-intervals-{k}", name="compliances",
+                intervals_figure(drawn, dark=dark),
+                f"ident-intervals-{k}",
+                name="compliances",
                 table=(lambda: words.parameter_columns(result, robot, joint_unit)) if first else None,
                 caption=_scale(drawn.logarithmic) if first else "",
                 alt="Fitted compliances with 95 % intervals beside the reference values.",
-            )  # fmt: skip
+            )
     unseen(result)
     few = len(result.labels) <= 8
     left, right = parts.split([1, 1.3], "fit") if few else (st.container(), st.container())
@@ -41,10 +43,12 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         if np.isfinite(result.correlation).any():
             names = [words.pretty(p.label).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
             parts.figure(
-                correlation_figure(names, result.correlation, dark=dark), "ident-correlation",
+                correlation_figure(names, result.correlation, dark=dark),
+                "ident-correlation",
                 table=lambda: {"": names, **{n: result.correlation[:, i] for i, n in enumerate(names)}},
-                caption="±1: only their sum or difference is known.", alt="Correlations of the fitted compliances.",
-            )  # fmt: skip
+                caption="±1: only their sum or difference is known.",
+                alt="Correlations of the fitted compliances.",
+            )
         else:
             parts.note("Without residuals to judge the noise by, there are no correlations.")
     with right, st.container(border=True, height="stretch"):
@@ -86,10 +90,15 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
     for k, parameter in enumerate(result.labels):
         unit = words.unit_of(parameter, joint_unit)
         value, error, low, high = (columns[c][k] for c in FIXED[1:5])
-        cells = ["not seen", "–", "–"] if not np.isfinite(value) else [
-            f"<b>{words.number(value, unit)}</b>", words.number(error, unit),
-            f"{words.number(low, unit)} to {words.number(high, unit)}",
-        ]  # fmt: skip
+        cells = (
+            ["not seen", "–", "–"]
+            if not np.isfinite(value)
+            else [
+                f"<b>{words.number(value, unit)}</b>",
+                words.number(error, unit),
+                f"{words.number(low, unit)} to {words.number(high, unit)}",
+            ]
+        )
         if parameter.label in result.lumped:
             cells = [f"counted with {result.lumped[parameter.label]}", "", ""]
         cells += [words.number(columns[c][k], unit) for c in references]
@@ -120,11 +129,13 @@ def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
         odd = np.isin(result.row, [o.row for o in result.outliers])
         note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
         parts.figure(
-            residuals_figure(result.row, drawn, odd, picked, dark=dark), f"ident-residuals-{picked}", name="residuals",
+            residuals_figure(result.row, drawn, odd, picked, dark=dark),
+            f"ident-residuals-{picked}",
+            name="residuals",
             table=lambda: words.residual_columns(result),
             caption=note + "One symbol a component. Ringed: further off than chance allows once in 100 data sets.",
             alt="Measured minus predicted displacement of each test.",
-        )  # fmt: skip
+        )
     _outliers(kept, result)
 
 
@@ -152,23 +163,34 @@ def _outliers(kept: Bench, result: IdentificationResult) -> None:
             for o in result.outliers[:6]
         )
         more = f"; and {len(rows) - 6} more" if len(rows) > 6 else ""
-        st.warning(f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out.",
-                   icon=":material/flag:")  # fmt: skip
+        st.warning(
+            f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out.",
+            icon=":material/flag:",
+        )
         if len(rows) > 0.1 * len(result.row):
             parts.note("So many at once speak against the model rather than against the readings: compare the models.")
     key = "ident:excluded"
     inputs.seed(key, list(kept.excluded))
     st.multiselect(
-        "Rows left out", sorted({*rows, *kept.excluded}), key=key,
+        "Rows left out",
+        sorted({*rows, *kept.excluded}),
+        key=key,
         on_change=lambda: setattr(kept, "excluded", tuple(sorted(st.session_state[key]))),
-    )  # fmt: skip
+    )
     left, right = st.columns(2)
     left.button(
-        f"Leave out {'this row' if len(rows) == 1 else f'these {len(rows)} rows'} and refit", key="ident:drop",
-        disabled=not rows, width="stretch", icon=":material/filter_alt:",
+        f"Leave out {'this row' if len(rows) == 1 else f'these {len(rows)} rows'} and refit",
+        key="ident:drop",
+        disabled=not rows,
+        width="stretch",
+        icon=":material/filter_alt:",
         on_click=lambda: setattr(kept, "excluded", tuple(sorted({*rows, *kept.excluded}))),
-    )  # fmt: skip
+    )
     right.button(
-        "Use every row again", key="ident:restore", disabled=not kept.excluded, width="stretch", icon=":material/undo:",
+        "Use every row again",
+        key="ident:restore",
+        disabled=not kept.excluded,
+        width="stretch",
+        icon=":material/undo:",
         on_click=lambda: setattr(kept, "excluded", ()),
-    )  # fmt: skip
+    )

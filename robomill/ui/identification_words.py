@@ -77,18 +77,26 @@ def _drawing(
     value = np.where(known, shown(result.parameters[rows], unit), np.nan)
     ends = np.array([interval(result.parameter_ci95[k], unit) for k in rows])
     words = tuple(
-        f"<b>{number(v, unit)}</b>  ({number(low, unit)} to {number(high, unit)})" if seen
-        else f"moves as {other} does at these poses: counted there" if other else "not seen by these tests"
+        f"<b>{number(v, unit)}</b>  ({number(low, unit)} to {number(high, unit)})"
+        if seen
+        else f"moves as {other} does at these poses: counted there"
+        if other
+        else "not seen by these tests"
         for v, (low, high), seen, other in zip(value, ends, known, lumped, strict=True)
-    )  # fmt: skip
+    )
     joints = [p.joint - 1 for p in labels if p.joint is not None]
     references = {title: shown(C[joints], unit) for title, C in reference_sets(robot)} if joints else {}
     return Intervals(
-        labels=tuple(pretty(p.label) for p in labels), value=value, low=ends[:, 0], high=ends[:, 1], words=words,
-        unit=unit_label(unit), references=references,
+        labels=tuple(pretty(p.label) for p in labels),
+        value=value,
+        low=ends[:, 0],
+        high=ends[:, 1],
+        words=words,
+        unit=unit_label(unit),
+        references=references,
         truth=None if truth is None else shown(truth, unit),
         logarithmic=not any(p.signed for p in labels) and bool((value[known] > 0).any()),
-    )  # fmt: skip
+    )
 
 
 def reference_sets(robot: Robot) -> list[tuple[str, FloatArray]]:
@@ -112,9 +120,10 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
     value = np.array([float(shown(v, u)) for v, u in zip(result.parameters, units, strict=True)])
     with np.errstate(invalid="ignore", divide="ignore"):
         error = np.where(
-            [is_stiffness(u) for u in units], value * result.parameter_stderr / result.parameters,
+            [is_stiffness(u) for u in units],
+            value * result.parameter_stderr / result.parameters,
             [float(from_si(float(e), u)) for e, u in zip(result.parameter_stderr, units, strict=True)],
-        )  # fmt: skip
+        )
     ends = [interval(c, u) for c, u in zip(result.parameter_ci95, units, strict=True)]
     columns: dict[str, Any] = {
         "parameter": [p.label for p in result.labels],
@@ -184,9 +193,10 @@ def title(result: IdentificationResult) -> str:
     cv = result.cv_relative_error
     what = "readings" if is_single(result) else "poses"
     said = (
-        f"These tests predict {what} left out to {format_si(cv, '%', 1)}" if np.isfinite(cv)
+        f"These tests predict {what} left out to {format_si(cv, '%', 1)}"
+        if np.isfinite(cv)
         else f"There are too few {what} to leave any out"
-    )  # fmt: skip
+    )
     if result.model == "constant":
         return f"{said}: one matrix for every pose, the naive baseline."
     label, half = weakest(result)
@@ -201,10 +211,13 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
     single = is_single(result)
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
     items = [
-        Tile(f"Error on {'readings' if single else 'poses'} left out",
-             format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
-             f"cross-validated; {format_si(inside, '%', 1)} on its own data", kind="computed"),
-    ]  # fmt: skip
+        Tile(
+            f"Error on {'readings' if single else 'poses'} left out",
+            format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
+            f"cross-validated; {format_si(inside, '%', 1)} on its own data",
+            kind="computed",
+        ),
+    ]
     if result.model == "constant":
         items.append(Tile("Least known joint", "none", "this model has no joints"))
     else:
@@ -219,5 +232,5 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
     items += [
         Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),
         Tile("The cut at its worst", *cut),
-    ]  # fmt: skip
+    ]
     return items

@@ -36,9 +36,7 @@ def number(
     seed(key, shown)
     decimals = UNITS[unit].digits if digits is None else digits
     name = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
-    st.number_input(
-        name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, disabled=disabled
-    )  # fmt: skip
+    st.number_input(name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, disabled=disabled)
     sentence(key)
 
 
@@ -47,11 +45,12 @@ def whole(label: str, path: str, *, hint: str | None = None) -> None:
     key = f"in:{path}"
     seed(key, int(fields.read(state.project().setup, path)))
     st.number_input(
-        label, key=key, step=1, help=hint,
-        on_change=lambda: attempt(
-            key, st.session_state[key], lambda: _put(path, int(st.session_state[key]), key)
-        ),
-    )  # fmt: skip
+        label,
+        key=key,
+        step=1,
+        help=hint,
+        on_change=lambda: attempt(key, st.session_state[key], lambda: _put(path, int(st.session_state[key]), key)),
+    )
     sentence(key)
 
 
@@ -76,14 +75,26 @@ def choice(
 
     if horizontal:
         st.segmented_control(
-            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=hint,
-            label_visibility=label_visibility, required=True, width="stretch",
-        )  # fmt: skip
+            label,
+            list(options),
+            key=key,
+            format_func=lambda k: options[k],
+            on_change=take,
+            help=hint,
+            label_visibility=label_visibility,
+            required=True,
+            width="stretch",
+        )
     else:
         st.selectbox(
-            label, list(options), key=key, format_func=lambda k: options[k], on_change=take, help=hint,
+            label,
+            list(options),
+            key=key,
+            format_func=lambda k: options[k],
+            on_change=take,
+            help=hint,
             label_visibility=label_visibility,
-        )  # fmt: skip
+        )
     sentence(key)
 
 
@@ -103,10 +114,16 @@ def slider(
     """A slider over a number of the view or the set-up, in display units."""
     seed(key, float(min(max(current, low), high)))
     st.slider(
-        label, float(low), float(high), key=key, step=step, format=form, help=hint,
+        label,
+        float(low),
+        float(high),
+        key=key,
+        step=step,
+        format=form,
+        help=hint,
         label_visibility=label_visibility,
         on_change=lambda: attempt(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
-    )  # fmt: skip
+    )
     sentence(key)
 
 

@@ -151,8 +151,11 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     number, _, label = format_si(det, what.unit, 3).rpartition(" ")
     if not number:
         number, label = label, ""
-    near = "A singularity: one direction is lost." if abs(det) < 0.05 * float(np.abs(way.det).max()) else (
-        "Far from a singularity.")  # fmt: skip
+    near = (
+        "A singularity: one direction is lost."
+        if abs(det) < 0.05 * float(np.abs(way.det).max())
+        else ("Far from a singularity.")
+    )
     st.html(
         f'<p class="rm-note">det(J)</p><div class="rm-det">{number} <small>{label}</small></div>'
         f'<p class="rm-note">{near}</p>'
@@ -170,6 +173,13 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         f"softest, {unit_label('um/N')}",
         dark=shell.dark(),
     )
-    parts.figure(fig, "learn-ray", alt="det(J) and the largest compliance against the distance from the base.",
-                 table=lambda: {f"distance_{unit}": from_si(way.radius, unit), "det_J": from_si(way.det, what.unit),
-                                "softest_um/N": from_si(softest, "um/N")})  # fmt: skip
+    parts.figure(
+        fig,
+        "learn-ray",
+        alt="det(J) and the largest compliance against the distance from the base.",
+        table=lambda: {
+            f"distance_{unit}": from_si(way.radius, unit),
+            "det_J": from_si(way.det, what.unit),
+            "softest_um/N": from_si(softest, "um/N"),
+        },
+    )

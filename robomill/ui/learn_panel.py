@@ -20,8 +20,11 @@ from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 
 KEY = "robomill.learn"
 ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
-SIDE = {"eye": {"x": 1.55, "y": -0.42, "z": 0.22}, "center": {"x": 0, "y": 0, "z": -0.04},
-        "projection": {"type": "orthographic"}}  # fmt: skip
+SIDE = {
+    "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
+    "center": {"x": 0, "y": 0, "z": -0.04},
+    "projection": {"type": "orthographic"},
+}
 
 
 @dataclass(frozen=True)
@@ -60,9 +63,14 @@ def question(found: PointReport) -> None:
     left, right = parts.split([1.35, 1], "ask", gap="large")
     with right:
         _answers(now)
-        st.button("Hide it again" if now.revealed else "Show where it goes", key="learn:reveal", width="stretch",
-                  type="secondary" if now.revealed else "primary", icon=":material/visibility:",
-                  on_click=lambda: go(revealed=not lesson().revealed))  # fmt: skip
+        st.button(
+            "Hide it again" if now.revealed else "Show where it goes",
+            key="learn:reveal",
+            width="stretch",
+            type="secondary" if now.revealed else "primary",
+            icon=":material/visibility:",
+            on_click=lambda: go(revealed=not lesson().revealed),
+        )
         _answer(found, now)
     with left, st.container(border=True):
         _push(found, now.revealed)
@@ -143,10 +151,12 @@ def _push(found: PointReport, revealed: bool) -> None:
     delta = FORCE * found.C[:, 1]
     unit, dark = state.project().view.length, shell.dark()
     scene = ArmScene(
-        frames=found.frames, force=np.array([0.0, FORCE, 0.0]), force_label="100 N",
+        frames=found.frames,
+        force=np.array([0.0, FORCE, 0.0]),
+        force_label="100 N",
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
-    )  # fmt: skip
+    )
     key = (found.robot.digest(), digest(found.theta), revealed, unit, dark)
     more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
     fig = cache.kept_figure(

@@ -40,22 +40,37 @@ def scrubber(result: SimulationResult) -> int:
     top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
     i = sample_at(result, station_m(result))
     inputs.slider(
-        f"Station: {unit} of cut", "view.station", 0.0, round(top, 3), round(view.station * top, 3),
-        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)), step=round(top / 200, 4) or 0.001, form="%.2f",
-    )  # fmt: skip
+        f"Station: {unit} of cut",
+        "view.station",
+        0.0,
+        round(top, 3),
+        round(view.station * top, 3),
+        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)),
+        step=round(top / 200, 4) or 0.001,
+        form="%.2f",
+    )
     lines = cut_lines(result)
     place = int(np.searchsorted(lines, result.path.block[i])) if i >= 0 else 0
     with st.container(horizontal=True, gap="small"):  # a row that breaks where the window is narrow
         for step, label, words in ((-1, "Back", "previous line"), (1, "Next", "next line")):
             other = place + step
             st.button(
-                label, key=f"scrub:{label.lower()}", help=f"To the {words} that cuts",
-                disabled=not 0 <= other < len(lines), on_click=_to_line, args=(result, lines, other),
-            )  # fmt: skip
+                label,
+                key=f"scrub:{label.lower()}",
+                help=f"To the {words} that cuts",
+                disabled=not 0 <= other < len(lines),
+                on_click=_to_line,
+                args=(result, lines, other),
+            )
         st.button(
-            "Worst", key="scrub:worst", icon=":material/my_location:", on_click=go_to,
-            args=(result, result.worst), disabled=result.worst < 0, help="Land on the largest deviation",
-        )  # fmt: skip
+            "Worst",
+            key="scrub:worst",
+            icon=":material/my_location:",
+            on_click=go_to,
+            args=(result, result.worst),
+            disabled=result.worst < 0,
+            help="Land on the largest deviation",
+        )
     return sample_at(result, station_m(result))
 
 
@@ -77,10 +92,11 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
         return
     point = ", ".join(format_si(float(v), unit, 2).rpartition(" ")[0] for v in result.path.p[i])
     words = [
-        f"<b>Line {result.path.block[i]}</b>", f"at ({point}) {unit} in {{W}}",
+        f"<b>Line {result.path.block[i]}</b>",
+        f"at ({point}) {unit} in {{W}}",
         f"tip off by <b>{format_si(float(result.deviation[i]), unit)}</b>{_range(spread, i, unit)}",
         f"force {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}",
-    ]  # fmt: skip
+    ]
     st.html(f'<p class="rm-lead" style="font-size:.95rem">{" · ".join(words)}</p>')
 
 
@@ -97,9 +113,15 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     s = from_si(result.path.s, unit)
     delta = from_si(at_feed(result, result.delta), unit)
     fig = components_figure(
-        s, delta, result.path.block, float(from_si(result.setup.tolerance, unit)), unit, dark=dark,
-        station=float(s[i]) if i >= 0 else None, height=height,
-    )  # fmt: skip
+        s,
+        delta,
+        result.path.block,
+        float(from_si(result.setup.tolerance, unit)),
+        unit,
+        dark=dark,
+        station=float(s[i]) if i >= 0 else None,
+        height=height,
+    )
     size = np.linalg.norm(delta, axis=1)
     caption = "Deflected minus commanded, in {M}. Click the curve to go there."
     if spread is not None and len(spread.titles) > 1:
@@ -123,9 +145,14 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     add_picks(fig, s, size, words)
     key = "linked-deviation"
     parts.figure(
-        fig, key, name="deviation", table=lambda: deviation_columns(result), caption=caption,
-        alt="Deviation of the tool tip along the path, by component.", on_select=_picker(result, key),
-    )  # fmt: skip
+        fig,
+        key,
+        name="deviation",
+        table=lambda: deviation_columns(result),
+        caption=caption,
+        alt="Deviation of the tool tip along the path, by component.",
+        on_select=_picker(result, key),
+    )
 
 
 def _picker(result: SimulationResult, key: str) -> Callable[[], None]:

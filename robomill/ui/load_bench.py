@@ -165,10 +165,14 @@ def fit_of(kept: Bench, robot: Robot) -> IdentificationResult:
     return kept.remembered(
         ("fit", _choices(kept, robot), kept.model),
         lambda: identify(
-            robot, tests_of(kept, robot), kept.model, bending_joints=kept.bending, robust=kept.robust,
+            robot,
+            tests_of(kept, robot),
+            kept.model,
+            bending_joints=kept.bending,
+            robust=kept.robust,
             exclude=kept.excluded,
         ),
-    )  # fmt: skip
+    )
 
 
 def comparison_of(kept: Bench, robot: Robot) -> Comparison:
@@ -180,10 +184,8 @@ def comparison_of(kept: Bench, robot: Robot) -> Comparison:
         )
     return kept.remembered(
         ("models", _choices(kept, robot)),
-        lambda: compare_models(
-            robot, tests, bending_joints=kept.bending, robust=kept.robust, exclude=kept.excluded
-        ),
-    )  # fmt: skip
+        lambda: compare_models(robot, tests, bending_joints=kept.bending, robust=kept.robust, exclude=kept.excluded),
+    )
 
 
 def field_of(kept: Bench, robot: Robot) -> MeasuredField:

@@ -27,18 +27,22 @@ def value(
     """A number box for a value in SI that is no field of the set-up."""
     inputs.seed(key, float(f"{from_si(float(current), unit):.10g}"))
     st.number_input(
-        f"{label}, {unit_label(unit)}" if unit_label(unit) else label, key=key, step=step,
+        f"{label}, {unit_label(unit)}" if unit_label(unit) else label,
+        key=key,
+        step=step,
         format=f"%.{min(UNITS[unit].digits, 2)}f",
         on_change=lambda: inputs.attempt(
-            key, st.session_state[key], lambda: write(to_si(float(st.session_state[key]), unit))),
-    )  # fmt: skip
+            key, st.session_state[key], lambda: write(to_si(float(st.session_state[key]), unit))
+        ),
+    )
     inputs.sentence(key)
 
 
 def where(robot: Robot, view: MapView, unit: str) -> None:
     """Region, tilt and plane."""
-    inputs.choice("Region", "maps:region", REGIONS, view.region, lambda kind: _take_region(kind, robot, view),
-                  horizontal=False)  # fmt: skip
+    inputs.choice(
+        "Region", "maps:region", REGIONS, view.region, lambda kind: _take_region(kind, robot, view), horizontal=False
+    )
     if view.region == "own":
         _corners(view, unit)
     left, right = st.columns(2)
@@ -71,9 +75,15 @@ def plane_slider(robot: Robot, box: Box, normal: str, at: float, unit: str) -> N
         return
     step = float(f"{(high - low) / 50:.1g}")
     inputs.slider(
-        name, f"maps:at:{normal}:{unit}", round(low, 3), round(high, 3), round(float(from_si(at, unit)), 3),
-        lambda v: see(at=to_si(v, unit), normal=normal), step=step, form="%.0f" if unit == "mm" else "%.2f",
-    )  # fmt: skip
+        name,
+        f"maps:at:{normal}:{unit}",
+        round(low, 3),
+        round(high, 3),
+        round(float(from_si(at, unit)), 3),
+        lambda v: see(at=to_si(v, unit), normal=normal),
+        step=step,
+        form="%.0f" if unit == "mm" else "%.2f",
+    )
 
 
 def plane_title(normal: str, at: float, unit: str) -> str:
@@ -103,8 +113,14 @@ def _corners(view: MapView, unit: str) -> None:
     for name, side in (("from", "lower"), ("to", "upper")):
         for i, column in enumerate(st.columns(3)):
             with column:
-                value(f"{'XYZ'[i]} {name}", f"maps:{side}:{i}:{unit}", getattr(view, side)[i], unit,
-                      lambda v, i=i, side=side: _put_corner(side, i, v), 50.0)  # type: ignore[misc]  # fmt: skip
+                value(
+                    f"{'XYZ'[i]} {name}",
+                    f"maps:{side}:{i}:{unit}",
+                    getattr(view, side)[i],
+                    unit,
+                    lambda v, i=i, side=side: _put_corner(side, i, v),
+                    50.0,
+                )  # type: ignore[misc]
     value("Step (0 lets robomill choose)", f"maps:step:{unit}", view.step or 0.0, unit, _put_step, 5.0)
 
 

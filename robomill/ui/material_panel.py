@@ -48,9 +48,13 @@ def picker(force: ProcessForce) -> None:
     material = force.material
     found = rows(force.kind)
     inputs.choice(
-        "Material", f"force.material.{force.kind}", {m.name: m.title for m in found.values()}, material.name,
-        lambda name: state.change(force=model(found[name], axial=force.axial)), horizontal=False,
-    )  # fmt: skip
+        "Material",
+        f"force.material.{force.kind}",
+        {m.name: m.title for m in found.values()},
+        material.name,
+        lambda name: state.change(force=model(found[name], axial=force.axial)),
+        horizontal=False,
+    )
     others = len(force.alternatives)
     words = f" The band comes from {others} other rows of {material.alloy}." if others else " No other row: no band."
     source = material.provenance.source
@@ -61,33 +65,52 @@ def picker(force: ProcessForce) -> None:
     with right, st.popover("Add a row", icon=":material/add:", width="stretch"):
         _add(material)
     boxes.switch(
-        "Axial pull of the helix", "force.axial_on", force.axial,
+        "Axial pull of the helix",
+        "force.axial_on",
+        force.axial,
         lambda on: state.change(force=model(material, axial=on)),
         hint="Off names what the feed force and the feed-normal force do alone.",
-    )  # fmt: skip
+    )
 
 
 def _coefficients(force: ProcessForce) -> None:
     material = force.material
     st.markdown(f"**{material.title}**")
     table_editor(
-        f"material:{material.name}", lambda: coefficient_frame(material),
+        f"material:{material.name}",
+        lambda: coefficient_frame(material),
         lambda frame: _keep(with_coefficients(material, frame), force.axial, from_editor=True),
-        columns={"value": st.column_config.NumberColumn("value", format="%.6g")}, locked=("coefficient", "unit"),
-    )  # fmt: skip
+        columns={"value": st.column_config.NumberColumn("value", format="%.6g")},
+        locked=("coefficient", "unit"),
+    )
     parts.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
-    parts.download("Row as TOML", lambda: material_to_toml(material), f"{material.name}.toml", "application/toml",
-                   key="get:material")  # fmt: skip
+    parts.download(
+        "Row as TOML",
+        lambda: material_to_toml(material),
+        f"{material.name}.toml",
+        "application/toml",
+        key="get:material",
+    )
 
 
 def _add(material: Material) -> None:
     name = st.text_input("Name of the new row", key="material:name", placeholder="7075 from my own tests")
     alloy = st.text_input("Alloy (rows of one alloy make the band)", key="material:alloy", value=material.alloy)
     source = st.text_input("Where the numbers come from", key="material:source", placeholder="our dynamometer, May")
-    st.button("Add as a copy of this row", key="material:add", icon=":material/add:", on_click=_copy,
-              args=(material, name, alloy, source))  # fmt: skip
-    st.file_uploader("Or a row from a file (.toml)", key="material:file", type=["toml"], max_upload_size=1,
-                     on_change=lambda: _from_file(st.session_state.get("material:file")))  # fmt: skip
+    st.button(
+        "Add as a copy of this row",
+        key="material:add",
+        icon=":material/add:",
+        on_click=_copy,
+        args=(material, name, alloy, source),
+    )
+    st.file_uploader(
+        "Or a row from a file (.toml)",
+        key="material:file",
+        type=["toml"],
+        max_upload_size=1,
+        on_change=lambda: _from_file(st.session_state.get("material:file")),
+    )
     inputs.sentence("material:add")
 
 
@@ -98,8 +121,11 @@ def _copy(material: Material, name: str, alloy: str, source: str) -> None:
             raise CuttingError("A new row needs a name and where its numbers come from.")
         if key in rows(material.kind):
             raise CuttingError(f"There is a row named {key!r} already; choose another name.")
-        _keep(material.replace(name=key, title=name.strip(), alloy=alloy.strip(),
-                               provenance=Provenance("user", source.strip())))  # fmt: skip
+        _keep(
+            material.replace(
+                name=key, title=name.strip(), alloy=alloy.strip(), provenance=Provenance("user", source.strip())
+            )
+        )
 
     inputs.attempt("material:add", None, put)
 
@@ -130,11 +156,15 @@ def coefficient_frame(material: Material) -> pd.DataFrame:
     names = MECHANISTIC if material.kind == "mechanistic" else KIENZLE
     values = [getattr(material, name) for name in names]
     units = [COEFFICIENT_UNITS[name] for name in names]
-    return pd.DataFrame({
-        "coefficient": list(names),
-        "value": [None if v is None else float(f"{from_si(v, u):.10g}") for v, u in zip(values, units, strict=True)],
-        "unit": [unit_label(u) for u in units],
-    })  # fmt: skip
+    return pd.DataFrame(
+        {
+            "coefficient": list(names),
+            "value": [
+                None if v is None else float(f"{from_si(v, u):.10g}") for v, u in zip(values, units, strict=True)
+            ],
+            "unit": [unit_label(u) for u in units],
+        }
+    )
 
 
 def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
@@ -146,6 +176,8 @@ def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
     if material.provenance.kind == "user":
         return material.replace(**values)
     return material.replace(
-        **values, name=f"{material.name}_edited", title=f"{material.title}, edited",
+        **values,
+        name=f"{material.name}_edited",
+        title=f"{material.title}, edited",
         provenance=Provenance("user", f"edited in the app, from: {material.provenance.source}"),
-    )  # fmt: skip
+    )

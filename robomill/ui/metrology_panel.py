@@ -72,14 +72,16 @@ def section_facts(groove: GrooveSection | None) -> None:
         ]
     else:
         sides = [("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed")]
-    parts.facts([
-        ("Width", length(groove.width), ""),
-        ("Depth", length(groove.depth), ""),
-        *sides,
-        ("Floor", length(groove.floor_error, True), f"tilted by {format_si(groove.floor_tilt, 'deg', 3)} across"),
-        wall("left"),
-        wall("right"),
-    ])  # fmt: skip
+    parts.facts(
+        [
+            ("Width", length(groove.width), ""),
+            ("Depth", length(groove.depth), ""),
+            *sides,
+            ("Floor", length(groove.floor_error, True), f"tilted by {format_si(groove.floor_tilt, 'deg', 3)} across"),
+            wall("left"),
+            wall("right"),
+        ]
+    )
 
 
 def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool, height: int = 320) -> None:
@@ -91,27 +93,37 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     if straight(result) and np.isfinite(found.centre_offset).sum() >= 3:
         fit = fit_groove(found)
     curves = ProfileCurves(
-        from_si(found.station, unit), from_si(found.centre_offset, unit), from_si(found.floor_error, unit), unit,
+        from_si(found.station, unit),
+        from_si(found.centre_offset, unit),
+        from_si(found.floor_error, unit),
+        unit,
         float(from_si(result.setup.tolerance, unit)),
         band=None if spread is None or len(spread.titles) < 2 else from_si(offset_band(result, spread, found), unit),
         fit=None if fit is None else from_si(found.centre_offset - fit.side.residual, unit),
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
-    )  # fmt: skip
+    )
     missing = f" {found.missing} of {len(found.station)} stations have no groove to measure." if found.missing else ""
     parts.figure(
         profile_figure(curves, dark=dark, height=height, station=float(from_si(station_m(result), unit)), block=block),
-        "profile", name="groove-profile", table=lambda: profile_columns(found, block),
+        "profile",
+        name="groove-profile",
+        table=lambda: profile_columns(found, block),
         caption="Middle line and floor of the groove against the ideal ones." + missing,
         alt="Centre offset and floor error of the groove along its length, with the tolerance.",
-    )  # fmt: skip
+    )
     if fit is not None:
         side, floor = fit.side, fit.floor
-        parts.facts([
-            ("Shift", f"{format_si(side.offset, unit, sign=True)}", "zeroing the part again would take it out"),
-            ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
-            ("Form error", format_si(side.form_error, "um"), f"left after both; the floor keeps "
-             f"{format_si(floor.form_error, 'um')}"),
-        ])  # fmt: skip
+        parts.facts(
+            [
+                ("Shift", f"{format_si(side.offset, unit, sign=True)}", "zeroing the part again would take it out"),
+                ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
+                (
+                    "Form error",
+                    format_si(side.form_error, "um"),
+                    f"left after both; the floor keeps {format_si(floor.form_error, 'um')}",
+                ),
+            ]
+        )
     else:
         parts.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
     _overlay(found, measured, unit)
@@ -128,21 +140,32 @@ def offset_band(result: SimulationResult, spread: AlloySpread, found: GrooveProf
 
 def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:
     """The profile as a table; its first two columns are what a measured profile looks like, too."""
-    names = {"station_mm": found.station, "offset_mm": found.centre_offset, "floor_mm": found.floor_error,
-             "width_mm": found.width, "depth_mm": found.depth}  # fmt: skip
+    names = {
+        "station_mm": found.station,
+        "offset_mm": found.centre_offset,
+        "floor_mm": found.floor_error,
+        "width_mm": found.width,
+        "depth_mm": found.depth,
+    }
     return {**{k: from_si(v, "mm") for k, v in names.items()}, "line": block}
 
 
 def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) -> None:
     with st.popover("Lay a measured profile over it", icon=":material/straighten:", type="secondary"):
         st.file_uploader(
-            "Measured profile (.csv): station_mm, offset_mm", key="profile:file", max_upload_size=MAX_PROFILE_MB,
+            "Measured profile (.csv): station_mm, offset_mm",
+            key="profile:file",
+            max_upload_size=MAX_PROFILE_MB,
             on_change=lambda: _take(st.session_state.get("profile:file")),
-        )  # fmt: skip
+        )
         parts.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
         if measured is not None:
-            st.button("Take it away", key="profile:clear", icon=":material/close:",
-                      on_click=lambda: st.session_state.pop(MEASURED, None))  # fmt: skip
+            st.button(
+                "Take it away",
+                key="profile:clear",
+                icon=":material/close:",
+                on_click=lambda: st.session_state.pop(MEASURED, None),
+            )
     inputs.sentence("profile:file")
     if measured is None:
         return
@@ -154,12 +177,20 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
         parts.error(exc)
         return
     outside = f"; {against.outside} measured stations lie outside" if against.outside else ""
-    parts.facts([
-        (measured.name, f"{format_si(against.mean, unit, sign=True)}",
-         f"mean of prediction minus measurement; it gives {100 * against.explained:.0f} % of what was measured"),
-        ("Largest miss", format_si(against.largest, unit, sign=True),
-         f"RMS {format_si(against.rms, unit)} over {len(against.station)} stations{outside}"),
-    ])  # fmt: skip
+    parts.facts(
+        [
+            (
+                measured.name,
+                f"{format_si(against.mean, unit, sign=True)}",
+                f"mean of prediction minus measurement; it gives {100 * against.explained:.0f} % of what was measured",
+            ),
+            (
+                "Largest miss",
+                format_si(against.largest, unit, sign=True),
+                f"RMS {format_si(against.rms, unit)} over {len(against.station)} stations{outside}",
+            ),
+        ]
+    )
 
 
 def _take(file: Any) -> None:
@@ -192,19 +223,29 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
     share = 100.0 * area / error.cut_area if error.cut_area else area
     parts.figure(
         histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), "µm", dark=dark, height=height),
-        "histogram", name="error-histogram",
-        table=lambda: {"from_um": from_si(edges[:-1], "um"), "to_um": from_si(edges[1:], "um"),
-                       "area_mm2": from_si(area, "mm2"), "share_percent": share},
+        "histogram",
+        name="error-histogram",
+        table=lambda: {
+            "from_um": from_si(edges[:-1], "um"),
+            "to_um": from_si(edges[1:], "um"),
+            "area_mm2": from_si(area, "mm2"),
+            "share_percent": share,
+        },
         caption="Shortest distance of the machined surface to the ideal one, over the cut area seen from above.",
         alt="Histogram of the signed error over the cut area.",
-    )  # fmt: skip
+    )
     out, out_share = error.area_out(tolerance)
-    parts.facts([
-        ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
-        ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
-        ("Out of tolerance", f"{100 * out_share:.1f} %", f"{format_si(out, 'mm2')} of the "
-         f"{format_si(error.cut_area, 'mm2')} that were cut"),
-        ("RMS error", format_si(error.rms, "um"), "over the cut area"),
-    ])  # fmt: skip
+    parts.facts(
+        [
+            ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
+            ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
+            (
+                "Out of tolerance",
+                f"{100 * out_share:.1f} %",
+                f"{format_si(out, 'mm2')} of the {format_si(error.cut_area, 'mm2')} that were cut",
+            ),
+            ("RMS error", format_si(error.rms, "um"), "over the cut area"),
+        ]
+    )
     for words in result.machined.notes():
         st.warning(words, icon=":material/layers:")

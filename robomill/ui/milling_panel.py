@@ -52,9 +52,15 @@ def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:
 def verdict_link(result: SimulationResult) -> None:
     """The verdict as a sentence that leads to its place."""
     st.button(
-        result.verdict.sentence, key="milling.verdict", icon=":material/my_location:", type="tertiary",
-        on_click=_land, args=(result,), disabled=result.worst < 0, help="Go there: code line, arm, force and section",
-    )  # fmt: skip
+        result.verdict.sentence,
+        key="milling.verdict",
+        icon=":material/my_location:",
+        type="tertiary",
+        on_click=_land,
+        args=(result,),
+        disabled=result.worst < 0,
+        help="Go there: code line, arm, force and section",
+    )
 
 
 def _land(result: SimulationResult) -> None:
@@ -72,8 +78,9 @@ def inputs_column(result: SimulationResult | None) -> None:
     with st.expander("**Cutter**", expanded=True, key="milling.open.cutter"):
         cut_panel.cutter_inputs()
         if result is not None:
-            for words in dict.fromkeys([*setup.stock_block.warnings(setup.cutter),
-                                        *cut_warnings(setup.cutter, result.conditions)]):  # fmt: skip
+            for words in dict.fromkeys(
+                [*setup.stock_block.warnings(setup.cutter), *cut_warnings(setup.cutter, result.conditions)]
+            ):
                 st.warning(words, icon=":material/warning:")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
         cut_panel.stock_inputs()

@@ -29,9 +29,14 @@ def part_zero() -> None:
     if WAY not in st.session_state:
         st.session_state[WAY] = "numbers"
     way = st.segmented_control(
-        "Part zero", list(WAYS), key=WAY, format_func=lambda k: WAYS[k], required=True, label_visibility="collapsed",
+        "Part zero",
+        list(WAYS),
+        key=WAY,
+        format_func=lambda k: WAYS[k],
+        required=True,
+        label_visibility="collapsed",
         width="stretch",
-    )  # fmt: skip
+    )
     if way == "points":
         _by_points()
     else:
@@ -96,10 +101,12 @@ def _by_points() -> None:
     view = state.project().view
     unit = view.length
     table_editor(
-        f"touch:{unit}", lambda: points_frame(state.project().setup.T_MW, unit),
-        lambda frame: _take(frame, unit), locked=("point",),
+        f"touch:{unit}",
+        lambda: points_frame(state.project().setup.T_MW, unit),
+        lambda frame: _take(frame, unit),
+        locked=("point",),
         columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"},
-    )  # fmt: skip
+    )
     touched = st.session_state.get(TOUCH)
     words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
     if touched is not None and np.array_equal(touched.T_MW, state.project().setup.T_MW):

@@ -145,11 +145,19 @@ def figure(
         "displaylogo": False,
         "displayModeBar": "hover",
         "modeBarButtonsToRemove": [
-            "select2d", "lasso2d", "autoScale2d", "zoomIn2d", "zoomOut2d", "resetCameraLastSave3d", "tableRotation",
-            "orbitRotation", "pan3d", "zoom3d",
+            "select2d",
+            "lasso2d",
+            "autoScale2d",
+            "zoomIn2d",
+            "zoomOut2d",
+            "resetCameraLastSave3d",
+            "tableRotation",
+            "orbitRotation",
+            "pan3d",
+            "zoom3d",
         ],
         "toImageButtonOptions": {"format": "png", "filename": f"robomill-{file_name}", "scale": 2},
-    }  # fmt: skip
+    }
     more: dict[str, Any] = {"on_select": on_select, "selection_mode": "points"} if on_select else {}
     picked = st.plotly_chart(fig, key=key, theme=None, config=config, alt=alt or None, **more)
     if caption or table is not None:
@@ -177,5 +185,11 @@ def table_twin(table: Callable[[], Columns], name: str) -> None:
 def download(label: str, data: Callable[[], Any] | Any, file_name: str, mime: str, *, key: str) -> None:
     """A download that is made only when it is asked for."""
     st.download_button(
-        label, data=data, file_name=file_name, mime=mime, key=key, icon=":material/download:", on_click="ignore",
-    )  # fmt: skip
+        label,
+        data=data,
+        file_name=file_name,
+        mime=mime,
+        key=key,
+        icon=":material/download:",
+        on_click="ignore",
+    )

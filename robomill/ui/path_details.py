@@ -76,10 +76,13 @@ def findings_list(findings: Sequence[Finding]) -> None:
         return
     found = worst_first(findings)
     shown = found[:500]
-    frame = pd.DataFrame({
-        "level": [LEVELS[f.level] for f in shown], "line": [f"{f.line:,}" if f.line else "all" for f in shown],
-        "what": [f.message + (f" ({f.count:,} times)" if f.count > 1 else "") for f in shown],
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "level": [LEVELS[f.level] for f in shown],
+            "line": [f"{f.line:,}" if f.line else "all" for f in shown],
+            "what": [f.message + (f" ({f.count:,} times)" if f.count > 1 else "") for f in shown],
+        }
+    )
 
     def take() -> None:
         rows = st.session_state["toolpath.findings"]["selection"]["rows"]
@@ -87,14 +90,19 @@ def findings_list(findings: Sequence[Finding]) -> None:
             select_line(shown[rows[0]].line)
 
     st.dataframe(
-        frame, hide_index=True, height=min(36 * (len(frame) + 1) + 2, 290), key="toolpath.findings", on_select=take,
-        selection_mode="single-row", row_height=36,
+        frame,
+        hide_index=True,
+        height=min(36 * (len(frame) + 1) + 2, 290),
+        key="toolpath.findings",
+        on_select=take,
+        selection_mode="single-row",
+        row_height=36,
         column_config={
             "level": st.column_config.TextColumn("level", width=86),
             "line": st.column_config.TextColumn("line", width=60),
             "what": st.column_config.TextColumn("what", width="large"),
         },
-    )  # fmt: skip
+    )
     hidden = len(found) - len(shown)
     parts.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
 
@@ -106,11 +114,12 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     low, high = summary.low, summary.high
     rows = [
         (
-            f"{axis}<sub>W</sub>", f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
+            f"{axis}<sub>W</sub>",
+            f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
             f"{_plain(high[i] - low[i], unit)} {unit_label(unit)}",
         )
         for i, axis in enumerate("xyz")
-    ]  # fmt: skip
+    ]
     rows.append(
         ("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(summary.rapids, unit, 1)} rapid")
     )
@@ -178,16 +187,23 @@ def support_table() -> None:
 
     said = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
     with st.expander("What is supported", icon=":material/fact_check:"):
-        frame = pd.DataFrame({
-            "words": [row.words for row in SUPPORT], "meaning": [row.meaning for row in SUPPORT],
-            "": [said[row.status] for row in SUPPORT],
-            "dialect": ["all" if row.dialect == "linuxcnc" else DIALECTS[row.dialect] for row in SUPPORT],
-        })  # fmt: skip
+        frame = pd.DataFrame(
+            {
+                "words": [row.words for row in SUPPORT],
+                "meaning": [row.meaning for row in SUPPORT],
+                "": [said[row.status] for row in SUPPORT],
+                "dialect": ["all" if row.dialect == "linuxcnc" else DIALECTS[row.dialect] for row in SUPPORT],
+            }
+        )
         st.dataframe(
-            frame, hide_index=True, height=330,
+            frame,
+            hide_index=True,
+            height=330,
             column_config={
-                "words": st.column_config.TextColumn(width=150), "meaning": st.column_config.TextColumn(width="medium"),
-                "": st.column_config.TextColumn(width=110), "dialect": st.column_config.TextColumn(width=80),
+                "words": st.column_config.TextColumn(width=150),
+                "meaning": st.column_config.TextColumn(width="medium"),
+                "": st.column_config.TextColumn(width=110),
+                "dialect": st.column_config.TextColumn(width=80),
             },
-        )  # fmt: skip
+        )
         parts.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")

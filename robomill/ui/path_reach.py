@@ -71,9 +71,12 @@ def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] |
     runs = _board_runs(key, setup.robot, setup.T_MW, low, high, z)
     nx, ny = BOARD_CELLS
     return {
-        "x": float(from_si(low, unit)), "y": float(from_si(low, unit)),
-        "dx": float(from_si((high - low) / nx, unit)), "dy": float(from_si((high - low) / ny, unit)), "runs": runs,
-    }  # fmt: skip
+        "x": float(from_si(low, unit)),
+        "y": float(from_si(low, unit)),
+        "dx": float(from_si((high - low) / nx, unit)),
+        "dy": float(from_si((high - low) / ny, unit)),
+        "runs": runs,
+    }
 
 
 @st.cache_resource(max_entries=24, show_spinner=False)

@@ -37,10 +37,16 @@ def path_summary(path: Toolpath) -> PathSummary:
     feeds = path.v_f[path.cutting & (path.step_length > 0)]
     spindles = path.n_s[path.cutting] if path.n_s.any() else np.empty(0)
     return PathSummary(
-        moves=len(path) - 1, cuts=int(path.cutting.sum()), blocks=len(distinct(path.block[path.cutting])), low=low,
-        high=high, rapids=float(path.step_length[~path.cutting].sum()), feeds=_range(feeds), spindles=_range(spindles),
+        moves=len(path) - 1,
+        cuts=int(path.cutting.sum()),
+        blocks=len(distinct(path.block[path.cutting])),
+        low=low,
+        high=high,
+        rapids=float(path.step_length[~path.cutting].sum()),
+        feeds=_range(feeds),
+        spindles=_range(spindles),
         tools=tuple(int(t) for t in distinct(path.tool) if t > 0),
-    )  # fmt: skip
+    )
 
 
 @lru_cache(maxsize=6)

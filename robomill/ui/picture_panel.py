@@ -20,9 +20,13 @@ from robomill.viz.views import Exaggerated, so_far, surface_picture, tip_drawn
 
 HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
 EXTRAS = {
-    "plane": "Section plane", "away": "Cut open", "ghost": "Ideal as ghost", "tool": "Tool", "arm": "Arm",
+    "plane": "Section plane",
+    "away": "Cut open",
+    "ghost": "Ideal as ghost",
+    "tool": "Tool",
+    "arm": "Arm",
     "so_far": "Cut so far",
-}  # fmt: skip
+}
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
 HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
 EYES = {
@@ -47,9 +51,10 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
         st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
     else:
         parts.figure(
-            turnable(result, shown, view, dark, height), "surface",
+            turnable(result, shown, view, dark, height),
+            "surface",
             alt="The machined surface, to be turned with the mouse.",
-        )  # fmt: skip
+        )
     times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
     parts.note(
         f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
@@ -61,10 +66,16 @@ def turnable(result: SimulationResult, shown: Exaggerated, view: state.View, dar
     """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
     unit, z = view.length, shown.drawn
     fig = surface_figure(
-        from_si(z.x, unit), from_si(z.y, unit), from_si(z.z, unit), from_si(shown.error, "um"),
-        float(from_si(result.setup.tolerance, "um")), dark=dark, height=height, unit=unit,
+        from_si(z.x, unit),
+        from_si(z.y, unit),
+        from_si(z.z, unit),
+        from_si(shown.error, "um"),
+        float(from_si(result.setup.tolerance, "um")),
+        dark=dark,
+        height=height,
+        unit=unit,
         revision=f"surface-{view.camera}",
-    )  # fmt: skip
+    )
     ratio = fig.layout.scene.aspectratio
     fig.update_layout(
         scene_camera={**EYES[view.camera], "projection": {"type": "orthographic"}},
@@ -85,13 +96,26 @@ def _controls() -> str:
     with times:
         known = view.exaggeration in EXAGGERATIONS
         options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: f"× {view.exaggeration:g}"}
-        inputs.choice("Exaggeration", "view.exaggeration", options, view.exaggeration,
-                      lambda v: state.look(exaggeration=float(v)), horizontal=False)  # fmt: skip
+        inputs.choice(
+            "Exaggeration",
+            "view.exaggeration",
+            options,
+            view.exaggeration,
+            lambda v: state.look(exaggeration=float(v)),
+            horizontal=False,
+        )
     if how != "turn":
         chosen = st.session_state.get(EXTRAS_KEY, ["plane"])
         inputs.seed("picture.extras", list(chosen))
-        st.pills("With", list(EXTRAS), selection_mode="multi", key="picture.extras", format_func=lambda k: EXTRAS[k],
-                 label_visibility="collapsed", on_change=_take_extras)  # fmt: skip
+        st.pills(
+            "With",
+            list(EXTRAS),
+            selection_mode="multi",
+            key="picture.extras",
+            format_func=lambda k: EXTRAS[k],
+            label_visibility="collapsed",
+            on_change=_take_extras,
+        )
     return str(how)
 
 
@@ -110,11 +134,20 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
     camera: Any = view.camera
     solids = posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras) if extras & STANDING and i >= 0 else ()
     picture = surface_picture(
-        result, so_far(result, shown, i) if "so_far" in extras else shown, camera=camera, dark=dark,
-        station=station if extras & {"plane", "away"} else None, at=station, size=SIZE, words=True,
-        layout="pair" if pair else "one", cutaway="away" in extras, ghost="ghost" in extras, solids=solids,
+        result,
+        so_far(result, shown, i) if "so_far" in extras else shown,
+        camera=camera,
+        dark=dark,
+        station=station if extras & {"plane", "away"} else None,
+        at=station,
+        size=SIZE,
+        words=True,
+        layout="pair" if pair else "one",
+        cutaway="away" in extras,
+        ghost="ghost" in extras,
+        solids=solids,
         whole="arm" in extras and bool(solids),
-    )  # fmt: skip
+    )
     key = (result.setup.digest(), view.exaggeration, round(station, 6) if moves else None, tuple(sorted(extras)), pair)
     return ("milling", *key), picture
 
@@ -127,13 +160,20 @@ def downloads(result: SimulationResult, i: int) -> None:
     """Deviation as CSV, picture as PNG, the surface in the formats people ask for."""
     setup = result.setup
     with st.container(horizontal=True, gap="small"):
-        parts.download("Deviation CSV", lambda: csv_text(deviation_columns(result)), "deviation.csv", "text/csv",
-                       key="get:deviation")  # fmt: skip
-        parts.download("Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png",
-                       key="get:png")  # fmt: skip
+        parts.download(
+            "Deviation CSV",
+            lambda: csv_text(deviation_columns(result)),
+            "deviation.csv",
+            "text/csv",
+            key="get:deviation",
+        )
+        parts.download(
+            "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="get:png"
+        )
         for kind in FORMATS:
-            parts.download(f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind],
-                           key=f"get:{kind}")  # fmt: skip
+            parts.download(
+                f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"get:{kind}"
+            )
     parts.note(
         f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
         "VTP carries the signed error."

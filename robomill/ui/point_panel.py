@@ -137,9 +137,12 @@ def _arm(found: PointReport, component: str, unit: str) -> None:
     frames = found.frames
     assert frames is not None
     scene = ArmScene(
-        frames=frames, force=F, displacement=delta, force_label=format_si(FORCE, "N", 0),
+        frames=frames,
+        force=F,
+        displacement=delta,
+        force_label=format_si(FORCE, "N", 0),
         displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
-    )  # fmt: skip
+    )
     dark = shell.dark()
 
     def draw() -> go.Figure:
@@ -231,13 +234,15 @@ def _six(found: PointReport) -> None:
     shown[3:, 3:] = from_si(six[3:, 3:], "urad/(N m)")
     grid(
         [[signed(v) for v in row] for row in shown],
-        ["δx", "δy", "δz", "φx", "φy", "φz"], ["Fx", "Fy", "Fz", "Mx", "My", "Mz"],
-    )  # fmt: skip
+        ["δx", "δy", "δz", "φx", "φy", "φz"],
+        ["Fx", "Fy", "Fz", "Mx", "My", "Mz"],
+    )
     parts.note("δ per F in µm/N, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
     grid(
         [[signed(v) for v in row] for row in found.J],
-        ["vx", "vy", "vz", "ωx", "ωy", "ωz"], [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in found.robot.joint_numbers],
-    )  # fmt: skip
+        ["vx", "vy", "vz", "ωx", "ωy", "ωz"],
+        [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in found.robot.joint_numbers],
+    )
     parts.note("J in m/rad and rad/rad, columns by joint, rows in {M}.")
 
 

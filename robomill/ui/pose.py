@@ -63,10 +63,21 @@ def pose_sliders(project: state.Project, theta: FloatArray, result: SimulationRe
     robot = project.setup.robot
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         st.markdown("**Joint angles**")
-        st.button("At the cut", on_click=lambda: state.look(theta=None), type="tertiary", key="pose:cut",
-                  icon=":material/my_location:", disabled=result is None or result.worst < 0)  # fmt: skip
-        st.button("Home", on_click=lambda: state.look(theta=tuple(robot.home.tolist())), type="tertiary",
-                  key="pose:home", icon=":material/home:")  # fmt: skip
+        st.button(
+            "At the cut",
+            on_click=lambda: state.look(theta=None),
+            type="tertiary",
+            key="pose:cut",
+            icon=":material/my_location:",
+            disabled=result is None or result.worst < 0,
+        )
+        st.button(
+            "Home",
+            on_click=lambda: state.look(theta=tuple(robot.home.tolist())),
+            type="tertiary",
+            key="pose:home",
+            icon=":material/home:",
+        )
     prismatic = slides(robot)[robot.free]
     for i, number in enumerate(robot.joint_numbers):
         _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, "mm" if prismatic[i] else "deg", robot)
@@ -86,10 +97,28 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         inputs.seed(key, min(max(shown, low), high))
     name, slider, box = st.columns([0.14, 1, 0.5], vertical_alignment="center")
     name.markdown(f"**{label}**")
-    slider.slider(label, low, high, key=keys[0], step=0.5, format="%.1f°" if unit == "deg" else "%.1f mm",
-                  label_visibility="collapsed", on_change=take, args=(keys[0],))  # fmt: skip
-    box.number_input(label, low, high, key=keys[1], step=1.0, format="%.2f", label_visibility="collapsed",
-                     on_change=take, args=(keys[1],))  # fmt: skip
+    slider.slider(
+        label,
+        low,
+        high,
+        key=keys[0],
+        step=0.5,
+        format="%.1f°" if unit == "deg" else "%.1f mm",
+        label_visibility="collapsed",
+        on_change=take,
+        args=(keys[0],),
+    )
+    box.number_input(
+        label,
+        low,
+        high,
+        key=keys[1],
+        step=1.0,
+        format="%.2f",
+        label_visibility="collapsed",
+        on_change=take,
+        args=(keys[1],),
+    )
 
 
 def tip_words(robot: Robot, theta: FloatArray, unit: str) -> str:

@@ -38,10 +38,12 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
     key = f"{FILE}:{state.store().revision}"
     # Any name is let in and judged here, so that upper case and odd endings get a sentence and not a grey refusal.
     st.file_uploader(
-        "Program file", key=key, max_upload_size=MAX_PROGRAM_MB,
+        "Program file",
+        key=key,
+        max_upload_size=MAX_PROGRAM_MB,
         on_change=lambda: _take_file(st.session_state.get(key)),
         help=f"Endings {', '.join(SUFFIXES)}, upper or lower case; up to {MAX_PROGRAM_MB} MB.",
-    )  # fmt: skip
+    )
     inputs.sentence(FILE)
     reading.reading_panel(_accept, _refuse)
     refused = st.session_state.get(REFUSED)
@@ -53,9 +55,7 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
 
 
 def _dialect(source: GCodeSource) -> None:
-    inputs.choice(
-        "Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, horizontal=False
-    )  # fmt: skip
+    inputs.choice("Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, horizontal=False)
     parts.note(dialect_words(source))
 
 
@@ -81,16 +81,26 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
         st.session_state[MODE] = "code"
     with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
         mode = st.segmented_control(
-            "Program", ["code", "edit"], key=MODE, required=True, label_visibility="collapsed",
+            "Program",
+            ["code", "edit"],
+            key=MODE,
+            required=True,
+            label_visibility="collapsed",
             format_func=lambda k: {"code": "Code", "edit": "Edit"}[k],
-        )  # fmt: skip
+        )
         if mode == "code":
             inputs.seed("program.line", min(selected_line(), len(lines)))
             st.number_input(
-                "Line", key="program.line", min_value=0, max_value=max(len(lines), 1), step=1, width=130,
-                on_change=lambda: select_line(int(st.session_state["program.line"] or 0)), label_visibility="collapsed",
+                "Line",
+                key="program.line",
+                min_value=0,
+                max_value=max(len(lines), 1),
+                step=1,
+                width=130,
+                on_change=lambda: select_line(int(st.session_state["program.line"] or 0)),
+                label_visibility="collapsed",
                 help="Go to a line; 0 points at none.",
-            )  # fmt: skip
+            )
             st.caption(f"of {len(lines):,} lines")
     if mode == "code":
         height = min(max(22 * len(lines) + 24, 130), 420)
@@ -100,9 +110,12 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
     else:
         inputs.seed(TEXT, source.text)
         st.text_area(
-            "Program text", key=TEXT, height=420, label_visibility="collapsed",
+            "Program text",
+            key=TEXT,
+            height=420,
+            label_visibility="collapsed",
             on_change=lambda: inputs.attempt(TEXT, st.session_state[TEXT], lambda: _take_text(st.session_state[TEXT])),
-        )  # fmt: skip
+        )
         inputs.sentence(TEXT)
 
 
@@ -145,8 +158,14 @@ def _show_refused(refused: Refused, dark: bool) -> None:
     """A program that cannot be read is shown at the line that is at fault; the one before it stays in force."""
     parts.error(f"{refused.source.name} was not taken. {refused.reason}")
     with st.container(horizontal=True, gap="small"):
-        st.button("Mend it here", icon=":material/edit:", key="refused.edit", on_click=_mend, args=(refused,),
-                  disabled=len(refused.source.text) > EDITABLE_CHARACTERS)  # fmt: skip
+        st.button(
+            "Mend it here",
+            icon=":material/edit:",
+            key="refused.edit",
+            on_click=_mend,
+            args=(refused,),
+            disabled=len(refused.source.text) > EDITABLE_CHARACTERS,
+        )
         st.button("Leave it", icon=":material/close:", key="refused.leave", on_click=_leave, type="tertiary")
     level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
     program_view(refused.source.text, level, dark, fixed=refused.line)

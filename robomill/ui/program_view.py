@@ -26,9 +26,11 @@ def _read(suffix: str) -> str:
 
 
 _component = st.components.v2.component(
-    "robomill_program_view", css=_read(".css"), js=_read(".js"),
+    "robomill_program_view",
+    css=_read(".css"),
+    js=_read(".js"),
     html='<div class="code" tabindex="0" role="listbox" aria-label="Program, line by line"></div>',
-)  # fmt: skip
+)
 
 
 def selected_line() -> int:
@@ -65,9 +67,15 @@ def program_view(
     p = palette(dark)
     tones = {"error": p.bad, "warning": p.caution, "suspicious": p.caution, "ignored": p.muted, "info": p.accent}
     data: dict[str, Any] = {
-        "lines": shown, "first": first, "total": len(lines), "marks": marks, "selected": selected, "height": height,
-        "tones": tones, "rev": digest((shown, first, marks, dark))[:16],
-    }  # fmt: skip
+        "lines": shown,
+        "first": first,
+        "total": len(lines),
+        "marks": marks,
+        "selected": selected,
+        "height": height,
+        "tones": tones,
+        "rev": digest((shown, first, marks, dark))[:16],
+    }
     if fixed is None:
         _component(key=KEY, data=data, on_line_change=_take)
     else:

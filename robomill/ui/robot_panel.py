@@ -29,12 +29,18 @@ def editors(project: state.Project) -> None:
         _compliances(robot, project.view.joint_unit)
     with geometry:
         table_editor(
-            "geometry", lambda: tables.geometry_frame(state.project().setup.robot), _write_geometry,
-            columns={"joint": st.column_config.TextColumn("#", width=34),
-                     **{label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
-                        for label in tables.GEOMETRY.values()}},
+            "geometry",
+            lambda: tables.geometry_frame(state.project().setup.robot),
+            _write_geometry,
+            columns={
+                "joint": st.column_config.TextColumn("#", width=34),
+                **{
+                    label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
+                    for label in tables.GEOMETRY.values()
+                },
+            },
             locked=("joint",),
-        )  # fmt: skip
+        )
         parts.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
         _said(robot, "geometry")
         _said(robot, "lengths")
@@ -42,12 +48,16 @@ def editors(project: state.Project) -> None:
         prismatic = bool(tables.slides(robot).any())
         unit = "° (mm where it slides)" if prismatic else "°"
         table_editor(
-            "limits", lambda: tables.limits_frame(state.project().setup.robot), _write_limits,
-            columns={"joint": st.column_config.TextColumn("Joint", width="small"),
-                     "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
-                     "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g")},
+            "limits",
+            lambda: tables.limits_frame(state.project().setup.robot),
+            _write_limits,
+            columns={
+                "joint": st.column_config.TextColumn("Joint", width="small"),
+                "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
+                "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g"),
+            },
             locked=("joint",),
-        )  # fmt: skip
+        )
         _said(robot, "limits")
     with tool:
         _tool(robot)
@@ -76,19 +86,26 @@ def _compliances(robot: Robot, unit: str) -> None:
         sets[USER_SET] = "Edited"
     if sets:
         inputs.choice(
-            "Set in force", "robot.compliance_set", sets, robot.compliance_set,
-            lambda name: None if name == USER_SET else state.change(
-                robot=state.project().setup.robot.with_compliance_set(name)),
-        )  # fmt: skip
+            "Set in force",
+            "robot.compliance_set",
+            sets,
+            robot.compliance_set,
+            lambda name: (
+                None if name == USER_SET else state.change(robot=state.project().setup.robot.with_compliance_set(name))
+            ),
+        )
     stiff = tables.is_stiffness(unit)
     heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
     table_editor(
-        f"compliance:{unit}", lambda: tables.compliance_frame(state.project().setup.robot, unit),
+        f"compliance:{unit}",
+        lambda: tables.compliance_frame(state.project().setup.robot, unit),
         lambda frame: _write_compliance(frame, unit),
-        columns={"joint": st.column_config.TextColumn("Joint", width="small"),
-                 "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS)},
+        columns={
+            "joint": st.column_config.TextColumn("Joint", width="small"),
+            "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS),
+        },
         locked=("joint",),
-    )  # fmt: skip
+    )
     if robot.compliance_set == USER_SET:
         parts.note(f"{parts.badge('user')} entered in the app")
     else:

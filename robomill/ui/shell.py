@@ -57,9 +57,13 @@ def _sidebar() -> None:
     view = kept.project.view
     inputs.choice("Lengths", "view.units", UNIT_CHOICES, view.units, lambda v: state.look(units=v))
     inputs.choice(
-        "Joint compliance", "view.joint_unit", JOINT_UNITS, view.joint_unit, lambda v: state.look(joint_unit=v),
+        "Joint compliance",
+        "view.joint_unit",
+        JOINT_UNITS,
+        view.joint_unit,
+        lambda v: state.look(joint_unit=v),
         horizontal=False,
-    )  # fmt: skip
+    )
     _project(kept)
 
 
@@ -72,9 +76,14 @@ def _preset() -> None:
     inputs.choice("Preset", "project.preset", titles, current, state.open_preset, horizontal=False)
     if current in names and state.project().setup.digest() != state.preset_setup(current).digest():
         st.button(
-            "Back to preset", icon=":material/restart_alt:", key="back", width="stretch", type="tertiary",
-            on_click=state.open_preset, args=(current,),
-        )  # fmt: skip
+            "Back to preset",
+            icon=":material/restart_alt:",
+            key="back",
+            width="stretch",
+            type="tertiary",
+            on_click=state.open_preset,
+            args=(current,),
+        )
 
 
 def _project(kept: state.Store) -> None:
@@ -85,9 +94,15 @@ def _project(kept: state.Store) -> None:
         with st.popover("Open", icon=":material/folder_open:", width="stretch", key="open"):
             _open(kept)
         st.download_button(
-            "Save", data=lambda: project_to_toml(project, known), file_name=_file_name(project.setup.name),
-            mime="application/toml", icon=":material/save:", on_click="ignore", width="stretch", key="save",
-        )  # fmt: skip
+            "Save",
+            data=lambda: project_to_toml(project, known),
+            file_name=_file_name(project.setup.name),
+            mime="application/toml",
+            icon=":material/save:",
+            on_click="ignore",
+            width="stretch",
+            key="save",
+        )
     waiting = kept.refused.get("open")
     if waiting:
         error(waiting[1])
@@ -96,9 +111,12 @@ def _project(kept: state.Store) -> None:
 def _open(kept: state.Store) -> None:
     key = f"open:{kept.revision}"
     st.file_uploader(
-        "A project or set-up file (.toml)", key=key, type=["toml"], max_upload_size=MAX_PROJECT_MB,
+        "A project or set-up file (.toml)",
+        key=key,
+        type=["toml"],
+        max_upload_size=MAX_PROJECT_MB,
         on_change=lambda: _take(st.session_state.get(key)),
-    )  # fmt: skip
+    )
     inputs.sentence("open")  # here as well: the open popover lies over the sentence in the side bar
 
 

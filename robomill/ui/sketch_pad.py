@@ -31,8 +31,11 @@ def _read(suffix: str) -> str:
 
 
 _component = st.components.v2.component(
-    "robomill_sketch_pad", html=_read(".html"), css=_read(".css"), js=_read(".js"),
-)  # fmt: skip
+    "robomill_sketch_pad",
+    html=_read(".html"),
+    css=_read(".css"),
+    js=_read(".js"),
+)
 
 
 @dataclass
@@ -54,12 +57,18 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
     if shown != memory.known:
         memory.rev, memory.known = memory.rev + 1, shown
     data = {
-        "rev": memory.rev, "unit": UNITS[view.length].label, "height": height,
+        "rev": memory.rev,
+        "unit": UNITS[view.length].label,
+        "height": height,
         "elements": pad_elements(sketch, view.length, view.feed),
-        "grid": _plain(sketch.grid, view.length), "depth": _plain(sketch.depth, view.length),
-        "feed": _plain(sketch.v_f, view.feed), "cutter": _plain(cutter, view.length), "reach": reach,
-        "undo": _leads_to_a_sketch(kept.past), "redo": _leads_to_a_sketch(kept.future),
-    }  # fmt: skip
+        "grid": _plain(sketch.grid, view.length),
+        "depth": _plain(sketch.depth, view.length),
+        "feed": _plain(sketch.v_f, view.feed),
+        "cutter": _plain(cutter, view.length),
+        "reach": reach,
+        "undo": _leads_to_a_sketch(kept.past),
+        "redo": _leads_to_a_sketch(kept.future),
+    }
     _component(key=KEY, data=data, on_sketch_change=_take, on_history_change=_history)
     inputs.sentence(KEY)
 

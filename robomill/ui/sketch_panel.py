@@ -93,20 +93,25 @@ def _table() -> None:
 
     column = st.column_config
     table_editor(
-        f"sketch:{view.units}", lambda: sketch_frame(sketch_source().sketch, length, feed), write,
+        f"sketch:{view.units}",
+        lambda: sketch_frame(sketch_source().sketch, length, feed),
+        write,
         columns={
             "line": column.NumberColumn("no.", width=38, help="The order of the cuts, and the line in the results"),
             "shape": column.SelectboxColumn("shape", options=list(SHAPES), width=80),
             "points": column.TextColumn(
-                f"points ({unit_label(length)})", width=122,
+                f"points ({unit_label(length)})",
+                width=122,
                 help="x, y; x, y; … · line: start; end · rectangle: two corners · circle: centre; point on it · "
                 "arc: start; on the way; end · polyline and polygon: any number",
             ),
             "depth": column.NumberColumn("depth", format="%.6g", width=68),
             "feed": column.NumberColumn("feed", format="%.6g", width=58),
         },
-        locked=("line",), dynamic=True, height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
-    )  # fmt: skip
+        locked=("line",),
+        dynamic=True,
+        height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
+    )
     parts.note(
         f"Points and depth in {unit_label(length)} from the part zero {{W}} on the top face, feed in "
         f"{unit_label(feed)}. Table and board are the same sketch."

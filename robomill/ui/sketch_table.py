@@ -58,11 +58,13 @@ def pad_elements(sketch: Sketch, unit: str, feed_unit: str) -> list[dict[str, An
     """The shapes as the pad keeps them."""
     return [
         {
-            "shape": e.shape, "points": _clean(e.points, unit).tolist(), "depth": _clean(e.depth, unit),
+            "shape": e.shape,
+            "points": _clean(e.points, unit).tolist(),
+            "depth": _clean(e.depth, unit),
             "feed": _clean(e.v_f, feed_unit),
         }
         for e in sketch.elements
-    ]  # fmt: skip
+    ]
 
 
 def sketch_from_pad(sent: Mapping[str, Any], sketch: Sketch, unit: str, feed_unit: str) -> Sketch:
@@ -72,10 +74,12 @@ def sketch_from_pad(sent: Mapping[str, Any], sketch: Sketch, unit: str, feed_uni
         try:
             found.append(
                 Element(
-                    e["shape"], to_si(np.array(e["points"], dtype=float), unit), to_si(float(e["depth"]), unit),
+                    e["shape"],
+                    to_si(np.array(e["points"], dtype=float), unit),
+                    to_si(float(e["depth"]), unit),
                     to_si(float(e["feed"]), feed_unit),
                 )
-            )  # fmt: skip
+            )
         except ToolpathError as exc:
             raise ToolpathError(f"Shape {number}: {exc}", where=f"shape {number}") from None
     return sketch.replace(elements=tuple(found), grid=to_si(float(sent["grid"]), unit))

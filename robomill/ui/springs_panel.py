@@ -22,9 +22,10 @@ from robomill.ui.editors import table_editor
 from robomill.units import format_si, from_si, to_si, unit_label
 
 SPINDLE = SpindleSpring(
-    to_si(0.05, "um/N"), to_si(0.02, "um/N"),
+    to_si(0.05, "um/N"),
+    to_si(0.02, "um/N"),
     provenance=Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder"),
-)  # fmt: skip
+)
 BENDING_ON, WEIGHT_ON = "milling.bending", "milling.weight"
 TYPED = Provenance("user", "entered in the app")
 Kind = TypeVar("Kind", bound=Spring)
@@ -63,46 +64,68 @@ def _tool() -> None:
     spring = _find(ToolBending)
     length = cutter.stick_out or 4.0 * cutter.diameter
     boxes.switch(
-        "Tool bending", "springs.tool", spring is not None,
+        "Tool bending",
+        "springs.tool",
+        spring is not None,
         lambda on: _put(ToolBending, *([ToolBending(cutter.diameter, length)] if on else [])),
         hint="The cutter as a cantilever of solid carbide.",
-    )  # fmt: skip
+    )
     if spring is None:
         return
     left, right = st.columns(2)
     with left:
         boxes.number_box(
-            "Stick-out", f"springs.tool.length:{unit}", spring.stick_out, unit,
+            "Stick-out",
+            f"springs.tool.length:{unit}",
+            spring.stick_out,
+            unit,
             lambda v: _put(ToolBending, changed(spring, stick_out=float(v or 0.0))),
-            step=1.0 if unit == "mm" else 0.05, digits=1 if unit == "mm" else 3,
-        )  # fmt: skip
+            step=1.0 if unit == "mm" else 0.05,
+            digits=1 if unit == "mm" else 3,
+        )
     with right:
         boxes.number_box(
-            "Bending Ø / Ø", "springs.tool.core", spring.core, "1",
-            lambda v: _put(ToolBending, changed(spring, core=float(v or 0.0))), step=0.05, digits=2,
+            "Bending Ø / Ø",
+            "springs.tool.core",
+            spring.core,
+            "1",
+            lambda v: _put(ToolBending, changed(spring, core=float(v or 0.0))),
+            step=0.05,
+            digits=2,
             hint="Flutes weaken the shank: its bending diameter over the cutter's.",
-        )  # fmt: skip
+        )
     if spring.diameter != cutter.diameter:
         st.button(
-            f"It bends as {format_si(spring.diameter, unit, 1)}: take the cutter's diameter", key="springs.tool.same",
-            on_click=lambda: _put(ToolBending, changed(spring, diameter=cutter.diameter)), type="tertiary",
+            f"It bends as {format_si(spring.diameter, unit, 1)}: take the cutter's diameter",
+            key="springs.tool.same",
+            on_click=lambda: _put(ToolBending, changed(spring, diameter=cutter.diameter)),
+            type="tertiary",
             icon=":material/sync:",
-        )  # fmt: skip
+        )
     parts.note(f"{parts.badge(spring.provenance.kind)} {format_si(spring.lateral, 'um/N', 4)} across the axis")
 
 
 def _spindle() -> None:
     spring = _find(SpindleSpring)
-    boxes.switch("Spindle and holder", "springs.spindle", spring is not None,
-                 lambda on: _put(SpindleSpring, *([SPINDLE] if on else [])))  # fmt: skip
+    boxes.switch(
+        "Spindle and holder",
+        "springs.spindle",
+        spring is not None,
+        lambda on: _put(SpindleSpring, *([SPINDLE] if on else [])),
+    )
     if spring is None:
         return
     for column, (label, field) in zip(st.columns(2), (("Across", "lateral"), ("Along", "axial")), strict=True):
         with column:
             boxes.number_box(
-                label, f"springs.spindle.{field}", getattr(spring, field), "um/N", _writer(spring, field), step=0.01,
+                label,
+                f"springs.spindle.{field}",
+                getattr(spring, field),
+                "um/N",
+                _writer(spring, field),
+                step=0.01,
                 digits=4,
-            )  # fmt: skip
+            )
     parts.note(f"{parts.badge(spring.provenance.kind)} {html.escape(spring.provenance.source)}")
 
 
@@ -118,16 +141,21 @@ def _bending() -> None:
     n = state.project().setup.robot.n
     springs = {s.joint: s for s in state.project().setup.springs if isinstance(s, JointBending)}
     boxes.switch(
-        "Bending of joints", "springs.bending", bool(springs) or st.session_state.get(BENDING_ON, False),
-        _switch_bending, hint="Tilting of a joint's bearing and link about the x and y axes of its frame.",
-    )  # fmt: skip
+        "Bending of joints",
+        "springs.bending",
+        bool(springs) or st.session_state.get(BENDING_ON, False),
+        _switch_bending,
+        hint="Tilting of a joint's bearing and link about the x and y axes of its frame.",
+    )
     if not (springs or st.session_state.get(BENDING_ON)):
         return
     table_editor(
-        "springs.bending", lambda: bending_frame(n, springs),
-        lambda frame: _put(JointBending, *bending_from(frame), from_editor=True), locked=("joint",),
+        "springs.bending",
+        lambda: bending_frame(n, springs),
+        lambda frame: _put(JointBending, *bending_from(frame), from_editor=True),
+        locked=("joint",),
         columns={c: st.column_config.NumberColumn(c, format="%.4g", min_value=0.0) for c in ("about x", "about y")},
-    )  # fmt: skip
+    )
     parts.note(f"{parts.badge('user')} {unit_label(BENDING)}; 0 is rigid, which is what the paper assumes.")
 
 
@@ -159,22 +187,33 @@ def bending_from(frame: pd.DataFrame) -> list[JointBending]:
 def _weight() -> None:
     setup = state.project().setup
     links = setup.links
-    boxes.switch("Weight of the arm", "springs.weight", links is not None or st.session_state.get(WEIGHT_ON, False),
-                 _switch_weight, hint="Sag under the masses of the links and the payload.")  # fmt: skip
+    boxes.switch(
+        "Weight of the arm",
+        "springs.weight",
+        links is not None or st.session_state.get(WEIGHT_ON, False),
+        _switch_weight,
+        hint="Sag under the masses of the links and the payload.",
+    )
     if links is None and not st.session_state.get(WEIGHT_ON):
         return
     table_editor(
-        "springs.weight", lambda: weight_frame(setup.robot.n, links),
-        lambda frame: _take_weight(frame), locked=("joint",),
-        columns={"joint": st.column_config.TextColumn("joint", width=44)} | {
-            c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS},
-    )  # fmt: skip
+        "springs.weight",
+        lambda: weight_frame(setup.robot.n, links),
+        lambda frame: _take_weight(frame),
+        locked=("joint",),
+        columns={"joint": st.column_config.TextColumn("joint", width=44)}
+        | {c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS},
+    )
     if links is None:
         parts.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
-    boxes.switch("Add the sag to the deviation", "springs.add_sag", setup.add_sag,
-                 lambda on: state.change(add_sag=on),
-                 hint="Off: shown only. A part is zeroed with the arm already sagged.")  # fmt: skip
+    boxes.switch(
+        "Add the sag to the deviation",
+        "springs.add_sag",
+        setup.add_sag,
+        lambda on: state.change(add_sag=on),
+        hint="Off: shown only. A part is zeroed with the arm already sagged.",
+    )
 
 
 WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
@@ -225,8 +264,14 @@ def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, 
         for k, spring in enumerate(result.setup.springs)
     ]
     if result.sag is not None and result.setup.links is not None:
-        rows.append(("sag under the weight", result.sag[i].sum(axis=0), result.setup.links.provenance.kind,
-                     result.setup.add_sag))  # fmt: skip
+        rows.append(
+            (
+                "sag under the weight",
+                result.sag[i].sum(axis=0),
+                result.setup.links.provenance.kind,
+                result.setup.add_sag,
+            )
+        )
     return rows
 
 

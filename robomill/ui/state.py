@@ -25,12 +25,20 @@ KEY = "robomill"
 EDITED = Provenance("user", "entered in the app")
 # Blocks of a set-up whose numbers become the user's own when their field is changed.
 BLOCKS = {
-    "source": "path", "T_MW": "part", "cutter": "cutter", "force": "force", "stock": "stock", "tolerance": "tolerance",
-}  # fmt: skip
+    "source": "path",
+    "T_MW": "part",
+    "cutter": "cutter",
+    "force": "force",
+    "stock": "stock",
+    "tolerance": "tolerance",
+}
 ROBOT_BLOCKS = {
-    "geometry": ("alpha", "a", "d", "theta_offset", "sign"), "lengths": ("a", "d"), "limits": ("limits_all",),
-    "tool": ("T_tool",), "base": ("T_base",),
-}  # fmt: skip
+    "geometry": ("alpha", "a", "d", "theta_offset", "sign"),
+    "lengths": ("a", "d"),
+    "limits": ("limits_all",),
+    "tool": ("T_tool",),
+    "base": ("T_base",),
+}
 DEFAULT_PRESET = "paper_flute"
 MAX_HISTORY = 60
 ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one step back

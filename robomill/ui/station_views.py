@@ -74,10 +74,11 @@ def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None
     scene = arm_scene(result, i)
     drawn = displacement_scale(result.delta[i], scene.frames)
     parts.figure(
-        arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86), "linked-arm",
+        arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86),
+        "linked-arm",
         alt="The arm at the station with force and displacement.",
         caption=f"Blue: force on the tool. Orange: displacement, shown × {int(float(f'{drawn:.2g}')):,}.",
-    )  # fmt: skip
+    )
 
 
 def dial(
@@ -98,17 +99,31 @@ def dial(
         top = max(top, float(np.hypot(*worst_turn[:2])))
     fig = dial_figure(
         Dial(
-            float(from_si(float(c.phi_st[i]), "deg")), float(from_si(float(c.phi_ex[i]), "deg")),
-            float(from_si(float(c.a_p[i]), unit)), unit, result.force_components[i], top / 1.45 or 1.0,
-            result.setup.cutter.hand, result.setup.cutter.flutes, bool(c.engaged[i]), others, worst_turn,
-        ), dark=dark, height=height,
-    )  # fmt: skip
+            float(from_si(float(c.phi_st[i]), "deg")),
+            float(from_si(float(c.phi_ex[i]), "deg")),
+            float(from_si(float(c.a_p[i]), unit)),
+            unit,
+            result.force_components[i],
+            top / 1.45 or 1.0,
+            result.setup.cutter.hand,
+            result.setup.cutter.flutes,
+            bool(c.engaged[i]),
+            others,
+            worst_turn,
+        ),
+        dark=dark,
+        height=height,
+    )
     words = "Seen from the spindle. Orange: the arc that cuts, blue: the mean force"
     words += ", pale blue: the peak of a turn" if worst_turn is not None else ""
     words += ", rings: the alloy's other rows" if others is not None else ""
     assumed = "" if result.setup.engagement else " The arc is a full slot, as assumed."
-    parts.figure(fig, "linked-dial", caption=words + "." + assumed,
-                 alt="Arc of engagement and force on the tool at the station, seen from the spindle.")  # fmt: skip
+    parts.figure(
+        fig,
+        "linked-dial",
+        caption=words + "." + assumed,
+        alt="Arc of engagement and force on the tool at the station, seen from the spindle.",
+    )
 
 
 def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> Any:
@@ -121,12 +136,14 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
         parts.note(f"No section here: {groove.note}.")
         return groove
     parts.figure(
-        section_figure(section_drawing(groove, unit), dark=dark, height=height), "linked-section",
-        name="groove-sections", table=lambda: section_columns(result),
+        section_figure(section_drawing(groove, unit), dark=dark, height=height),
+        "linked-section",
+        name="groove-sections",
+        table=lambda: section_columns(result),
         caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale. "
         "Dashed: the ideal groove.",
         alt="Cross-section of the groove with its dimensions and the ideal groove dashed.",
-    )  # fmt: skip
+    )
     return groove
 
 
@@ -136,25 +153,42 @@ def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> N
     title, pick = st.columns([1, 1.2], vertical_alignment="center")
     title.markdown("**What gives**")
     with pick:
-        inputs.choice("Shares of", "view.share_axis", {a: f"in {a.upper()}" for a in "xyz"}, view.share_axis,
-                      lambda a: state.look(share_axis=a), label_visibility="collapsed")  # fmt: skip
+        inputs.choice(
+            "Shares of",
+            "view.share_axis",
+            {a: f"in {a.upper()}" for a in "xyz"},
+            view.share_axis,
+            lambda a: state.look(share_axis=a),
+            label_visibility="collapsed",
+        )
     axis = state.project().view.share_axis
     column = "xyz".index(axis)
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
     s = from_si(result.path.s, unit)
     fig = shares_figure(
-        s, from_si(at_feed(result, every), unit), names, from_si(at_feed(result, result.delta), unit)[:, column], axis,
-        unit, dark=dark, station=float(s[i]) if i >= 0 else None, height=height,
-    )  # fmt: skip
+        s,
+        from_si(at_feed(result, every), unit),
+        names,
+        from_si(at_feed(result, result.delta), unit)[:, column],
+        axis,
+        unit,
+        dark=dark,
+        station=float(s[i]) if i >= 0 else None,
+        height=height,
+    )
     named: set[str] = set()
     for trace in fig.data:  # a joint that pushes both ways has two areas and needs one name
         trace.showlegend = trace.name not in named
         named.add(trace.name)
     parts.figure(
-        fig, f"shares-{axis}", name=f"joint-shares-{axis}", table=lambda: deviation_columns(result),
-        caption="Shares stack to the total line.", alt="Deviation along the path stacked by joint and spring.",
-    )  # fmt: skip
+        fig,
+        f"shares-{axis}",
+        name=f"joint-shares-{axis}",
+        table=lambda: deviation_columns(result),
+        caption="Shares stack to the total line.",
+        alt="Deviation along the path stacked by joint and spring.",
+    )
 
 
 def lines_of(result: SimulationResult, i: int) -> None:

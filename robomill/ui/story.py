@@ -23,13 +23,25 @@ PAPER = "paper_flute"
 PAPER_TABLE_2, PAPER_MAP, PAPER_MEASURED = 0.23e-3, 0.29e-3, 0.30e-3
 
 DOORS = (
-    ("I design robots", "Which joint should I spend money on? Change a compliance or a link and watch the cut.",
-     "pages/1_Robot.py", "Open the robot"),
-    ("I mill parts", "Will my groove be in tolerance? Drop a program, choose a cutter, read one sentence.",
-     "pages/5_Toolpath.py", "Open the toolpath"),
-    ("I teach", "Why does a robot bend sideways? One push, one picture, the equations beside it.",
-     "pages/8_Learn.py", "Open the lesson"),
-)  # fmt: skip
+    (
+        "I design robots",
+        "Which joint should I spend money on? Change a compliance or a link and watch the cut.",
+        "pages/1_Robot.py",
+        "Open the robot",
+    ),
+    (
+        "I mill parts",
+        "Will my groove be in tolerance? Drop a program, choose a cutter, read one sentence.",
+        "pages/5_Toolpath.py",
+        "Open the toolpath",
+    ),
+    (
+        "I teach",
+        "Why does a robot bend sideways? One push, one picture, the equations beside it.",
+        "pages/8_Learn.py",
+        "Open the lesson",
+    ),
+)
 
 
 def cause(result: SimulationResult, unit: str) -> str:
@@ -47,9 +59,10 @@ def cause(result: SimulationResult, unit: str) -> str:
     force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
     digits = 4 if unit == "in" else 3
     moved = ", ".join(
-        f"{format_si(float(v), unit, digits, sign=True)} in {a}" for a, v in zip("XYZ", result.delta[i])
+        f"{format_si(float(v), unit, digits, sign=True)} in {a}"
+        for a, v in zip("XYZ", result.delta[i])
         if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
-    )  # fmt: skip
+    )
     return f"{force} on the tool move the tip by {moved}. Most of it comes from {blame}."
 
 
@@ -61,8 +74,14 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         parts.error(exc)
         return
     scene = surface_picture(
-        result, shown, camera="iso", dark=dark, station=None, size=(940, round(940 * height / 560)), words=False,
-    )  # fmt: skip
+        result,
+        shown,
+        camera="iso",
+        dark=dark,
+        station=None,
+        size=(940, round(940 * height / 560)),
+        words=False,
+    )
     png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
     alt = "The machined groove coloured by its signed error against the ideal one."
     if png is not None:
@@ -72,9 +91,16 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         limit = float(from_si(result.setup.tolerance, "um"))
         unit = view.length
         figure = surface_figure(
-            from_si(shown.drawn.x, unit), from_si(shown.drawn.y, unit), from_si(shown.drawn.z, unit),
-            from_si(shown.error, "um"), limit, dark=dark, height=height, revision="start-surface", unit=unit,
-        )  # fmt: skip
+            from_si(shown.drawn.x, unit),
+            from_si(shown.drawn.y, unit),
+            from_si(shown.drawn.z, unit),
+            from_si(shown.error, "um"),
+            limit,
+            dark=dark,
+            height=height,
+            revision="start-surface",
+            unit=unit,
+        )
         parts.figure(figure, "start-surface", alt=alt)
     parts.note(
         f"The groove as milled, displacement shown × {view.exaggeration:g}. Colours end at the tolerance, "
@@ -140,9 +166,10 @@ def doors() -> None:
             st.html(f'<div class="rm-door"><b>{html.escape(title)}</b><p>{html.escape(text)}</p></div>')
             there = (app_dir() / page).is_file()
             st.page_link(
-                page if there else "pages/1_Robot.py", label=label if there else "Open the robot",
+                page if there else "pages/1_Robot.py",
+                label=label if there else "Open the robot",
                 icon=":material/arrow_forward:",
-            )  # fmt: skip
+            )
 
 
 def _aside(result: Any) -> float:

@@ -15,10 +15,13 @@ from robomill.units import unit_label
 def lines_inputs(source: LinesSource, view: state.View) -> None:
     """Starts, ends and feeds, and the spindle."""
     table_editor(
-        f"lines:{view.units}", lambda: tables.lines_frame(_source(), view.length, view.feed),
-        lambda frame: _take(frame, view), dynamic=True, height=min(36 * (len(source.start) + 2) + 2, 400),
+        f"lines:{view.units}",
+        lambda: tables.lines_frame(_source(), view.length, view.feed),
+        lambda frame: _take(frame, view),
+        dynamic=True,
+        height=min(36 * (len(source.start) + 2) + 2, 400),
         columns={c: st.column_config.NumberColumn(c, format="%.6g", width=50) for c in tables.LINE_COLUMNS},
-    )  # fmt: skip
+    )
     parts.note(
         f"Start x₀ y₀ z₀ and end x₁ y₁ z₁ of each cut in {{W}} ({unit_label(view.length)}), "
         f"feed ({unit_label(view.feed)}). Lines that do not touch are joined by rapids."

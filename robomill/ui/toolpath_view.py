@@ -104,10 +104,11 @@ def tiles(
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
     found = [
         parts.Tile(
-            "At feed", format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
+            "At feed",
+            format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
             f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
         )
-    ]  # fmt: skip
+    ]
     if reach is None:
         found.append(parts.Tile("Reach", "not computed"))
     else:
@@ -138,10 +139,12 @@ def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> pa
         return parts.Tile("Max deviation", "–", "nothing was reached")
     tone = {"ok": "ok", "tight": "tight"}.get(result.verdict.level, "out")
     return parts.Tile(
-        "Max deviation", format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
+        "Max deviation",
+        format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
         f"{PLACES[noun]} {result.worst_block:,} · {100 * result.verdict.share:.0f} % of the tolerance",
-        tone=tone, kind="computed",
-    )  # fmt: skip
+        tone=tone,
+        kind="computed",
+    )
 
 
 def picture_choices(has_result: bool) -> tuple[str, str]:
@@ -154,13 +157,21 @@ def picture_choices(has_result: bool) -> tuple[str, str]:
         st.session_state[SHAPE] = "plan"
     with st.container(horizontal=True, horizontal_alignment="distribute", vertical_alignment="center", gap="small"):
         shape = st.segmented_control(
-            "Seen", list(shapes), key=SHAPE, format_func=lambda k: shapes[k], required=True,
+            "Seen",
+            list(shapes),
+            key=SHAPE,
+            format_func=lambda k: shapes[k],
+            required=True,
             label_visibility="collapsed",
-        )  # fmt: skip
+        )
         colour = st.selectbox(
-            "Coloured by", list(colours), key=COLOUR, format_func=lambda k: f"Coloured by {colours[k].lower()}",
-            label_visibility="collapsed", width=210,
-        )  # fmt: skip
+            "Coloured by",
+            list(colours),
+            key=COLOUR,
+            format_func=lambda k: f"Coloured by {colours[k].lower()}",
+            label_visibility="collapsed",
+            width=210,
+        )
     return str(colour), str(shape)
 
 
@@ -174,9 +185,13 @@ def picture(
     if use is not None:
         limit = float(from_si(setup.tolerance, unit))
         more = {
-            "value": from_si(use.deviation, unit), "title": "Deviation", "unit": unit_label(unit), "worst": use.worst,
-            "limit": limit, "digits": 4 if unit == "in" else 3,
-        }  # fmt: skip
+            "value": from_si(use.deviation, unit),
+            "title": "Deviation",
+            "unit": unit_label(unit),
+            "worst": use.worst,
+            "limit": limit,
+            "digits": 4 if unit == "in" else 3,
+        }
     elif colour == "limits":
         more = {"value": from_si(reach.room, "deg"), "title": "Room to the nearest limit", "unit": "°", "digits": 1}
     elif colour == "feed":
@@ -187,12 +202,18 @@ def picture(
         more = {"value": z - float(z.min()), "title": "Height above the deepest point", "unit": unit_label(unit)}
     stock = setup.stock_block
     return PathPicture(
-        points=from_si(path.p, unit), cutting=path.cutting, block=path.block, length_unit=unit_label(unit),
-        reached=use.reached if use is not None else reach.reached, selected=selected_line(),
+        points=from_si(path.p, unit),
+        cutting=path.cutting,
+        block=path.block,
+        length_unit=unit_label(unit),
+        reached=use.reached if use is not None else reach.reached,
+        selected=selected_line(),
         noun=PLACES[kind_of(setup.source)],
-        stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)), total=len(setup.toolpath) - 1,
-        indices=_kept(use if use is not None else reach), **more,
-    )  # fmt: skip
+        stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)),
+        total=len(setup.toolpath) - 1,
+        indices=_kept(use if use is not None else reach),
+        **more,
+    )
 
 
 @lru_cache(maxsize=6)
@@ -219,9 +240,11 @@ def path_columns(reach: PathReach, result: SimulationResult | None) -> dict[str,
     for i, axis in enumerate("xyz"):
         columns[f"{axis}_W_mm"] = from_si(path.p[:, i], "mm")
     columns |= {
-        "feed_mm_min": from_si(path.v_f, "mm/min"), "feed_mm_s": from_si(path.v_f, "mm/s"),
-        "reached": reach.reached.astype(float), "room_to_limits_deg": from_si(reach.room, "deg"),
-    }  # fmt: skip
+        "feed_mm_min": from_si(path.v_f, "mm/min"),
+        "feed_mm_s": from_si(path.v_f, "mm/s"),
+        "reached": reach.reached.astype(float),
+        "room_to_limits_deg": from_si(reach.room, "deg"),
+    }
     if result is not None and len(result.path) == len(path):
         columns["deviation_mm"] = from_si(result.deviation, "mm")
     return columns
@@ -241,6 +264,9 @@ def stock_note(setup: SimulationSetup) -> None:
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         parts.note("The path leaves the stock that is stated: what lies outside cuts air.")
         st.button(
-            "Let the stock follow the path", key="stock.follow", icon=":material/fit_screen:", type="tertiary",
+            "Let the stock follow the path",
+            key="stock.follow",
+            icon=":material/fit_screen:",
+            type="tertiary",
             on_click=lambda: state.change(stock=None),
-        )  # fmt: skip
+        )

@@ -133,9 +133,13 @@ def deviation_band(result: SimulationResult, given: Knowledge, at: int | None = 
     """The deflection along the path (or at sample ``at``) with its covariance, by linear propagation."""
     chosen = slice(None) if at is None else at
     return deflection_uncertainty(
-        result.setup.robot, result.theta[chosen], result.F[chosen], given.sources, model=given.choice,
+        result.setup.robot,
+        result.theta[chosen],
+        result.F[chosen],
+        given.sources,
+        model=given.choice,
         parameters=given.parameters,
-    )  # fmt: skip
+    )
 
 
 def size_band(result: SimulationResult, band: Uncertain, at: int | None = None) -> FloatArray:

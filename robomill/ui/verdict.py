@@ -12,9 +12,12 @@ from robomill.ui.parts import Tile
 from robomill.units import format_si
 
 WORDS = {
-    "ok": "In tolerance", "tight": "Tight", "out": "Out of tolerance", "unreached": "Out of reach",
+    "ok": "In tolerance",
+    "tight": "Tight",
+    "out": "Out of tolerance",
+    "unreached": "Out of reach",
     "missed": "Misses the stock",
-}  # fmt: skip
+}
 TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out", "missed": "out"}
 STRAIGHT = 1e-6  # m: cuts that stay this close to one line are one groove
 
@@ -46,9 +49,13 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
         Tile("Max deviation", largest, parts, *was("max_deviation"), kind="computed"),
         Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut", *was("rms_deviation")),
         Tile("Worst line", f"Line {result.worst_block}" if i >= 0 else "none reached", _where(result, unit)),
-        Tile("Verdict", WORDS[verdict.level], share if np.isfinite(verdict.share) else "nothing reached",
-             tone=TONES[verdict.level]),
-    ]  # fmt: skip
+        Tile(
+            "Verdict",
+            WORDS[verdict.level],
+            share if np.isfinite(verdict.share) else "nothing reached",
+            tone=TONES[verdict.level],
+        ),
+    ]
 
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:

@@ -43,13 +43,20 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
     return [
-        parts.Tile("Region in reach", f"{100 * share:.0f} %", f"of {box_size(box.size, unit)} {unit_label(unit)}",
-                   tone="ok" if share > 0.999 else "tight" if share > 0 else "out"),
-        parts.Tile("Least |det(J)|", least, "a singularity is near" if singular else "no singularity in this region"
-                   if len(det) else ""),
+        parts.Tile(
+            "Region in reach",
+            f"{100 * share:.0f} %",
+            f"of {box_size(box.size, unit)} {unit_label(unit)}",
+            tone="ok" if share > 0.999 else "tight" if share > 0 else "out",
+        ),
+        parts.Tile(
+            "Least |det(J)|",
+            least,
+            "a singularity is near" if singular else "no singularity in this region" if len(det) else "",
+        ),
         parts.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
         parts.Tile("Largest box in reach", size, note, kind="computed"),
-    ]  # fmt: skip
+    ]
 
 
 def box_size(size: FloatArray, unit: str) -> str:
@@ -122,8 +129,13 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
     parts.facts(rows)
     if largest is not None and view.region != "largest":
-        st.button("Show the largest box", on_click=see, kwargs={"region": "largest", "at": None, "point": None},
-                  icon=":material/crop_free:", key="maps:largest")  # fmt: skip
+        st.button(
+            "Show the largest box",
+            on_click=see,
+            kwargs={"region": "largest", "at": None, "point": None},
+            icon=":material/crop_free:",
+            key="maps:largest",
+        )
     parts.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
 
 
@@ -133,8 +145,9 @@ def picture() -> None:
     project = state.project()
     robot, unit = project.setup.robot, project.view.length
     view = maps(robot)
-    inputs.choice("Picture", "maps:picture", PICTURES, view.picture, lambda p: see(picture=p),
-                  label_visibility="collapsed")  # fmt: skip
+    inputs.choice(
+        "Picture", "maps:picture", PICTURES, view.picture, lambda p: see(picture=p), label_visibility="collapsed"
+    )
     view = maps(robot)
     try:
         box = maps_fields.region(robot, view)
@@ -203,10 +216,13 @@ def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float],
     height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
     fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
     maps_table.figure(
-        fig, f"workspace-{key}", name=f"workspace-{what.name}", alt=f"{what.title} over a plane of the workspace.",
+        fig,
+        f"workspace-{key}",
+        name=f"workspace-{what.name}",
+        alt=f"{what.title} over a plane of the workspace.",
         table=lambda: plane_columns(robot, view, grid, what),
         caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
-    )  # fmt: skip
+    )
 
 
 def plane_columns(robot: Robot, view: MapView, grid: Grid, what: Quantity) -> dict[str, FloatArray]:
@@ -264,9 +280,15 @@ def _level(low: float, high: float, view: MapView, unit: str) -> float:
 
 
 def _solid_figure(
-    robot: Robot, view: MapView, box: Box, grid: Grid, mask: BoolArray, values: FloatArray | None, what: Quantity,
+    robot: Robot,
+    view: MapView,
+    box: Box,
+    grid: Grid,
+    mask: BoolArray,
+    values: FloatArray | None,
+    what: Quantity,
     caption: str,
-) -> None:  # fmt: skip
+) -> None:
     dark = shell.dark()
     p = palette(dark)
     theta = _standing(robot, view, box)
@@ -277,10 +299,18 @@ def _solid_figure(
         top = float(np.nanmax(np.abs(values)))
         limits = (-top, top) if signed else (float(np.nanmin(values)), float(np.nanmax(values)))
     if mask.any():
-        fig.add_trace(voxel_trace(
-            mask, (grid.x, grid.y, grid.z), dark=dark, values=values, limits=limits, signed=signed,
-            title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "), opacity=0.25 if values is None else 1.0,
-        ))  # fmt: skip
+        fig.add_trace(
+            voxel_trace(
+                mask,
+                (grid.x, grid.y, grid.z),
+                dark=dark,
+                values=values,
+                limits=limits,
+                signed=signed,
+                title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "),
+                opacity=0.25 if values is None else 1.0,
+            )
+        )
     low, high = np.array(box.lower), np.array(box.upper)
     largest = maps_fields.proposed_box(robot, view.A, view.B)
     if largest is not None and view.region != "paper":

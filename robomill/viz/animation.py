@@ -53,10 +53,17 @@ class FilmFrame:
         from robomill.viz.scene import image
 
         picture, frames = _films[self.key]
-        frames.append(image(replace(
-            picture, z=self.z, error_um=self.error_um, solids=self.solids,
-            captions=(*picture.captions, self.caption),
-        )))  # fmt: skip
+        frames.append(
+            image(
+                replace(
+                    picture,
+                    z=self.z,
+                    error_um=self.error_um,
+                    solids=self.solids,
+                    captions=(*picture.captions, self.caption),
+                )
+            )
+        )
         return b""
 
 
@@ -104,6 +111,9 @@ def film_frame(result: SimulationResult, shown: Exaggerated, key: str, index: in
     now = so_far(result, shown, index)
     tip = tip_drawn(result, shown, index)
     return FilmFrame(
-        key, from_si(now.drawn.z, "mm"), from_si(now.error, "um"),
-        posed(result, index, tip, arm=False) if solids else (), f"Line {result.path.block[index]}",
-    )  # fmt: skip
+        key,
+        from_si(now.drawn.z, "mm"),
+        from_si(now.error, "um"),
+        posed(result, index, tip, arm=False) if solids else (),
+        f"Line {result.path.block[index]}",
+    )

@@ -80,13 +80,17 @@ def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) ->
         for i, name in enumerate("xyz")
     }
     return {
-        **axes, "uirevision": revision, "dragmode": "turntable", "aspectmode": "manual",
+        **axes,
+        "uirevision": revision,
+        "dragmode": "turntable",
+        "aspectmode": "manual",
         "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
         "camera": {
-            "eye": {"x": 1.30, "y": -0.95, "z": 0.62}, "center": {"x": 0, "y": 0, "z": -0.04},
+            "eye": {"x": 1.30, "y": -0.95, "z": 0.62},
+            "center": {"x": 0, "y": 0, "z": -0.04},
             "projection": {"type": "orthographic"},
         },
-    }  # fmt: skip
+    }
 
 
 def _bounds(fig: go.Figure, reach: float) -> FloatArray:
@@ -129,10 +133,12 @@ def _arm_traces(frames: FloatArray, reach: float, cutter_radius: float, dark: bo
     spindle = [solids.tube(tip + 0.035 * reach * k, tip + 0.13 * reach * k, 0.016 * reach, 0.024 * reach)]
     cutter = [solids.tube(tip, tip + 0.04 * reach * k, max(cutter_radius, 0.004 * reach))]
     return [
-        solids.trace(links, p.link, "links"), solids.trace(joints, p.joint, "joints"),
-        solids.trace(spindle, p.joint, "spindle"), solids.trace(cutter, p.warm, "cutter"),
+        solids.trace(links, p.link, "links"),
+        solids.trace(joints, p.joint, "joints"),
+        solids.trace(spindle, p.joint, "spindle"),
+        solids.trace(cutter, p.warm, "cutter"),
         *([] if ghost else _joint_hover(frames, p.text)),
-    ]  # fmt: skip
+    ]
 
 
 def _joint_hover(frames: FloatArray, colour: str) -> list[Any]:
@@ -140,11 +146,18 @@ def _joint_hover(frames: FloatArray, colour: str) -> list[Any]:
     names = [f"joint {i + 1}" for i in range(len(origins))]
     tip = frames[-1][:3, 3]
     points = np.vstack([origins, tip])
-    return [go.Scatter3d(
-        x=points[:, 0], y=points[:, 1], z=points[:, 2], mode="markers", showlegend=False,
-        marker={"size": 9, "opacity": 0.0, "color": colour}, text=[*names, "tool tip {T}"],
-        hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
-    )]  # fmt: skip
+    return [
+        go.Scatter3d(
+            x=points[:, 0],
+            y=points[:, 1],
+            z=points[:, 2],
+            mode="markers",
+            showlegend=False,
+            marker={"size": 9, "opacity": 0.0, "color": colour},
+            text=[*names, "tool tip {T}"],
+            hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
+        )
+    ]
 
 
 def _tool_axis(frames: FloatArray) -> FloatArray:
@@ -171,8 +184,9 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
         traces += solids.frame(scene.T_MW, "W", 0.075 * reach, dark, label=(-1.7, -0.6, 0.0))
     if scene.part is not None and scene.T_MW is not None:
         lower, upper = (np.asarray(corner, dtype=float) for corner in scene.part)
-        traces.append(solids.trace([solids.box(lower, upper, scene.T_MW)], p.metal, "part", opacity=0.9,
-                                   flatshading=True))  # fmt: skip
+        traces.append(
+            solids.trace([solids.box(lower, upper, scene.T_MW)], p.metal, "part", opacity=0.9, flatshading=True)
+        )
         if scene.bench:
             traces.append(_bench(lower, upper, scene.T_MW, reach, dark))
     if scene.path is not None and len(scene.path) > 1:
@@ -180,11 +194,18 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
         for mask, colour, name in ((reached, p.accent, "path"), (~reached, p.muted, "out of reach")):
             if mask.any():
                 points = np.where(mask[:, None], scene.path, np.nan)
-                traces.append(go.Scatter3d(
-                    x=points[:, 0], y=points[:, 1], z=points[:, 2], mode="lines", name=name, showlegend=False,
-                    line={"color": colour, "width": 5, "dash": "solid" if name == "path" else "dot"},
-                    hovertemplate=name + "<br>%{x:.4f}, %{y:.4f}, %{z:.4f} m<extra></extra>",
-                ))  # fmt: skip
+                traces.append(
+                    go.Scatter3d(
+                        x=points[:, 0],
+                        y=points[:, 1],
+                        z=points[:, 2],
+                        mode="lines",
+                        name=name,
+                        showlegend=False,
+                        line={"color": colour, "width": 5, "dash": "solid" if name == "path" else "dot"},
+                        hovertemplate=name + "<br>%{x:.4f}, %{y:.4f}, %{z:.4f} m<extra></extra>",
+                    )
+                )
     return traces
 
 
@@ -205,6 +226,12 @@ def _sized(vector: FloatArray, length: float) -> FloatArray:
 
 def _word(at: FloatArray, text: str, colour: str) -> go.Scatter3d:
     return go.Scatter3d(
-        x=[at[0]], y=[at[1]], z=[at[2]], mode="text", text=[text], textfont={"color": rgba(colour, 1.0), "size": 13},
-        hoverinfo="skip", showlegend=False,
-    )  # fmt: skip
+        x=[at[0]],
+        y=[at[1]],
+        z=[at[2]],
+        mode="text",
+        text=[text],
+        textfont={"color": rgba(colour, 1.0), "size": 13},
+        hoverinfo="skip",
+        showlegend=False,
+    )

@@ -22,9 +22,17 @@ def add_band(fig: go.Figure, s: FloatArray, value: FloatArray, half: FloatArray,
         x = np.concatenate([s[run], s[run][::-1]])
         y = np.concatenate([(value + half)[run], (value - half)[run][::-1]])
         fig.add_scatter(
-            x=x, y=y, mode="lines", fill="toself", fillcolor=rgba(colour, 0.22), line={"width": 0}, name="95 % band",
-            legendgroup="band", showlegend=k == 0 and name == "", hoverinfo="skip",
-        )  # fmt: skip
+            x=x,
+            y=y,
+            mode="lines",
+            fill="toself",
+            fillcolor=rgba(colour, 0.22),
+            line={"width": 0},
+            name="95 % band",
+            legendgroup="band",
+            showlegend=k == 0 and name == "",
+            hoverinfo="skip",
+        )
 
 
 def band_figure(
@@ -45,20 +53,34 @@ def band_figure(
     p = palette(dark)
     colour = axis_colours(dark).get(component, p.text)
     symbol = f"δ<sub>{component.upper()}</sub>" if component else "size"
-    fig = figure(dark=dark, height=height, revision=f"band-{component}", hovermode="x unified",
-                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark,
+        height=height,
+        revision=f"band-{component}",
+        hovermode="x unified",
+        margin={"l": 8, "r": 16, "t": 34, "b": 8},
+    )
     add_band(fig, s, value, half, component, dark=dark)
     fig.data[0].showlegend = True
     i = thin(len(s))
     if now is not None:
         fig.add_scatter(
-            x=s[i], y=now[i], mode="lines", name="project now", line={"color": p.muted, "width": 1.6, "dash": "dash"},
+            x=s[i],
+            y=now[i],
+            mode="lines",
+            name="project now",
+            line={"color": p.muted, "width": 1.6, "dash": "dash"},
             hovertemplate="%{y:+.4f} " + unit,
-        )  # fmt: skip
+        )
     fig.add_scatter(
-        x=s[i], y=value[i], mode="lines", name=f"{symbol}, load tests", line={"color": colour, "width": 2.4},
-        customdata=half[i], hovertemplate="%{y:+.4f} ± %{customdata:.4f} " + unit,
-    )  # fmt: skip
+        x=s[i],
+        y=value[i],
+        mode="lines",
+        name=f"{symbol}, load tests",
+        line={"color": colour, "width": 2.4},
+        customdata=half[i],
+        hovertemplate="%{y:+.4f} ± %{customdata:.4f} " + unit,
+    )
     fig.update_layout(
         xaxis=axis(f"Length cut, {unit}", dark=dark), yaxis=axis(f"Deviation {symbol} in {{M}}, {unit}", dark=dark)
     )

@@ -39,9 +39,15 @@ def ellipsoid_scale(C: FloatArray, size: float) -> float:
 
 
 def ellipsoid_traces(
-    C: FloatArray, centre: FloatArray, times: float, *, dark: bool, width: float, word: str = "softest",
+    C: FloatArray,
+    centre: FloatArray,
+    times: float,
+    *,
+    dark: bool,
+    width: float,
+    word: str = "softest",
     away: FloatArray | None = None,
-) -> list[Any]:  # fmt: skip
+) -> list[Any]:
     """The ellipsoid, half transparent, and its soft direction as a line through the tip with its word.
 
     The word stands at the end that points away from ``away`` (3,), so that it does not cover an arrow there.
@@ -56,8 +62,19 @@ def ellipsoid_traces(
     end = np.asarray(centre) + 1.25 * soft
     return [
         solids.trace([ellipsoid_mesh(C, centre, times)], p.caution, "compliance ellipsoid", opacity=0.32),
-        solids.trace([solids.tube(centre - 1.12 * soft, centre + 1.12 * soft, 0.55 * width, sides=12)], p.caution,
-                     "soft direction"),
-        go.Scatter3d(x=[end[0]], y=[end[1]], z=[end[2]], mode="text", text=[word], hoverinfo="skip",
-                     textfont={"color": p.caution, "size": 13}, showlegend=False),
-    ]  # fmt: skip
+        solids.trace(
+            [solids.tube(centre - 1.12 * soft, centre + 1.12 * soft, 0.55 * width, sides=12)],
+            p.caution,
+            "soft direction",
+        ),
+        go.Scatter3d(
+            x=[end[0]],
+            y=[end[1]],
+            z=[end[2]],
+            mode="text",
+            text=[word],
+            hoverinfo="skip",
+            textfont={"color": p.caution, "size": 13},
+            showlegend=False,
+        ),
+    ]

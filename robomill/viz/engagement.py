@@ -47,9 +47,14 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
     if dial.engaged and dial.phi_ex > dial.phi_st:
         _material(fig, dial, dark)
     fig.add_scatter(
-        x=np.cos(ring), y=np.sin(ring), mode="lines", fill="toself", fillcolor=rgba(p.panel, 0.96),
-        line={"color": p.joint, "width": 1.6}, hoverinfo="skip",
-    )  # fmt: skip
+        x=np.cos(ring),
+        y=np.sin(ring),
+        mode="lines",
+        fill="toself",
+        fillcolor=rgba(p.panel, 0.96),
+        line={"color": p.joint, "width": 1.6},
+        hoverinfo="skip",
+    )
     if dial.engaged and dial.phi_ex > dial.phi_st:
         _arc(fig, dial, dark)
     _teeth(fig, dial, p.muted)
@@ -65,10 +70,11 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
     )
     fig.add_annotation(x=0, y=-1.72, text=words + down, showarrow=False, font={"size": 13, "color": p.text})
     fig.update_layout(
-        showlegend=False, hovermode="closest",
+        showlegend=False,
+        hovermode="closest",
         xaxis={"visible": False, "range": [-1.75, 1.75], "fixedrange": True, "constrain": "domain"},
         yaxis={"visible": False, "range": [-1.95, 2.0], "scaleanchor": "x", "fixedrange": True},
-    )  # fmt: skip
+    )
     return fig
 
 
@@ -87,10 +93,20 @@ def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
     outline_x = np.concatenate([x, [x[-1]], [x[0]], [x[0]]])
     outline_y = np.concatenate([y, [top], [top], [y[0]]])
     fig.add_scatter(
-        x=outline_x, y=outline_y, mode="none", fill="toself", hoverinfo="skip", fillcolor=rgba(p.metal, 0.4),
-        fillpattern={"shape": "/", "size": 8, "solidity": 0.08, "fgcolor": p.metal_edge,
-                     "bgcolor": rgba(p.metal, 0.28)},
-    )  # fmt: skip
+        x=outline_x,
+        y=outline_y,
+        mode="none",
+        fill="toself",
+        hoverinfo="skip",
+        fillcolor=rgba(p.metal, 0.4),
+        fillpattern={
+            "shape": "/",
+            "size": 8,
+            "solidity": 0.08,
+            "fgcolor": p.metal_edge,
+            "bgcolor": rgba(p.metal, 0.28),
+        },
+    )
 
 
 def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
@@ -98,20 +114,33 @@ def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
     phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
     x, y = _place(phi)
     fig.add_scatter(
-        x=np.concatenate([[0.0], x, [0.0]]), y=np.concatenate([[0.0], y, [0.0]]), mode="none", fill="toself",
-        fillcolor=rgba(p.warm, 0.16), hoverinfo="skip",
-    )  # fmt: skip
+        x=np.concatenate([[0.0], x, [0.0]]),
+        y=np.concatenate([[0.0], y, [0.0]]),
+        mode="none",
+        fill="toself",
+        fillcolor=rgba(p.warm, 0.16),
+        hoverinfo="skip",
+    )
     arc = dial.phi_ex - dial.phi_st
     fig.add_scatter(
-        x=x, y=y, mode="lines", line={"color": p.warm, "width": 5}, name="arc of engagement",
+        x=x,
+        y=y,
+        mode="lines",
+        line={"color": p.warm, "width": 5},
+        name="arc of engagement",
         hovertemplate=f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>"
         f"depth {format_value(dial.depth, dial.unit)}<extra></extra>",
-    )  # fmt: skip
+    )
     at = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
     fig.add_annotation(
-        x=float(at[0]), y=float(at[1]), text=f"{arc:.0f}°", showarrow=False, bgcolor=rgba(p.background, 0.75),
-        font={"size": 13, "color": p.warm}, borderpad=2,
-    )  # fmt: skip
+        x=float(at[0]),
+        y=float(at[1]),
+        text=f"{arc:.0f}°",
+        showarrow=False,
+        bgcolor=rgba(p.background, 0.75),
+        font={"size": 13, "color": p.warm},
+        borderpad=2,
+    )
 
 
 def _teeth(fig: go.Figure, dial: Dial, colour: str) -> None:
@@ -129,9 +158,20 @@ def _turning(fig: go.Figure, dial: Dial, colour: str) -> None:
     x, y = _place(phi, 1.17)
     fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
     fig.add_annotation(
-        x=x[-1], y=y[-1], ax=x[-3], ay=y[-3], xref="x", yref="y", axref="x", ayref="y", text="", showarrow=True,
-        arrowhead=2, arrowwidth=1.4, arrowcolor=colour,
-    )  # fmt: skip
+        x=x[-1],
+        y=y[-1],
+        ax=x[-3],
+        ay=y[-3],
+        xref="x",
+        yref="y",
+        axref="x",
+        ayref="y",
+        text="",
+        showarrow=True,
+        arrowhead=2,
+        arrowwidth=1.4,
+        arrowcolor=colour,
+    )
 
 
 def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
@@ -139,17 +179,32 @@ def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
     scale = dial.scale or 1.0
     if dial.others is not None and len(dial.others):
         fig.add_scatter(
-            x=-dial.others[:, 1] / scale, y=dial.others[:, 0] / scale, mode="markers", name="the alloy's other rows",
+            x=-dial.others[:, 1] / scale,
+            y=dial.others[:, 0] / scale,
+            mode="markers",
+            name="the alloy's other rows",
             marker={"size": 8, "color": rgba(p.accent, 0.35), "line": {"width": 1.2, "color": p.accent}},
             hovertemplate="another row of the alloy<extra></extra>",
-        )  # fmt: skip
+        )
     for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
         if force is None or float(np.hypot(force[0], force[1])) < 1e-9:
             continue
         fig.add_annotation(
-            x=-force[1] / scale, y=force[0] / scale, ax=0, ay=0, xref="x", yref="y", axref="x", ayref="y", text="",
-            showarrow=True, arrowhead=2, arrowsize=1.0, arrowwidth=width, arrowcolor=colour,
-        )  # fmt: skip
+            x=-force[1] / scale,
+            y=force[0] / scale,
+            ax=0,
+            ay=0,
+            xref="x",
+            yref="y",
+            axref="x",
+            ayref="y",
+            text="",
+            showarrow=True,
+            arrowhead=2,
+            arrowsize=1.0,
+            arrowwidth=width,
+            arrowcolor=colour,
+        )
     fig.add_scatter(x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")
 
 
@@ -173,8 +228,9 @@ def force_figure(
 ) -> go.Figure:
     """Mean force by component, the alloy's band around it, the extremes of a revolution as thin lines."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision="force", hovermode="x unified",
-                 margin={"l": 8, "r": 14, "t": 38, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark, height=height, revision="force", hovermode="x unified", margin={"l": 8, "r": 14, "t": 38, "b": 8}
+    )
     i = thin(len(curves.s))
     s = curves.s[i]
     colours = (p.muted, p.accent, p.warm)
@@ -184,14 +240,23 @@ def force_figure(
         if curves.peak is not None and show_peak:
             for k, extreme in enumerate(curves.peak):
                 fig.add_scatter(
-                    x=s, y=extreme[i, c], mode="lines", name="peak of a turn", legendgroup="peak",
-                    showlegend=c == 1 and k == 0, line={"color": colour, "width": 1, "dash": "dot"},
+                    x=s,
+                    y=extreme[i, c],
+                    mode="lines",
+                    name="peak of a turn",
+                    legendgroup="peak",
+                    showlegend=c == 1 and k == 0,
+                    line={"color": colour, "width": 1, "dash": "dot"},
                     hoverinfo="skip",
-                )  # fmt: skip
+                )
         fig.add_scatter(
-            x=s, y=curves.mean[i, c], mode="lines", name=name,
-            line={"color": colour, "width": 2.4, "dash": _DASH[c]}, hovertemplate="%{y:+.1f} N",
-        )  # fmt: skip
+            x=s,
+            y=curves.mean[i, c],
+            mode="lines",
+            name=name,
+            line={"color": colour, "width": 2.4, "dash": _DASH[c]},
+            hovertemplate="%{y:+.1f} N",
+        )
     fig.add_hline(y=0, line={"color": p.line, "width": 1})
     mark_station(fig, station, dark)
     fig.update_layout(
@@ -201,31 +266,56 @@ def force_figure(
 
 
 def engagement_figure(
-    s: FloatArray, phi_st: FloatArray, phi_ex: FloatArray, depth: FloatArray, unit: str, *, dark: bool,
-    height: int = 320, station: float | None = None,
-) -> go.Figure:  # fmt: skip
+    s: FloatArray,
+    phi_st: FloatArray,
+    phi_ex: FloatArray,
+    depth: FloatArray,
+    unit: str,
+    *,
+    dark: bool,
+    height: int = 320,
+    station: float | None = None,
+) -> go.Figure:
     """Arc of engagement (degrees, a band from start to end) and depth (in ``unit``) along the path."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision="engagement", hovermode="x unified",
-                 margin={"l": 8, "r": 8, "t": 38, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark, height=height, revision="engagement", hovermode="x unified", margin={"l": 8, "r": 8, "t": 38, "b": 8}
+    )
     i = thin(len(s))
     shade(fig, s[i], phi_st[i], phi_ex[i], p.warm, "arc of engagement", True)
     fig.add_scatter(
-        x=s[i], y=phi_ex[i] - phi_st[i], mode="lines", name="its size", line={"color": p.warm, "width": 2},
+        x=s[i],
+        y=phi_ex[i] - phi_st[i],
+        mode="lines",
+        name="its size",
+        line={"color": p.warm, "width": 2},
         hovertemplate="%{y:.0f}°",
-    )  # fmt: skip
+    )
     fig.add_scatter(
-        x=s[i], y=depth[i], mode="lines", name="depth", yaxis="y2",
-        line={"color": p.accent, "width": 2, "dash": "dash"}, hovertemplate="%{y:.3f} " + unit,
-    )  # fmt: skip
+        x=s[i],
+        y=depth[i],
+        mode="lines",
+        name="depth",
+        yaxis="y2",
+        line={"color": p.accent, "width": 2, "dash": "dash"},
+        hovertemplate="%{y:.3f} " + unit,
+    )
     mark_station(fig, station, dark)
     top = float(np.nanmax(depth, initial=0.0)) or 1.0
     fig.update_layout(
         xaxis=axis(f"Length cut, {unit}", dark=dark),
         yaxis=axis("Engagement angle, ° from the left", dark=dark, range=[0, 190], tickvals=[0, 45, 90, 135, 180]),
-        yaxis2=axis(f"Depth, {unit}", dark=dark, overlaying="y", side="right", showgrid=False,
-                    range=[0, 1.35 * top], tickmode="auto", nticks=5),
-    )  # fmt: skip
+        yaxis2=axis(
+            f"Depth, {unit}",
+            dark=dark,
+            overlaying="y",
+            side="right",
+            showgrid=False,
+            range=[0, 1.35 * top],
+            tickmode="auto",
+            nticks=5,
+        ),
+    )
     return fig
 
 
@@ -239,10 +329,17 @@ def shade(
         if not np.any(high[a:b] - low[a:b] > 1e-9):
             continue
         fig.add_scatter(
-            x=np.concatenate([s[a:b], s[a:b][::-1]]), y=np.concatenate([high[a:b], low[a:b][::-1]]), mode="lines",
-            fill="toself", fillcolor=rgba(colour, 0.18), line={"width": 0}, name=name, legendgroup=name,
-            showlegend=legend and k == 0, hoverinfo="skip",
-        )  # fmt: skip
+            x=np.concatenate([s[a:b], s[a:b][::-1]]),
+            y=np.concatenate([high[a:b], low[a:b][::-1]]),
+            mode="lines",
+            fill="toself",
+            fillcolor=rgba(colour, 0.18),
+            line={"width": 0},
+            name=name,
+            legendgroup=name,
+            showlegend=legend and k == 0,
+            hoverinfo="skip",
+        )
 
 
 def mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:

@@ -12,8 +12,12 @@ from robomill.units import format_value
 from robomill.viz.theme import axis, figure, palette, rgba
 
 COLOURS = {
-    "paper": "#2F7FD0", "measured": "#0E9A72", "assumed": "#CE8A00", "user": "#9A66D0", "computed": "#7B8A94",
-}  # fmt: skip
+    "paper": "#2F7FD0",
+    "measured": "#0E9A72",
+    "assumed": "#CE8A00",
+    "user": "#9A66D0",
+    "computed": "#7B8A94",
+}
 
 
 @dataclass(frozen=True)
@@ -32,8 +36,9 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
     """Each claim a row: a dot with its number, a bar for its range."""
     p = palette(dark)
     rows = len(claims)
-    fig = figure(dark=dark, height=height or 70 + 46 * rows, revision="evidence",
-                 margin={"l": 8, "r": 24, "t": 8, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark, height=height or 70 + 46 * rows, revision="evidence", margin={"l": 8, "r": 24, "t": 8, "b": 8}
+    )
     digits = 3 if unit == "mm" else 4
     measured = [c.value for c in claims if c.kind == "measured" and np.isfinite(c.value)]
     for value in measured[:1]:
@@ -44,17 +49,28 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
         band = np.isfinite(claim.low) and np.isfinite(claim.high)
         if band:
             fig.add_scatter(
-                x=[claim.low, claim.high], y=[y, y], mode="lines", line={"color": colour, "width": 9}, opacity=0.35,
+                x=[claim.low, claim.high],
+                y=[y, y],
+                mode="lines",
+                line={"color": colour, "width": 9},
+                opacity=0.35,
                 hovertemplate=f"{format_value(claim.low, unit, digits)} to {format_value(claim.high, unit, digits)}"
                 "<extra></extra>",
-            )  # fmt: skip
+            )
         fig.add_scatter(
-            x=[claim.value], y=[y], mode="markers", cliponaxis=False,
-            marker={"size": 13, "color": colour, "line": {"width": 1.5, "color": p.background},
-                    "symbol": "diamond" if claim.kind == "measured" else "circle"},
+            x=[claim.value],
+            y=[y],
+            mode="markers",
+            cliponaxis=False,
+            marker={
+                "size": 13,
+                "color": colour,
+                "line": {"width": 1.5, "color": p.background},
+                "symbol": "diamond" if claim.kind == "measured" else "circle",
+            },
             hovertemplate=f"{claim.label}: {format_value(claim.value, unit, digits)}<br>{claim.kind}. {claim.note}"
             "<extra></extra>",
-        )  # fmt: skip
+        )
         about = "about " if claim.note.startswith("about") else ""
         shown = 2 if claim.kind != "computed" and unit == "mm" else digits
         text = f"<b>{about}{format_value(claim.value, unit, shown)}</b>"
@@ -64,19 +80,31 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
             ]
             text += f"  ({ends[0]} to {ends[1]})"
         fig.add_annotation(
-            x=claim.value, y=y, text=text, showarrow=False, yshift=17, font={"size": 12.5, "color": p.text},
-            bgcolor=rgba(p.background, 0.8), borderpad=1,
-        )  # fmt: skip
+            x=claim.value,
+            y=y,
+            text=text,
+            showarrow=False,
+            yshift=17,
+            font={"size": 12.5, "color": p.text},
+            bgcolor=rgba(p.background, 0.8),
+            borderpad=1,
+        )
     known = [v for c in claims for v in (c.value, c.low, c.high) if np.isfinite(v)]
     top = max([*known, 1e-9])
     fig.update_layout(
         showlegend=False,
         xaxis=axis(f"Sideways error of the groove, {unit}", dark=dark, range=[0.0, 1.12 * top], rangemode="tozero"),
         yaxis={
-            "tickvals": list(range(rows)), "range": [-0.6, rows - 0.25], "showgrid": False, "zeroline": False,
-            "ticktext": [f"{c.label}  <span style='color:{COLOURS.get(c.kind, p.muted)}'>{c.kind}</span>"
-                         for c in reversed(claims)],
-            "tickfont": {"size": 13, "color": p.text}, "automargin": True,
+            "tickvals": list(range(rows)),
+            "range": [-0.6, rows - 0.25],
+            "showgrid": False,
+            "zeroline": False,
+            "ticktext": [
+                f"{c.label}  <span style='color:{COLOURS.get(c.kind, p.muted)}'>{c.kind}</span>"
+                for c in reversed(claims)
+            ],
+            "tickfont": {"size": 13, "color": p.text},
+            "automargin": True,
         },
-    )  # fmt: skip
+    )
     return fig

@@ -43,61 +43,116 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
     low, high = _clipped(shown)
     compared = bool(shown.references) or shown.truth is not None
     top = 34 if compared else 8
-    fig = figure(dark=dark, height=50 + top + _ROW * len(shown.labels), revision=f"intervals-{shown.unit}",
-                 margin={"l": 8, "r": 156, "t": top, "b": 8}, showlegend=compared)  # fmt: skip
+    fig = figure(
+        dark=dark,
+        height=50 + top + _ROW * len(shown.labels),
+        revision=f"intervals-{shown.unit}",
+        margin={"l": 8, "r": 156, "t": top, "b": 8},
+        showlegend=compared,
+    )
     colours = joint_colours(7, dark)
     y = np.arange(len(shown.labels))
     for k in y:
         if not np.isfinite(shown.value[k]):
-            fig.add_annotation(x=0.02, xref="paper", y=k, xanchor="left", text=shown.words[k],
-                               showarrow=False, font={"size": 12.5, "color": p.muted})  # fmt: skip
+            fig.add_annotation(
+                x=0.02,
+                xref="paper",
+                y=k,
+                xanchor="left",
+                text=shown.words[k],
+                showarrow=False,
+                font={"size": 12.5, "color": p.muted},
+            )
             continue
         fig.add_scatter(
-            x=[low[k], high[k]], y=[k, k], mode="lines", showlegend=False, hoverinfo="skip",
+            x=[low[k], high[k]],
+            y=[k, k],
+            mode="lines",
+            showlegend=False,
+            hoverinfo="skip",
             line={"color": rgba(colours[k % 7], 0.42), "width": 11},
-        )  # fmt: skip
+        )
     known = np.isfinite(shown.value)
     fig.add_scatter(
-        x=np.clip(shown.value[known], low[known], None), y=y[known], mode="markers",
+        x=np.clip(shown.value[known], low[known], None),
+        y=y[known],
+        mode="markers",
         name="fitted, with its 95 % interval",
         marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
-        text=[shown.words[k] for k in y[known]], hovertemplate="%{text}<extra></extra>",
-    )  # fmt: skip
+        text=[shown.words[k] for k in y[known]],
+        hovertemplate="%{text}<extra></extra>",
+    )
     for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
         fig.add_scatter(
-            x=values, y=y - 0.3, mode="markers", name=name, marker={"size": 9, "symbol": symbol, "color": p.text,
-            "line": {"width": 1.6}}, hovertemplate=f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>",
-        )  # fmt: skip
+            x=values,
+            y=y - 0.3,
+            mode="markers",
+            name=name,
+            marker={"size": 9, "symbol": symbol, "color": p.text, "line": {"width": 1.6}},
+            hovertemplate=f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>",
+        )
     if shown.truth is not None:
         fig.add_scatter(
-            x=shown.truth, y=y, mode="markers", name="truth", hovertemplate="truth: %{x:.2f}<extra></extra>",
+            x=shown.truth,
+            y=y,
+            mode="markers",
+            name="truth",
+            hovertemplate="truth: %{x:.2f}<extra></extra>",
             marker={"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": p.text}},
-        )  # fmt: skip
+        )
     for k in y[known]:
-        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", align="left", text=shown.words[k],
-                           showarrow=False, font={"size": 12.5, "color": p.text})  # fmt: skip
+        fig.add_annotation(
+            x=1.0,
+            xref="paper",
+            xshift=8,
+            y=k,
+            xanchor="left",
+            align="left",
+            text=shown.words[k],
+            showarrow=False,
+            font={"size": 12.5, "color": p.text},
+        )
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
     fig.update_layout(
         xaxis=axis(shown.unit, dark=dark, **more),
-        yaxis=axis("", dark=dark, tickvals=y.tolist(), ticktext=list(shown.labels), range=[len(y) - 0.4, -0.62],
-                   showgrid=False, ticks=""),
-    )  # fmt: skip
+        yaxis=axis(
+            "",
+            dark=dark,
+            tickvals=y.tolist(),
+            ticktext=list(shown.labels),
+            range=[len(y) - 0.4, -0.62],
+            showgrid=False,
+            ticks="",
+        ),
+    )
     return fig
 
 
 def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool, height: int = 330) -> go.Figure:
     """Correlations (p, p) of the fitted parameters with their numbers; grey where one is not known."""
     p = palette(dark)
-    text = [["1" if i == j and np.isfinite(v) else _correlation(v) for j, v in enumerate(row)]
-            for i, row in enumerate(correlation)]  # fmt: skip
+    text = [
+        ["1" if i == j and np.isfinite(v) else _correlation(v) for j, v in enumerate(row)]
+        for i, row in enumerate(correlation)
+    ]
     written = len(names) <= 8
     fig = figure(dark=dark, height=height, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
     fig.add_heatmap(
-        z=correlation, x=list(names), y=list(names), zmin=-1, zmax=1, colorscale=diverging(dark), xgap=2, ygap=2,
-        text=text, texttemplate="%{text}" if written else None, textfont={"size": 12}, showscale=not written,
+        z=correlation,
+        x=list(names),
+        y=list(names),
+        zmin=-1,
+        zmax=1,
+        colorscale=diverging(dark),
+        xgap=2,
+        ygap=2,
+        text=text,
+        texttemplate="%{text}" if written else None,
+        textfont={"size": 12},
+        showscale=not written,
         colorbar=colour_bar("correlation", dark=dark, tickvals=[-1, -0.5, 0, 0.5, 1]),
         hovertemplate="%{y} with %{x}: %{z:+.2f}<extra></extra>",
-    )  # fmt: skip
+    )
     fig.update_layout(
         plot_bgcolor=rgba(p.muted, 0.10),
         xaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False),
@@ -123,20 +178,29 @@ def residuals_figure(
     symbols = ("circle", "square", "diamond")
     for k, (name, colour) in enumerate(colours):
         fig.add_scatter(
-            x=row[chosen], y=residual[chosen, k], mode="markers", name=name or "residual",
+            x=row[chosen],
+            y=residual[chosen, k],
+            mode="markers",
+            name=name or "residual",
             marker={"size": 6, "color": colour, "symbol": symbols[k], "opacity": 0.85},
             hovertemplate="row %{x}<br>%{y:+.4f} " + unit + f"<extra>{name}</extra>",
-        )  # fmt: skip
+        )
     fig.add_hline(y=0, line={"color": p.line, "width": 1})
     marked = np.flatnonzero(outlier)
     if len(marked):
         worst = np.nanargmax(np.where(np.isnan(residual[marked]), -1, np.abs(residual[marked])), axis=1)
         fig.add_scatter(
-            x=row[marked], y=residual[marked, worst], mode="markers+text" if len(marked) <= 12 else "markers",
-            name="does not fit", text=[f"row {r}" for r in row[marked]], textposition="top center",
-            textfont={"size": 12, "color": p.bad}, hoverinfo="skip", cliponaxis=False,
+            x=row[marked],
+            y=residual[marked, worst],
+            mode="markers+text" if len(marked) <= 12 else "markers",
+            name="does not fit",
+            text=[f"row {r}" for r in row[marked]],
+            textposition="top center",
+            textfont={"size": 12, "color": p.bad},
+            hoverinfo="skip",
+            cliponaxis=False,
             marker={"size": 15, "symbol": "circle-open", "color": p.bad, "line": {"width": 2}},
-        )  # fmt: skip
+        )
     fig.update_layout(xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
     return fig
 
@@ -147,27 +211,59 @@ def models_figure(
     """Errors in % of each model on its own data and on poses left out; the gap between the two is the over-fitting."""
     p = palette(dark)
     y = np.arange(len(names))
-    fig = figure(dark=dark, height=84 + _ROW * len(names), revision="models",
-                 margin={"l": 8, "r": 96, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(dark=dark, height=84 + _ROW * len(names), revision="models", margin={"l": 8, "r": 96, "t": 34, "b": 8})
     for k in y:
-        fig.add_scatter(x=[in_sample[k], left_out[k]], y=[k, k], mode="lines", showlegend=False, hoverinfo="skip",
-                        line={"color": rgba(p.warm, 0.55), "width": 6})  # fmt: skip
-        fig.add_annotation(x=1.0, xref="paper", xshift=8, y=k, xanchor="left", text=f"{left_out[k]:.2f} %",
-                           showarrow=False, font={"size": 13, "color": p.text})  # fmt: skip
-    fig.add_scatter(x=in_sample, y=y, mode="markers", name="on its own data", hovertemplate="%{x:.2f} %<extra></extra>",
-                    marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}})  # fmt: skip
-    fig.add_scatter(x=left_out, y=y, mode="markers", name="on poses left out",
-                    hovertemplate="%{x:.2f} %<extra></extra>", marker={"size": 11, "color": p.accent})  # fmt: skip
+        fig.add_scatter(
+            x=[in_sample[k], left_out[k]],
+            y=[k, k],
+            mode="lines",
+            showlegend=False,
+            hoverinfo="skip",
+            line={"color": rgba(p.warm, 0.55), "width": 6},
+        )
+        fig.add_annotation(
+            x=1.0,
+            xref="paper",
+            xshift=8,
+            y=k,
+            xanchor="left",
+            text=f"{left_out[k]:.2f} %",
+            showarrow=False,
+            font={"size": 13, "color": p.text},
+        )
+    fig.add_scatter(
+        x=in_sample,
+        y=y,
+        mode="markers",
+        name="on its own data",
+        hovertemplate="%{x:.2f} %<extra></extra>",
+        marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}},
+    )
+    fig.add_scatter(
+        x=left_out,
+        y=y,
+        mode="markers",
+        name="on poses left out",
+        hovertemplate="%{x:.2f} %<extra></extra>",
+        marker={"size": 11, "color": p.accent},
+    )
     values = np.concatenate([in_sample, left_out])
     values = values[np.isfinite(values) & (values > 0)]
     ends = (values.min() / 1.6, values.max() * 1.6) if len(values) else (0.1, 100.0)
     labels = [f"<b>{name}</b>" if k == chosen else name for k, name in enumerate(names)]
     fig.update_layout(
-        xaxis=axis("Error, % of the measured displacement", dark=dark, type="log", range=np.log10(ends).tolist(),
-                   tickvals=_ticks(*ends), ticktext=[f"{t:g}" for t in _ticks(*ends)]),
-        yaxis=axis("", dark=dark, tickvals=y.tolist(), ticktext=labels, range=[len(y) - 0.4, -0.6], showgrid=False,
-                   ticks=""),
-    )  # fmt: skip
+        xaxis=axis(
+            "Error, % of the measured displacement",
+            dark=dark,
+            type="log",
+            range=np.log10(ends).tolist(),
+            tickvals=_ticks(*ends),
+            ticktext=[f"{t:g}" for t in _ticks(*ends)],
+        ),
+        yaxis=axis(
+            "", dark=dark, tickvals=y.tolist(), ticktext=labels, range=[len(y) - 0.4, -0.6], showgrid=False, ticks=""
+        ),
+    )
     return fig
 
 
@@ -176,18 +272,33 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
     p = palette(dark)
     top = float(np.max(before[np.isfinite(before)], initial=float(np.max(after[np.isfinite(after)], initial=1.0))))
     shown = np.where(np.isfinite(before), before, 1.15 * top)
-    fig = figure(dark=dark, height=84 + 42 * len(names), revision="gain", barmode="group", bargap=0.34,
-                 bargroupgap=0.06, margin={"l": 8, "r": 64, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark,
+        height=84 + 42 * len(names),
+        revision="gain",
+        barmode="group",
+        bargap=0.34,
+        bargroupgap=0.06,
+        margin={"l": 8, "r": 64, "t": 34, "b": 8},
+    )
     words = [f"± {v:.2g} %" if np.isfinite(v) else "not seen" for v in before]
     for name, values, text, colour in (
         ("now", shown, words, rgba(p.muted, 0.55)),
         ("after these tests", after, [f"± {v:.2g} %" for v in after], p.accent),
     ):
         fig.add_bar(
-            y=list(names), x=values, name=name, orientation="h", marker={"color": colour}, text=text,
-            textposition="outside", constraintext="none", textfont={"size": 12, "color": p.text}, cliponaxis=False,
+            y=list(names),
+            x=values,
+            name=name,
+            orientation="h",
+            marker={"color": colour},
+            text=text,
+            textposition="outside",
+            constraintext="none",
+            textfont={"size": 12, "color": p.text},
+            cliponaxis=False,
             hovertemplate="%{y}: %{text}<extra>" + name + "</extra>",
-        )  # fmt: skip
+        )
     fig.update_layout(
         xaxis=axis("Half the 95 % interval, % of the value", dark=dark, rangemode="tozero"),
         yaxis=axis("", dark=dark, autorange="reversed", showgrid=False, ticks=""),
@@ -223,8 +334,12 @@ def _log_axis(shown: Intervals, low: FloatArray, high: FloatArray) -> dict[str, 
     bottom, top = (float(ends.min()), float(ends.max())) if len(ends) else (1.0, 10.0)
     bottom, top = bottom / 1.25, top * 1.25
     ticks = _ticks(bottom, top)
-    return {"type": "log", "range": [float(np.log10(bottom)), float(np.log10(top))], "tickvals": ticks,
-            "ticktext": [f"{t:g}" for t in ticks]}  # fmt: skip
+    return {
+        "type": "log",
+        "range": [float(np.log10(bottom)), float(np.log10(top))],
+        "tickvals": ticks,
+        "ticktext": [f"{t:g}" for t in ticks],
+    }
 
 
 def _ticks(low: float, high: float) -> list[float]:

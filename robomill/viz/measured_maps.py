@@ -40,14 +40,24 @@ def level_figure(
     )
     bar["title"]["side"] = "top"
     fig.add_heatmap(
-        x=x, y=y, z=values.T, zmin=limits[0], zmax=limits[1], colorscale=diverging(dark) if signed else SEQUENTIAL,
-        colorbar=bar, hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + unit + "<extra></extra>",
-    )  # fmt: skip
+        x=x,
+        y=y,
+        z=values.T,
+        zmin=limits[0],
+        zmax=limits[1],
+        colorscale=diverging(dark) if signed else SEQUENTIAL,
+        colorbar=bar,
+        hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + unit + "<extra></extra>",
+    )
     if len(points):
         fig.add_scatter(
-            x=points[:, 0], y=points[:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            x=points[:, 0],
+            y=points[:, 1],
+            mode="markers",
+            showlegend=False,
+            hoverinfo="skip",
             marker={"size": 4.5, "color": rgba(p.background, 0.85), "line": {"color": rgba(p.text, 0.8), "width": 1}},
-        )  # fmt: skip
+        )
     fig.update_layout(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(x)),
@@ -61,8 +71,9 @@ def both_figure(
 ) -> go.Figure:
     """Size of the deviation along the path (m,) by the measured map and by the joint model, in ``unit``."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision="both", hovermode="x unified",
-                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark, height=height, revision="both", hovermode="x unified", margin={"l": 8, "r": 16, "t": 34, "b": 8}
+    )
     i = thin(len(s))
     for name, values, line in (
         ("measured map", by_map, {"color": p.warm, "width": 2.4}),

@@ -36,36 +36,57 @@ def profile_figure(
     """The profile with its tolerance, its band, its best line and what was measured."""
     p = palette(dark)
     unit = curves.unit
-    fig = figure(dark=dark, height=height, revision="profile", hovermode="x unified",
-                 margin={"l": 8, "r": 16, "t": 38, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark, height=height, revision="profile", hovermode="x unified", margin={"l": 8, "r": 16, "t": 38, "b": 8}
+    )
     if curves.band is not None:
         good = np.isfinite(curves.band).all(axis=0)
         s = curves.station[good]
         fig.add_scatter(
-            x=np.concatenate([s, s[::-1]]), y=np.concatenate([curves.band[1][good], curves.band[0][good][::-1]]),
-            mode="lines", fill="toself", fillcolor=rgba(p.accent, 0.16), line={"width": 0}, name="alloy's rows",
+            x=np.concatenate([s, s[::-1]]),
+            y=np.concatenate([curves.band[1][good], curves.band[0][good][::-1]]),
+            mode="lines",
+            fill="toself",
+            fillcolor=rgba(p.accent, 0.16),
+            line={"width": 0},
+            name="alloy's rows",
             hoverinfo="skip",
-        )  # fmt: skip
+        )
     fig.add_scatter(
-        x=curves.station, y=curves.offset, mode="lines", name="centre offset", line={"color": p.accent, "width": 2.4},
+        x=curves.station,
+        y=curves.offset,
+        mode="lines",
+        name="centre offset",
+        line={"color": p.accent, "width": 2.4},
         customdata=np.zeros(len(curves.station)) if block is None else block,
         hovertemplate="%{y:+.4f} " + unit + (", line %{customdata}" if block is not None else ""),
-    )  # fmt: skip
+    )
     fig.add_scatter(
-        x=curves.station, y=curves.floor, mode="lines", name="floor", hovertemplate="%{y:+.4f} " + unit,
+        x=curves.station,
+        y=curves.floor,
+        mode="lines",
+        name="floor",
+        hovertemplate="%{y:+.4f} " + unit,
         line={"color": p.warm, "width": 2, "dash": "dash"},
-    )  # fmt: skip
+    )
     if curves.fit is not None:
         fig.add_scatter(
-            x=curves.station, y=curves.fit, mode="lines", name="best line", hoverinfo="skip",
+            x=curves.station,
+            y=curves.fit,
+            mode="lines",
+            name="best line",
+            hoverinfo="skip",
             line={"color": p.muted, "width": 1.2, "dash": "dot"},
-        )  # fmt: skip
+        )
     if curves.measured is not None:
         fig.add_scatter(
-            x=curves.measured[0], y=curves.measured[1], mode="markers", name="measured",
+            x=curves.measured[0],
+            y=curves.measured[1],
+            mode="markers",
+            name="measured",
             marker={"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}},
             hovertemplate="measured %{y:+.4f} " + unit,
-        )  # fmt: skip
+        )
     for side in (1, -1):
         fig.add_hline(y=side * curves.tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
     fig.add_hline(y=0, line={"color": p.line, "width": 1})
@@ -85,20 +106,33 @@ def histogram_figure(
     """Share of the cut area (%) by signed error (``unit``), in the colours of the surface; tolerance marked."""
     p = palette(dark)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    fig = figure(dark=dark, height=height, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8},
-                 bargap=0.04)  # fmt: skip
+    fig = figure(dark=dark, height=height, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
     fig.add_bar(
-        x=middle, y=share, width=np.diff(edges), name="area", showlegend=False,
-        marker={"color": middle, "colorscale": DIVERGING, "cmin": -tolerance, "cmax": tolerance,
-                "line": {"width": 0.6, "color": p.line}},
+        x=middle,
+        y=share,
+        width=np.diff(edges),
+        name="area",
+        showlegend=False,
+        marker={
+            "color": middle,
+            "colorscale": DIVERGING,
+            "cmin": -tolerance,
+            "cmax": tolerance,
+            "line": {"width": 0.6, "color": p.line},
+        },
         hovertemplate="%{x:+.0f} " + unit + "<br>%{y:.1f} % of the area<extra></extra>",
-    )  # fmt: skip
+    )
     for side, words in ((-1, "− tolerance"), (1, "+ tolerance")):
         fig.add_vline(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
         fig.add_annotation(
-            x=side * tolerance, y=1.0, yref="paper", yanchor="bottom", text=words, showarrow=False,
+            x=side * tolerance,
+            y=1.0,
+            yref="paper",
+            yanchor="bottom",
+            text=words,
+            showarrow=False,
             font={"size": 12, "color": p.bad},
-        )  # fmt: skip
+        )
     reach = max(1.12 * tolerance, float(np.abs(edges).max()) * 1.04)
     fig.update_layout(
         xaxis=axis(f"Signed error, {unit} (− too deep, + material left)", dark=dark, range=[-reach, reach]),

@@ -46,25 +46,46 @@ def components_figure(
     p = palette(dark)
     length = "in" if unit == "in" else "mm"
     i = thin(len(s), [int(np.nanargmax(np.nan_to_num(np.linalg.norm(delta, axis=1))))])
-    fig = figure(dark=dark, height=height, revision="components", hovermode="x unified",
-                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark,
+        height=height,
+        revision="components",
+        hovermode="x unified",
+        margin={"l": 8, "r": 16, "t": 34, "b": 8},
+    )
     size = np.linalg.norm(delta, axis=1)
     fig.add_scatter(
-        x=s[i], y=size[i], name="size", mode="lines", line={"color": p.text, "width": 2.4},
-        hovertemplate="%{y:.4f} " + unit, fill="tozeroy", fillcolor=rgba(p.text, 0.05),
-    )  # fmt: skip
+        x=s[i],
+        y=size[i],
+        name="size",
+        mode="lines",
+        line={"color": p.text, "width": 2.4},
+        hovertemplate="%{y:.4f} " + unit,
+        fill="tozeroy",
+        fillcolor=rgba(p.text, 0.05),
+    )
     for column, (name, colour) in enumerate(axis_colours(dark).items()):
         fig.add_scatter(
-            x=s[i], y=delta[i, column], name=f"δ<sub>{name.upper()}</sub>", mode="lines",
+            x=s[i],
+            y=delta[i, column],
+            name=f"δ<sub>{name.upper()}</sub>",
+            mode="lines",
             line={"color": colour, "width": 2, "dash": ("dot", "solid", "dash")[column]},
-            hovertemplate="%{y:+.4f} " + unit, customdata=block[i],
-        )  # fmt: skip
+            hovertemplate="%{y:+.4f} " + unit,
+            customdata=block[i],
+        )
     for side in (1, -1) if np.nanmin(delta, initial=0.0) < -0.6 * tolerance else (1,):
         fig.add_hline(y=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
     fig.add_annotation(
-        x=1, xref="paper", y=tolerance, yshift=9, xanchor="right", text=f"tolerance {tolerance:g} {unit}",
-        showarrow=False, font={"size": 12, "color": p.bad},
-    )  # fmt: skip
+        x=1,
+        xref="paper",
+        y=tolerance,
+        yshift=9,
+        xanchor="right",
+        text=f"tolerance {tolerance:g} {unit}",
+        showarrow=False,
+        font={"size": 12, "color": p.bad},
+    )
     fig.add_hline(y=0, line={"color": p.line, "width": 1})
     _mark_station(fig, station, dark)
     fig.update_layout(
@@ -89,8 +110,13 @@ def shares_figure(
     p = palette(dark)
     length = "in" if unit == "in" else "mm"
     i = thin(len(s))
-    fig = figure(dark=dark, height=height, revision=f"shares-{component}", hovermode="x unified",
-                 margin={"l": 8, "r": 16, "t": 34, "b": 8})  # fmt: skip
+    fig = figure(
+        dark=dark,
+        height=height,
+        revision=f"shares-{component}",
+        hovermode="x unified",
+        margin={"l": 8, "r": 16, "t": 34, "b": 8},
+    )
     colours = joint_colours(7, dark)
     shares, names, order = _without_the_small(shares, names)
     for j, name in enumerate(names):
@@ -100,14 +126,24 @@ def shares_figure(
             if not np.any(part):
                 continue
             fig.add_scatter(
-                x=s[i], y=part, name=name, stackgroup="up" if sign > 0 else "down", mode="lines",
-                line={"width": 0.6, "color": colour}, fillcolor=rgba(colour, 0.78), legendgroup=name,
+                x=s[i],
+                y=part,
+                name=name,
+                stackgroup="up" if sign > 0 else "down",
+                mode="lines",
+                line={"width": 0.6, "color": colour},
+                fillcolor=rgba(colour, 0.78),
+                legendgroup=name,
                 hovertemplate="%{y:+.4f} " + unit,
-            )  # fmt: skip
+            )
     fig.add_scatter(
-        x=s[i], y=total[i], name="total", mode="lines", line={"color": p.text, "width": 2.2},
+        x=s[i],
+        y=total[i],
+        name="total",
+        mode="lines",
+        line={"color": p.text, "width": 2.2},
         hovertemplate="%{y:+.4f} " + unit,
-    )  # fmt: skip
+    )
     fig.add_hline(y=0, line={"color": p.line, "width": 1})
     _mark_station(fig, station, dark)
     fig.update_layout(
@@ -154,37 +190,61 @@ def plan_figure(
     if stock is not None:
         (x0, y0), (x1, y1) = stock[0][:2], stock[1][:2]
         fig.add_scatter(
-            x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", fill="toself",
-            fillcolor=rgba(p.metal, 0.28), line={"color": p.line, "width": 1}, hoverinfo="skip",
-        )  # fmt: skip
+            x=[x0, x1, x1, x0, x0],
+            y=[y0, y0, y1, y1, y0],
+            mode="lines",
+            name="stock",
+            fill="toself",
+            fillcolor=rgba(p.metal, 0.28),
+            line={"color": p.line, "width": 1},
+            hoverinfo="skip",
+        )
     rapid = ~cutting[i]
     rapid_y = np.where(rapid | np.append(rapid[1:], False), y, np.nan)
     fig.add_scatter(
         x=x, y=rapid_y, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip"
     )
     fig.add_scatter(
-        x=x, y=np.where(cutting[i] | np.append(cutting[i][1:], False), y, np.nan), mode="lines", name="cut",
-        line={"color": rgba(p.text, 0.25), "width": 5}, hoverinfo="skip", showlegend=False,
-    )  # fmt: skip
+        x=x,
+        y=np.where(cutting[i] | np.append(cutting[i][1:], False), y, np.nan),
+        mode="lines",
+        name="cut",
+        line={"color": rgba(p.text, 0.25), "width": 5},
+        hoverinfo="skip",
+        showlegend=False,
+    )
     good = cutting[i] & reached[i] & np.isfinite(value[i])
     top = float(np.max(value[i][good])) if good.any() else 1.0
     text = [f"line {b}" for b in block[i][good]]
     fig.add_scatter(
-        x=x[good], y=y[good], mode="markers", name=title, text=text, showlegend=False,
+        x=x[good],
+        y=y[good],
+        mode="markers",
+        name=title,
+        text=text,
+        showlegend=False,
         marker={
-            "size": 6, "color": value[i][good], "colorscale": SEQUENTIAL, "cmin": 0, "cmax": limit or top,
+            "size": 6,
+            "color": value[i][good],
+            "colorscale": SEQUENTIAL,
+            "cmin": 0,
+            "cmax": limit or top,
             "colorbar": colour_bar(f"{title}, {unit}" if unit else title, dark=dark),
         },
         hovertemplate=f"%{{text}}<br>x %{{x:.2f}}, y %{{y:.2f}}<br>{title} %{{marker.color:.4f}} {unit}<extra></extra>",
         customdata=block[i][good],
-    )  # fmt: skip
+    )
     lost = cutting[i] & ~reached[i]
     if lost.any():
         fig.add_scatter(
-            x=x[lost], y=y[lost], mode="markers", name=f"out of reach ({int((cutting & ~reached).sum())} points)",
+            x=x[lost],
+            y=y[lost],
+            mode="markers",
+            name=f"out of reach ({int((cutting & ~reached).sum())} points)",
             marker={"size": 7, "symbol": "x-thin", "line": {"width": 1.6, "color": p.bad}},
-            text=[f"line {b}" for b in block[i][lost]], hovertemplate="%{text}: out of reach<extra></extra>",
-        )  # fmt: skip
+            text=[f"line {b}" for b in block[i][lost]],
+            hovertemplate="%{text}: out of reach<extra></extra>",
+        )
     fig.update_layout(
         xaxis=axis(f"x<sub>W</sub>, {length_unit}", dark=dark),
         yaxis=axis(f"y<sub>W</sub>, {length_unit}", dark=dark, scaleanchor="x", scaleratio=1),
@@ -197,6 +257,13 @@ def _mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:
         style: dict[str, Any] = {"color": palette(dark).accent, "width": 1.6}
         fig.add_vline(x=station, line=style)
         fig.add_annotation(
-            x=station, y=0, yref="paper", yshift=10, xshift=4, xanchor="left", text="station", showarrow=False,
+            x=station,
+            y=0,
+            yref="paper",
+            yshift=10,
+            xshift=4,
+            xanchor="left",
+            text="station",
+            showarrow=False,
             font={"size": 12, "color": palette(dark).accent},
-        )  # fmt: skip
+        )

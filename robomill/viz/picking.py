@@ -25,10 +25,17 @@ def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray, words: Sequence[
         good = good[np.linspace(0, len(good) - 1, MAX_PICKS).astype(int)]
     fig.update_traces(hoverinfo="skip", hovertemplate=None)
     fig.add_scatter(
-        x=s[good], y=value[good], mode="markers", name="pick", showlegend=False, text=[words[int(i)] for i in good],
-        hovertemplate="%{text}<extra></extra>", marker={"size": 14, "color": CLEAR, "line": {"width": 0}},
-        selected=_CLEAR, unselected=_CLEAR,
-    )  # fmt: skip
+        x=s[good],
+        y=value[good],
+        mode="markers",
+        name="pick",
+        showlegend=False,
+        text=[words[int(i)] for i in good],
+        hovertemplate="%{text}<extra></extra>",
+        marker={"size": 14, "color": CLEAR, "line": {"width": 0}},
+        selected=_CLEAR,
+        unselected=_CLEAR,
+    )
     fig.update_layout(dragmode="pan", clickmode="event+select", hovermode="closest", hoverdistance=-1)
 
 
@@ -36,6 +43,11 @@ def add_point(fig: go.Figure, x: float, y: float, colour: str, rim: str) -> None
     """A dot where the station is on the curve."""
     if np.isfinite(x) and np.isfinite(y):
         fig.add_scatter(
-            x=[x], y=[y], mode="markers", showlegend=False, hoverinfo="skip", name="station",
+            x=[x],
+            y=[y],
+            mode="markers",
+            showlegend=False,
+            hoverinfo="skip",
+            name="station",
             marker={"size": 11, "color": colour, "line": {"width": 2, "color": rim}},
-        )  # fmt: skip
+        )

@@ -47,30 +47,59 @@ def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, re
     step = max(d.depth, 0.12 * d.width, 1e-6) if np.isfinite(d.depth) else 1.0
     bottom = float(np.min(z)) - 0.9 * step
     fig.add_scatter(
-        x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], mode="none", fill="toself", name="material",
-        fillcolor=rgba(p.metal, 0.30), hoverinfo="skip",
-        fillpattern={"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge,
-                     "bgcolor": rgba(p.metal, 0.22)},
-    )  # fmt: skip
+        x=[u[0], *u, u[-1]],
+        y=[bottom, *z, bottom],
+        mode="none",
+        fill="toself",
+        name="material",
+        fillcolor=rgba(p.metal, 0.30),
+        hoverinfo="skip",
+        fillpattern={
+            "shape": "/",
+            "size": 9,
+            "solidity": 0.06,
+            "fgcolor": p.metal_edge,
+            "bgcolor": rgba(p.metal, 0.22),
+        },
+    )
     fig.add_scatter(
-        x=u, y=z, mode="lines", name="machined", line={"color": p.text, "width": 2.6},
+        x=u,
+        y=z,
+        mode="lines",
+        name="machined",
+        line={"color": p.text, "width": 2.6},
         hovertemplate=f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>machined</extra>",
-    )  # fmt: skip
+    )
     keep = np.isfinite(d.ideal)
     fig.add_scatter(
-        x=d.u_ideal[keep], y=d.ideal[keep], mode="lines", name="ideal",
+        x=d.u_ideal[keep],
+        y=d.ideal[keep],
+        mode="lines",
+        name="ideal",
         line={"color": p.accent, "width": 1.8, "dash": "dash"},
         hovertemplate=f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>ideal</extra>",
-    )  # fmt: skip
+    )
     if np.isfinite([d.wall_left, d.wall_right, d.depth]).all():
         _dimensions(fig, d, step, dark)
     # Left of the feed is +u; looking along the feed it lies on the left, so the axis runs backwards.
     fig.update_layout(
-        xaxis=axis(f"Across the cut, {d.unit} (+ is left of the feed)", dark=dark, showgrid=False, constrain="domain",
-                   range=[float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])]),
-        yaxis=axis(f"Height z<sub>W</sub>, {d.unit}", dark=dark, scaleanchor="x", scaleratio=1, showgrid=False,
-                   constrain="domain", range=[bottom, d.top + 1.45 * step]),
-    )  # fmt: skip
+        xaxis=axis(
+            f"Across the cut, {d.unit} (+ is left of the feed)",
+            dark=dark,
+            showgrid=False,
+            constrain="domain",
+            range=[float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])],
+        ),
+        yaxis=axis(
+            f"Height z<sub>W</sub>, {d.unit}",
+            dark=dark,
+            scaleanchor="x",
+            scaleratio=1,
+            showgrid=False,
+            constrain="domain",
+            range=[bottom, d.top + 1.45 * step],
+        ),
+    )
     return fig
 
 
@@ -104,13 +133,23 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     _arrow(fig, (centre + side * reach, under), (centre, under), p.warm)
     _arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm)
     _text(
-        fig, centre + side * reach, under, f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}",
-        p.warm, p.background, xanchor="right" if side > 0 else "left",
-    )  # fmt: skip
+        fig,
+        centre + side * reach,
+        under,
+        f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}",
+        p.warm,
+        p.background,
+        xanchor="right" if side > 0 else "left",
+    )
     away = 0.5 * (max(d.wall_left, d.wall_right) + float(np.nanmax(d.u)))
     _text(
-        fig, away, d.floor, f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}", p.warm, p.background,
-    )  # fmt: skip
+        fig,
+        away,
+        d.floor,
+        f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}",
+        p.warm,
+        p.background,
+    )
 
 
 def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:
@@ -137,13 +176,33 @@ def _line(fig: go.Figure, x0: float, y0: float, x1: float, y1: float, colour: st
 
 def _arrow(fig: go.Figure, tail: tuple[float, float], head: tuple[float, float], colour: str) -> None:
     fig.add_annotation(
-        x=head[0], y=head[1], ax=tail[0], ay=tail[1], xref="x", yref="y", axref="x", ayref="y", text="",
-        showarrow=True, arrowhead=3, arrowsize=1.1, arrowwidth=1.2, arrowcolor=colour, standoff=0,
-    )  # fmt: skip
+        x=head[0],
+        y=head[1],
+        ax=tail[0],
+        ay=tail[1],
+        xref="x",
+        yref="y",
+        axref="x",
+        ayref="y",
+        text="",
+        showarrow=True,
+        arrowhead=3,
+        arrowsize=1.1,
+        arrowwidth=1.2,
+        arrowcolor=colour,
+        standoff=0,
+    )
 
 
 def _text(fig: go.Figure, x: float, y: float, text: str, colour: str, background: str, xanchor: str = "center") -> None:
     fig.add_annotation(
-        x=x, y=y, text=text, showarrow=False, xanchor=xanchor, yanchor="middle", borderpad=3,
-        font={"size": 13, "color": colour}, bgcolor=rgba(background, 0.88),
-    )  # fmt: skip
+        x=x,
+        y=y,
+        text=text,
+        showarrow=False,
+        xanchor=xanchor,
+        yanchor="middle",
+        borderpad=3,
+        font={"size": 13, "color": colour},
+        bgcolor=rgba(background, 0.88),
+    )

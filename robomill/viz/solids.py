@@ -34,11 +34,14 @@ def tube(start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | No
     points = np.vstack([a + radius * ring, b + (radius if end_radius is None else end_radius) * ring, a, b])
     i = np.arange(sides)
     j = (i + 1) % sides
-    faces = np.vstack([
-        np.stack([i, j, i + sides], axis=1), np.stack([j, j + sides, i + sides], axis=1),
-        np.stack([j, i, np.full(sides, 2 * sides)], axis=1),
-        np.stack([i + sides, j + sides, np.full(sides, 2 * sides + 1)], axis=1),
-    ])  # fmt: skip
+    faces = np.vstack(
+        [
+            np.stack([i, j, i + sides], axis=1),
+            np.stack([j, j + sides, i + sides], axis=1),
+            np.stack([j, i, np.full(sides, 2 * sides)], axis=1),
+            np.stack([i + sides, j + sides, np.full(sides, 2 * sides + 1)], axis=1),
+        ]
+    )
     return points, faces.astype(float)
 
 
@@ -48,8 +51,20 @@ def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Mesh
     points = np.array([[corners[i, 0], corners[j, 1], corners[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     if T is not None:
         points = points @ T[:3, :3].T + T[:3, 3]
-    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1),
-             (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]  # fmt: skip
+    faces = [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 6, 7),
+        (4, 7, 5),
+        (0, 4, 5),
+        (0, 5, 1),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
     return points, np.array(faces, dtype=float)
 
 
@@ -60,9 +75,14 @@ def trace(meshes: Sequence[Mesh], colour: str, name: str, **more: Any) -> go.Mes
     faces = np.vstack([m[1] + s for m, s in zip(meshes, shift, strict=True)]).astype(np.int32)
     x, y, z = np.round(points, 5).astype(np.float32).T
     options: dict[str, Any] = {
-        "name": name, "hoverinfo": "skip", "flatshading": False, "lighting": LIGHTING, "showlegend": False,
-        "lightposition": {"x": 3000, "y": -6000, "z": 9000}, **more,
-    }  # fmt: skip
+        "name": name,
+        "hoverinfo": "skip",
+        "flatshading": False,
+        "lighting": LIGHTING,
+        "showlegend": False,
+        "lightposition": {"x": 3000, "y": -6000, "z": 9000},
+        **more,
+    }
     return go.Mesh3d(x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
 
 
@@ -77,9 +97,16 @@ def arrow(start: ArrayLike, vector: ArrayLike, colour: str, name: str, label: st
     meshes = [tube(a, neck, width, sides=14), tube(neck, a + v, 2.4 * width, 0.0, sides=18)]
     tip = a + v * (1 + 0.12)
     word = go.Scatter3d(
-        x=[tip[0]], y=[tip[1]], z=[tip[2]], mode="text", text=[label], textfont={"color": colour, "size": 13},
-        hoverinfo="skip", showlegend=False, name=name,
-    )  # fmt: skip
+        x=[tip[0]],
+        y=[tip[1]],
+        z=[tip[2]],
+        mode="text",
+        text=[label],
+        textfont={"color": colour, "size": 13},
+        hoverinfo="skip",
+        showlegend=False,
+        name=name,
+    )
     return [trace(meshes, colour, name), word]
 
 
@@ -94,8 +121,17 @@ def frame(
         end = origin + size * T[:3, column]
         traces.append(trace([tube(origin, end, 0.035 * size, sides=10)], colours[axis], name))
     at = origin + size * T[:3, :3] @ np.asarray(label, dtype=float)
-    traces.append(go.Scatter3d(
-        x=[at[0]], y=[at[1]], z=[at[2]], mode="text", text=[f"{{{name}}}"], hoverinfo="skip", showlegend=False,
-        textfont={"size": 13, "color": colours["z"]}, name=name,
-    ))  # fmt: skip
+    traces.append(
+        go.Scatter3d(
+            x=[at[0]],
+            y=[at[1]],
+            z=[at[2]],
+            mode="text",
+            text=[f"{{{name}}}"],
+            hoverinfo="skip",
+            showlegend=False,
+            textfont={"size": 13, "color": colours["z"]},
+            name=name,
+        )
+    )
     return traces

@@ -15,9 +15,12 @@ if TYPE_CHECKING:
 METAL = {False: "#C4CCD2", True: "#66747E"}
 FACE = {False: "#E7D9B8", True: "#8A7A52"}
 ROLES = {
-    "cutter": ("#B8892B", "#D9AA4C"), "shank": ("#9AA5AD", "#A9B5BD"), "spindle": ("#56656F", "#8795A0"),
-    "link": ("#C9D2D8", "#6C7B86"), "joint": ("#3D4E5A", "#C9D4DB"),
-}  # fmt: skip
+    "cutter": ("#B8892B", "#D9AA4C"),
+    "shank": ("#9AA5AD", "#A9B5BD"),
+    "spindle": ("#56656F", "#8795A0"),
+    "link": ("#C9D2D8", "#6C7B86"),
+    "joint": ("#3D4E5A", "#C9D4DB"),
+}
 FACE_SAMPLES = 1201
 
 
@@ -42,10 +45,18 @@ def block(plotter: Any, picture: SurfacePicture, z: FloatArray, error: FloatArra
         _face(plotter, picture, z)
     if top.n_points and error is not None:
         plotter.add_mesh(
-            top, scalars="error", cmap=colours, clim=(-picture.limit_um, picture.limit_um), nan_color=metal,
-            show_scalar_bar=False, ambient=0.32, diffuse=0.72, specular=0.12, specular_power=20,
+            top,
+            scalars="error",
+            cmap=colours,
+            clim=(-picture.limit_um, picture.limit_um),
+            nan_color=metal,
+            show_scalar_bar=False,
+            ambient=0.32,
+            diffuse=0.72,
+            specular=0.12,
+            specular_power=20,
             interpolate_before_map=True,
-        )  # fmt: skip
+        )
     elif top.n_points:
         plotter.add_mesh(top, color=metal, ambient=0.32, diffuse=0.72, specular=0.12, specular_power=20)
     if sides.n_points:
@@ -167,9 +178,16 @@ def solids(plotter: Any, picture: SurfacePicture) -> None:
         faces = np.column_stack([np.full(len(solid.faces), 3), solid.faces]).astype(np.int64).ravel()
         mesh = pv.PolyData(np.asarray(solid.points, dtype=float), faces)
         plotter.add_mesh(
-            mesh, color=ROLES[solid.role][int(picture.dark)], opacity=solid.opacity, smooth_shading=True,
-            split_sharp_edges=True, ambient=0.3, diffuse=0.7, specular=0.25, specular_power=25,
-        )  # fmt: skip
+            mesh,
+            color=ROLES[solid.role][int(picture.dark)],
+            opacity=solid.opacity,
+            smooth_shading=True,
+            split_sharp_edges=True,
+            ambient=0.3,
+            diffuse=0.7,
+            specular=0.25,
+            specular_power=25,
+        )
 
 
 def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float = 0.835) -> None:
@@ -185,15 +203,24 @@ def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float 
     )
     spare = 1.0 - left
     plotter.add_scalar_bar(
-        title="", mapper=actor.mapper, vertical=True, n_labels=5, fmt="%+.0f", color=p.text,
-        position_x=left + 0.39 * spare, position_y=0.22, width=0.21 * spare, height=0.56,
+        title="",
+        mapper=actor.mapper,
+        vertical=True,
+        n_labels=5,
+        fmt="%+.0f",
+        color=p.text,
+        position_x=left + 0.39 * spare,
+        position_y=0.22,
+        width=0.21 * spare,
+        height=0.56,
         label_font_size=font(picture, 17),
-    )  # fmt: skip
+    )
     size = font(picture, 11)
     for words, y, colour, less in (
-        ("Error, \u00b5m", 0.885, p.text, 0), ("+ material left", 0.815, p.muted, 2),
+        ("Error, \u00b5m", 0.885, p.text, 0),
+        ("+ material left", 0.815, p.muted, 2),
         ("\u2212 cut too deep", 0.145, p.muted, 2),
-    ):  # fmt: skip
+    ):
         plotter.add_text(words, position=(left, y), viewport=True, font_size=size - less, color=colour)
 
 
@@ -203,15 +230,23 @@ def words(plotter: Any, picture: SurfacePicture, title: str = "") -> None:
     size = font(picture, 11)
     for i, caption in enumerate(picture.captions):
         plotter.add_text(
-            caption, position=(0.02, 0.03 + 0.05 * (len(picture.captions) - 1 - i)), viewport=True,
-            font_size=size, color=p.text if i == 0 else p.muted,
-        )  # fmt: skip
+            caption,
+            position=(0.02, 0.03 + 0.05 * (len(picture.captions) - 1 - i)),
+            viewport=True,
+            font_size=size,
+            color=p.text if i == 0 else p.muted,
+        )
     if title:
         plotter.add_text(title, position=(0.16, 0.885), viewport=True, font_size=size + 2, color=p.text)
     plotter.add_axes(
-        line_width=3, labels_off=False, color=p.text, viewport=(0.0, 0.78, 0.13, 1.0),
-        x_color="#D55E00", y_color="#009E73", z_color="#0072B2",
-    )  # fmt: skip
+        line_width=3,
+        labels_off=False,
+        color=p.text,
+        viewport=(0.0, 0.78, 0.13, 1.0),
+        x_color="#D55E00",
+        y_color="#009E73",
+        z_color="#0072B2",
+    )
 
 
 def font(picture: SurfacePicture, size: int) -> int:

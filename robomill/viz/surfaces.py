@@ -35,24 +35,39 @@ def surface_figure(
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     colour = np.nan_to_num(error_um.T).astype(np.float32)
     fig.add_surface(
-        x=x.astype(np.float32), y=y.astype(np.float32), z=z.T.astype(np.float32), surfacecolor=colour,
-        cmin=-limit_um, cmax=limit_um, colorscale=DIVERGING,
+        x=x.astype(np.float32),
+        y=y.astype(np.float32),
+        z=z.T.astype(np.float32),
+        surfacecolor=colour,
+        cmin=-limit_um,
+        cmax=limit_um,
+        colorscale=DIVERGING,
         lighting={"ambient": 0.62, "diffuse": 0.5, "specular": 0.08, "roughness": 0.8, "fresnel": 0.05},
-        lightposition={"x": -400, "y": -800, "z": 1500}, contours={a: {"highlight": False} for a in "xyz"},
+        lightposition={"x": -400, "y": -800, "z": 1500},
+        contours={a: {"highlight": False} for a in "xyz"},
         colorbar=colour_bar("Error, µm (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
-        customdata=colour, name="machined",
+        customdata=colour,
+        name="machined",
         hovertemplate="x %{x:.2f}, y %{y:.2f}, z %{z:.3f} " + unit + "<br>error %{customdata:+.0f} µm<extra></extra>",
-    )  # fmt: skip
+    )
     height_span = max(float(np.nanmax(z) - np.nanmin(z)), 1e-9)
     span = max(float(np.ptp(x)), float(np.ptp(y)))
     stretch = min(max(0.10 * span / height_span, 1.0), 4.0)
-    fig.update_layout(scene={
-        "xaxis": axis3d(f"x<sub>W</sub>, {unit}", dark=dark), "yaxis": axis3d(f"y<sub>W</sub>, {unit}", dark=dark),
-        "zaxis": axis3d(f"z<sub>W</sub>, {unit}", dark=dark, nticks=3), "uirevision": revision, "dragmode": "turntable",
-        "aspectmode": "manual",
-        "aspectratio": {
-            "x": 1.7 * np.ptp(x) / span, "y": 1.7 * np.ptp(y) / span, "z": 1.7 * stretch * height_span / span,
+    fig.update_layout(
+        scene={
+            "xaxis": axis3d(f"x<sub>W</sub>, {unit}", dark=dark),
+            "yaxis": axis3d(f"y<sub>W</sub>, {unit}", dark=dark),
+            "zaxis": axis3d(f"z<sub>W</sub>, {unit}", dark=dark, nticks=3),
+            "uirevision": revision,
+            "dragmode": "turntable",
+            "aspectmode": "manual",
+            "aspectratio": {
+                "x": 1.7 * np.ptp(x) / span,
+                "y": 1.7 * np.ptp(y) / span,
+                "z": 1.7 * stretch * height_span / span,
+            },
+            "camera": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "projection": {"type": "orthographic"}},
         },
-        "camera": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "projection": {"type": "orthographic"}},
-    }, font={"color": p.text})  # fmt: skip
+        font={"color": p.text},
+    )
     return fig

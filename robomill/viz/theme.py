@@ -47,15 +47,39 @@ class Palette:
 
 
 LIGHT = Palette(
-    background="#FFFFFF", panel="#F5F7F8", text="#17222B", muted="#5A6872", grid="#E6EAED", line="#B8C2C9",
-    accent="#0B6285", warm="#B85C00", metal="#D3D9DD", metal_edge="#7D8A93", link="#C9D2D8", joint="#3D4E5A",
-    good="#0072B2", caution="#B07400", bad="#B3400A",
-)  # fmt: skip
+    background="#FFFFFF",
+    panel="#F5F7F8",
+    text="#17222B",
+    muted="#5A6872",
+    grid="#E6EAED",
+    line="#B8C2C9",
+    accent="#0B6285",
+    warm="#B85C00",
+    metal="#D3D9DD",
+    metal_edge="#7D8A93",
+    link="#C9D2D8",
+    joint="#3D4E5A",
+    good="#0072B2",
+    caution="#B07400",
+    bad="#B3400A",
+)
 DARK = Palette(
-    background="#11181D", panel="#1A242B", text="#E4EAEE", muted="#9BA9B3", grid="#26323A", line="#4A5963",
-    accent="#5CB6DA", warm="#F0A04B", metal="#5B6871", metal_edge="#A9B5BD", link="#6C7B86", joint="#C9D4DB",
-    good="#5CB6DA", caution="#E9B949", bad="#F0803C",
-)  # fmt: skip
+    background="#11181D",
+    panel="#1A242B",
+    text="#E4EAEE",
+    muted="#9BA9B3",
+    grid="#26323A",
+    line="#4A5963",
+    accent="#5CB6DA",
+    warm="#F0A04B",
+    metal="#5B6871",
+    metal_edge="#A9B5BD",
+    link="#6C7B86",
+    joint="#C9D4DB",
+    good="#5CB6DA",
+    caution="#E9B949",
+    bad="#F0803C",
+)
 
 
 def palette(dark: bool) -> Palette:
@@ -96,14 +120,21 @@ def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) ->
         "plot_bgcolor": "rgba(0,0,0,0)",
         "margin": {"l": 8, "r": 8, "t": 8, "b": 8},
         "hoverlabel": {
-            "bgcolor": p.panel, "bordercolor": p.line, "font": {"family": FONT, "size": 13, "color": p.text},
+            "bgcolor": p.panel,
+            "bordercolor": p.line,
+            "font": {"family": FONT, "size": 13, "color": p.text},
         },
         "legend": {
-            "orientation": "h", "x": 0, "xanchor": "left", "y": 1.02, "yanchor": "bottom",
-            "font": {"size": 12.5, "color": p.text}, "bgcolor": "rgba(0,0,0,0)",
+            "orientation": "h",
+            "x": 0,
+            "xanchor": "left",
+            "y": 1.02,
+            "yanchor": "bottom",
+            "font": {"size": 12.5, "color": p.text},
+            "bgcolor": "rgba(0,0,0,0)",
         },
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": p.muted, "activecolor": p.accent},
-    }  # fmt: skip
+    }
     base.update(layout)
     return go.Figure(layout=base)
 
@@ -113,9 +144,17 @@ def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
     p = palette(dark)
     return {
         "title": {"text": title, "standoff": 8, "font": {"size": 13, "color": p.muted}},
-        "gridcolor": p.grid, "linecolor": p.line, "showline": True, "zeroline": False, "ticks": "outside",
-        "ticklen": 4, "tickcolor": p.line, "tickfont": {"size": 12, "color": p.muted}, "automargin": True, **more,
-    }  # fmt: skip
+        "gridcolor": p.grid,
+        "linecolor": p.line,
+        "showline": True,
+        "zeroline": False,
+        "ticks": "outside",
+        "ticklen": 4,
+        "tickcolor": p.line,
+        "tickfont": {"size": 12, "color": p.muted},
+        "automargin": True,
+        **more,
+    }
 
 
 def axis3d(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
@@ -123,9 +162,14 @@ def axis3d(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
     p = palette(dark)
     return {
         "title": {"text": title, "font": {"size": 12, "color": p.muted}},
-        "gridcolor": p.grid, "linecolor": p.line, "zeroline": False, "showbackground": False,
-        "tickfont": {"size": 11, "color": p.muted}, "nticks": 5, **more,
-    }  # fmt: skip
+        "gridcolor": p.grid,
+        "linecolor": p.line,
+        "zeroline": False,
+        "showbackground": False,
+        "tickfont": {"size": 11, "color": p.muted},
+        "nticks": 5,
+        **more,
+    }
 
 
 def colour_bar(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
@@ -133,6 +177,12 @@ def colour_bar(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
     p = palette(dark)
     return {
         "title": {"text": title, "side": "right", "font": {"size": 12, "color": p.muted}},
-        "thickness": 10, "outlinewidth": 0, "tickfont": {"size": 11, "color": p.muted}, "ticklen": 3,
-        "tickcolor": p.line, "x": 1.01, "xpad": 4, **more,
-    }  # fmt: skip
+        "thickness": 10,
+        "outlinewidth": 0,
+        "tickfont": {"size": 11, "color": p.muted},
+        "ticklen": 3,
+        "tickcolor": p.line,
+        "x": 1.01,
+        "xpad": 4,
+        **more,
+    }

@@ -24,9 +24,15 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     if picture.stock is not None:
         (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
         fig.add_scatter(
-            x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", fill="toself",
-            fillcolor=rgba(p.metal, 0.26), line={"color": p.line, "width": 1}, hoverinfo="skip",
-        )  # fmt: skip
+            x=[x0, x1, x1, x0, x0],
+            y=[y0, y0, y1, y1, y0],
+            mode="lines",
+            name="stock",
+            fill="toself",
+            fillcolor=rgba(p.metal, 0.26),
+            line={"color": p.line, "width": 1},
+            hoverinfo="skip",
+        )
     kept = picture.kept
     ends = _ends(picture)
     cut, lost = picture.cutting[kept], picture.cutting[kept] & ~picture.reached[kept]
@@ -39,32 +45,45 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     width = 3.0 if len(kept) < 3_000 else 1.6
     fig.add_trace(
         make(
-            **_lines(picture, ends, cut, flat), mode="lines", line={"color": rgba(p.text, 0.18), "width": 2 * width},
-            hoverinfo="skip", showlegend=False,
+            **_lines(picture, ends, cut, flat),
+            mode="lines",
+            line={"color": rgba(p.text, 0.18), "width": 2 * width},
+            hoverinfo="skip",
+            showlegend=False,
         )
-    )  # fmt: skip
+    )
     _halo(fig, picture, dark)
     for name, colour, chosen, legend in _classes(picture, dark):
         fig.add_trace(
             make(
-                **_lines(picture, ends, chosen, flat), mode="lines", name=name, line={"color": colour, "width": width},
-                hoverinfo="skip", showlegend=legend,
+                **_lines(picture, ends, chosen, flat),
+                mode="lines",
+                name=name,
+                line={"color": colour, "width": width},
+                hoverinfo="skip",
+                showlegend=legend,
             )
-        )  # fmt: skip
+        )
     if lost.any():
         at = picture.points[kept][lost]
         at = at[:: max(1, len(at) // 400)]
         fig.add_scatter(
-            x=at[:, 0], y=at[:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            x=at[:, 0],
+            y=at[:, 1],
+            mode="markers",
+            showlegend=False,
+            hoverinfo="skip",
             marker={"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}},
-        )  # fmt: skip
+        )
     _marks(fig, picture, dark)
     _picks(fig, picture, dark)
     unit = picture.length_unit
     fig.update_layout(
-        xaxis=axis(f"x<sub>W</sub>, {unit}", dark=dark), clickmode="event+select", dragmode="pan",
+        xaxis=axis(f"x<sub>W</sub>, {unit}", dark=dark),
+        clickmode="event+select",
+        dragmode="pan",
         yaxis=axis(f"y<sub>W</sub>, {unit}", dark=dark, scaleanchor="x", scaleratio=1),
-    )  # fmt: skip
+    )
     return fig
 
 
@@ -78,21 +97,33 @@ def turnable_picture(
     cut = picture.cutting[kept]
     rapid = ~cut & (np.arange(len(kept)) > 0)
     fig.add_scatter3d(
-        **_lines(picture, ends, rapid, (0, 1, 2)), mode="lines", name="rapid", hoverinfo="skip",
+        **_lines(picture, ends, rapid, (0, 1, 2)),
+        mode="lines",
+        name="rapid",
+        hoverinfo="skip",
         line={"color": p.muted, "width": 1.5, "dash": "dot"},
-    )  # fmt: skip
+    )
     here = _selected(picture)
     if len(here):
         q = picture.points[here]
         fig.add_scatter3d(
-            x=q[:, 0], y=q[:, 1], z=q[:, 2], mode="lines", showlegend=False, hoverinfo="skip",
+            x=q[:, 0],
+            y=q[:, 1],
+            z=q[:, 2],
+            mode="lines",
+            showlegend=False,
+            hoverinfo="skip",
             line={"color": rgba(p.text, 0.7), "width": 14},
-        )  # fmt: skip
+        )
     for name, colour, chosen, legend in _classes(picture, dark):
         fig.add_scatter3d(
-            **_lines(picture, ends, chosen, (0, 1, 2)), mode="lines", name=name, showlegend=legend, hoverinfo="skip",
+            **_lines(picture, ends, chosen, (0, 1, 2)),
+            mode="lines",
+            name=name,
+            showlegend=legend,
+            hoverinfo="skip",
             line={"color": colour, "width": 5},
-        )  # fmt: skip
+        )
     if picture.value is not None:
         bar = _scale(picture, dark)
         fig.add_scatter3d(x=[None], y=[None], z=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
@@ -103,16 +134,19 @@ def turnable_picture(
     unit = picture.length_unit
     fig.update_layout(
         scene={
-            "xaxis": axis3d(f"x_W, {unit}", dark=dark), "yaxis": axis3d(f"y_W, {unit}", dark=dark),
-            "zaxis": axis3d(f"z_W, {unit}", dark=dark), "aspectmode": "manual",
+            "xaxis": axis3d(f"x_W, {unit}", dark=dark),
+            "yaxis": axis3d(f"y_W, {unit}", dark=dark),
+            "zaxis": axis3d(f"z_W, {unit}", dark=dark),
+            "aspectmode": "manual",
             "aspectratio": {"x": x, "y": y, "z": z},
             "camera": {
-                "projection": {"type": "orthographic"}, "eye": {"x": -0.75, "y": -1.25, "z": 0.95},
+                "projection": {"type": "orthographic"},
+                "eye": {"x": -0.75, "y": -1.25, "z": 0.95},
                 "center": {"x": 0.0, "y": 0.0, "z": -0.1},
             },
             "uirevision": revision,
         }
-    )  # fmt: skip
+    )
     return fig, times
 
 
@@ -176,9 +210,14 @@ def _scale(picture: PathPicture, dark: bool) -> dict[str, Any]:
     """A marker that shows nothing but the colour bar."""
     title = f"{picture.title}, {picture.unit}" if picture.unit else picture.title
     return {
-        "size": 0.1, "color": [0.0], "cmin": 0.0, "cmax": _top(picture), "colorscale": SEQUENTIAL, "showscale": True,
+        "size": 0.1,
+        "color": [0.0],
+        "cmin": 0.0,
+        "cmax": _top(picture),
+        "colorscale": SEQUENTIAL,
+        "showscale": True,
         "colorbar": colour_bar(title, dark=dark),
-    }  # fmt: skip
+    }
 
 
 def _selected(picture: PathPicture) -> IntArray:
@@ -197,9 +236,13 @@ def _halo(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
         return
     p, q = palette(dark), picture.points[here]
     fig.add_scatter(
-        x=q[:, 0], y=q[:, 1], mode="lines", name=f"{picture.noun} {picture.selected}", hoverinfo="skip",
+        x=q[:, 0],
+        y=q[:, 1],
+        mode="lines",
+        name=f"{picture.noun} {picture.selected}",
+        hoverinfo="skip",
         line={"color": p.text, "width": 8},
-    )  # fmt: skip
+    )
 
 
 def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
@@ -209,20 +252,32 @@ def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     if len(here):
         q = picture.points[here]
         fig.add_scatter(
-            x=q[-1:, 0], y=q[-1:, 1], mode="markers", showlegend=False, hoverinfo="skip",
+            x=q[-1:, 0],
+            y=q[-1:, 1],
+            mode="markers",
+            showlegend=False,
+            hoverinfo="skip",
             marker={"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, "width": 2}},
-        )  # fmt: skip
+        )
     start = picture.points[0]
     fig.add_scatter(
-        x=[start[0]], y=[start[1]], mode="markers", name="start", hoverinfo="skip",
+        x=[start[0]],
+        y=[start[1]],
+        mode="markers",
+        name="start",
+        hoverinfo="skip",
         marker={"size": 9, "symbol": "circle-open", "color": p.text, "line": {"width": 2}},
-    )  # fmt: skip
+    )
     if picture.worst >= 0:
         w = picture.points[picture.worst]
         fig.add_scatter(
-            x=[w[0]], y=[w[1]], mode="markers", name="worst", hoverinfo="skip",
+            x=[w[0]],
+            y=[w[1]],
+            mode="markers",
+            name="worst",
+            hoverinfo="skip",
             marker={"size": 12, "symbol": "diamond-open", "color": p.text, "line": {"width": 2}},
-        )  # fmt: skip
+        )
     if picture.value is not None:
         fig.add_scatter(
             x=[None], y=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=_scale(picture, dark)
@@ -246,8 +301,15 @@ def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
             for w, v in zip(words, value, strict=True)
         ]
     fig.add_scatter(
-        x=q[:, 0], y=q[:, 1], mode="markers", name="points", showlegend=False, text=words,
-        customdata=np.column_stack(data), hovertemplate=hover + "<extra></extra>",
+        x=q[:, 0],
+        y=q[:, 1],
+        mode="markers",
+        name="points",
+        showlegend=False,
+        text=words,
+        customdata=np.column_stack(data),
+        hovertemplate=hover + "<extra></extra>",
         marker={"size": 9, "color": palette(dark).accent, "opacity": 0.01},
-        selected={"marker": {"opacity": 0.01}}, unselected={"marker": {"opacity": 0.01}},
-    )  # fmt: skip
+        selected={"marker": {"opacity": 0.01}},
+        unselected={"marker": {"opacity": 0.01}},
+    )

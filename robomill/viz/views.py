@@ -93,9 +93,14 @@ def so_far(result: SimulationResult, shown: Exaggerated, index: int) -> Exaggera
 
     def at(p: FloatArray) -> ZMap:
         return cut(
-            setup.stock_block, shown.drawn.cell, setup.cutter, p[upto], path.k[upto], result.removes[upto],
+            setup.stock_block,
+            shown.drawn.cell,
+            setup.cutter,
+            p[upto],
+            path.k[upto],
+            result.removes[upto],
             must_touch=False,
-        )  # fmt: skip
+        )
 
     drawn, told = at(path.p + shown.times * (result.p_machined - path.p)), at(path.p)
     done = (drawn.z == shown.drawn.z) & (told.z == shown.ideal.z)
@@ -141,13 +146,21 @@ def surface_picture(
         "Thin line: the ideal cut. Parallel projection.",
     ]
     return SurfacePicture(
-        x=from_si(shown.drawn.x, "mm"), y=from_si(shown.drawn.y, "mm"), z=from_si(shown.drawn.z, "mm"),
-        ideal=from_si(shown.ideal.z, "mm"), error_um=from_si(shown.error, "um"),
-        limit_um=float(from_si(setup.tolerance, "um")), bottom=float(from_si(setup.stock_block.lower[2], "mm")),
-        camera=camera, dark=dark, size=size, direction=(float(direction[0]), float(direction[1])),
+        x=from_si(shown.drawn.x, "mm"),
+        y=from_si(shown.drawn.y, "mm"),
+        z=from_si(shown.drawn.z, "mm"),
+        ideal=from_si(shown.ideal.z, "mm"),
+        error_um=from_si(shown.error, "um"),
+        limit_um=float(from_si(setup.tolerance, "um")),
+        bottom=float(from_si(setup.stock_block.lower[2], "mm")),
+        camera=camera,
+        dark=dark,
+        size=size,
+        direction=(float(direction[0]), float(direction[1])),
         station=None if station is None else tuple(from_si(where, "mm").tolist()),
-        captions=tuple(captions) if words else (), **more,
-    )  # fmt: skip
+        captions=tuple(captions) if words else (),
+        **more,
+    )
 
 
 def place(result: SimulationResult, station: float) -> tuple[FloatArray, FloatArray]:
@@ -178,14 +191,18 @@ def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
     keep = path.cutting | np.append(path.cutting[1:], False)
     F, delta = result.F[index], result.delta[index]
     return ArmScene(
-        frames=joint_frames(setup.robot, result.theta[index]), T_MW=setup.T_MW,
-        part=(setup.stock_block.lower, setup.stock_block.upper), path=path.p[keep] @ R.T + t,
-        path_reached=result.reached[keep], force=F if np.isfinite(F).all() else None,
+        frames=joint_frames(setup.robot, result.theta[index]),
+        T_MW=setup.T_MW,
+        part=(setup.stock_block.lower, setup.stock_block.upper),
+        path=path.p[keep] @ R.T + t,
+        path_reached=result.reached[keep],
+        force=F if np.isfinite(F).all() else None,
         displacement=delta if np.isfinite(delta).all() else None,
         force_label=format_si(float(np.linalg.norm(F)), "N", 0),
         displacement_label=format_si(float(np.linalg.norm(delta)), "mm", 2),
-        cutter_radius=setup.cutter.radius, **more,
-    )  # fmt: skip
+        cutter_radius=setup.cutter.radius,
+        **more,
+    )
 
 
 def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
@@ -203,13 +220,20 @@ def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
     w_machined = _upright(section.w, section.z_machined, (section.wall_left, section.wall_right), section.depth)
     w_ideal = _upright(section.w, section.z_ideal, (section.wall_left_ideal, section.wall_right_ideal), section.depth)
     return SectionDrawing(
-        u=shown(w_machined[keep]), machined=shown(section.z_machined[keep]),
-        u_ideal=shown(w_ideal[keep]), ideal=shown(section.z_ideal[keep]),
-        wall_left=shown(section.wall_left), wall_right=shown(section.wall_right), width=shown(section.width),
-        depth=shown(section.depth), centre_offset=shown(section.centre_offset),
-        floor_error=shown(section.floor_error), top=shown(section.floor + section.depth), floor=shown(section.floor),
+        u=shown(w_machined[keep]),
+        machined=shown(section.z_machined[keep]),
+        u_ideal=shown(w_ideal[keep]),
+        ideal=shown(section.z_ideal[keep]),
+        wall_left=shown(section.wall_left),
+        wall_right=shown(section.wall_right),
+        width=shown(section.width),
+        depth=shown(section.depth),
+        centre_offset=shown(section.centre_offset),
+        floor_error=shown(section.floor_error),
+        top=shown(section.floor + section.depth),
+        floor=shown(section.floor),
         unit=unit,
-    )  # fmt: skip
+    )
 
 
 def _upright(w: FloatArray, z: FloatArray, walls: tuple[float, float], depth: float) -> FloatArray:
@@ -234,7 +258,14 @@ def plan_view(result: SimulationResult, quantity: str, unit: str) -> dict[str, A
         limit = float(from_si(setup.tolerance, unit))
     stock = setup.stock_block
     return {
-        "points": from_si(path.p, unit), "cutting": path.cutting, "reached": result.reached, "value": value,
-        "title": title, "unit": shown_unit, "block": path.block, "limit": limit, "length_unit": unit,
+        "points": from_si(path.p, unit),
+        "cutting": path.cutting,
+        "reached": result.reached,
+        "value": value,
+        "title": title,
+        "unit": shown_unit,
+        "block": path.block,
+        "limit": limit,
+        "length_unit": unit,
         "stock": (from_si(stock.lower, unit), from_si(stock.upper, unit)),
-    }  # fmt: skip
+    }

@@ -14,9 +14,13 @@ from robomill.viz.theme import SEQUENTIAL, colour_bar, diverging, palette
 # The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
 _CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 _FACES = {
-    (0, 0): (0, 1, 3, 2), (0, 1): (4, 6, 7, 5), (1, 0): (0, 4, 5, 1),
-    (1, 1): (2, 3, 7, 6), (2, 0): (0, 2, 6, 4), (2, 1): (1, 5, 7, 3),
-}  # fmt: skip
+    (0, 0): (0, 1, 3, 2),
+    (0, 1): (4, 6, 7, 5),
+    (1, 0): (0, 4, 5, 1),
+    (1, 1): (2, 3, 7, 6),
+    (2, 0): (0, 2, 6, 4),
+    (2, 1): (1, 5, 7, 3),
+}
 
 
 def outer_faces(mask: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -57,14 +61,28 @@ def voxel_trace(
         shown = values[i, j, k].astype(np.float32)
         low, high = limits or (float(np.nanmin(shown)), float(np.nanmax(shown)))
         more = {
-            "intensity": np.concatenate([shown, shown]), "intensitymode": "cell", "cmin": low, "cmax": high,
+            "intensity": np.concatenate([shown, shown]),
+            "intensitymode": "cell",
+            "cmin": low,
+            "cmax": high,
             "colorscale": diverging(dark) if signed else SEQUENTIAL,
             "colorbar": colour_bar(title, dark=dark, len=0.7),
-        }  # fmt: skip
+        }
     return go.Mesh3d(
-        x=x, y=y, z=z, i=faces[:, 0].astype(np.int32), j=faces[:, 1].astype(np.int32), k=faces[:, 2].astype(np.int32),
-        opacity=opacity, flatshading=True, hoverinfo="skip", name="reach", showlegend=False, lighting=LIGHTING, **more,
-    )  # fmt: skip
+        x=x,
+        y=y,
+        z=z,
+        i=faces[:, 0].astype(np.int32),
+        j=faces[:, 1].astype(np.int32),
+        k=faces[:, 2].astype(np.int32),
+        opacity=opacity,
+        flatshading=True,
+        hoverinfo="skip",
+        name="reach",
+        showlegend=False,
+        lighting=LIGHTING,
+        **more,
+    )
 
 
 def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash: str = "solid") -> list[go.Scatter3d]:
@@ -75,14 +93,27 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
     line = np.array([point for a, b in edges for point in (c[a], c[b], gap)])
     return [
         go.Scatter3d(
-            x=line[:, 0], y=line[:, 1], z=line[:, 2], mode="lines", line={"color": colour, "width": 5, "dash": dash},
-            name=label, hoverinfo="name", showlegend=False,
+            x=line[:, 0],
+            y=line[:, 1],
+            z=line[:, 2],
+            mode="lines",
+            line={"color": colour, "width": 5, "dash": dash},
+            name=label,
+            hoverinfo="name",
+            showlegend=False,
         ),
         go.Scatter3d(
-            x=[upper[0]], y=[lower[1]], z=[upper[2]], mode="text", text=[label], textposition="top center",
-            textfont={"color": colour, "size": 13}, hoverinfo="skip", showlegend=False,
+            x=[upper[0]],
+            y=[lower[1]],
+            z=[upper[2]],
+            mode="text",
+            text=[label],
+            textposition="top center",
+            textfont={"color": colour, "size": 13},
+            hoverinfo="skip",
+            showlegend=False,
         ),
-    ]  # fmt: skip
+    ]
 
 
 def widen(fig: go.Figure, lower: FloatArray, upper: FloatArray, room: float = 2.4) -> None:

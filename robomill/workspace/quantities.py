@@ -64,22 +64,36 @@ def quantity(robot: Robot, name: str) -> Quantity:
 def _component(key: str, c: str) -> Quantity:
     kind = "direct-compliance" if c[0] == c[1] else "cross-compliance"
     return Quantity(
-        key, f"{kind} C_{c}", "um/N", f"C_{c} = Σ_i C_θi J_i,{c[0]} J_i,{c[1]}  (eqs. 13, 14)",
-        f"How far the tip moves in {c[0].upper()} under 1 N in {c[1].upper()}.", c,
-    )  # fmt: skip
+        key,
+        f"{kind} C_{c}",
+        "um/N",
+        f"C_{c} = Σ_i C_θi J_i,{c[0]} J_i,{c[1]}  (eqs. 13, 14)",
+        f"How far the tip moves in {c[0].upper()} under 1 N in {c[1].upper()}.",
+        c,
+    )
 
 
 def _of_joint(robot: Robot, key: str, c: str, joint: int, share: bool) -> Quantity:
     number = robot.joint_numbers[joint]
     if share:
         return Quantity(
-            key, f"share of joint {number} in C_{c}", "%", f"C_{number},{c} / Σ_i |C_i,{c}|",
-            f"The part of C_{c} that would vanish if joint {number} were rigid.", c, joint,
-        )  # fmt: skip
+            key,
+            f"share of joint {number} in C_{c}",
+            "%",
+            f"C_{number},{c} / Σ_i |C_i,{c}|",
+            f"The part of C_{c} that would vanish if joint {number} were rigid.",
+            c,
+            joint,
+        )
     return Quantity(
-        key, f"joint {number} in C_{c}", "um/N", f"C_{number},{c} = C_θ{number} J_{c[0]} J_{c[1]}  (eq. 14)",
-        f"What joint {number} alone adds to C_{c}.", c, joint,
-    )  # fmt: skip
+        key,
+        f"joint {number} in C_{c}",
+        "um/N",
+        f"C_{number},{c} = C_θ{number} J_{c[0]} J_{c[1]}  (eq. 14)",
+        f"What joint {number} alone adds to C_{c}.",
+        c,
+        joint,
+    )
 
 
 def _plain(robot: Robot) -> dict[str, Quantity]:
@@ -89,40 +103,67 @@ def _plain(robot: Robot) -> dict[str, Quantity]:
     unit = {1: "m", 2: "m2", 3: "m3"}.get(powers, "1")
     entries = (
         Quantity(
-            "reach", "reach WS", "1", "WS = 1 where θ exists within the limits  (eq. 10)",
+            "reach",
+            "reach WS",
+            "1",
+            "WS = 1 where θ exists within the limits  (eq. 10)",
             "Where the tool can be brought at this tilt.",
         ),
         Quantity(
-            "det_J", "det(J)", unit, f"det of the rows {rows}",
+            "det_J",
+            "det(J)",
+            unit,
+            f"det of the rows {rows}",
             "Zero is a singularity: a direction in which the tool cannot be moved.",
         ),
         Quantity(
-            "manipulability", "manipulability", unit, f"√det(J Jᵀ), rows {rows}",
+            "manipulability",
+            "manipulability",
+            unit,
+            f"√det(J Jᵀ), rows {rows}",
             "Yoshikawa's measure: the size of what unit joint speeds can do.",
         ),
         Quantity(
-            "inverse_condition", "inverse condition", "1", f"σ_min / σ_max, rows {rows}",
+            "inverse_condition",
+            "inverse condition",
+            "1",
+            f"σ_min / σ_max, rows {rows}",
             "1 is equally able in every direction, 0 is singular.",
         ),
         Quantity(
-            "smallest_singular_value", "smallest singular value", "1", f"σ_min(J), rows {rows}",
+            "smallest_singular_value",
+            "smallest singular value",
+            "1",
+            f"σ_min(J), rows {rows}",
             "How fast the tool moves in its worst direction at unit joint speed.",
         ),
         Quantity(
-            "limit_distance", "distance to joint limits", "%", "min_i (distance to the nearer limit) / (half range)",
+            "limit_distance",
+            "distance to joint limits",
+            "%",
+            "min_i (distance to the nearer limit) / (half range)",
             "100 % is mid-range in every joint, 0 is at a limit.",
         ),
         Quantity(
-            "C_soft", "softest direction", "um/N", "largest eigenvalue of C",
+            "C_soft",
+            "softest direction",
+            "um/N",
+            "largest eigenvalue of C",
             "How far 1 N moves the tip in the direction in which it gives most.",
         ),
         Quantity(
-            "C_stiff", "stiffest direction", "um/N", "smallest eigenvalue of C",
+            "C_stiff",
+            "stiffest direction",
+            "um/N",
+            "smallest eigenvalue of C",
             "How far 1 N moves the tip in the direction in which it gives least.",
         ),
         Quantity(
-            "dominant", "joint that gives most", "1", "argmax_i trace C_i",
+            "dominant",
+            "joint that gives most",
+            "1",
+            "argmax_i trace C_i",
             "The joint with the largest part of C_xx + C_yy + C_zz.",
         ),
-    )  # fmt: skip
+    )
     return {entry.name: entry for entry in entries}

@@ -45,9 +45,12 @@ def solve_grid(robot: Robot, grid: Grid, A: float, B: float) -> Solved:
         theta[block], reached[block] = result.theta, result.reached
         evaluate(theta[block], J[block], shares[block], det_J[block])
     return (
-        theta.reshape(*shape, n), reached.reshape(shape), J.reshape(*shape, 6, n),
-        shares.reshape(*shape, n, 6), det_J.reshape(shape),
-    )  # fmt: skip
+        theta.reshape(*shape, n),
+        reached.reshape(shape),
+        J.reshape(*shape, 6, n),
+        shares.reshape(*shape, n, 6),
+        det_J.reshape(shape),
+    )
 
 
 def _compiled_law(robot: Robot, pose: FloatArray, size: int) -> Law | None:

@@ -15,11 +15,26 @@ from robomill.units import UNITS, format_si, format_value, from_si, to_si
 
 # The factor of each unit, written independently of the table: one unit in SI.
 ONE = {
-    "mm": 0.001, "um": 1e-6, "in": 0.0254, "deg": math.radians(1), "mm/min": 0.001 / 60, "mm/s": 0.001,
-    "1/min": 1 / 60, "min": 60.0, "N/mm2": 1e6, "N/mm": 1000.0, "um/N": 1e-6, "N/um": 1e6,
-    "1e-7 rad/(N m)": 1e-7, "kN m/rad": 1000.0, "urad/N": 1e-6, "mm3": 1e-9, "mm2": 1e-6, "%": 0.01,
+    "mm": 0.001,
+    "um": 1e-6,
+    "in": 0.0254,
+    "deg": math.radians(1),
+    "mm/min": 0.001 / 60,
+    "mm/s": 0.001,
+    "1/min": 1 / 60,
+    "min": 60.0,
+    "N/mm2": 1e6,
+    "N/mm": 1000.0,
+    "um/N": 1e-6,
+    "N/um": 1e6,
+    "1e-7 rad/(N m)": 1e-7,
+    "kN m/rad": 1000.0,
+    "urad/N": 1e-6,
+    "mm3": 1e-9,
+    "mm2": 1e-6,
+    "%": 0.01,
     "in/min": 0.0254 / 60,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("unit", UNITS)

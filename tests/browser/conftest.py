@@ -26,9 +26,12 @@ def page(url: str) -> Iterator[Any]:
         pytest.skip("no Chromium: apt-get install -y chromium")
     with sync_api.sync_playwright() as playwright, tempfile.TemporaryDirectory() as home:
         context = playwright.chromium.launch_persistent_context(
-            home, executable_path=CHROMIUM, args=ARGUMENTS, viewport={"width": 1440, "height": 1000},
+            home,
+            executable_path=CHROMIUM,
+            args=ARGUMENTS,
+            viewport={"width": 1440, "height": 1000},
             accept_downloads=True,
-        )  # fmt: skip
+        )
         made = context.new_page()
         broken: list[str] = []
         made.on("pageerror", lambda error: broken.append(str(error)))

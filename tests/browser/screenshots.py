@@ -20,9 +20,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-]  # fmt: skip
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 WIDTHS = {"wide": 1440, "narrow": 800}
 TAB_PAGES = {"Robot": ("D-H table", "Limits", "Tool")}
 
@@ -40,9 +46,20 @@ def served() -> Iterator[str]:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     command = [
-        sys.executable, "-m", "streamlit", "run", "app.py", "--server.port", str(port), "--server.address", "127.0.0.1",
-        "--server.headless", "true", "--server.fileWatcherType", "none",
-    ]  # fmt: skip
+        sys.executable,
+        "-m",
+        "streamlit",
+        "run",
+        "app.py",
+        "--server.port",
+        str(port),
+        "--server.address",
+        "127.0.0.1",
+        "--server.headless",
+        "true",
+        "--server.fileWatcherType",
+        "none",
+    ]
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     url = f"http://127.0.0.1:{port}"
     try:
@@ -75,9 +92,12 @@ def take(folder: Path, url: str, wanted: list[str]) -> None:
             for size, width in WIDTHS.items():
                 with tempfile.TemporaryDirectory() as home:
                     context = playwright.chromium.launch_persistent_context(
-                        home, executable_path=CHROMIUM, args=ARGUMENTS, color_scheme=theme,
+                        home,
+                        executable_path=CHROMIUM,
+                        args=ARGUMENTS,
+                        color_scheme=theme,
                         viewport={"width": width, "height": 1000},
-                    )  # fmt: skip
+                    )
                     page = context.new_page()
                     for name, path in pages.items():
                         page.set_viewport_size({"width": width, "height": 1000})

@@ -79,8 +79,11 @@ def test_the_scrubber_moves_code_section_and_point_without_the_whole_page(millin
         told = place(page)
         for _ in range(4):  # a step of the slider is finer than the samples of the path
             page.keyboard.press("ArrowRight")
-        page.wait_for_function("told => ![...document.querySelectorAll('.rm-lead')].some(e => e.innerText === told)",
-                               arg=told, timeout=20_000)  # fmt: skip
+        page.wait_for_function(
+            "told => ![...document.querySelectorAll('.rm-lead')].some(e => e.innerText === told)",
+            arg=told,
+            timeout=20_000,
+        )
         times.append(time.perf_counter() - start)
         idle(page)
     assert place(page) != before

@@ -65,9 +65,18 @@ def test_a_pose_out_of_reach_says_why(capsys) -> None:
 def test_simulate(capsys) -> None:
     r = record(capsys, "simulate", FLUTE / "setup.toml")
     keys = {
-        "max_deviation_mm", "rms_deviation_mm", "deviation_mm", "joint_share_mm", "force_N", "worst_block", "reached",
-        "groove", "verdict", "tolerance_mm", "digest",
-    }  # fmt: skip
+        "max_deviation_mm",
+        "rms_deviation_mm",
+        "deviation_mm",
+        "joint_share_mm",
+        "force_N",
+        "worst_block",
+        "reached",
+        "groove",
+        "verdict",
+        "tolerance_mm",
+        "digest",
+    }
     assert keys <= set(r)
     assert {"station_mm", "width_mm", "depth_mm", "centre_offset_mm", "floor_error_mm"} <= set(r["groove"][0])
     assert np.array(r["joint_share_mm"]).shape == (5, 3)
@@ -171,9 +180,17 @@ def test_identify_the_papers_sample(capsys) -> None:
     tests = sorted((samples_dir() / "load_tests").glob("*.csv"))[0]
     r = record(capsys, "identify", "slavkovic_5r", tests, "--model", "joints")
     keys = {
-        "C_theta", "stderr", "ci95", "correlation", "condition", "residual_rms_mm", "cv_relative_error", "outliers",
-        "unseen_joints", "model",
-    }  # fmt: skip
+        "C_theta",
+        "stderr",
+        "ci95",
+        "correlation",
+        "condition",
+        "residual_rms_mm",
+        "cv_relative_error",
+        "outliers",
+        "unseen_joints",
+        "model",
+    }
     assert keys <= set(r)
     assert len(r["C_theta"]) == 5
 

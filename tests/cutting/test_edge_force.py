@@ -223,10 +223,16 @@ def test_batch_equals_loop_and_rest_is_zero_in_air():
     m = 40
     start = rng.uniform(0, 2, m)
     values = {
-        "v_f": rng.uniform(0.005, 0.05, m), "n_s": rng.uniform(50, 300, m), "a_p": rng.uniform(0, 3e-3, m),
-        "phi_st": start, "phi_ex": np.minimum(start + rng.uniform(0, 1.5, m), np.pi), "cutting": rng.random(m) < 0.8,
-        "s": np.arange(m), "t": np.arange(m), "across": rng.uniform(0.2, 1, m),
-    }  # fmt: skip
+        "v_f": rng.uniform(0.005, 0.05, m),
+        "n_s": rng.uniform(50, 300, m),
+        "a_p": rng.uniform(0, 3e-3, m),
+        "phi_st": start,
+        "phi_ex": np.minimum(start + rng.uniform(0, 1.5, m), np.pi),
+        "cutting": rng.random(m) < 0.8,
+        "s": np.arange(m),
+        "t": np.arange(m),
+        "across": rng.uniform(0.2, 1, m),
+    }
     values["a_p"][:5] = 0.0
     values["n_s"][:5] = 0.0  # the spindle may stand in air
     force = KienzleForce(MILL, load_material("al_wrought_cured_kienzle"))

@@ -11,9 +11,17 @@ from robomill.robot.model import Provenance
 from robomill.units import to_si
 
 ROW = {
-    "name": "al", "title": "Aluminium", "alloy": "Al", "provenance": Provenance("measured", "dynamometer, 3 May"),
-    "Ktc": 7e8, "Kte": 2e4, "Krc": 2e8, "Kre": 2e4, "Kac": 2e8, "Kae": 1e3,
-}  # fmt: skip
+    "name": "al",
+    "title": "Aluminium",
+    "alloy": "Al",
+    "provenance": Provenance("measured", "dynamometer, 3 May"),
+    "Ktc": 7e8,
+    "Kte": 2e4,
+    "Krc": 2e8,
+    "Kre": 2e4,
+    "Kac": 2e8,
+    "Kae": 1e3,
+}
 NO_CUTTING = dict.fromkeys(("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"))
 
 
@@ -89,9 +97,9 @@ TEXT = material_to_toml(Material(**ROW))
         (TEXT.replace("[provenance]", "[origin]"), "key 'origin' is not known"),
         (TEXT.split("[provenance]")[0], "the table [provenance] is missing"),
         (TEXT.replace('alloy = "Al"', "alloy = 7075"), "alloy should be a text, found 7075"),
-        ('extra = 1\n' + TEXT, "key 'extra' is not known"),
+        ("extra = 1\n" + TEXT, "key 'extra' is not known"),
     ],
-)  # fmt: skip
+)
 def test_refused_files(text, sentence):
     with pytest.raises(CuttingError) as refusal:
         material_from_toml(text, "row.toml")

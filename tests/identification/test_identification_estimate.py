@@ -350,10 +350,18 @@ def test_report_has_the_agreed_keys_and_is_json():
     result = identify(ROBOT, simulated_tests(ROBOT, *three_directions(nine_points(), 250.0), noise=4e-6))
     report = json.loads(json.dumps(identification_report(result), allow_nan=False))
     assert list(report) == [
-        "C_theta", "stderr", "ci95", "correlation", "condition", "condition_before_scaling",
-        "residual_rms_mm", "cv_relative_error", "outliers",
-        "unseen_joints", "model",
-    ]  # fmt: skip
+        "C_theta",
+        "stderr",
+        "ci95",
+        "correlation",
+        "condition",
+        "condition_before_scaling",
+        "residual_rms_mm",
+        "cv_relative_error",
+        "outliers",
+        "unseen_joints",
+        "model",
+    ]
     assert len(report["C_theta"]) == 5
     assert np.shape(report["ci95"]) == (5, 2)
     assert report["residual_rms_mm"] == pytest.approx(4e-3, rel=0.3)

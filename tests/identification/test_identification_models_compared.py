@@ -20,9 +20,15 @@ BENDING = {"bending x at joint 2": 15e-7, "bending x at joint 3": 20e-7, "bendin
 def bent_tests(seed, model_error=0.2, poses=40):
     some = box_candidates(ROBOT, *BOX, poses=poses, tilt=np.pi / 4, seed=seed)
     return simulated_tests(
-        ROBOT, some.theta, some.F, noise=4e-6, seed=seed, model=Model("joints+bending"), extra=BENDING,
+        ROBOT,
+        some.theta,
+        some.F,
+        noise=4e-6,
+        seed=seed,
+        model=Model("joints+bending"),
+        extra=BENDING,
         model_error=model_error,
-    )  # fmt: skip
+    )
 
 
 def ranks_of(seed, model_error):

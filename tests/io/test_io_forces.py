@@ -72,12 +72,14 @@ def changed(i, row):
         (text(head="t_s,Fx,Fy,Fz"), "expected columns of either F_feed_N"),
         (text(head="t_s,F_x_N,F_feed_normal_N,F_axial_N"), "expected columns of either F_feed_N"),
         (text(head="t_s,F_feed_N,F_feed_N,F_axial_N"), "the column 'f_feed_n' is there twice"),
-        (text([f"{0.001 * i},{110432 + i}" for i in range(9)], "t_s,F_feed_normal_N"),
-         "column F_feed_normal_N, all rows: the mean size is 1.104e+05 N, expected 1 to 20000 N; is it in mN?"),
+        (
+            text([f"{0.001 * i},{110432 + i}" for i in range(9)], "t_s,F_feed_normal_N"),
+            "column F_feed_normal_N, all rows: the mean size is 1.104e+05 N, expected 1 to 20000 N; is it in mN?",
+        ),
         (text([f"{0.001 * i},{0.11}" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0.11 N"),
         (text([f"{0.001 * i},0" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0 N"),
     ],
-)  # fmt: skip
+)
 def test_refusals_name_row_and_column(given, sentence):
     with pytest.raises(CuttingError) as refusal:
         read_forces(given, source="cut.csv")

@@ -9,10 +9,16 @@ from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import box_grid, plane_grid
 
 SCARA = {
-    "name": "scara", "convention": "standard", "alpha": [0, np.pi, 0, 0], "a": [0.4, 0.3, 0, 0], "d": [0.4, 0, 0, 0.05],
-    "theta_offset": [0] * 4, "prismatic": [0, 0, 1, 0], "limits_all": [[-2.5, 2.5], [-2.5, 2.5], [0, 0.3], [-3, 3]],
+    "name": "scara",
+    "convention": "standard",
+    "alpha": [0, np.pi, 0, 0],
+    "a": [0.4, 0.3, 0, 0],
+    "d": [0.4, 0, 0, 0.05],
+    "theta_offset": [0] * 4,
+    "prismatic": [0, 0, 1, 0],
+    "limits_all": [[-2.5, 2.5], [-2.5, 2.5], [0, 0.3], [-3, 3]],
     "C_theta_all": [1e-6, 1e-6, 1e-9, 1e-6],
-}  # fmt: skip
+}
 
 
 def test_scara():
@@ -30,9 +36,16 @@ def test_scara():
 
 def test_gantry():
     robot = rm.Robot(
-        name="gantry", convention="modified", alpha=[0, np.pi / 2, np.pi / 2], a=[0] * 3, d=[0] * 3,
-        theta_offset=[0, np.pi / 2, np.pi / 2], prismatic=[1, 1, 1], limits_all=[[0, 1]] * 3, C_theta_all=[1e-9] * 3,
-    )  # fmt: skip
+        name="gantry",
+        convention="modified",
+        alpha=[0, np.pi / 2, np.pi / 2],
+        a=[0] * 3,
+        d=[0] * 3,
+        theta_offset=[0, np.pi / 2, np.pi / 2],
+        prismatic=[1, 1, 1],
+        limits_all=[[0, 1]] * 3,
+        C_theta_all=[1e-9] * 3,
+    )
     theta = [0.2, 0.3, 0.4]
     np.testing.assert_allclose(rm.inverse_kinematics(robot, rm.tool_pose(robot, theta)).theta, theta, atol=1e-9)
     assert abs(dexterity.determinant(robot, theta)) == pytest.approx(1.0)
@@ -51,9 +64,13 @@ def test_what_is_not_reached_is_nan_in_every_law():
     robot = rm.load_robot("slavkovic_5r")
     theta = rm.inverse_kinematics(robot, rm.pose_from_world([[0, -1.3, 0, 0, 0], [0, -9, 0, 0, 0]])).theta
     laws = (
-        rm.cartesian_compliance, dexterity.determinant, dexterity.manipulability, dexterity.inverse_condition,
-        dexterity.smallest_singular_value, dexterity.limit_distance,
-    )  # fmt: skip
+        rm.cartesian_compliance,
+        dexterity.determinant,
+        dexterity.manipulability,
+        dexterity.inverse_condition,
+        dexterity.smallest_singular_value,
+        dexterity.limit_distance,
+    )
     for law in laws:
         values = law(robot, theta)
         assert np.isfinite(values[0]).all(), law.__name__

@@ -120,7 +120,7 @@ def _nine(change: Callable[[list[str]], list[str]]) -> str:
         (HEADER, "only a header"),
         ("/etc/hostname", "no column is known"),
     ],
-)  # fmt: skip
+)
 def test_bad_input_is_one_sentence_and_stays_in_its_box(page: AppTest, text: str, sentence: str) -> None:
     typed(page, text)
     assert not page.exception
@@ -512,8 +512,9 @@ def test_another_robot_is_measured_without_touching_the_project(page: AppTest) -
     rng = np.random.default_rng(4)
     low, high = robot.limits[:, 0], robot.limits[:, 1]
     theta = 0.5 * (low + high) + 0.2 * rng.uniform(-1, 1, (12, robot.n)) * (high - low)
-    tests = simulated_tests(robot, np.repeat(theta, 3, axis=0), np.tile(np.eye(3) * 500, (12, 1)), noise=1e-6,
-                            model=Model("joints"))  # fmt: skip
+    tests = simulated_tests(
+        robot, np.repeat(theta, 3, axis=0), np.tile(np.eye(3) * 500, (12, 1)), noise=1e-6, model=Model("joints")
+    )
     before = page.session_state[PROJECT].project.setup.digest()
     page.selectbox(key="ident:robot").set_value("kuka_kr270").run()
     assert len(page.error) == 1

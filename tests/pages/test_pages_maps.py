@@ -42,11 +42,16 @@ def charts(app: AppTest) -> list[dict[str, object]]:
 def seven() -> Robot:
     """A redundant arm with seven joints, tool turned down, as lightweight arms are built."""
     return Robot(
-        name="seven", convention="modified", alpha=np.radians([0, -90, 90, 90, -90, -90, 90]), a=np.zeros(7),
-        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]), theta_offset=np.zeros(7),
-        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]), C_theta_all=np.full(7, 5e-6),
+        name="seven",
+        convention="modified",
+        alpha=np.radians([0, -90, 90, 90, -90, -90, 90]),
+        a=np.zeros(7),
+        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]),
+        theta_offset=np.zeros(7),
+        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]),
+        C_theta_all=np.full(7, 5e-6),
         T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("picture", ["plane", "pair", "solid"])

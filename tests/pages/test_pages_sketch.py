@@ -113,10 +113,12 @@ def test_sketches_survive_the_project_file(sketching: AppTest) -> None:
 def shapes() -> Sketch:
     rng = np.random.default_rng(3)
     count = {"line": 2, "polyline": 7, "polygon": 5, "rectangle": 2, "arc": 3, "circle": 2}
-    return Sketch(tuple(
-        Element(shape, rng.uniform(-0.3, 0.3, (n, 2)).round(5), depth, 0.01 + depth)  # type: ignore[arg-type]
-        for (shape, n), depth in zip(count.items(), np.linspace(1e-3, 6e-3, 6), strict=True)
-    ))  # fmt: skip
+    return Sketch(
+        tuple(
+            Element(shape, rng.uniform(-0.3, 0.3, (n, 2)).round(5), depth, 0.01 + depth)  # type: ignore[arg-type]
+            for (shape, n), depth in zip(count.items(), np.linspace(1e-3, 6e-3, 6), strict=True)
+        )
+    )
 
 
 @pytest.mark.parametrize(("unit", "feed"), UNITS)

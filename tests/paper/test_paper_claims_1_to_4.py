@@ -112,9 +112,7 @@ def test_claim_4_no_singularity_in_the_adopted_box(robot):
     assert np.abs(det).max() == pytest.approx(LARGEST_DET, abs=0.01)
 
 
-@pytest.mark.parametrize(
-    ("table", "y_mm", "z_mm"), [("table_2", 0.2295, -0.1024), ("table_3", 0.2644, -0.1227)]
-)  # fmt: skip
+@pytest.mark.parametrize(("table", "y_mm", "z_mm"), [("table_2", 0.2295, -0.1024), ("table_3", 0.2644, -0.1227)])
 def test_deviation_of_100_n_feed_normal_at_the_milling_test(robot, table, y_mm, z_mm):
     """Sec. 5.2: about 0.23 mm from Table 2, and the cross-compliance lowers the tip."""
     arm = robot.with_compliance_set(table)

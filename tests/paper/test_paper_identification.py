@@ -46,9 +46,15 @@ def test_the_papers_general_curve_fit_comes_to_the_same(tests, result):
     system = build_system(ROBOT, tests, result.choice)
     scale = 1e-7
     found, covariance = curve_fit(
-        lambda A, *c: A @ (np.array(c) * scale), system.A, system.b, p0=np.full(5, 10.0), bounds=(0, np.inf),
-        ftol=1e-14, xtol=1e-14, gtol=1e-14,
-    )  # fmt: skip
+        lambda A, *c: A @ (np.array(c) * scale),
+        system.A,
+        system.b,
+        p0=np.full(5, 10.0),
+        bounds=(0, np.inf),
+        ftol=1e-14,
+        xtol=1e-14,
+        gtol=1e-14,
+    )
     np.testing.assert_allclose(found * scale, result.C_theta, rtol=1e-6)
     np.testing.assert_allclose(np.sqrt(np.diag(covariance)) * scale, result.stderr, rtol=1e-4)
 

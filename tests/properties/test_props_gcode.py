@@ -33,9 +33,35 @@ def plain_line(draw: st.DrawFn) -> str:
 
 
 special = st.sampled_from(
-    ["G90", "G91", "G20", "G21", "G17", "G18", "M3 S100", "M5", "#1=2", "G0 X#1", "G92 X1", "G55", "G81 Z-1 R1", "G80",
-     "(MSG, hi)", "/X1", "G1 X1 X2", "A5", "G64", "G41.1 D2", "G40", "G90.1", "G91.1", "", "T1 M6", "%"]
-)  # fmt: skip
+    [
+        "G90",
+        "G91",
+        "G20",
+        "G21",
+        "G17",
+        "G18",
+        "M3 S100",
+        "M5",
+        "#1=2",
+        "G0 X#1",
+        "G92 X1",
+        "G55",
+        "G81 Z-1 R1",
+        "G80",
+        "(MSG, hi)",
+        "/X1",
+        "G1 X1 X2",
+        "A5",
+        "G64",
+        "G41.1 D2",
+        "G40",
+        "G90.1",
+        "G91.1",
+        "",
+        "T1 M6",
+        "%",
+    ]
+)
 program = st.lists(st.one_of(plain_line(), plain_line(), plain_line(), special), min_size=1, max_size=30)
 
 

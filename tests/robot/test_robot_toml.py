@@ -60,8 +60,11 @@ BAD = [
     ("a_mm = 1220\n", "", "joint 2.*a is missing"),
     ("a_mm = 1220", "a_cm = 122", "joint 2.*a_cm"),
     ("a_mm = 1220", "a_mm = 1220\na_m = 1.22", "joint 2.*given twice"),
-    ("limits_deg = [-120, 120]\n\n[[joint]]\nalpha_deg = 0", "limits_deg = [120, -120]\n\n[[joint]]\nalpha_deg = 0",
-     "joint 1.*lower limit 120° is not below the upper limit -120°"),
+    (
+        "limits_deg = [-120, 120]\n\n[[joint]]\nalpha_deg = 0",
+        "limits_deg = [120, -120]\n\n[[joint]]\nalpha_deg = 0",
+        "joint 1.*lower limit 120° is not below the upper limit -120°",
+    ),
     ("limits_deg = [-110, 70]", "limits_deg = [-110]", "joint 2.*expected .lower, upper."),
     ("limits_deg = [-110, 70]", "limits_deg = [-110, nan]", "joint 2.*nan"),
     ("7.14, 10.12", "-7.14, 10.12", "joint 1.*cannot be negative"),
@@ -70,14 +73,17 @@ BAD = [
     ("sign = -1", "sign = 0", "joint 4: sign is 0"),
     ("sign = -1", "sign = true", "joint 4.*sign.*True"),
     ('convention = "standard"', 'convention = "craig"', "craig.*standard.*modified"),
-    ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]",
-     "tool frame is not a rotation"),
+    (
+        "rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]",
+        "rotation = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]",
+        "tool frame is not a rotation",
+    ),
     ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]", "mirror"),
     ("xyz_mm = [0, 0, 0]\n\n# z_T", "xyz_mm = [0, 0]\n\n# z_T", "base.*three numbers"),
     ("version = 1", "version = 2", "version"),
     ("alpha_deg = 90\na_mm", "alpha_deg 90\na_mm", "not valid TOML"),
     ('kind = "paper", source = "{M}', 'kind = "hearsay", source = "{M}', "hearsay"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("find", "replace", "words"), BAD, ids=[row[2][:30] for row in BAD])

@@ -53,14 +53,35 @@ def test_left_over_flags_follow_the_reference_and_are_said() -> None:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("2+3*4**2/8", 8), ("[2+3]*4", 20), ("2**3**2", 64), ("-2**2", 4), ("7 MOD 3", 1), ("[-7] MOD 3", 2),
-        ("1 OR 0 AND 0", 0), ("1 AND [0 XOR 1]", 1), ("2 GT 1", 1), ("2 LE 1", 0), ("1 EQ 1.00001", 1), ("1 NE 2", 1),
-        ("SIN[30]", 0.5), ("ATAN[1]/[-1]", 135), ("ACOS[0.5]", 60), ("FIX[-2.8]", -3), ("FUP[2.1]", 3),
+        ("2+3*4**2/8", 8),
+        ("[2+3]*4", 20),
+        ("2**3**2", 64),
+        ("-2**2", 4),
+        ("7 MOD 3", 1),
+        ("[-7] MOD 3", 2),
+        ("1 OR 0 AND 0", 0),
+        ("1 AND [0 XOR 1]", 1),
+        ("2 GT 1", 1),
+        ("2 LE 1", 0),
+        ("1 EQ 1.00001", 1),
+        ("1 NE 2", 1),
+        ("SIN[30]", 0.5),
+        ("ATAN[1]/[-1]", 135),
+        ("ACOS[0.5]", 60),
+        ("FIX[-2.8]", -3),
+        ("FUP[2.1]", 3),
         ("ROUND[2.5]", 3),
-        ("ROUND[-2.5]", -3), ("LN[EXP[2]]", 2), ("SQRT[2]*SQRT[2]", 2), ("ABS[-3]", 3), ("10-3-2", 5), ("8/4/2", 1),
-        ("1 - -1", 2), ("EXISTS[#<a>]", 0), ("EXISTS[#5]", 1),
+        ("ROUND[-2.5]", -3),
+        ("LN[EXP[2]]", 2),
+        ("SQRT[2]*SQRT[2]", 2),
+        ("ABS[-3]", 3),
+        ("10-3-2", 5),
+        ("8/4/2", 1),
+        ("1 - -1", 2),
+        ("EXISTS[#<a>]", 0),
+        ("EXISTS[#5]", 1),
     ],
-)  # fmt: skip
+)
 def test_expressions(text: str, value: float) -> None:
     assert xs(f"G0 X[{text}]") == [pytest.approx(value)]
 
@@ -72,8 +93,11 @@ def test_parameters_are_set_after_their_line() -> None:
 
 def test_provided_parameters() -> None:
     assert xs("G0 X3 Y4\nG0 X[#5420+#5421]\nG0 X[#<_x>+1]\nG20\nG0 X[#<_y>*25.4]") == [
-        3, 7, 8, pytest.approx(4 * 25.4),
-    ]  # fmt: skip
+        3,
+        7,
+        8,
+        pytest.approx(4 * 25.4),
+    ]
     assert xs("G0 X#<_metric>\nG0 X#<_plane>\nG0 X#<_motion_mode>\nG0 X#<_coord_system>") == [1, 170, 0, 540]
     assert xs("G10 L2 P3 X7\nG0 X#5261") == [7]
 

@@ -123,14 +123,26 @@ def test_a_hundred_thousand_mutated_programs() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "G21 F9\nG81 Z-1 R1 L99999\n" * 100, "G21 F9\nO1 repeat [1000000000]\nG91 G1 X1\nO1 endrepeat\n",
-        "O1 sub\nO2 call\nO1 endsub\nO2 sub\nO1 call\nO2 endsub\nO1 call\n", "G21\nG0 X" + "9" * 309 + "\n",
-        "G21\nM98 P1 L99999999\nM2\nO1\nG4 P1\nM99\n", "G21\n" + "#1=[#1+1]" * 2000 + "\n", "G0 X[[[[[[" * 3000,
-        "O1 while [1]\n" * 3000, "\n" * 300_000 + "G0 X1\n", " " * 90_000 + "\n" + "G0 X1 (" * 3000, "O1 " * 30_000,
-        "IF [" * 50_000, "(" * 90_000, "X=" * 40_000, "G71 " * 20_000, "\t \n" * 90_000 + "o", "%" * 90_000,
+        "G21 F9\nG81 Z-1 R1 L99999\n" * 100,
+        "G21 F9\nO1 repeat [1000000000]\nG91 G1 X1\nO1 endrepeat\n",
+        "O1 sub\nO2 call\nO1 endsub\nO2 sub\nO1 call\nO2 endsub\nO1 call\n",
+        "G21\nG0 X" + "9" * 309 + "\n",
+        "G21\nM98 P1 L99999999\nM2\nO1\nG4 P1\nM99\n",
+        "G21\n" + "#1=[#1+1]" * 2000 + "\n",
+        "G0 X[[[[[[" * 3000,
+        "O1 while [1]\n" * 3000,
+        "\n" * 300_000 + "G0 X1\n",
+        " " * 90_000 + "\n" + "G0 X1 (" * 3000,
+        "O1 " * 30_000,
+        "IF [" * 50_000,
+        "(" * 90_000,
+        "X=" * 40_000,
+        "G71 " * 20_000,
+        "\t \n" * 90_000 + "o",
+        "%" * 90_000,
         "G21\nG0 X1" + " " * 99_000 + "Y1\nM99\n",
     ],
-)  # fmt: skip
+)
 @pytest.mark.usefixtures("small_budgets")
 def test_bombs_are_refused_or_read_in_time(text: str) -> None:
     began = time.perf_counter()

@@ -19,11 +19,18 @@ PROGRAM = "G21 G90\nG0 X1\nG1 Y2 F60\nM2\n"
 @pytest.mark.parametrize(
     "data",
     [
-        PROGRAM.encode(), PROGRAM.encode("utf-8-sig"), PROGRAM.encode("utf-16"), PROGRAM.encode("utf-32"),
-        PROGRAM.replace("\n", "\r\n").encode(), PROGRAM.replace("\n", "\r").encode(), PROGRAM.upper().encode(),
-        PROGRAM.lower().encode(), ("(größe)\n" + PROGRAM).encode("latin-1"), ("\n\n" + PROGRAM).encode(),
+        PROGRAM.encode(),
+        PROGRAM.encode("utf-8-sig"),
+        PROGRAM.encode("utf-16"),
+        PROGRAM.encode("utf-32"),
+        PROGRAM.replace("\n", "\r\n").encode(),
+        PROGRAM.replace("\n", "\r").encode(),
+        PROGRAM.upper().encode(),
+        PROGRAM.lower().encode(),
+        ("(größe)\n" + PROGRAM).encode("latin-1"),
+        ("\n\n" + PROGRAM).encode(),
     ],
-)  # fmt: skip
+)
 def test_encodings_and_line_ends(data: bytes) -> None:
     path = read_gcode(data)
     assert path.p[-1] * 1e3 == pytest.approx((1, 2, 0))
@@ -33,10 +40,14 @@ def test_encodings_and_line_ends(data: bytes) -> None:
 @pytest.mark.parametrize(
     ("data", "says"),
     [
-        (b"", "empty"), (b"  \n \n", "empty"), (b"G21\nG0 X1\0\n", "NUL"), (bytes(range(1, 32)) * 50, "binary"),
-        (b"\x7fELF\x02\x01\x01" + b"\0" * 20, "NUL"), (b"\xff\xfeG\x00\x00\xd8", "UTF-16"),
+        (b"", "empty"),
+        (b"  \n \n", "empty"),
+        (b"G21\nG0 X1\0\n", "NUL"),
+        (bytes(range(1, 32)) * 50, "binary"),
+        (b"\x7fELF\x02\x01\x01" + b"\0" * 20, "NUL"),
+        (b"\xff\xfeG\x00\x00\xd8", "UTF-16"),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_program(data: bytes, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         interpret(data)
@@ -120,9 +131,12 @@ def test_tool_tables(tmp_path: Path) -> None:
     assert read_tool_table(tbl)[4].orientation == 2
     head = "tool,diameter_mm,length_mm\n"
     for text, says in (
-        ("", "no tools"), ("X1 Y2\n", "line 1"), ("tool,diameter_mm\n1,2\n", "length_mm"), (head + "1,a,2\n", "line 2"),
+        ("", "no tools"),
+        ("X1 Y2\n", "line 1"),
+        ("tool,diameter_mm\n1,2\n", "length_mm"),
+        (head + "1,a,2\n", "line 2"),
         (head + "1,1,2\n1,1,2\n", "twice"),
-    ):  # fmt: skip
+    ):
         tbl.write_text(text)
         with pytest.raises(GCodeError, match=says):
             read_tool_table(tbl)

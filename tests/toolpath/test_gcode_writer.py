@@ -14,8 +14,16 @@ from robomill.toolpath.path import Toolpath, toolpath_from_lines
 def test_words_are_written_where_something_changes() -> None:
     path = read_gcode("G21 S600 M3\nG0 Z5\nG1 Z-1 F300\nX10\nY10\nG0 Z5\nM2\n")
     assert write_gcode(path, numbers=0).splitlines() == [
-        "G21 G90 G94 G17", "S600 M3", "G0 Z5", "G1 Z-1 F300", "X10", "Y10", "G0 Z5", "M5", "M2",
-    ]  # fmt: skip
+        "G21 G90 G94 G17",
+        "S600 M3",
+        "G0 Z5",
+        "G1 Z-1 F300",
+        "X10",
+        "Y10",
+        "G0 Z5",
+        "M5",
+        "M2",
+    ]
     assert write_gcode(path).splitlines()[1].startswith("N20 ")
 
 

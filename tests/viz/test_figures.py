@@ -35,14 +35,19 @@ def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
         "arm": arm_figure(arm_scene(result, result.worst), dark=dark),
         "components": components_figure(s, delta, result.path.block, 0.3, "mm", dark=dark, station=50.0),
         "shares": shares_figure(
-            s, from_si(result.delta_joint[:, :, 1], "mm"), [f"joint {i}" for i in range(1, 6)], delta[:, 1], "y", "mm",
+            s,
+            from_si(result.delta_joint[:, :, 1], "mm"),
+            [f"joint {i}" for i in range(1, 6)],
+            delta[:, 1],
+            "y",
+            "mm",
             dark=dark,
         ),
         "plan": plan_figure(**plan_view(result, "deviation", "mm"), dark=dark),
         "plan limits": plan_figure(**plan_view(result, "limits", "mm"), dark=dark),
         "section": section_figure(section_drawing(groove, "mm"), dark=dark),
         "surface": surface_figure(*mm, from_si(shown.error, "um"), 300.0, dark=dark),
-    }  # fmt: skip
+    }
 
 
 @pytest.mark.parametrize("dark", [False, True])

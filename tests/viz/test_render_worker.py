@@ -71,9 +71,19 @@ def groove(dark: bool, camera: str) -> SurfacePicture:
     z = np.where((np.abs(Y - 1) < 4) & (np.abs(X) < 20), -2.1, 0.0)
     error = np.where((z < 0) | (ideal < 0), 1e3 * (z - ideal), np.nan)
     return SurfacePicture(
-        x=x, y=y, z=z, ideal=ideal, error_um=error, limit_um=300.0, bottom=-8.0, camera=camera, dark=dark,  # type: ignore[arg-type]
-        size=(480, 320), station=(0.0, 0.0, -2.0), captions=("Displacement shown x 10",),
-    )  # fmt: skip
+        x=x,
+        y=y,
+        z=z,
+        ideal=ideal,
+        error_um=error,
+        limit_um=300.0,
+        bottom=-8.0,
+        camera=camera,
+        dark=dark,  # type: ignore[arg-type]
+        size=(480, 320),
+        station=(0.0, 0.0, -2.0),
+        captions=("Displacement shown x 10",),
+    )
 
 
 @pytest.fixture(scope="module")

@@ -51,9 +51,14 @@ def test_intervals_are_drawn_as_given(dark: bool) -> None:
 
 def test_signed_values_stand_on_a_linear_axis() -> None:
     signed = dataclasses.replace(
-        SHOWN, value=np.array([-1.0, 0.5, 2.0]), low=np.array([-1.2, 0.2, 1.0]), high=np.array([-0.8, 0.8, 3.0]),
-        references={}, truth=None, logarithmic=False,
-    )  # fmt: skip
+        SHOWN,
+        value=np.array([-1.0, 0.5, 2.0]),
+        low=np.array([-1.2, 0.2, 1.0]),
+        high=np.array([-0.8, 0.8, 3.0]),
+        references={},
+        truth=None,
+        logarithmic=False,
+    )
     fig = intervals_figure(signed, dark=False)
     assert fig.layout.xaxis.type is None
     assert min(t.x[0] for t in fig.data if t.mode == "lines") == -1.2
@@ -130,8 +135,19 @@ def test_a_band_is_laid_under_an_existing_figure() -> None:
 def test_a_level_keeps_its_orientation_and_mask(signed: bool) -> None:
     x, y = np.array([-1.0, 0.0, 1.0]), np.array([0.0, 1.0])
     values = np.array([[1.0, 2.0], [3.0, np.nan], [5.0, 6.0]])
-    fig = level_figure(x, y, values, np.zeros((0, 2)), (-6.0, 6.0), "C", "µm/N", signed=signed, length_unit="mm",
-                       dark=False, revision="r")  # fmt: skip
+    fig = level_figure(
+        x,
+        y,
+        values,
+        np.zeros((0, 2)),
+        (-6.0, 6.0),
+        "C",
+        "µm/N",
+        signed=signed,
+        length_unit="mm",
+        dark=False,
+        revision="r",
+    )
     z = np.asarray(fig.data[0].z, dtype=float)
     assert z.shape == (2, 3), "rows of a heat map are y"
     assert z[0, 2] == 5.0

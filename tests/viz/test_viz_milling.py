@@ -46,8 +46,16 @@ def every(result: SimulationResult, dark: bool) -> dict[str, Any]:
     c = result.conditions
     curves = ForceCurves(s, result.force_components, "mm", peak=(peak.low, peak.high))
     q = np.linspace(0.0, 100.0, 21)
-    profile = ProfileCurves(q, 0.2 + 0 * q, -0.1 + 0 * q, "mm", 0.3, band=np.stack([0.1 + 0 * q, 0.3 + 0 * q]),
-                            fit=0.2 + 0 * q, measured=(q, 0.29 + 0 * q))  # fmt: skip
+    profile = ProfileCurves(
+        q,
+        0.2 + 0 * q,
+        -0.1 + 0 * q,
+        "mm",
+        0.3,
+        band=np.stack([0.1 + 0 * q, 0.3 + 0 * q]),
+        fit=0.2 + 0 * q,
+        measured=(q, 0.29 + 0 * q),
+    )
     arc = [from_si(v, "deg") for v in (c.phi_st, c.phi_ex)]
     return {
         "force": force_figure(curves, dark=dark, station=50.0),
@@ -55,7 +63,7 @@ def every(result: SimulationResult, dark: bool) -> dict[str, Any]:
         "profile": profile_figure(profile, dark=dark, station=50.0),
         "histogram": histogram_figure(np.linspace(-300, 300, 11), np.full(10, 10.0), 300.0, "µm", dark=dark),
         "evidence": evidence_figure(CLAIMS, "mm", dark=dark),
-    }  # fmt: skip
+    }
 
 
 @pytest.mark.parametrize("dark", [False, True])
@@ -69,8 +77,15 @@ def test_axes_have_units_and_views_are_kept(result: SimulationResult, dark: bool
 
 def dial(**changes: Any) -> dict[str, Any]:
     """The dial of a full slot as JSON."""
-    values: dict[str, Any] = {"phi_st": 0.0, "phi_ex": 180.0, "depth": 2.0, "unit": "mm",
-                              "force": np.array([-63.5, 110.4, -23.3]), "scale": 100.0, **changes}  # fmt: skip
+    values: dict[str, Any] = {
+        "phi_st": 0.0,
+        "phi_ex": 180.0,
+        "depth": 2.0,
+        "unit": "mm",
+        "force": np.array([-63.5, 110.4, -23.3]),
+        "scale": 100.0,
+        **changes,
+    }
     return dict(json.loads(dial_figure(Dial(**values), dark=False).to_json())["layout"])
 
 
@@ -129,10 +144,12 @@ def test_the_cut_so_far_grows_to_the_whole(result: SimulationResult) -> None:
 @pytest.mark.parametrize(
     "cutter",
     [
-        Cutter("flat", 0.008), Cutter("ball", 0.008), Cutter("bull", 0.008, corner_radius=0.001),
+        Cutter("flat", 0.008),
+        Cutter("ball", 0.008),
+        Cutter("bull", 0.008, corner_radius=0.001),
         Cutter("chamfer", 0.008, tip_angle=np.pi / 2),
     ],
-)  # fmt: skip
+)
 def test_the_drawn_tool_is_closed_and_stands_on_its_tip(cutter: Cutter) -> None:
     trimesh = pytest.importorskip("trimesh")
     tip, k = np.array([0.01, 0.02, -0.002]), np.array([0.0, np.sin(0.3), np.cos(0.3)])
@@ -193,9 +210,12 @@ def test_every_kind_of_picture_is_drawn(worker: RenderWorker, result: Simulation
     plain = pixels(worker.render(picture(result)))
     tool = posed(result, i, result.path.p[i], arm=False)
     for name, changes in {
-        "pair": {"layout": "pair"}, "cutaway": {"cutaway": True}, "ghost": {"ghost": True}, "tool": {"solids": tool},
+        "pair": {"layout": "pair"},
+        "cutaway": {"cutaway": True},
+        "ghost": {"ghost": True},
+        "tool": {"solids": tool},
         "arm": {"solids": posed(result, i, result.path.p[i], arm=True), "whole": True},
-    }.items():  # fmt: skip
+    }.items():
         shot = pixels(worker.render(picture(result, **changes)))
         assert shot.shape == plain.shape, name
         assert (np.abs(shot - plain).max(axis=-1) > 20).mean() > 0.005, f"{name} changes the picture"

@@ -61,8 +61,13 @@ def test_the_caption_counts_segments() -> None:
     picture = PathPicture(p, c, r, np.arange(len(p)), total=812_000)
     assert picture.caption == f"Showing {short(len(picture.kept) - 1)} of 812k segments; results use all of them."
     assert [short(n) for n in (12, 9_999, 20_000, 812_345, 999_500, 1_234_567)] == [
-        "12", "9,999", "20k", "812k", "1.0M", "1.2M",
-    ]  # fmt: skip
+        "12",
+        "9,999",
+        "20k",
+        "812k",
+        "1.0M",
+        "1.2M",
+    ]
 
 
 def test_a_peak_between_drawn_points_keeps_its_colour() -> None:

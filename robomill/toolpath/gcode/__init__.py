@@ -9,6 +9,12 @@ from robomill.toolpath.gcode.report import gcode_report, write_moves_jsonl
 from robomill.toolpath.gcode.tools import Tool, read_tool_table
 
 __all__ = [
-    "CHORD_ERROR", "Program", "Tool", "gcode_report", "interpret", "read_gcode", "read_tool_table",
+    "CHORD_ERROR",
+    "Program",
+    "Tool",
+    "gcode_report",
+    "interpret",
+    "read_gcode",
+    "read_tool_table",
     "write_moves_jsonl",
-]  # fmt: skip
+]

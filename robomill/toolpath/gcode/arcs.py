@@ -100,9 +100,15 @@ def chord_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> I
 
 
 def chord_points(
-    start: FloatArray, end: FloatArray, centre: FloatArray, plane: IntArray, turns: IntArray, clockwise: BoolArray,
-    *, counts: IntArray,
-) -> FloatArray:  # fmt: skip
+    start: FloatArray,
+    end: FloatArray,
+    centre: FloatArray,
+    plane: IntArray,
+    turns: IntArray,
+    clockwise: BoolArray,
+    *,
+    counts: IntArray,
+) -> FloatArray:
     """End points (sum of counts, 3) of the chords of arcs (m,); the last point of each arc is its end, exactly."""
     angle, sweep, r0, r1 = sweeps(start, end, centre, plane, turns, clockwise)
     owner = np.repeat(np.arange(len(start)), counts)

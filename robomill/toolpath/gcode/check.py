@@ -19,7 +19,7 @@ from robomill.toolpath.gcode.modal import (
     TOOL,
     USER,
     g_name,
-)  # fmt: skip
+)
 from robomill.toolpath.gcode.words import Block
 
 _AXES = "xyzabcuvw"
@@ -113,15 +113,29 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
         ("l", cycle or thread or data or motion == 52 or compensation in _COMPENSATION_ON or io == 66, "G10, a cycle"),
         (
             "p",
-            data or non_modal == 40 or g.get(CONTROL) == 640 or arc or thread or motion in (50, 52)
-            or motion in (740, 820, 840, 860, 880, 890) or OVERRIDE in m or io in range(62, 67) or orient or user,
+            data
+            or non_modal == 40
+            or g.get(CONTROL) == 640
+            or arc
+            or thread
+            or motion in (50, 52)
+            or motion in (740, 820, 840, 860, 880, 890)
+            or OVERRIDE in m
+            or io in range(62, 67)
+            or orient
+            or user,
             "G2, G3, G4, G10, G64 or a cycle with a dwell",
         ),
         (
             "q",
-            motion in (730, 830, 50, 760) or data or m.get(TOOL) == 61 or g.get(CONTROL) == 640 or io in (66, 67, 68)
-            or orient or user,
+            motion in (730, 830, 50, 760)
+            or data
+            or m.get(TOOL) == 61
+            or g.get(CONTROL) == 640
+            or io in (66, 67, 68)
+            or orient
+            or user,
             "G10, G64, G73, G83 or M61",
         ),
         ("r", arc or thread or cycle or data or compensation in (411, 421) or orient, "G2, G3, G10 or a cycle"),
-    ]  # fmt: skip
+    ]

@@ -46,12 +46,17 @@ def to_toolpath(program: Program, chord_error: float) -> Toolpath:
         p[where] = points
     cuts = program.is_kind("feed") | is_arc | is_tap
     return Toolpath(
-        p=p, k=_axes(program, counts, first), v_f=_spread(np.where(cuts, program.v_f, 0.0), counts, 0.0),
-        cutting=_spread(cuts, counts, False), block=_spread(program.line, counts, program.line[0]),
-        n_s=_spread(program.n_s, counts, program.n_s[0]), tool=_spread(program.tool, counts, program.tool[0]),
-        findings=program.findings, units=program.units or "mm",
+        p=p,
+        k=_axes(program, counts, first),
+        v_f=_spread(np.where(cuts, program.v_f, 0.0), counts, 0.0),
+        cutting=_spread(cuts, counts, False),
+        block=_spread(program.line, counts, program.line[0]),
+        n_s=_spread(program.n_s, counts, program.n_s[0]),
+        tool=_spread(program.tool, counts, program.tool[0]),
+        findings=program.findings,
+        units=program.units or "mm",
         counts=(int((program.kind == 0).sum()), int((program.kind == 1).sum()), int((program.kind == 2).sum())),
-    )  # fmt: skip
+    )
 
 
 def _pieces(program: Program, i: IntArray, chord_error: float) -> IntArray:

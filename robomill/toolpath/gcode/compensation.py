@@ -83,10 +83,16 @@ class Compensation:
         self, machine: Machine, block: Block, end: tuple[float, float, float], full: list[float], **more: object
     ) -> None:
         rapid = block.motion == 0
-        self.held.append(Held(
-            block.line, rapid, end, (full[3], full[4], full[5]), 0.0 if rapid else machine.feed_speed,
-            **more,  # type: ignore[arg-type]
-        ))  # fmt: skip
+        self.held.append(
+            Held(
+                block.line,
+                rapid,
+                end,
+                (full[3], full[4], full[5]),
+                0.0 if rapid else machine.feed_speed,
+                **more,  # type: ignore[arg-type]
+            )
+        )
 
     # --- the queue
     def release(self, machine: Machine) -> None:
@@ -216,9 +222,14 @@ class Compensation:
         self._stand(machine, *end, full, (u, v))
 
     def _round(
-        self, machine: Machine, block: Block, full: list[float], mid: tuple[float, float], centre: tuple[float, float],
+        self,
+        machine: Machine,
+        block: Block,
+        full: list[float],
+        mid: tuple[float, float],
+        centre: tuple[float, float],
         w: float,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Go around an outside corner: an arc, or a straight rapid for G0."""
         turn = 0 if block.motion == 0 else (-1 if self.left else 1)
         self._hold(machine, block, (*mid, w), full, centre=centre, turn=turn)
@@ -298,9 +309,14 @@ class Compensation:
         self._stand(machine, *end, full, (u, v))
 
     def _inverse_time(
-        self, machine: Machine, block: Block, start: tuple[float, float, float], end: tuple[float, float, float],
-        centre: tuple[float, float], turn: int,
-    ) -> None:  # fmt: skip
+        self,
+        machine: Machine,
+        block: Block,
+        start: tuple[float, float, float],
+        end: tuple[float, float, float],
+        centre: tuple[float, float],
+        turn: int,
+    ) -> None:
         length = arc_length(list(start), list(end), centre, turn, 0, 1, 2)
         inverse_time_feed(machine, block, length)
 

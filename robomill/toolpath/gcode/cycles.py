@@ -201,8 +201,13 @@ def _back_bore(
     aside_b = b + machine.cycle["ijk"[second]]
     middle = machine.cycle["ijk"[third]] + (0.0 if machine.absolute else bottom)
     for kind, to_a, to_b, to_c in (
-        (TRAVERSE, aside_a, aside_b, clearance), (TRAVERSE, aside_a, aside_b, bottom), (TRAVERSE, a, b, bottom),
-        (FEED, a, b, middle), (FEED, a, b, bottom), (TRAVERSE, aside_a, aside_b, bottom),
-        (TRAVERSE, aside_a, aside_b, clear), (TRAVERSE, a, b, clear),
-    ):  # fmt: skip
+        (TRAVERSE, aside_a, aside_b, clearance),
+        (TRAVERSE, aside_a, aside_b, bottom),
+        (TRAVERSE, a, b, bottom),
+        (FEED, a, b, middle),
+        (FEED, a, b, bottom),
+        (TRAVERSE, aside_a, aside_b, bottom),
+        (TRAVERSE, aside_a, aside_b, clear),
+        (TRAVERSE, a, b, clear),
+    ):
         hole.go(kind, to_a, to_b, to_c)

@@ -146,7 +146,8 @@ def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
 def _from_grbl(raw: str, number: int, findings: Findings) -> str:
     text = raw.strip().upper()
     if text.startswith(("$H", "$J")):
-        raise GCodeError(f"Line {number}: {text[:2]} moves the machine in a way the program does not say; remove it.",
-                         line=number)  # fmt: skip
+        raise GCodeError(
+            f"Line {number}: {text[:2]} moves the machine in a way the program does not say; remove it.", line=number
+        )
     findings.add("ignored", number, "lines for the controller ($, !, ~, ?) are left out")
     return ""

@@ -30,7 +30,7 @@ from robomill.toolpath.gcode.modal import (
     UNITS,
     USER,
     g_name,
-)  # fmt: skip
+)
 from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import Block
 

@@ -21,9 +21,23 @@ _NUMBER = re.compile(r"[+-]*[0-9.]+")
 _OPERATOR = re.compile(r"\*\*|[-+/*\]]|and|or|xor|mod|eq|ne|ge|gt|le|lt")
 _FUNCTION = re.compile(r"acos|asin|atan|abs|cos|exists|exp|fix|fup|ln|round|sin|sqrt|tan")
 _PRECEDENCE = {
-    "]": 1, "and": 2, "or": 2, "xor": 2, "eq": 3, "ne": 3, "ge": 3, "gt": 3, "le": 3, "lt": 3,
-    "+": 4, "-": 4, "*": 5, "/": 5, "mod": 5, "**": 6,
-}  # fmt: skip
+    "]": 1,
+    "and": 2,
+    "or": 2,
+    "xor": 2,
+    "eq": 3,
+    "ne": 3,
+    "ge": 3,
+    "gt": 3,
+    "le": 3,
+    "lt": 3,
+    "+": 4,
+    "-": 4,
+    "*": 5,
+    "/": 5,
+    "mod": 5,
+    "**": 6,
+}
 _TURN = math.pi / 180.0
 
 

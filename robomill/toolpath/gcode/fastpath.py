@@ -62,9 +62,13 @@ class FastPath:
 
 def _is_plain(machine: Machine) -> bool:
     return (
-        machine.compensation is None and machine.rotation == 0 and machine.feed_mode == 940
-        and machine.motion in _MOTIONS and not machine.arc_not_allowed and not machine.diameter_mode
-    )  # fmt: skip
+        machine.compensation is None
+        and machine.rotation == 0
+        and machine.feed_mode == 940
+        and machine.motion in _MOTIONS
+        and not machine.arc_not_allowed
+        and not machine.diameter_mode
+    )
 
 
 def _filled(values: FloatArray, before: float) -> FloatArray:
@@ -136,8 +140,14 @@ class _Run:
         else:
             centre = np.stack([x, y], axis=1) + np.where(np.isnan(centre), 0.0, centre)
         out[rows] = centre
-        self._check_radii(rows[~by_radius], (x - centre[:, 0])[~by_radius], (y - centre[:, 1])[~by_radius],
-                          (end_x - centre[:, 0])[~by_radius], (end_y - centre[:, 1])[~by_radius], bad)  # fmt: skip
+        self._check_radii(
+            rows[~by_radius],
+            (x - centre[:, 0])[~by_radius],
+            (y - centre[:, 1])[~by_radius],
+            (end_x - centre[:, 0])[~by_radius],
+            (end_y - centre[:, 1])[~by_radius],
+            bad,
+        )
         for i in np.flatnonzero(by_radius & ~bad[rows]):
             row = int(rows[i])
             if not (given["XYZ"[first]][row] or given["XYZ"[second]][row]):
@@ -181,10 +191,12 @@ class _Run:
         kind = np.where(code[rows] >= 2, ARC, np.where(code[rows] >= 1, FEED, TRAVERSE)).astype(np.int8)
         per_second = 1.0 / 60.0
         columns: dict[str, Any] = {
-            "line": (rows + (self.pc + 1)).astype(np.int32), "kind": kind, "end": end,
+            "line": (rows + (self.pc + 1)).astype(np.int32),
+            "kind": kind,
+            "end": end,
             "start": np.concatenate([[recorder.at], end[:-1]]) if len(rows) else end,
             "v_f": np.where(kind == TRAVERSE, 0.0, feed[rows] * machine.factor * per_second),
-        }  # fmt: skip
+        }
         if machine.spindle and machine.spindle_mode == 970:
             columns["n_s"] = speed[rows] / 60.0
         if recorder.tool:
@@ -230,9 +242,14 @@ class _Run:
         columns["clockwise"] = code[rows] == 2
 
     def _settle(
-        self, p: list[FloatArray], code: FloatArray, feed: FloatArray, speed: FloatArray, rows: IntArray,
+        self,
+        p: list[FloatArray],
+        code: FloatArray,
+        feed: FloatArray,
+        speed: FloatArray,
+        rows: IntArray,
         kind: Any,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Leave the machine as the last line leaves it."""
         machine = self.machine
         machine.p = [float(q[-1]) for q in p]

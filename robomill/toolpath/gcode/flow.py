@@ -10,9 +10,22 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.words import normalise
 
 KEYWORDS = (
-    "sub", "endsub", "call", "do", "while", "repeat", "if", "elseif", "else", "endif", "break", "continue", "endwhile",
-    "endrepeat", "return",
-)  # fmt: skip
+    "sub",
+    "endsub",
+    "call",
+    "do",
+    "while",
+    "repeat",
+    "if",
+    "elseif",
+    "else",
+    "endif",
+    "break",
+    "continue",
+    "endwhile",
+    "endrepeat",
+    "return",
+)
 """In the order in which they are tried; what follows a keyword is its argument."""
 
 _LINE = re.compile(r"/?\d*(?:n[\d.]+)?o(<[^>]*>|\d+)(.*)", re.DOTALL)

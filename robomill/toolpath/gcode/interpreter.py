@@ -126,8 +126,9 @@ class Interpreter(OWords):
 
     def _percent(self, index: int, text: str) -> None:
         if len(text) > 1 and text[1] not in "(;":
-            raise GCodeError(f"Line {index + 1}: found % and more; a % that ends the program stands alone.",
-                             line=index + 1)  # fmt: skip
+            raise GCodeError(
+                f"Line {index + 1}: found % and more; a % that ends the program stands alone.", line=index + 1
+            )
         if not self.percent:
             self.machine.findings.add("warning", index + 1, "% ends the program, but none starts it")
         self.finish(index + 1)

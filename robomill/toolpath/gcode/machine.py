@@ -20,9 +20,19 @@ from robomill.units import from_si, to_si
 UNITS = {200: "in", 210: "mm"}
 _NO_TOOL = Tool(0)
 _SAVED = (
-    "unit_code", "plane", "absolute", "arc_absolute", "feed_mode", "feed", "speed", "spindle", "retract_r",
-    "spindle_mode", "diameter_mode", "system",
-)  # fmt: skip
+    "unit_code",
+    "plane",
+    "absolute",
+    "arc_absolute",
+    "feed_mode",
+    "feed",
+    "speed",
+    "spindle",
+    "retract_r",
+    "spindle_mode",
+    "diameter_mode",
+    "system",
+)
 XYZABC = "xyzabc"
 
 
@@ -97,8 +107,10 @@ class Machine:
         """Rotary axes in the machine frame, rad."""
         g5x, g92 = self.g5x, self.g92
         return (
-            math.radians(a + g92[3] + g5x[3]), math.radians(b + g92[4] + g5x[4]), math.radians(c + g92[5] + g5x[5]),
-        )  # fmt: skip
+            math.radians(a + g92[3] + g5x[3]),
+            math.radians(b + g92[4] + g5x[4]),
+            math.radians(c + g92[5] + g5x[5]),
+        )
 
     # --- moves
     @property
@@ -203,23 +215,48 @@ def _system_code(machine: Machine) -> int:
 
 
 _PROVIDED: dict[str, Any] = {
-    "_vmajor": lambda m: 2.9, "_vminor": lambda m: 0.0, "_line": lambda m: m.line,
-    "_motion_mode": lambda m: m.motion, "_plane": lambda m: 10 * m.plane,
+    "_vmajor": lambda m: 2.9,
+    "_vminor": lambda m: 0.0,
+    "_line": lambda m: m.line,
+    "_motion_mode": lambda m: m.motion,
+    "_plane": lambda m: 10 * m.plane,
     "_ccomp": lambda m: 400 if m.compensation is None else (410 if m.compensation.left else 420),
-    "_metric": lambda m: m.unit == "mm", "_imperial": lambda m: m.unit == "in",
-    "_absolute": lambda m: m.absolute, "_incremental": lambda m: not m.absolute,
-    "_inverse_time": lambda m: m.feed_mode == 930, "_units_per_minute": lambda m: m.feed_mode == 940,
-    "_units_per_rev": lambda m: m.feed_mode == 950, "_coord_system": _system_code,
-    "_tool_offset": lambda m: any(m.length_offset), "_retract_r_plane": lambda m: m.retract_r,
-    "_retract_old_z": lambda m: not m.retract_r, "_spindle_rpm_mode": lambda m: m.spindle_mode == 970,
-    "_spindle_css_mode": lambda m: m.spindle_mode == 960, "_ijk_absolute_mode": lambda m: m.arc_absolute,
-    "_lathe_diameter_mode": lambda m: m.diameter_mode, "_lathe_radius_mode": lambda m: not m.diameter_mode,
-    "_spindle_on": lambda m: m.spindle != 0, "_spindle_cw": lambda m: m.spindle > 0, "_mist": lambda m: m.mist,
-    "_flood": lambda m: m.flood, "_speed_override": lambda m: 1, "_feed_override": lambda m: 1,
-    "_adaptive_feed": lambda m: 0, "_feed_hold": lambda m: 1, "_feed": lambda m: m.feed,
-    "_rpm": lambda m: m.speed, "_current_tool": lambda m: m.tool.number,
-    "_current_pocket": lambda m: m.tool.number, "_selected_pocket": lambda m: m.selected,
-    "_selected_tool": lambda m: m.selected, "_u": lambda m: 0, "_v": lambda m: 0, "_w": lambda m: 0,
-    "_value": lambda m: m.return_value, "_value_returned": lambda m: m.value_returned,
-    "_call_level": lambda m: len(m.store.frames) - 1, "_remap_level": lambda m: 0, "_task": lambda m: 0,
-}  # fmt: skip
+    "_metric": lambda m: m.unit == "mm",
+    "_imperial": lambda m: m.unit == "in",
+    "_absolute": lambda m: m.absolute,
+    "_incremental": lambda m: not m.absolute,
+    "_inverse_time": lambda m: m.feed_mode == 930,
+    "_units_per_minute": lambda m: m.feed_mode == 940,
+    "_units_per_rev": lambda m: m.feed_mode == 950,
+    "_coord_system": _system_code,
+    "_tool_offset": lambda m: any(m.length_offset),
+    "_retract_r_plane": lambda m: m.retract_r,
+    "_retract_old_z": lambda m: not m.retract_r,
+    "_spindle_rpm_mode": lambda m: m.spindle_mode == 970,
+    "_spindle_css_mode": lambda m: m.spindle_mode == 960,
+    "_ijk_absolute_mode": lambda m: m.arc_absolute,
+    "_lathe_diameter_mode": lambda m: m.diameter_mode,
+    "_lathe_radius_mode": lambda m: not m.diameter_mode,
+    "_spindle_on": lambda m: m.spindle != 0,
+    "_spindle_cw": lambda m: m.spindle > 0,
+    "_mist": lambda m: m.mist,
+    "_flood": lambda m: m.flood,
+    "_speed_override": lambda m: 1,
+    "_feed_override": lambda m: 1,
+    "_adaptive_feed": lambda m: 0,
+    "_feed_hold": lambda m: 1,
+    "_feed": lambda m: m.feed,
+    "_rpm": lambda m: m.speed,
+    "_current_tool": lambda m: m.tool.number,
+    "_current_pocket": lambda m: m.tool.number,
+    "_selected_pocket": lambda m: m.selected,
+    "_selected_tool": lambda m: m.selected,
+    "_u": lambda m: 0,
+    "_v": lambda m: 0,
+    "_w": lambda m: 0,
+    "_value": lambda m: m.return_value,
+    "_value_returned": lambda m: m.value_returned,
+    "_call_level": lambda m: len(m.store.frames) - 1,
+    "_remap_level": lambda m: 0,
+    "_task": lambda m: 0,
+}

@@ -17,9 +17,20 @@ KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
 
 _WIDTHS = {
-    "line": 1, "kind": 1, "start": 3, "end": 3, "rotary0": 3, "rotary": 3, "plane": 1, "centre": 3, "turns": 1,
-    "clockwise": 1, "v_f": 1, "n_s": 1, "tool": 1,
-}  # fmt: skip
+    "line": 1,
+    "kind": 1,
+    "start": 3,
+    "end": 3,
+    "rotary0": 3,
+    "rotary": 3,
+    "plane": 1,
+    "centre": 3,
+    "turns": 1,
+    "clockwise": 1,
+    "v_f": 1,
+    "n_s": 1,
+    "tool": 1,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +97,13 @@ class Program:
     def geometry(self, rows: IntArray) -> tuple[Any, ...]:
         """start, end, centre, plane, turns, clockwise of some moves, as the functions of ``arcs`` take them."""
         return (
-            self.start[rows], self.end[rows], self.centre[rows], self.plane[rows].astype(np.int64), self.turns[rows],
+            self.start[rows],
+            self.end[rows],
+            self.centre[rows],
+            self.plane[rows].astype(np.int64),
+            self.turns[rows],
             self.clockwise[rows],
-        )  # fmt: skip
+        )
 
     @cached_property
     def _arc_rows(self) -> IntArray:

@@ -87,9 +87,15 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         machine.findings.add("suspicious", 0, "no G20 or G21: lengths are taken as mm")
     _doubt_size(machine, columns)
     return Program(
-        **columns, units=machine.units_said, dialect=dialect, lines=lines, dwells=machine.dwells,
-        dwell_time=machine.dwell_time, findings=machine.findings.freeze(), messages=tuple(machine.messages),
-    )  # fmt: skip
+        **columns,
+        units=machine.units_said,
+        dialect=dialect,
+        lines=lines,
+        dwells=machine.dwells,
+        dwell_time=machine.dwell_time,
+        findings=machine.findings.freeze(),
+        messages=tuple(machine.messages),
+    )
 
 
 def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:

@@ -12,11 +12,20 @@ from robomill.toolpath.gcode.program import ARC
 MAX_MOVES = 6_000_000
 _FLUSH = 16_384
 COLUMNS: dict[str, tuple[Any, int]] = {
-    "line": (np.int32, 1), "kind": (np.int8, 1), "start": (np.float64, 3), "end": (np.float64, 3),
-    "rotary0": (np.float64, 3), "rotary": (np.float64, 3), "plane": (np.int8, 1), "centre": (np.float64, 3),
-    "turns": (np.int32, 1), "clockwise": (np.bool_, 1), "v_f": (np.float64, 1), "n_s": (np.float64, 1),
+    "line": (np.int32, 1),
+    "kind": (np.int8, 1),
+    "start": (np.float64, 3),
+    "end": (np.float64, 3),
+    "rotary0": (np.float64, 3),
+    "rotary": (np.float64, 3),
+    "plane": (np.int8, 1),
+    "centre": (np.float64, 3),
+    "turns": (np.int32, 1),
+    "clockwise": (np.bool_, 1),
+    "v_f": (np.float64, 1),
+    "n_s": (np.float64, 1),
     "tool": (np.int32, 1),
-}  # fmt: skip
+}
 """Columns of a move: type and width. Lengths in m in the machine frame, angles in rad."""
 
 Point = tuple[float, float, float]
@@ -43,10 +52,23 @@ class Recorder:
 
     def arc(self, line: int, end: Point, turned: Point, plane: int, centre: Point, turn: int, v_f: float) -> None:
         """An arc to ``end``; ``turn`` counts started turns, negative for clockwise."""
-        self._add((
-            line, ARC, *self.at, *end, *self.turned, *turned, plane, *centre, abs(turn), turn < 0, v_f, self.n_s,
-            self.tool,
-        ))  # fmt: skip
+        self._add(
+            (
+                line,
+                ARC,
+                *self.at,
+                *end,
+                *self.turned,
+                *turned,
+                plane,
+                *centre,
+                abs(turn),
+                turn < 0,
+                v_f,
+                self.n_s,
+                self.tool,
+            )
+        )
         self.at, self.turned = end, turned
 
     def _add(self, row: tuple[Any, ...]) -> None:

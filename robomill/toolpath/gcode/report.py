@@ -58,16 +58,21 @@ def write_moves_jsonl(program: Program, path: str | Path) -> None:
         for i in range(len(program)):
             kind = int(program.kind[i])
             row: dict[str, Any] = {
-                "line": int(program.line[i]), "kind": KINDS[kind], "start": _mm(program.start[i]),
+                "line": int(program.line[i]),
+                "kind": KINDS[kind],
+                "start": _mm(program.start[i]),
                 "end": _mm(program.end[i]),
-            }  # fmt: skip
+            }
             if kind == ARC:
                 plane = int(program.plane[i])
                 row |= {
-                    "plane": PLANES[plane], "centre": _mm(program.centre[i][list(_IN_PLANE[plane])]),
-                    "turns": int(program.turns[i]), "clockwise": bool(program.clockwise[i]),
-                    "sweep_deg": math.degrees(float(sweep[i])), "length_mm": from_si(float(length[i]), "mm"),
-                }  # fmt: skip
+                    "plane": PLANES[plane],
+                    "centre": _mm(program.centre[i][list(_IN_PLANE[plane])]),
+                    "turns": int(program.turns[i]),
+                    "clockwise": bool(program.clockwise[i]),
+                    "sweep_deg": math.degrees(float(sweep[i])),
+                    "length_mm": from_si(float(length[i]), "mm"),
+                }
             if kind:
                 row["feed_mm_min"] = from_si(float(program.v_f[i]), "mm/min")
             if turned:

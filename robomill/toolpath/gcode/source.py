@@ -95,9 +95,11 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
     if len(data) > MAX_BYTES:
         raise GCodeError(f"{name}: {len(data) / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB can be read.")
     for mark, encoding in (
-        (codecs.BOM_UTF8, ""), (codecs.BOM_UTF32_LE, "utf-32"), (codecs.BOM_UTF16_LE, "utf-16"),
+        (codecs.BOM_UTF8, ""),
+        (codecs.BOM_UTF32_LE, "utf-32"),
+        (codecs.BOM_UTF16_LE, "utf-16"),
         (codecs.BOM_UTF16_BE, "utf-16"),
-    ):  # fmt: skip
+    ):
         if data.startswith(mark):
             data = data[len(mark) :] if not encoding else _recode(data, encoding, name)
             break

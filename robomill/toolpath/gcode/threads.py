@@ -78,10 +78,20 @@ def thread(machine: Machine, block: Block) -> None:
     pitch = words["p"] * machine.factor * machine.spindle_speed
     flags = round(words.get("l", 0.0))
     shape = _Thread(
-        machine, block.line, 1.0 if words["i"] > 0 else -1.0, machine.p[0], machine.p[2], end[2] + full * slope,
-        full + peak, full, -taper if backward else taper, bool(flags & 1), bool(flags & 2), abs(pitch),
+        machine,
+        block.line,
+        1.0 if words["i"] > 0 else -1.0,
+        machine.p[0],
+        machine.p[2],
+        end[2] + full * slope,
+        full + peak,
+        full,
+        -taper if backward else taper,
+        bool(flags & 1),
+        bool(flags & 2),
+        abs(pitch),
         abs(pitch) * (math.hypot(taper, full) / taper if taper > 0 else 1.0),
-    )  # fmt: skip
+    )
     degression = max(words.get("r", 1.0), 1.0)
     depth, passes = peak + first, 1
     while depth < shape.end_depth:

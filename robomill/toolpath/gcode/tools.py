@@ -66,9 +66,10 @@ def _from_csv(lines: list[str], name: str) -> dict[int, Tool]:
         values = dict(zip(columns, next(csv.reader([line]))))
         try:
             tool = Tool(
-                int(values["tool"]), to_si(float(values["diameter_mm"]), "mm"),
+                int(values["tool"]),
+                to_si(float(values["diameter_mm"]), "mm"),
                 (0.0, 0.0, to_si(float(values["length_mm"]), "mm")),
-            )  # fmt: skip
+            )
         except (KeyError, ValueError) as exc:
             raise GCodeError(
                 f"{name}, line {number}: {exc}; expected tool,diameter_mm,length_mm.", line=number
