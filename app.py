@@ -5,7 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import story
+from robomill.ui.start import story
 from robomill.units import format_si
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.views import arm_scene, sample_at

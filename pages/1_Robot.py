@@ -6,8 +6,8 @@ import numpy as np
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import robot_panel
-from robomill.ui.pose import pose_now, pose_sliders, poses_compared, tip_words
+from robomill.ui.robot import editors as robot_panel
+from robomill.ui.robot.pose import pose_now, pose_sliders, poses_compared, tip_words
 from robomill.units import format_si
 from robomill.viz.arm import ArmScene, arm_figure
 

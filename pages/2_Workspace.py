@@ -5,9 +5,9 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import maps_fields
-from robomill.ui import workspace_panel as panel
-from robomill.ui.maps_state import maps
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import workspace as panel
+from robomill.ui.maps.state import maps
 
 project = ui.begin("Workspace")
 robot, unit = project.setup.robot, project.view.length

@@ -6,10 +6,12 @@ import streamlit as st
 
 from robomill import ui
 from robomill.improve.sensitivity import stiffened
-from robomill.ui import compliance_panel as panel
-from robomill.ui import compliance_sheets as sheets
-from robomill.ui import maps_fields, maps_inputs, point_panel
-from robomill.ui.maps_state import factors, maps
+from robomill.ui.maps import compliance as panel
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui.maps import point as point_panel
+from robomill.ui.maps import sheets
+from robomill.ui.maps.state import factors, maps
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length

@@ -8,15 +8,9 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
-from robomill.ui import identification_cut as cut
-from robomill.ui import identification_laboratory as laboratory
-from robomill.ui import identification_map as measured_map
-from robomill.ui import identification_models as models
-from robomill.ui import identification_panel as panel
-from robomill.ui import identification_plan as plan
-from robomill.ui import identification_results as results
-from robomill.ui import identification_words as words
-from robomill.ui.load_bench import Bench, bench, fit_of, robot_of, tests_of
+from robomill.ui.identification import cut, laboratory, measured_map, models, plan, results, words
+from robomill.ui.identification import inputs as panel
+from robomill.ui.identification.bench import Bench, bench, fit_of, robot_of, tests_of
 
 
 def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:

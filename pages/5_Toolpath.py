@@ -6,15 +6,15 @@ import streamlit as st
 
 from robomill import ui
 from robomill.toolpath.source import GCodeSource, SketchSource
-from robomill.ui import path_details as details
-from robomill.ui import toolpath_view as shown
-from robomill.ui.part_zero_panel import part_zero
-from robomill.ui.path_reach import board_reach, path_reach
-from robomill.ui.program_panel import program_inputs
-from robomill.ui.sketch_pad import sketch_pad
-from robomill.ui.sketch_panel import sketch_inputs
-from robomill.ui.sources import kind_of, kind_switch
-from robomill.ui.toolpath_lines import lines_inputs
+from robomill.ui.toolpath import details
+from robomill.ui.toolpath import view as shown
+from robomill.ui.toolpath.lines import lines_inputs
+from robomill.ui.toolpath.part_zero import part_zero
+from robomill.ui.toolpath.program import program_inputs
+from robomill.ui.toolpath.reach import board_reach, path_reach
+from robomill.ui.toolpath.sketch import sketch_inputs
+from robomill.ui.toolpath.sketch_pad import sketch_pad
+from robomill.ui.toolpath.sources import kind_of, kind_switch
 from robomill.viz.arm import arm_figure
 from robomill.viz.toolpath import plan_picture, turnable_picture
 from robomill.viz.views import arm_scene, sample_at

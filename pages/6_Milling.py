@@ -5,7 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import milling_panel as panel
+from robomill.ui.milling import body as panel
 
 project = ui.begin("Milling")
 setup, unit, dark = project.setup, project.view.length, ui.dark()

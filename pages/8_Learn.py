@@ -5,7 +5,9 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import learn_edge, learn_mathematics, learn_panel
+from robomill.ui.learn import edge as learn_edge
+from robomill.ui.learn import lesson as learn_panel
+from robomill.ui.learn import mathematics as learn_mathematics
 
 project = ui.begin("Learn")
 robot = project.setup.robot

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import RobotError
 from robomill.kinematics.forward import joint_frames
-from robomill.robot.model import Provenance, Robot
+from robomill.provenance import Provenance
+from robomill.robot.model import Robot
 
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
 GRAVITY = (0.0, 0.0, -9.80665)

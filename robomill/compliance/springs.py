@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import RobotError
 from robomill.kinematics.forward import joint_frames
-from robomill.robot.model import Provenance, Robot
+from robomill.provenance import Provenance
+from robomill.robot.model import Robot
 from robomill.units import format_si
 
 #: Young's modulus of solid carbide, Pa.

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
 from robomill.errors import CuttingError
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6

@@ -13,7 +13,7 @@ from typing import Any
 
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 from robomill.units import from_si, to_si, unit_label
 
 MECHANISTIC = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")

@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import Frame
 from robomill.errors import CuttingError
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 from robomill.units import format_si
 
 Axis = Literal["time", "path"]

@@ -14,7 +14,7 @@ from robomill.cutting.force import PLUNGE, Frame
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 
 
 @dataclass(frozen=True, eq=False)

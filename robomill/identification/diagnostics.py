@@ -10,7 +10,7 @@ from robomill.identification.least_squares import Fit, robust_fit, triangle
 from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.identification.system import System
-from robomill.toolpath.path import Finding
+from robomill.provenance import Finding
 from robomill.units import format_si
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused

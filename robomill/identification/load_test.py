@@ -20,8 +20,8 @@ from robomill.errors import LoadTestError
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.toolpath.path import Finding
 from robomill.units import format_si
 
 LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit

@@ -20,8 +20,8 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.toolpath.path import Finding
 from robomill.units import format_si
 
 GRID = 1e-6  # m: coordinates closer than this are one grid line

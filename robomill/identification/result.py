@@ -11,8 +11,8 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.springs import JointBending, SpindleSpring, Spring
 from robomill.errors import LoadTestError
 from robomill.identification.models import Model, Parameter
-from robomill.robot.model import Provenance, Robot
-from robomill.toolpath.path import Finding
+from robomill.provenance import Finding, Provenance
+from robomill.robot.model import Robot
 from robomill.units import format_si, from_si
 
 

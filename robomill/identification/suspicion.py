@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.toolpath.path import Finding
 
 PLAUSIBLE = (1e-10, 1e-4)  # m/N: from a rigid machine tool to a robot one can push about by hand
 PLAUSIBLE_JOINT = (1e-10, 1e-2)  # rad/(N m)

@@ -29,8 +29,8 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.toolpath.path import Finding
 from robomill.units import UNITS, from_si, to_si
 
 NOMINAL_LOAD = 250.0  # N, the paper's dead weight: residuals of measured compliances are stated for it

@@ -9,7 +9,7 @@ from typing import Any
 from robomill.cutting.materials import COEFFICIENT_UNITS, KIENZLE, MECHANISTIC, Material
 from robomill.errors import CuttingError, RobotError
 from robomill.io.samples import samples_dir
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 from robomill.units import from_si, to_si
 
 SUFFIX = {"N/mm2": "_N_mm2", "N/mm": "_N_mm", "1": ""}

@@ -10,7 +10,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobotError
-from robomill.robot.model import USER_SET, Provenance, Robot
+from robomill.provenance import KINDS, Provenance
+from robomill.robot.model import USER_SET, Robot
 from robomill.units import to_si
 
 FORMAT, VERSION = "robomill robot", 1
@@ -214,5 +215,9 @@ def _provenance(table: Any, where: str) -> dict[str, Provenance]:
             raise RobotError(f"{where}: provenance {block!r}: expected {{ kind = ..., source = ... }}.")
         if not isinstance(entry["source"], str):
             raise RobotError(f"{where}: provenance {block!r}: the source must be text.")
+        if entry["kind"] not in KINDS:
+            raise RobotError(
+                f"{where}: provenance {block!r}: kind is {entry['kind']!r:.40}; expected one of {', '.join(KINDS)}."
+            )
         found[block] = Provenance(entry["kind"], entry["source"])
     return found

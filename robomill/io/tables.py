@@ -11,7 +11,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import ProjectError, RobomillError
-from robomill.robot.model import Provenance
+from robomill.provenance import KINDS, Provenance
 from robomill.units import from_si, to_si
 
 _MISSING: Any = object()
@@ -127,9 +127,8 @@ class Table:
         """An entry ``{ kind = "paper", source = "..." }``."""
         entry = self.table(key)
         kind = entry.text("kind")
-        kinds = ("paper", "measured", "assumed", "user", "computed")
-        if kind not in kinds:
-            raise entry.refuse("kind", f"expected one of {', '.join(kinds)}, found {kind!r:.40}.")
+        if kind not in KINDS:
+            raise entry.refuse("kind", f"expected one of {', '.join(KINDS)}, found {kind!r:.40}.")
         source = entry.text("source")
         entry.finish()
         return Provenance(kind, source)  # type: ignore[arg-type]

@@ -9,7 +9,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobotError
-from robomill.robot.model import Provenance, Robot
+from robomill.provenance import Provenance
+from robomill.robot.model import Robot
 
 MOVING = ("revolute", "continuous", "prismatic")
 # A URDF holds no compliances: 1 um/N at a metre for every joint, marked assumed, until the user gives better ones.

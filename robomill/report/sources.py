@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.robot.model import USER_SET, Provenance
+from robomill.provenance import Provenance
+from robomill.robot.model import USER_SET
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_si, from_si, unit_label
 

@@ -12,27 +12,11 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
+from robomill.provenance import UNSTATED, Provenance
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain, modified_to_standard, standard_to_modified
 
-KINDS = ("paper", "measured", "assumed", "user", "computed")
 USER_SET = "user"
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where a block of numbers comes from: a kind and the source in words."""
-
-    kind: Literal["paper", "measured", "assumed", "user", "computed"]
-    source: str
-
-    def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise RobotError(f"Provenance: kind is {self.kind!r}; expected one of {', '.join(KINDS)}.")
-
-
-# What a block counts as until someone says more.
-UNSTATED = Provenance("user", "not stated")
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,8 @@ from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
-from robomill.robot.model import Provenance, Robot
+from robomill.provenance import Provenance
+from robomill.robot.model import Robot
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource

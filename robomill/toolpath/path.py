@@ -4,26 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
+from robomill.provenance import Finding
 from robomill.units import format_si
-
-Level = Literal["error", "warning", "suspicious", "ignored", "info"]
-
-
-@dataclass(frozen=True)
-class Finding:
-    """What the reader noticed: ``line`` is the 1-based source line (0: the whole file), ``count`` how often."""
-
-    level: Level
-    line: int
-    message: str
-    count: int = 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,8 @@ import streamlit as st
 from robomill.errors import RobomillError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.robot.model import Provenance, Robot
+from robomill.provenance import Provenance
+from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 
 KEY = "robomill"

@@ -14,7 +14,7 @@ from robomill.cutting.milling import KienzleForce, MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material, sample_materials
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 
 MILL = Cutter("flat", 8e-3, flutes=3)
 #: The paper's slot: 12 000 1/min, 30 mm/s, 2 mm deep.

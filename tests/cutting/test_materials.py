@@ -7,7 +7,7 @@ import pytest
 from robomill.cutting.materials import Material, alternatives
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
-from robomill.robot.model import Provenance
+from robomill.provenance import Provenance
 from robomill.units import to_si
 
 ROW = {

@@ -12,9 +12,9 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.io.robots import load_robot
 from robomill.robot.model import Robot
-from robomill.ui.compliance_sheets import SHEETS
-from robomill.ui.maps_state import KEY, MapView
-from robomill.ui.workspace_panel import QUANTITIES
+from robomill.ui.maps.sheets import SHEETS
+from robomill.ui.maps.state import KEY, MapView
+from robomill.ui.maps.workspace import QUANTITIES
 
 WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
 

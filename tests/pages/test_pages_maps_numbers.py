@@ -10,12 +10,12 @@ import pytest
 import robomill as rm
 from robomill.improve.sensitivity import stiffened
 from robomill.report.tables import Columns
-from robomill.ui import maps_fields
-from robomill.ui.learn_edge import _ray
-from robomill.ui.learn_mathematics import component, product
-from robomill.ui.learn_panel import compliance_table, went
-from robomill.ui.maps_state import MapView
-from robomill.ui.point_panel import PointReport, headline, place, report, share_columns, signed
+from robomill.ui.learn.edge import _ray
+from robomill.ui.learn.lesson import compliance_table, went
+from robomill.ui.learn.mathematics import component, product
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps.point import PointReport, headline, place, report, share_columns, signed
+from robomill.ui.maps.state import MapView
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
 from robomill.workspace.quantities import COMPONENTS

@@ -16,9 +16,13 @@ from robomill.cutting.milling import KienzleForce, MechanisticForce, ProcessForc
 from robomill.errors import CuttingError, RobotError
 from robomill.io.materials import load_material
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import cut_panel, force_panel, material_panel, metrology_panel, springs_panel
-from robomill.ui.force_panel import FILE as FORCE_FILE
-from robomill.ui.milling_panel import QUESTION
+from robomill.ui.milling import cut as cut_panel
+from robomill.ui.milling import force as force_panel
+from robomill.ui.milling import materials as material_panel
+from robomill.ui.milling import metrology as metrology_panel
+from robomill.ui.milling import springs as springs_panel
+from robomill.ui.milling.body import QUESTION
+from robomill.ui.milling.force import FILE as FORCE_FILE
 
 
 def milling(app: AppTest, question: str = "part") -> AppTest:

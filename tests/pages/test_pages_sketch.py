@@ -14,9 +14,10 @@ from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.toolpath.source import GCodeSource, SketchSource
-from robomill.ui import part_zero_panel, program_panel
-from robomill.ui.program_view import program_lines, window
-from robomill.ui.sketch_table import pad_elements, sketch_frame, sketch_from_frame, sketch_from_pad
+from robomill.ui.toolpath import part_zero as part_zero_panel
+from robomill.ui.toolpath import program as program_panel
+from robomill.ui.toolpath.program_view import program_lines, window
+from robomill.ui.toolpath.sketch_table import pad_elements, sketch_frame, sketch_from_frame, sketch_from_pad
 from robomill.units import to_si
 
 UNITS = [("mm", "mm/min"), ("in", "in/min")]

@@ -7,8 +7,8 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.path_summary import distinct, path_summary
-from robomill.ui.reading import Reading
+from robomill.ui.toolpath.reading import Reading
+from robomill.ui.toolpath.summary import distinct, path_summary
 
 
 def program(lines: int) -> str:

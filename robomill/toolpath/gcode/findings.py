@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robomill.toolpath.path import Finding, Level
+from robomill.provenance import Finding, Level
 
 _ORDER = {"error": 0, "warning": 1, "suspicious": 2, "ignored": 3, "info": 4}
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.path import Finding, Toolpath
+from robomill.toolpath.path import Toolpath
 
 TRAVERSE, FEED, ARC, TAP, PROBE = 0, 1, 2, 3, 4
 KINDS = ("traverse", "feed", "arc", "tap", "probe")

@@ -1,0 +1,42 @@
+"""Words that every floor uses: where a number comes from, and what was noticed about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from robomill.errors import RobomillError
+
+Kind = Literal["paper", "measured", "assumed", "user", "computed", "synthetic"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+Level = Literal["error", "warning", "suspicious", "ignored", "info"]
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a block of numbers comes from: a kind and the source in words."""
+
+    kind: Kind
+    source: str
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise RobomillError(f"Provenance: kind is {self.kind!r}; expected one of {', '.join(KINDS)}.")
+
+
+# What a block counts as until someone says more.
+UNSTATED = Provenance("user", "not stated")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was noticed. ``code`` says which kind it is, for code; ``message`` is for people and nothing branches on it.
+
+    ``line`` is the 1-based source line (0: the whole), ``count`` how often it was noticed.
+    """
+
+    level: Level
+    line: int
+    message: str
+    count: int = 1
+    code: str = ""

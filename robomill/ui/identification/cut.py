@@ -1,0 +1,127 @@
+"""What the compliances found mean for the project's cut: the deviation along its path with a band."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError
+from robomill.identification.result import IdentificationResult
+from robomill.improve.uncertainty import quantile
+from robomill.robot.model import Robot
+from robomill.simulation.result import SimulationResult
+from robomill.ui import cache, inputs, parts, state, uncertainty
+from robomill.ui.identification.bench import Bench
+from robomill.ui.identification.inputs import adopted, field
+from robomill.units import format_si, from_si
+from robomill.viz.bands import band_figure
+
+
+def cut_of(robot: Robot) -> SimulationResult:
+    """The project's cut by ``robot``. Raises the refusal of the simulation."""
+    setup = state.project().setup
+    return cache.result(setup if setup.robot == robot else setup.replace(robot=robot))
+
+
+def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
+    """Value and note of the tile on the cut: its worst deviation by the compliances found, with its band."""
+    if result.model == "constant":
+        return "no joints", "choose a model with joint springs"
+    try:
+        found, known = predicted(kept, robot, result)
+    except RobomillError:
+        return "not computed", "see In the cut"
+    if found.worst < 0:
+        return "out of reach", "no point of the cut is reached"
+    half = float(uncertainty.size_band(found, uncertainty.deviation_band(found, known, found.worst), found.worst))
+    now = cut_of(robot).max_deviation
+    if not np.isfinite(half):
+        return "not known", "no residuals to judge the noise by"
+    digits = uncertainty.band_digits(half, unit)
+    text = uncertainty.band_text(found.max_deviation, half, unit)
+    if uncertainty.fingerprint(found.setup) == uncertainty.fingerprint(state.project().setup):
+        return text, "95 % band; in force in the project"
+    return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
+
+
+def predicted(
+    kept: Bench, robot: Robot, result: IdentificationResult
+) -> tuple[SimulationResult, uncertainty.Knowledge]:
+    """The project's cut with the compliances found, and how unsure they, force and lengths are."""
+    found = cache.result(adopted(state.project().setup, robot, result, kept.name))
+    known = uncertainty.knowledge(result, robot, f"from {len(result.row)} load tests")
+    return found, uncertainty.widened(known, robot, kept.force_unsure, kept.length_unsure)
+
+
+def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
+    """The deviation along the project's path with its band, and what the band is made of."""
+    if result.model == "constant":
+        parts.note("One constant matrix has no joint compliances; choose a model with joint springs.")
+        return
+    first, second, third = parts.split([1.5, 1, 1], "cut", gap="small")
+    with first:
+        axis = _component()
+    with second:
+        field("Force known to ±", kept, "force_unsure", "N", 0, 1000, 5, 0)
+    with third:
+        field("Link lengths to ±", kept, "length_unsure", "mm", 0, 50, 0.5, 2)
+    try:
+        found, known = predicted(kept, robot, result)
+        now = cut_of(robot)
+    except RobomillError as exc:
+        parts.error(exc)
+        return
+    st.markdown(f"**{uncertainty.sentence(found, known, unit)}**")
+    s, value, half, before = (from_si(v, unit) for v in _curves(found, now, known, axis))
+    with st.container(border=True):
+        parts.figure(
+            band_figure(s, value, half, before, axis, unit, dark=dark),
+            "ident-band",
+            name="deviation-band",
+            table=lambda: band_columns(found, known),
+            caption="Shaded: 95 % band by linear propagation. Dashed: the compliances of the project now.",
+            alt="Deviation along the path with its 95 % band.",
+        )
+    parts.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
+
+
+def _component() -> str:
+    options = {"": "Size", "x": "X", "y": "Y", "z": "Z"}
+    current = st.session_state.get("identification:component", "")
+
+    def take(name: str) -> None:
+        st.session_state["identification:component"] = name
+
+    inputs.choice("Deviation", "ident:component", options, current, take)
+    return str(st.session_state.get("identification:component", current))
+
+
+def _curves(
+    found: SimulationResult, now: SimulationResult, known: uncertainty.Knowledge, axis: str
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Length cut, value, half width and the project's value now (m,), all m, where the tool cuts."""
+    band = uncertainty.deviation_band(found, known)
+    cutting = found.judged
+    if axis:
+        i = "xyz".index(axis)
+        value, half, before = found.delta[:, i], band.half_width(uncertainty.LEVEL)[:, i], now.delta[:, i]
+    else:
+        value, half, before = found.deviation, uncertainty.size_band(found, band), now.deviation
+    blank = np.where(cutting, 1.0, np.nan)
+    return found.path.s, value * blank, half * blank, before * blank
+
+
+def band_columns(found: SimulationResult, known: uncertainty.Knowledge) -> dict[str, Any]:
+    """Along the path: station, deviation and the standard deviation by source, mm."""
+    band = uncertainty.deviation_band(found, known)
+    columns: dict[str, Any] = {"line": found.path.block, "station_mm": from_si(found.path.s, "mm")}
+    for i, axis in enumerate("xyz"):
+        columns[f"delta_{axis}_mm"] = from_si(found.delta[:, i], "mm")
+        columns[f"half95_{axis}_mm"] = from_si(quantile(uncertainty.LEVEL, band.dof) * band.std[:, i], "mm")
+    for name in ("compliance", "force", "lengths"):
+        spread = np.linalg.norm(getattr(band, f"by_{name}"), axis=1)
+        columns[f"std_by_{name}_mm"] = from_si(spread, "mm")
+    return columns

@@ -1,0 +1,302 @@
+"""The paper's second method on the page: a measured map beside the joint model, their difference, the cut by both."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray, digest
+from robomill.errors import LoadTestError, RobomillError
+from robomill.identification.measured_field import MeasuredField
+from robomill.robot.model import Robot
+from robomill.simulation.result import SimulationResult
+from robomill.ui import inputs, parts, state
+from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
+from robomill.ui.identification.cut import cut_of
+from robomill.ui.identification.inputs import OWN, robot_choice, upload
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.measured_maps import both_figure, level_figure
+from robomill.workspace.fields import compliance_field
+from robomill.workspace.grid import Grid
+
+COMPONENTS = ("C_xx", "C_yy", "C_zz", "C_xy", "C_xz", "C_yz")
+CELLS = 41  # cells along the longer side of a drawn level
+RIM = 2
+
+
+def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
+    """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
+    robot = robot_of(kept)
+    field, refusal = None, None
+    try:
+        field = field_of(kept, robot)
+        cut: SimulationResult | None = cut_of(robot)
+    except LoadTestError as exc:
+        refusal = exc
+    except RobomillError:
+        cut = None
+    sentence = "These measurements do not make a map yet." if field is None else title(field, robot)
+    with top:
+        parts.headline(f"Measured map · {kept.map_name}", sentence)
+    if field is not None:
+        parts.tiles(tiles(field, robot, cut, view.length))
+    chosen = _inputs(kept, field, view.length)
+    if refusal is not None:
+        parts.error(refusal)
+    if field is not None:
+        for finding in field.findings:
+            st.warning(finding.message, icon=":material/visibility:")
+        _maps(field, robot, *chosen, view.length, dark)
+        _cut(field, cut, view.length, dark)
+        _use(field)
+
+
+def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
+    samples = {**MAP_SAMPLES, OWN: kept.map_name} if not kept.map_sample else MAP_SAMPLES
+    first, second, third = parts.split([1, 1.1, 1], "map-inputs", gap="large")
+    with first:
+        inputs.choice(
+            "Measured compliances",
+            "ident:map:sample",
+            samples,
+            kept.map_sample or OWN,
+            lambda n: None if n == OWN else kept.take_map(sample_text(n), f"{n}.csv", n),
+            horizontal=False,
+        )
+        robot_choice(kept)
+    with second:
+        upload("Your measured map (CSV)", "ident:map:file", kept.take_map, kept.map_revision)
+        parts.note("Compliances at poses, or displacements under forces in three directions at each.")
+    with third:
+        component = _kept_choice("component", {c: c.replace("_", " ") for c in COMPONENTS}, "C_yy")
+        z = 0.0
+        if field is not None:
+            levels = np.unique(np.round(field.p[:, 2], 6))
+            texts = {float(v): format_si(float(v), unit, 0 if unit == "mm" else 2) for v in levels}
+            z = _kept_choice("level", texts, min(texts, key=abs))
+    return component, z
+
+
+def _kept_choice(name: str, options: dict[Any, str], start: Any) -> Any:
+    kept = f"identification:map:{name}"
+    current = st.session_state.get(kept, start)
+    current = current if current in options else start
+
+    def take(value: Any) -> None:
+        st.session_state[kept] = value
+
+    label = {"component": "Component", "level": "Level Z in {M}"}[name]
+    inputs.choice(label, f"ident:map:{name}", options, current, take, horizontal=False)
+    return current
+
+
+def title(field: MeasuredField, robot: Robot) -> str:
+    """How far the joint model in force is from what was measured, at the measured points."""
+    gap = gap_at_points(field, robot)
+    if not np.isfinite(gap).any():
+        return "The joint model does not reach any of the measured points."
+    mean = float(np.nanmean(gap))
+    bias = float(np.nanmean(_sizes(field.C) - _sizes(model_at_points(field, robot))))
+    word = "higher" if bias > 0 else "lower"
+    return f"Measured and calculated compliances differ by {100 * mean:.0f} % on average; the measured ones are {word}."
+
+
+def model_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
+    """C (k, 3, 3) m/N of the joint model at the measured poses, NaN where not reached."""
+    from robomill.compliance.cartesian import cartesian_compliance
+    from robomill.kinematics.inverse import inverse_kinematics
+    from robomill.kinematics.transforms import pose_from_world
+
+    solved = inverse_kinematics(robot, pose_from_world(np.concatenate([field.p, field.AB], axis=1)))
+    return cartesian_compliance(robot, solved.theta)
+
+
+def gap_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
+    """(k,) |C measured - C model| / |C measured|, Frobenius."""
+    return _sizes(field.C - model_at_points(field, robot)) / _sizes(field.C)
+
+
+def _sizes(C: FloatArray) -> FloatArray:
+    return np.linalg.norm(C, axis=(-1, -2))
+
+
+def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit: str) -> list[parts.Tile]:
+    """Points, difference to the joint model, symmetry, and the cut by both methods."""
+    gap = gap_at_points(field, robot)
+    lines = field.lines
+    shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
+    shown = 100 * float(np.nanmean(gap)) if np.isfinite(gap).any() else float("nan")
+    worst = int(np.nanargmax(gap)) if np.isfinite(gap).any() else 0
+    digits = 0 if unit == "mm" else 1
+    where = ", ".join(format_si(float(v), unit, digits).partition(" ")[0] for v in field.p[worst])
+    text, note = cut_words(field, cut, unit)
+    return [
+        parts.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
+        parts.Tile(
+            "Off the joint model",
+            f"{shown:.1f} %" if np.isfinite(shown) else "not reached",
+            f"most at ({where}) {unit_label(unit)}: {100 * float(np.nanmax(gap)):.0f} %",
+        ),
+        parts.Tile("Asymmetry", f"{100 * float(field.asymmetry.mean()):.1f} %", "of |C|, on average"),
+        parts.Tile("The cut by the map", text, note),
+    ]
+
+
+def kind_of(field: MeasuredField) -> str:
+    """Provenance of the map: measured, unless its file says that it is synthetic."""
+    return "computed" if "ynthetic" in field.source else "measured"
+
+
+def along_cut(field: MeasuredField, cut: SimulationResult) -> FloatArray:
+    """(m, 3) m: deflection along the path by the measured map; NaN where the map does not answer."""
+    p = cut.setup.in_base(cut.path.p)
+    return field.deflection(p, cut.F)
+
+
+def cut_words(field: MeasuredField, cut: SimulationResult | None, unit: str) -> tuple[str, str]:
+    """Largest deviation at feed by the map, beside the joint model's; why not where there is none."""
+    if cut is None or cut.worst < 0:
+        return "not computed", "the cut is not reached"
+    size = np.linalg.norm(along_cut(field, cut), axis=1)
+    size[~cut.judged] = np.nan
+    if not np.isfinite(size).any():
+        return "not covered", "the cut lies outside the measured region"
+    digits = 3 if unit == "mm" else 4
+    missing = int((cut.judged & ~np.isfinite(size)).sum())
+    beside = f"{format_si(cut.max_deviation, unit, digits)} by the joint model"
+    if missing:
+        beside += f"; {missing} of {int(cut.judged.sum())} points not covered"
+    return format_si(float(np.nanmax(size)), unit, digits), beside
+
+
+def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
+    grid = level_grid(field, z)
+    i, j = ("xyz".index(c) for c in component[-2:])
+    measured = 0.5 * (field.compliance(grid.points())[:, :, 0, i, j] + field.compliance(grid.points())[:, :, 0, j, i])
+    model = compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))).values(component)[:, :, 0]
+    here = np.abs(field.p[:, 2] - z) < 1e-6
+    x, y, points = (from_si(v, unit) for v in (grid.x, grid.y, field.p[here][:, :2]))
+    sizes = [from_si(v, "um/N") for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
+    both = np.concatenate([sizes[0].ravel(), sizes[1].ravel()])
+    if not np.isfinite(both).any():
+        parts.note("Nothing was measured at this level.")
+        return
+    signed = component[-1] != component[-2]
+    top = float(np.nanmax(np.abs(both)))
+    limits = (-top, top) if signed else (float(np.nanmin(both)), float(np.nanmax(both)))
+    far = float(np.nanmax(np.abs(sizes[2]))) if np.isfinite(sizes[2]).any() else 1.0
+    rows = (
+        ("Measured", sizes[0], limits, signed),
+        ("Joint model", sizes[1], limits, signed),
+        ("Measured − joint model", sizes[2], (-far, far), True),
+    )
+    for k, (column, (name, values, ends, both_ways)) in enumerate(
+        zip(parts.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
+    ):
+        with column, st.container(border=True):
+            title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
+            st.markdown(f"**{name}**")
+            parts.figure(
+                level_figure(
+                    x,
+                    y,
+                    values,
+                    points if k != 1 else points[:0],
+                    ends,
+                    title_text,
+                    unit_label("um/N"),
+                    signed=both_ways,
+                    length_unit=unit_label(unit),
+                    dark=dark,
+                    revision=f"map-{k}",
+                ),
+                f"ident-map-{k}",
+                alt=f"{name} of {component} at this level.",
+            )
+    with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
+        parts.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
+        parts.table_twin(lambda: _columns(grid, sizes, component), "measured-map")
+
+
+def level_grid(field: MeasuredField, z: float) -> Grid:
+    """Cells over the measured rectangle at level z, ``CELLS`` along its longer side, ``RIM`` more around it."""
+    low, high = field.p[:, :2].min(axis=0), field.p[:, :2].max(axis=0)
+    step = max(float((high - low).max()), 0.1) / (CELLS - 1)
+    counts = [int(np.ceil((high[k] - low[k]) / step - 1e-6)) for k in range(2)]
+    axes = [low[k] + step * np.arange(-RIM, counts[k] + RIM + 1) for k in range(2)]
+    return Grid(axes[0], axes[1], np.array([z]))
+
+
+def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, Any]:
+    X, Y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    names = ("measured", "joint_model", "difference")
+    return {
+        "X_mm": from_si(X.ravel(), "mm"),
+        "Y_mm": from_si(Y.ravel(), "mm"),
+        **{f"{component}_{n}_um_N": v.ravel() for n, v in zip(names, sizes, strict=True)},
+    }
+
+
+def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bool) -> None:
+    """The project's cut by both methods: along the path, and its worst point."""
+    if cut is None or cut.worst < 0:
+        return
+    mapped = along_cut(field, cut)
+    if not np.isfinite(mapped[cut.judged]).any():
+        parts.note("The project's cut lies outside the measured region: the map does not answer there.")
+        return
+    left, right = parts.split([1.5, 1], "map-cut")
+    blank = np.where(cut.judged, 1.0, np.nan)
+    s = from_si(cut.path.s, unit)
+    by_map = from_si(np.linalg.norm(mapped, axis=1) * blank, unit)
+    by_joints = from_si(cut.deviation * blank, unit)
+    with left, st.container(border=True, height="stretch"):
+        st.markdown("**The project's cut by both**")
+        parts.figure(
+            both_figure(s, by_map, by_joints, unit, dark=dark),
+            "ident-both",
+            name="cut-by-map",
+            table=lambda: {f"station_{unit}": s, f"by_map_{unit}": by_map, f"by_joints_{unit}": by_joints},
+            caption="Size of the deviation along the path.",
+            alt="Deviation along the path by map and joint model.",
+        )
+    with right, st.container(border=True, height="stretch"):
+        st.markdown(f"**At its worst, line {cut.worst_block}**")
+        digits = 3 if unit == "mm" else 4
+        rows = [
+            (axis.upper(), format_si(float(a), unit, digits, sign=True), format_si(float(b), unit, digits, sign=True))
+            for axis, a, b in zip("xyz", mapped[cut.worst], cut.delta[cut.worst], strict=True)
+        ]
+        head = f"map {parts.badge(kind_of(field))}", f"joints {parts.badge('computed')}"
+        body = "".join(f'<tr><td>{q}</td><td class="n">{a}</td><td class="n">{b}</td></tr>' for q, a, b in rows)
+        st.html(
+            f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
+            f"{body}</table>"
+        )
+        if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
+            parts.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
+
+
+def _use(field: MeasuredField) -> None:
+    """Let the simulation run from the map instead of the joint model, or go back to the joints."""
+    setup = state.project().setup
+    in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
+    if in_force:
+        st.button(
+            "Go back to the joint model",
+            key="map:drop",
+            on_click=state.change,
+            kwargs={"measured_map": None},
+            help="The simulation runs from this map now.",
+        )
+        return
+    st.button(
+        "Simulate from this map",
+        key="map:use",
+        type="primary",
+        on_click=state.change,
+        kwargs={"measured_map": field},
+        help="Deflections then come from the measured map; the joints' shares are still shown.",
+    )

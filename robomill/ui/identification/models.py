@@ -1,0 +1,106 @@
+"""Models side by side on the same tests: which springs the measurements support."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.errors import RobomillError
+from robomill.identification.comparison import OVERFIT, Comparison, in_sample
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+from robomill.ui import parts
+from robomill.ui.identification import words
+from robomill.ui.identification.bench import Bench, comparison_of
+from robomill.ui.tables import PRISMATIC_UNITS
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.identification import models_figure
+
+
+def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
+    """Every model on the same tests: errors on own data and on poses left out, parameters, remarks."""
+    try:
+        with st.spinner("Fitting every model …"):
+            compared = comparison_of(kept, robot)
+    except RobomillError as exc:
+        st.info(str(exc), icon=":material/info:")
+        return
+    results, rows = compared.results, compared.rows()
+    counts = [row["parameters"] for row in rows]
+    names = [f"{words.MODEL_TITLES[r.model]} ({n})" for r, n in zip(results, counts, strict=True)]
+    best = compared.simplest_good
+    st.markdown(f"**{_judgement(compared)}**")
+    with st.container(border=True):
+        parts.figure(
+            models_figure(
+                names,
+                np.array([from_si(in_sample(r), "%") for r in results]),
+                np.array([from_si(r.cv_relative_error, "%") for r in results]),
+                next(k for k, r in enumerate(results) if r is best),
+                dark=dark,
+            ),
+            "ident-models",
+            name="models",
+            table=lambda: _model_columns(rows),
+            caption="In brackets: parameters. From ring to dot: over-fitting. Bold: simplest that predicts as well.",
+            alt="Errors of the models on their own data and on poses left out.",
+        )
+    absorbed = compared.absorbed()
+    if absorbed:
+        st.info(absorbed, icon=":material/lightbulb:")
+    for name, reason in compared.refused.items():
+        parts.note(f"{words.MODEL_TITLES[name]}: {html.escape(reason)}")
+    _side_by_side(results, rows, robot, joint_unit)
+    if kept.model != best.model:
+        st.button(
+            f"Take {words.MODEL_TITLES[best.model].lower()}",
+            key="ident:best",
+            icon=":material/thumb_up:",
+            on_click=lambda: setattr(kept, "model", best.model),
+        )
+
+
+def _judgement(compared: Comparison) -> str:
+    best, simple = compared.best, compared.simplest_good
+    title = words.MODEL_TITLES[simple.model]
+    if best is simple:
+        return f"{title} predict poses left out best, to {format_si(best.cv_relative_error, '%', 1)}."
+    return (
+        f"{title} predict as well as anything richer ({format_si(simple.cv_relative_error, '%', 1)} on poses left out, "
+        f"the best model {format_si(best.cv_relative_error, '%', 1)})."
+    )
+
+
+def _model_columns(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    return {
+        "model": [r["model"] for r in rows],
+        "parameters": [r["parameters"] for r in rows],
+        "own_data_%": [float(from_si(r["in_sample"], "%")) for r in rows],
+        "poses_left_out_%": [float(from_si(r["cross_validated"], "%")) for r in rows],
+        "residual_rms_um": [float(from_si(r["residual_rms"], "um")) for r in rows],
+        "over_fits": [r["cross_validated"] > OVERFIT * r["in_sample"] for r in rows],
+        "remark": [r["remark"] for r in rows],
+    }
+
+
+def _side_by_side(
+    results: tuple[IdentificationResult, ...], rows: list[dict[str, Any]], robot: Robot, joint_unit: str
+) -> None:
+    """Joint values of every model in columns, with the remarks beneath."""
+    head = "".join(f'<th class="n">J{j}</th>' for j in robot.joint_numbers)
+    units = [PRISMATIC_UNITS[joint_unit] if slides else joint_unit for slides in robot.chain.prismatic]
+    body = ""
+    for result, row in zip(results, rows, strict=True):
+        cells = "".join(
+            f'<td class="n">{words.number(float(words.shown(c, unit)), unit)}</td>'
+            for c, unit in zip(result.C_theta, units, strict=True)
+        )
+        remark = html.escape(str(row["remark"]).capitalize())
+        body += f"<tr><td>{words.MODEL_TITLES[result.model]}</td>{cells}<td>{remark}</td></tr>"
+    st.html(
+        f'<div style="overflow-x:auto"><table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table></div>'
+    )
+    parts.note(f"Joint values in {unit_label(joint_unit)}; – where a model has none or the tests do not see it.")

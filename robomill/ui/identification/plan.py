@@ -1,0 +1,160 @@
+"""Which poses to measure next: goal, plan, measuring sheet, and the filled-in sheet back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError
+from robomill.identification.load_test import JointTests
+from robomill.identification.plan import PathLoad, Plan, box_candidates, next_best
+from robomill.identification.result import IdentificationResult
+from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.load_tests import read_load_tests
+from robomill.robot.model import Robot
+from robomill.ui import inputs, parts, state
+from robomill.ui.identification.bench import Bench, appended, tests_of
+from robomill.ui.identification.cut import cut_of
+from robomill.ui.identification.inputs import field, upload
+from robomill.units import from_si, unit_label
+from robomill.viz.identification import gain_figure
+
+GOALS = {"joint": "One joint", "all": "All of them", "path": "The project's cut"}
+MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
+
+
+def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
+    """Goal, box and load; the poses to measure, as a table and a sheet; intervals before and after."""
+    if isinstance(tests_of(kept, robot), JointTests):
+        st.info("One joint at a time needs no plan: load the joint known least once more.", icon=":material/info:")
+        return
+    _goal_inputs(kept, robot, result)
+    try:
+        plan = plan_of(kept, robot, result)
+    except RobomillError as exc:
+        parts.error(exc)
+        return
+    st.markdown(f"**{plan.sentence()}**")
+    with st.container(border=True):
+        names = [p.label.capitalize() for p in plan.labels]
+        live = [k for k, p in enumerate(plan.labels) if p.label not in result.lumped and result.parameters[k] > 0]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            before, after = (100.0 * h / np.abs(result.parameters) for h in (plan.half_before, plan.half_after))
+        parts.figure(
+            gain_figure([names[k] for k in live], before[live], after[live], dark=dark),
+            "ident-gain",
+            name="plan-intervals",
+            table=lambda: {"parameter": names, "half_now_%": before, "half_after_%": after},
+            caption="As the noise of these tests says; the new readings decide.",
+            alt="Half widths of the 95 % intervals now and after the planned tests.",
+        )
+    columns = plan_columns(plan, unit)
+    st.dataframe(columns, hide_index=True)
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        parts.download(
+            "Measuring sheet (CSV)",
+            lambda: measuring_sheet(plan, kept.name),
+            "measuring-sheet.csv",
+            "text/csv",
+            key="ident:sheet",
+        )
+        parts.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
+    upload(
+        "Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name), kept.revision
+    )
+
+
+def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
+    def take(name: str) -> Any:
+        def put(value: Any) -> None:
+            setattr(kept, name, value)
+
+        return put
+
+    first, second, third, fourth, fifth = parts.split([1.5, 1.1, 1, 1, 1], "goal", gap="small")
+    with first:
+        inputs.choice("Make more certain", "ident:goal", GOALS, kept.goal, take("goal"), horizontal=False)
+    if kept.goal == "joint":
+        joints = {j: f"Joint {j}" for j in robot.joint_numbers}
+        now = _joint(kept, robot, result)
+        with second:
+            inputs.choice("Joint", "ident:goal_joint", joints, now, take("goal_joint"), horizontal=False)
+    with third:
+        field("More tests", kept, "count", "1", 1, 30, 1, 0)
+    with fourth:
+        field("Load", kept, "load", "N", 1, 5000, 50, 0)
+    with fifth:
+        field("Tilt up to", kept, "tilt", "deg", 0, 90, 5, 0)
+    parts.note(
+        "Chosen among 300 poses within the joint limits and "
+        f"{from_si(MARGIN, 'mm'):.0f} mm of the measured ones, each pushed along X, Y or Z."
+    )
+
+
+def _joint(kept: Bench, robot: Robot, result: IdentificationResult) -> int:
+    if kept.goal_joint in robot.joint_numbers:
+        return kept.goal_joint
+    return result.weakest_joint if result.model != "constant" else robot.joint_numbers[0]
+
+
+def _take_sheet(kept: Bench, robot: Robot, text: str, name: str) -> None:
+    read_load_tests(text + "\n", robot)  # refused here with row and column of the sheet, before it joins anything
+    kept.take(appended(kept.text, text), f"{kept.name} + {name}")
+
+
+def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
+    """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
+    tests = tests_of(kept, robot)
+    assert not isinstance(tests, JointTests)
+    goal: Any = kept.goal if kept.goal == "all" else _joint(kept, robot, result)
+    if kept.goal == "path":
+        cut = cut_of(robot)
+        goal = PathLoad(cut.theta[cut.judged], cut.F[cut.judged])
+    key = (
+        "plan",
+        id(result),
+        kept.goal,
+        goal if isinstance(goal, int) else state.project().setup.digest(),
+        kept.count,
+        kept.load,
+        kept.tilt,
+    )
+
+    def make() -> tuple[IdentificationResult, Plan]:
+        tips = tests.tool_poses(robot)[:, :3, 3]
+        found = box_candidates(
+            robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=kept.tilt, load=kept.load
+        )
+        # The fit is kept beside the plan so that its identity stays its own.
+        return result, next_best(robot, tests, result, found, count=int(kept.count), goal=goal)
+
+    return kept.remembered(key, make)[1]
+
+
+def plan_columns(plan: Plan, unit: str) -> dict[str, Any]:
+    """The plan as columns: pose in the world, load, and joint angles."""
+    columns: dict[str, Any] = {"test": np.arange(1, len(plan.F) + 1)}
+    for i, name in enumerate("XYZ"):
+        columns[f"{name}, {unit_label(unit)}"] = np.round(from_si(plan.x_M[:, i], unit), 2)
+    for i, name in enumerate("AB"):
+        columns[f"{name}, °"] = np.round(from_si(plan.x_M[:, 3 + i], "deg"), 2)
+    columns["push"] = [_direction(F) for F in plan.F]
+    columns["N"] = np.round(np.linalg.norm(plan.F, axis=1), 1)
+    for i in range(plan.theta.shape[1]):
+        columns[f"θ{i + 1}, °"] = np.round(from_si(plan.theta[:, i], "deg"), 2)
+    return columns
+
+
+def _direction(F: FloatArray) -> str:
+    i = int(np.argmax(np.abs(F)))
+    return f"{'+' if F[i] > 0 else '−'}{'XYZ'[i]}"
+
+
+def measuring_sheet(plan: Plan, name: str) -> str:
+    """The plan as a CSV with empty displacement columns, in the form that is read back."""
+    remarks = f"Measuring sheet of robomill: tests to make {plan.goal} more certain, after {name}.\n"
+    remarks += "Displacements are differences between loaded and preloaded reading, in {M}; fill in dx, dy, dz."
+    return load_tests_to_csv(plan.as_tests(), remarks, blank=True)

@@ -1,0 +1,196 @@
+"""What the load tests say: compliances with their intervals, residuals by test."""
+
+from __future__ import annotations
+
+import html
+
+import numpy as np
+import streamlit as st
+
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+from robomill.ui import inputs, parts
+from robomill.ui.identification import words
+from robomill.ui.identification.bench import Bench
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.identification import (
+    correlation_figure,
+    intervals_figure,
+    residuals_figure,
+)
+
+RESIDUAL_UNITS = {"mm": "in mm", "%": "in % of the test"}
+
+
+def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dark: bool) -> None:
+    """Intervals beside the paper's tables, the joint these poses hardly see, correlations, condition."""
+    with st.container(border=True):
+        for k, drawn in enumerate(words.intervals(result, robot, joint_unit)):
+            first = k == 0
+            parts.figure(
+                intervals_figure(drawn, dark=dark),
+                f"ident-intervals-{k}",
+                name="compliances",
+                table=(lambda: words.parameter_columns(result, robot, joint_unit)) if first else None,
+                caption=_scale(drawn.logarithmic) if first else "",
+                alt="Fitted compliances with 95 % intervals beside the reference values.",
+            )
+    unseen(result)
+    few = len(result.labels) <= 8
+    left, right = parts.split([1, 1.3], "fit") if few else (st.container(), st.container())
+    with left, st.container(border=True, height="stretch"):
+        st.markdown("**Which are confused with which**")
+        if np.isfinite(result.correlation).any():
+            names = [words.pretty(p.label).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
+            parts.figure(
+                correlation_figure(names, result.correlation, dark=dark),
+                "ident-correlation",
+                table=lambda: {"": names, **{n: result.correlation[:, i] for i, n in enumerate(names)}},
+                caption="±1: only their sum or difference is known.",
+                alt="Correlations of the fitted compliances.",
+            )
+        else:
+            parts.note("Without residuals to judge the noise by, there are no correlations.")
+    with right, st.container(border=True, height="stretch"):
+        st.markdown("**The numbers**")
+        _table(result, robot, joint_unit)
+        before, after = result.condition
+        parts.note(
+            f"Condition number {before:.0f} as measured, {after:.1f} after scaling the columns. One reading is good to "
+            f"{_noise(result)} by the residuals; {result.dof:,} equations to spare."
+        )
+
+
+def _scale(logarithmic: bool) -> str:
+    bars = "Bars: 95 % intervals."
+    return f"{bars} Logarithmic: equal lengths are equal percentages." if logarithmic else bars
+
+
+def unseen(result: IdentificationResult) -> None:
+    """The joint that cannot be seen, or is known least, and why."""
+    if result.unseen_joints:
+        for joint in result.unseen_joints:
+            st.warning(joint.sentence, icon=":material/visibility_off:")
+    elif result.model != "constant" and not words.is_single(result):
+        st.info(result.explain(result.weakest_joint), icon=":material/lightbulb:")
+
+
+def _noise(result: IdentificationResult) -> str:
+    if not np.isfinite(result.noise):
+        return "an unknown spread"
+    return format_si(result.noise, "urad" if result.residual.shape[1] == 1 else "um", 1)
+
+
+def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
+    columns = words.parameter_columns(result, robot, joint_unit)
+    references = [c for c in columns if c not in FIXED]
+    head = ["", "value", "std. error", "95 % interval", *references]
+    common = words.unit_of(result.labels[0], joint_unit)
+    body = []
+    for k, parameter in enumerate(result.labels):
+        unit = words.unit_of(parameter, joint_unit)
+        value, error, low, high = (columns[c][k] for c in FIXED[1:5])
+        cells = (
+            ["not seen", "–", "–"]
+            if not np.isfinite(value)
+            else [
+                f"<b>{words.number(value, unit)}</b>",
+                words.number(error, unit),
+                f"{words.number(low, unit)} to {words.number(high, unit)}",
+            ]
+        )
+        if parameter.label in result.lumped:
+            cells = [f"counted with {result.lumped[parameter.label]}", "", ""]
+        cells += [words.number(columns[c][k], unit) for c in references]
+        own = "" if unit == common else f" <small>{html.escape(unit_label(unit))}</small>"
+        row = "".join(f'<td class="n">{c}</td>' for c in cells)
+        body.append(f'<tr><td style="white-space:nowrap">{parts.subscripts(parameter.label)}{own}</td>{row}</tr>')
+    top = "".join(f'<th class="{"n" if i else ""}">{html.escape(h)}</th>' for i, h in enumerate(head))
+    st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table></div>')
+    sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
+    said = [f"{parts.badge(source.kind)} {title}" for title, source in sources if source and title in references]
+    parts.note(f"In {unit_label(common)}. {' '.join(said)}")
+
+
+FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
+
+
+def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
+    """Residual of each test, what does not fit, and the click that leaves it out."""
+    single = words.is_single(result)
+    with st.container(border=True):
+        picked = _residual_unit(single)
+        if picked == "%":
+            with np.errstate(invalid="ignore", divide="ignore"):
+                size = words.sizes(result)[:, None]
+                drawn = result.residual * (from_si(result.residual_share, "%")[:, None] / size)
+        else:
+            drawn = from_si(result.residual, picked)
+        odd = np.isin(result.row, [o.row for o in result.outliers])
+        note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
+        parts.figure(
+            residuals_figure(result.row, drawn, odd, picked, dark=dark),
+            f"ident-residuals-{picked}",
+            name="residuals",
+            table=lambda: words.residual_columns(result),
+            caption=note + "One symbol a component. Ringed: further off than chance allows once in 100 data sets.",
+            alt="Measured minus predicted displacement of each test.",
+        )
+    _outliers(kept, result)
+
+
+def _residual_unit(single: bool) -> str:
+    options = {"mrad": "in mrad", "%": RESIDUAL_UNITS["%"]} if single else RESIDUAL_UNITS
+    current = st.session_state.get("identification:residual", "")
+    current = current if current in options else next(iter(options))
+
+    def take(unit: str) -> None:
+        st.session_state["identification:residual"] = unit
+
+    inputs.choice("Residuals", "ident:residual", options, current, take, label_visibility="collapsed")
+    return str(st.session_state.get("identification:residual", current)) if current in options else current
+
+
+def _outliers(kept: Bench, result: IdentificationResult) -> None:
+    rows = [o.row for o in result.outliers]
+    if not rows and not kept.excluded:
+        st.info("Every test fits the others; nothing is left out.", icon=":material/check_circle:")
+        return
+    if rows:
+        unit = "urad" if result.residual.shape[1] == 1 else "um"
+        named = "; ".join(
+            f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {o.times:.0f} times the usual"
+            for o in result.outliers[:6]
+        )
+        more = f"; and {len(rows) - 6} more" if len(rows) > 6 else ""
+        st.warning(
+            f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out.",
+            icon=":material/flag:",
+        )
+        if len(rows) > 0.1 * len(result.row):
+            parts.note("So many at once speak against the model rather than against the readings: compare the models.")
+    key = "ident:excluded"
+    inputs.seed(key, list(kept.excluded))
+    st.multiselect(
+        "Rows left out",
+        sorted({*rows, *kept.excluded}),
+        key=key,
+        on_change=lambda: setattr(kept, "excluded", tuple(sorted(st.session_state[key]))),
+    )
+    left, right = st.columns(2)
+    left.button(
+        f"Leave out {'this row' if len(rows) == 1 else f'these {len(rows)} rows'} and refit",
+        key="ident:drop",
+        disabled=not rows,
+        width="stretch",
+        icon=":material/filter_alt:",
+        on_click=lambda: setattr(kept, "excluded", tuple(sorted({*rows, *kept.excluded}))),
+    )
+    right.button(
+        "Use every row again",
+        key="ident:restore",
+        disabled=not kept.excluded,
+        width="stretch",
+        icon=":material/undo:",
+        on_click=lambda: setattr(kept, "excluded", ()),
+    )

@@ -1,0 +1,177 @@
+"""The lesson: push along Y, where does the tip go? One question, one picture, then the reason."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray, digest
+from robomill.robot.model import Robot
+from robomill.ui import cache, inputs, parts, shell, state
+from robomill.ui.learn.style import BIG
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import sheets as compliance_sheets
+from robomill.ui.maps.point import FORCE, PointReport, default_point, report, signed
+from robomill.ui.maps.state import maps
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
+
+KEY = "robomill.learn"
+ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
+SIDE = {
+    "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
+    "center": {"x": 0, "y": 0, "z": -0.04},
+    "projection": {"type": "orthographic"},
+}
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """How far this session is in the lesson."""
+
+    answer: str | None = None
+    revealed: bool = False
+    out: float | None = None
+
+
+def lesson() -> Lesson:
+    """The lesson of this session."""
+    kept = st.session_state.get(KEY)
+    return kept if isinstance(kept, Lesson) else Lesson()
+
+
+def go(**fields: Any) -> None:
+    """Another step in the lesson."""
+    st.session_state[KEY] = dataclasses.replace(lesson(), **fields)
+
+
+def stand(robot: Robot) -> PointReport:
+    """Where the lesson stands: the point in hand of the maps, tool vertical."""
+    view = dataclasses.replace(maps(robot), A=0.0, B=0.0, point=None)
+    box = maps_fields.region(robot, view)
+    known = compliance_sheets.overview(robot, view, box)
+    return report(robot, default_point(view, box, known), 0.0, 0.0)
+
+
+@st.fragment
+def question(found: PointReport) -> None:
+    """The question, its four answers, the picture, and after the reveal where the tip went and why."""
+    st.html(BIG + '<p class="rm-ask">Push the tool along Y. Where does the tip go?</p>')
+    now = lesson()
+    left, right = parts.split([1.35, 1], "ask", gap="large")
+    with right:
+        _answers(now)
+        st.button(
+            "Hide it again" if now.revealed else "Show where it goes",
+            key="learn:reveal",
+            width="stretch",
+            type="secondary" if now.revealed else "primary",
+            icon=":material/visibility:",
+            on_click=lambda: go(revealed=not lesson().revealed),
+        )
+        _answer(found, now)
+    with left, st.container(border=True):
+        _push(found, now.revealed)
+
+
+def _answers(now: Lesson) -> None:
+    key = "learn:answer"
+    inputs.seed(key, now.answer)
+    with st.container(key="learn-answers"):
+        st.radio(
+            "Your answer",
+            list(ANSWERS),
+            key=key,
+            format_func=lambda a: ANSWERS[a],
+            index=None,
+            label_visibility="collapsed",
+            on_change=lambda: go(answer=st.session_state[key]),
+        )
+
+
+def _answer(found: PointReport, now: Lesson) -> None:
+    if not now.revealed:
+        st.html('<p class="rm-say">Ask the class first. Then show.</p>')
+        return
+    delta = FORCE * found.C[:, 1]
+    truth = went(delta)
+    unit = state.project().view.length
+    st.html(f'<p class="rm-say">100 N along Y move the tip {_moves(delta, unit)}.</p>')
+    if now.answer is not None:
+        judged = "Right." if now.answer == truth else "Look again:"
+        said = (
+            f"You said: {ANSWERS[now.answer].lower()}. {judged} the second column of C says where a push along Y leads."
+        )
+        parts.note(said)
+    st.html(compliance_table(found.C))
+    parts.note(
+        f"C in {unit_label('um/N')}. Blue: along the push. Orange, outlined: the off-diagonal terms, where the "
+        f"push leads aside."
+    )
+
+
+def went(delta: FloatArray) -> str:
+    """Which of the answers is right for a displacement (3,) under a push along Y."""
+    aside = np.abs(delta[[0, 2]])
+    if aside.max() < 0.02 * np.linalg.norm(delta):
+        return "y"
+    if aside[0] > aside[1]:
+        return "x"
+    return "down" if delta[2] < 0 else "up"
+
+
+def _moves(delta: FloatArray, unit: str) -> str:
+    digits = 3 if unit == "mm" else 4
+    words = ("along X", "along Y", "down" if delta[2] < 0 else "up")
+    told = [
+        f"<b>{format_si(abs(float(delta[i])), unit, digits)}</b> {words[i]}"
+        for i in (1, 0, 2)
+        if abs(delta[i]) > 0.02 * np.linalg.norm(delta)
+    ]
+    return " and ".join(told) if told else "nowhere"
+
+
+def compliance_table(C: FloatArray) -> str:
+    """C in um/N as a large table with the column of the push lit, HTML."""
+    rows = ""
+    for i, name in enumerate("XYZ"):
+        cells = ""
+        for j in range(3):
+            value = float(from_si(float(C[i, j]), "um/N"))
+            lit = "" if j != 1 else "on" if i == 1 else "off" if abs(value) > 5e-3 else ""
+            cells += f'<td class="{lit}">{signed(value)}</td>'
+        rows += f"<tr><th>tip {name}</th>{cells}</tr>"
+    return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'
+
+
+def _push(found: PointReport, revealed: bool) -> None:
+    assert found.frames is not None
+    delta = FORCE * found.C[:, 1]
+    unit, dark = state.project().view.length, shell.dark()
+    scene = ArmScene(
+        frames=found.frames,
+        force=np.array([0.0, FORCE, 0.0]),
+        force_label="100 N",
+        displacement=delta if revealed else None,
+        displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
+    )
+    key = (found.robot.digest(), digest(found.theta), revealed, unit, dark)
+    more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
+    fig = cache.kept_figure(
+        "learn-push",
+        key,
+        lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
+    )
+    drawn = int(float(f"{displacement_scale(delta, found.frames):.2g}"))
+    parts.figure(
+        fig,
+        "learn-push",
+        alt="The arm seen from the side with a force of 100 N along Y on the tool.",
+        caption=f"Seen from the side. Displacement shown × {drawn:,}."
+        if revealed
+        else "Seen from the side: 100 N along Y.",
+    )

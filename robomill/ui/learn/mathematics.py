@@ -1,0 +1,121 @@
+"""Equations (13) to (15) with the numbers of now, and the table of what of the paper is reproduced."""
+
+from __future__ import annotations
+
+import html
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.identification.estimate import identify
+from robomill.io.load_tests import read_load_tests
+from robomill.io.materials import sample_materials
+from robomill.io.robots import load_robot
+from robomill.io.samples import samples_dir
+from robomill.report.reproduction import Evidence, reproduction
+from robomill.report.reproduction_row import WORDS, Row, columns, summary
+from robomill.ui import cache, parts, state
+from robomill.ui.maps.point import FORCE, PointReport
+from robomill.units import from_si, unit_label
+
+TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not computed": "computed"}
+SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
+SMALL = 5e-4
+
+
+def equations(found: PointReport) -> None:
+    """Eqs. (13), (14) and (15) with this robot's numbers at this pose."""
+    st.subheader("The mathematics, with the numbers of now")
+    left, right = parts.split([1, 1], "mathematics", gap="large")
+    with left:
+        st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
+        parts.note(
+            "Every joint gives in its own direction J<sub>i</sub>; the tip gives by the sum. Along Y, with "
+            "C<sub>θ</sub> in "
+            "10⁻⁶ rad/(N m) and J in m/rad:"
+        )
+        st.latex(r"\large " + component(found, 1, 1))
+        parts.note("and from Y into Z, the reason for the sideways answer:")
+        st.latex(r"\large " + component(found, 2, 1))
+    with right:
+        st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
+        st.latex(r"\large " + product(found.C))
+        parts.note(f"C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot's frame {{M}}.")
+
+
+def component(found: PointReport, row: int, column: int) -> str:
+    """C_ab as the sum of its joints with numbers, as TeX; joints that add nothing are left out."""
+    name = "xyz"[row] + "xyz"[column]
+    shares = from_si(found.C_joint[:, row, column], "um/N")
+    top = float(np.abs(shares).max())
+    terms = []
+    for i, number in enumerate(found.robot.joint_numbers):
+        if abs(shares[i]) <= max(SMALL, 1e-3 * top):
+            continue
+        C = float(found.robot.C_theta[i] * 1e6)
+        a, b = (float(found.J[k, i]) for k in (row, column))
+        factors = rf"({a:.3f})^2" if row == column else rf"({a:.3f})({b:.3f})"
+        terms.append(rf"\underbrace{{{C:.3f}\cdot {factors}}}_{{\text{{joint {number}}}}}")
+    total = float(shares.sum())
+    sum_ = " + ".join(terms) if terms else "0"
+    return rf"C_{{{name}}} = {sum_} = {total:.3f}"
+
+
+def product(C: FloatArray) -> str:
+    """C F = delta with numbers, as TeX."""
+    rows = from_si(C, "um/N")
+    matrix = r" \\ ".join(" & ".join(_number(v, 3) for v in row) for row in rows)
+    moved = r" \\ ".join(_number(v, 1) for v in rows[:, 1] * FORCE)
+    return (
+        rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} 0 \\ {FORCE:.0f} \\ 0 \end{{bmatrix}}"
+        rf" = \begin{{bmatrix}} {moved} \end{{bmatrix}}"
+    )
+
+
+def _number(value: float, digits: int) -> str:
+    text = f"{value:.{digits}f}"
+    return text.lstrip("-") if float(text) == 0 else text
+
+
+@st.cache_resource(show_spinner="Computing the paper's tables and figures")
+def rows() -> list[Row]:
+    """The reproduction table, computed once for the server."""
+    return reproduction(evidence())
+
+
+def evidence() -> Evidence:
+    """The samples the table is computed from."""
+    setup = state.preset_setup(state.DEFAULT_PRESET)
+    robot = load_robot("slavkovic_5r")
+    folder = samples_dir() / "load_tests"
+    nine, single = (
+        identify(robot, read_load_tests(folder / name)) for name in ("nine_points.csv", "one_joint_at_a_time.csv")
+    )
+    other = setup.replace(robot=setup.robot.with_compliance_set("table_3"))
+    return Evidence(robot, cache.result(setup), cache.result(other), nine, single, tuple(sample_materials()))
+
+
+def reproduced() -> None:
+    """The table, with what did not come out and why."""
+    st.subheader("The paper, reproduced")
+    found = rows()
+    parts.note(html.escape(summary(found)))
+    head = "".join(
+        f"<th>{name}</th>" for name in ("Of the paper", "What it gives", "What robomill finds", "", "Reason")
+    )
+    body = "".join(
+        f"<tr><td><b>{html.escape(r.item)}</b></td><td>{html.escape(r.paper)}</td><td>{html.escape(r.found)}</td>"
+        f"<td>{parts.badge(TONE[r.status], SHORT[r.status])}</td>"
+        f"<td>{html.escape(r.reason)}</td></tr>"
+        for r in found
+    )
+    table = f'<table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table>'
+    st.html(f'<div style="overflow-x:auto">{table}</div>')
+    parts.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
+
+
+def _csv(found: list[Row]) -> str:
+    import pandas as pd
+
+    return pd.DataFrame(columns(found)).to_csv(index=False)

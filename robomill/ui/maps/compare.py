@@ -1,0 +1,135 @@
+"""Up to three robots or compliance sets side by side, with the difference to the first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError, WorkspaceError
+from robomill.io.robots import load_robot, robot_names
+from robomill.robot.model import USER_SET, Robot
+from robomill.ui import inputs, parts
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps.state import MapView, factors, see
+from robomill.units import from_si, unit_label
+from robomill.viz.maps import Map, Scale, symmetric_limit
+from robomill.workspace.fields import ComplianceField
+
+UM = "um/N"
+MOST = 3
+
+
+def candidates(robot: Robot, view: MapView) -> dict[str, str]:
+    """Key -> name of everything that can be compared."""
+    found = {f"set:{name}": name.replace("_", " ").capitalize() for name in robot.compliance_sets}
+    if robot.compliance_set == USER_SET:
+        found["now"] = "As edited"
+    if (factors(view, robot) != 1.0).any():
+        found["what-if"] = "What if"
+    found |= {f"robot:{name}": name.replace("_", " ") for name in robot_names() if name != robot.name}
+    return found
+
+
+def chosen(robot: Robot, view: MapView) -> list[str]:
+    """What is compared: as chosen, else what is at hand (two compliance sets, the edited robot, what-if)."""
+    known = candidates(robot, view)
+    kept = [key for key in view.against if key in known]
+    return kept or [key for key in known if not key.startswith("robot:")][:MOST] or list(known)[:2]
+
+
+def controls(robot: Robot, view: MapView) -> None:
+    """The list to choose from."""
+    known = candidates(robot, view)
+    key = "maps:against"
+    inputs.seed(key, chosen(robot, view))
+
+    def take() -> None:
+        see(against=tuple(st.session_state[key]))
+
+    st.multiselect(
+        "Compare up to three",
+        list(known),
+        key=key,
+        format_func=lambda k: known[k],
+        max_selections=MOST,
+        on_change=take,
+        label_visibility="collapsed",
+        placeholder="Robots or compliance sets",
+    )
+
+
+def panels(
+    robot: Robot, view: MapView, known: ComplianceField, normal: str
+) -> tuple[list[list[Map | None]], dict[str, Scale], list[tuple[str, str, str]], dict[str, Any]]:
+    """Maps, scales, rows of text and columns of the comparison over the plane of ``known``."""
+    names = candidates(robot, view)
+    name = f"C_{view.component}"
+    values: dict[str, FloatArray] = {}
+    for key in chosen(robot, view):
+        try:
+            values[key] = from_si(_field(key, robot, view, known).values(name), UM).squeeze(axis="xyz".index(normal))
+        except RobomillError as exc:
+            parts.error(exc)
+    keys = list(values)
+    if not keys:
+        raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
+    cross = view.component[0] != view.component[1]
+    every = [v for v in values.values() if np.isfinite(v).any()]
+    top = symmetric_limit(every)
+    low = min((float(np.nanmin(v)) for v in every), default=0.0)
+    label = f"C<sub>{view.component}</sub>, {unit_label(UM)}"
+    first = values[keys[0]]
+    differences = {key: values[key] - first for key in keys[1:]}
+    most = symmetric_limit(list(differences.values()))
+    scales = {
+        "main": Scale(label, -top, top, "diverging") if cross else Scale(label, low, top),
+        "difference": Scale(f"difference, {unit_label(UM)}", -most, most, "diverging"),
+    }
+    rows: list[list[Map | None]] = [
+        [Map(f"<b>{names[key]}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]
+    ]
+    apart: list[Map | None] = [
+        Map(f"{names[key]} − {names[keys[0]]}", differences[key], "difference", unit_label(UM)) for key in keys[1:]
+    ]
+    if len(apart) == 1:
+        rows[0] += apart
+    elif apart:
+        rows.append([None, *apart])
+    return rows, scales, _text(names, values, keys), _columns(names, values, keys)
+
+
+def _field(key: str, robot: Robot, view: MapView, known: ComplianceField) -> ComplianceField:
+    if key == "now":
+        return known
+    if key == "what-if":
+        return maps_fields.stiffer(known, factors(view, robot))
+    kind, _, name = key.partition(":")
+    other = robot.with_compliance_set(name) if kind == "set" else load_robot(name)
+    return maps_fields.field(other, known.grid, view.A, view.B)
+
+
+def _mean(values: FloatArray) -> str:
+    return f"mean {np.nanmean(values):.3f}".replace("-", "−") if np.isfinite(values).any() else "not reached"
+
+
+def _text(names: dict[str, str], values: dict[str, FloatArray], keys: list[str]) -> list[tuple[str, str, str]]:
+    first = values[keys[0]]
+    rows = []
+    for key in keys:
+        both = np.isfinite(values[key]) & np.isfinite(first)
+        if not both.any():
+            rows.append((names[key], "not reached", "no cell in common with the first"))
+            continue
+        mean, base = float(values[key][both].mean()), float(first[both].mean())
+        change = (
+            "" if key == keys[0] or abs(base) < 1e-9 else f"{100 * (mean / base - 1):+.0f} % against {names[keys[0]]}"
+        )
+        rows.append((names[key], f"{mean:.3f} {unit_label(UM)}".replace("-", "−"), f"mean over the plane {change}"))
+    return rows
+
+
+def _columns(names: dict[str, str], values: dict[str, FloatArray], keys: list[str]) -> dict[str, Any]:
+    return {f"{names[key]}, um/N": values[key].ravel() for key in keys}

@@ -1,0 +1,235 @@
+"""The compliance page's tiles, its left column, what-if factors and what stiffness buys."""
+
+from __future__ import annotations
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError
+from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
+from robomill.robot.model import Robot
+from robomill.simulation.result import SimulationResult
+from robomill.ui import inputs, parts, shell, state
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui.maps.point import PointReport, place
+from robomill.ui.maps.state import MapView, factors, see
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.shares import gain_bars
+from robomill.workspace.fields import ComplianceField
+from robomill.workspace.quantities import COMPONENTS
+
+UM = "um/N"
+WORDS = {c: f"C_{c}" for c in COMPONENTS}
+
+
+def tiles(
+    found: PointReport, old: PointReport, now: ComplianceField, before: ComplianceField, view: MapView, unit: str
+) -> list[parts.Tile]:
+    """The component at the point, the softest direction there, the softest place, where stiffness pays."""
+    component = view.component
+    point = place(found.point, unit)
+    gain = compliance_sensitivity(now.C_joint(), component, joint_numbers=found.robot.joint_numbers)
+    best = int(gain.ranking[0])
+    known = bool(now.reached.any())
+    saved = float(np.nanmean(gain.gain[..., best])) if known else float("nan")
+    soft = now.values("C_soft")
+    worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if known else None
+    where = tuple(float(axis[i]) for axis, i in zip((now.grid.x, now.grid.y, now.grid.z), worst)) if worst else None
+    return [
+        parts.Tile(
+            f"C_{component} at the point",
+            _um(found.component(component)) if found.reached else "not reached",
+            f"at {point}",
+            _um(old.component(component)) if old.reached else "",
+            kind="computed",
+        ),
+        parts.Tile(
+            "Softest direction there",
+            _um(_softest(found)) if found.reached else "not reached",
+            "what 1 N moves the tip at most",
+            _um(_softest(old)) if old.reached else "",
+        ),
+        parts.Tile(
+            "Softest place of the region",
+            _um(float(soft[worst])) if worst else "not reached",
+            f"at {place(where, unit)}" if where else "",  # type: ignore[arg-type]
+            _um(float(np.nanmax(before.values("C_soft")))) if known else "",
+        ),
+        parts.Tile(
+            "Stiffness pays most in",
+            f"joint {found.robot.joint_numbers[best]}" if known else "nothing reached",
+            f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else "",
+        ),
+    ]
+
+
+def _softest(found: PointReport) -> float:
+    return float(np.linalg.eigvalsh(found.C)[-1])
+
+
+def _um(value: float) -> str:
+    return format_si(value, UM, 3)
+
+
+def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None:
+    """Region, tilt, plane; component; point; scale."""
+    maps_inputs.where(robot, view, unit)
+    inputs.choice(
+        "Component for comparing and ranking",
+        "maps:component",
+        WORDS,
+        view.component,
+        lambda c: see(component=c),
+        horizontal=False,
+    )
+    st.markdown("**The point in hand**")
+    for i, column in enumerate(st.columns(3)):
+        with column:
+            maps_inputs.value(
+                "XYZ"[i],
+                f"maps:point:{i}:{unit}",
+                found.point[i],
+                unit,
+                lambda v, i=i: _put(found, i, v),  # type: ignore[misc]
+                50.0 if unit == "mm" else 1.0,
+            )
+    inputs.choice(
+        "Colours of the 3 × 3 maps",
+        "maps:common",
+        {True: "One scale", False: "Direct and cross apart"},
+        view.common,
+        lambda c: see(common=c),
+    )
+
+
+def _put(found: PointReport, i: int, value: float) -> None:
+    point = list(found.point)
+    point[i] = value
+    see(point=tuple(point))
+
+
+def what_if(robot: Robot, view: MapView) -> None:
+    """A factor on each joint's stiffness; the old result stays as ghost until they are 1 or put into the robot."""
+    scale = factors(view, robot)
+    changed = bool((scale != 1.0).any())
+    with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
+        st.markdown("**What if a joint were stiffer?**")
+        st.button(
+            "All × 1",
+            on_click=see,
+            kwargs={"factors": None},
+            type="tertiary",
+            disabled=not changed,
+            key="maps:reset",
+            icon=":material/restart_alt:",
+        )
+    for i, number in enumerate(robot.joint_numbers):
+        name, slider = st.columns([0.52, 1], vertical_alignment="center")
+        name.markdown(f"Joint {number} **× {scale[i]:.2f}**")
+        with slider:
+            inputs.slider(
+                f"Joint {number}, times its stiffness",
+                f"maps:factor:{i}",
+                0.5,
+                4.0,
+                float(scale[i]),
+                lambda v, i=i: _factor(robot, i, v),  # type: ignore[misc]
+                step=0.05,
+                form="%.2f",
+                label_visibility="collapsed",
+            )
+    st.button(
+        "Put these joints into the robot",
+        on_click=_adopt,
+        args=(robot,),
+        disabled=not changed,
+        key="maps:adopt",
+        icon=":material/check:",
+        width="stretch",
+        help="The milling result follows; undo leads back.",
+    )
+
+
+def _factor(robot: Robot, i: int, value: float) -> None:
+    from robomill.ui.maps.state import maps
+
+    scale = factors(maps(robot), robot)
+    scale[i] = value
+    see(factors=None if (scale == 1.0).all() else tuple(scale.tolist()))
+
+
+def _adopt(robot: Robot) -> None:
+    from robomill.ui.maps.state import maps
+
+    state.change(robot=stiffened(robot, factors(maps(robot), robot)))
+    see(factors=None)
+
+
+def where_it_pays(
+    found: PointReport, now: ComplianceField, result: SimulationResult | None, view: MapView, unit: str
+) -> None:
+    """What 10 % more stiffness in one joint takes off: at the point, along the path of the project, over the region."""
+    joints = found.robot.joint_numbers
+    groups: list[tuple[str, FloatArray, str]] = []
+    if found.reached:
+        at_point = compliance_sensitivity(found.C_joint, view.component, joint_numbers=joints)
+        groups.append((f"|C<sub>{view.component}</sub>| at the point", from_si(at_point.gain, UM), unit_label(UM)))
+    along = _along_path(result, view, found.robot)
+    micro = "um"
+    if along is not None:
+        groups.append(("deviation along the path", from_si(_mean(along), micro), f"{unit_label(micro)}, mean"))
+    if now.reached.any():
+        over = compliance_sensitivity(now.C_joint(), view.component, joint_numbers=joints)
+        groups.append(
+            (f"|C<sub>{view.component}</sub>| over the region", from_si(_mean(over), UM), f"{unit_label(UM)}, mean")
+        )
+    if not groups:
+        parts.note("Nothing is reached here, so nothing can be ranked.")
+        return
+    with st.container(border=True):
+        parts.figure(
+            gain_bars(groups, joints, dark=shell.dark(), height=88 + 34 * len(joints)),
+            "gains",
+            table=lambda: {"joint": list(map(str, joints)), **{f"{_plain(t)}, {u}": g for t, g, u in groups}},
+            alt="How much smaller compliance and deviation become with each joint 10 % stiffer.",
+            caption="What each joint 10 % stiffer takes off. Exact: C is linear in the joints' compliances, eq. (13)."
+            + ("" if along is not None else " The path of this project has no result to rank by."),
+        )
+
+
+def _plain(title: str) -> str:
+    return title.replace("<sub>", "_").replace("</sub>", "")
+
+
+def _mean(gain: Sensitivity) -> FloatArray:
+    flat = gain.gain.reshape(-1, gain.gain.shape[-1])
+    return flat[np.isfinite(flat).all(axis=1)].mean(axis=0)
+
+
+def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) -> Sensitivity | None:
+    if result is None or result.setup.robot.n != robot.n:
+        return None
+    judged = result.judged
+    if not judged.any():
+        return None
+    delta_joint = result.delta_joint[judged] / factors(view, robot)[None, :, None]
+    if not np.isfinite(delta_joint).all():
+        return None
+    return deflection_sensitivity(delta_joint, joint_numbers=robot.joint_numbers)
+
+
+def quiet_result(project: state.Project) -> SimulationResult | None:
+    """The milling result of the project, or None where it is refused: this page works without one."""
+    from robomill.ui import cache
+
+    try:
+        return cache.result(project.setup)
+    except RobomillError:
+        return None
+
+
+def fields(robot: Robot, view: MapView, known: ComplianceField) -> ComplianceField:
+    """The region with the what-if factors in force."""
+    return maps_fields.stiffer(known, factors(view, robot))

@@ -1,0 +1,181 @@
+"""Fields over planes and boxes from the cache, by fingerprints of robot and grid."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import BoolArray, FloatArray, digest
+from robomill.errors import WorkspaceError
+from robomill.improve.sensitivity import scaled_shares, stiffened
+from robomill.kinematics.decoupled import decoupled
+from robomill.robot.model import Robot
+from robomill.ui.maps.state import MapView
+from robomill.units import format_si
+from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
+from robomill.workspace.lines import LineDeviation, border_and_middle_lines
+from robomill.workspace.reach import Box, reach
+from robomill.workspace.region import FLAT, coarse_cells, coarse_grid, flat_axis, largest_region, reach_extent
+
+STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.5)
+PLANE_CELLS = 1900
+DRAWN_CELLS = 60_000
+NORMALS = {"z": "XY", "y": "XZ", "x": "YZ"}
+
+
+def geometry_key(robot: Robot) -> str:
+    """Fingerprint of everything but the compliances: reach depends on nothing else."""
+    chain = robot.chain
+    return digest((robot.name, chain.T_0, chain.E, chain.sign, chain.offset, chain.prismatic, robot.limits))
+
+
+def region(robot: Robot, view: MapView) -> Box:
+    """The box the maps cover. Raises WorkspaceError where nothing is in reach or a corner is on the wrong side."""
+    if view.region == "own":
+        lower, upper = np.array(view.lower), np.array(view.upper)
+        if (upper < lower).any():
+            axis = "XYZ"[int(np.argmax(upper < lower))]
+            raise WorkspaceError(f"Region: {axis} ends before it begins; type the smaller number first.")
+        return Box(lower, upper)
+    if view.region == "paper":
+        return Box(*PAPER_BOX)
+    found = _proposed(f"{geometry_key(robot)}/{view.region}", robot, view.region, view.A, view.B)
+    if found is None:
+        tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
+        raise WorkspaceError(
+            f"{robot.title or robot.name} brings its tool nowhere at {tilt}: change the tilt, the tool frame or "
+            f"the limits."
+        )
+    return found
+
+
+def flat(robot: Robot) -> int | None:
+    """The axis a planar arm cannot move along, else None."""
+    return _flat(geometry_key(robot), robot)
+
+
+def normals(robot: Robot) -> dict[str, str]:
+    """Planes that make sense for this arm: normal -> name."""
+    axis = flat(robot)
+    return NORMALS if axis is None else {"xyz"[axis]: NORMALS["xyz"[axis]]}
+
+
+def plane_at(robot: Robot, view: MapView, box: Box) -> tuple[str, float]:
+    """(normal, coordinate m) of the plane in force: as chosen, else Z_M = 0 where that is inside, else the middle."""
+    known = normals(robot)
+    normal = view.normal if view.normal in known else next(iter(known))
+    i = "xyz".index(normal)
+    low, high = float(box.lower[i]), float(box.upper[i])
+    if view.at is not None and normal == view.normal:
+        return normal, min(max(view.at, low), high)
+    if normal == "z" and low <= 0.0 <= high:
+        return normal, 0.0
+    return normal, round(0.5 * (low + high), 3)
+
+
+def plane_step(robot: Robot, view: MapView, box: Box, normal: str) -> float:
+    """Spacing of the cells, m: as typed, or about 1900 cells (fewer for arms solved numerically)."""
+    if view.step is not None:
+        return view.step
+    span = np.delete(box.size, "xyz".index(normal))
+    wide = span[span > FLAT]
+    cells = PLANE_CELLS if decoupled(robot) is not None else 320
+    raw = float((np.prod(wide) / cells) ** (1.0 / len(wide))) if len(wide) else 0.1
+    return next((s for s in STEPS if s >= 0.97 * raw), STEPS[-1])
+
+
+def plane(robot: Robot, view: MapView, box: Box, normal: str, at: float) -> Grid:
+    """The grid of the plane. Raises WorkspaceError where it has more cells than a picture takes."""
+    step = plane_step(robot, view, box, normal)
+    low, high = np.array(box.lower), np.array(box.upper)
+    low["xyz".index(normal)] = high["xyz".index(normal)] = at
+    grid = box_grid(low, high, step)
+    if grid.cells > DRAWN_CELLS:
+        fits = step * float(np.sqrt(grid.cells / DRAWN_CELLS))
+        raise WorkspaceError(
+            f"A plane of {grid.cells:,} cells is more than a picture takes ({DRAWN_CELLS:,}): "
+            f"use a step of {format_si(np.ceil(fits * 1e3) / 1e3, 'mm', 0)} or more; the command line writes "
+            f"finer maps."
+        )
+    return grid
+
+
+def solid(robot: Robot, box: Box, cells: int | None = None) -> Grid:
+    """A coarse grid over the whole region, for voxels, boxes and scales that stay while the plane moves."""
+    return coarse_grid(robot, box.lower, box.upper, cells)
+
+
+def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
+    """Compliance, shares and determinant over ``grid``, from the cache."""
+    return _field(f"{robot.digest()}/{digest((grid.x, grid.y, grid.z, A, B))}", robot, grid, A, B)
+
+
+def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
+    """The same field with stiffer joints: exact, nothing is solved again."""
+    if (factors == 1.0).all():
+        return known
+    robot = stiffened(known.robot, factors)
+    return dataclasses.replace(known, robot=robot, shares=scaled_shares(known.shares, factors, axis=-2))
+
+
+def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
+    """The six lines of Fig. 8 over the region's plane, from the cache."""
+    key = f"{robot.digest()}/{digest((box.lower, box.upper, z))}"
+    points = 61 if decoupled(robot) is not None else 13
+    return _lines(key, robot, box, z, points)
+
+
+def reached(robot: Robot, grid: Grid, A: float, B: float) -> BoolArray:
+    """WS over ``grid``, from the cache."""
+    return _reached(f"{geometry_key(robot)}/{digest((grid.x, grid.y, grid.z, A, B))}", robot, grid, A, B)
+
+
+def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
+    """The largest machining box at this tilt, from the cache."""
+    return _proposed(f"{geometry_key(robot)}/largest", robot, "largest", A, B)
+
+
+@st.cache_resource(max_entries=48, show_spinner=False)
+def _field(key: str, _robot: Robot, _grid: Grid, _A: float, _B: float) -> ComplianceField:
+    return compliance_field(_robot, _grid, _A, _B)
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _reached(key: str, _robot: Robot, _grid: Grid, _A: float, _B: float) -> BoolArray:
+    return reach(_robot, _grid, ((_A, _B),))
+
+
+@st.cache_resource(max_entries=64, show_spinner="Looking for the largest box in reach")
+def _proposed(key: str, _robot: Robot, kind: str, A: float, B: float) -> Box | None:
+    return largest_region(_robot, A, B) if kind == "largest" else reach_extent(_robot, A, B)
+
+
+@st.cache_resource(max_entries=64, show_spinner=False)
+def _flat(key: str, _robot: Robot) -> int | None:
+    return flat_axis(_robot)
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _lines(key: str, _robot: Robot, _box: Box, _z: float, _points: int) -> list[LineDeviation]:
+    return border_and_middle_lines(_robot, _box.lower[:2], _box.upper[:2], _z, points=_points)
+
+
+__all__ = [
+    "coarse_cells",
+    "field",
+    "flat",
+    "geometry_key",
+    "lines",
+    "normals",
+    "plane",
+    "plane_at",
+    "plane_step",
+    "proposed_box",
+    "reached",
+    "region",
+    "solid",
+    "stiffer",
+]

@@ -1,0 +1,75 @@
+"""Path deviations of Fig. 8: six straight lines on the borders and through the middle of the region's plane."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.errors import WorkspaceError
+from robomill.robot.model import Robot
+from robomill.ui import shell
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui.maps import table as maps_table
+from robomill.ui.maps.state import MapView, factors, maps
+from robomill.units import from_si, unit_label
+from robomill.viz.shares import LinePanel, line_panels
+from robomill.workspace.reach import Box
+
+
+def show(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+    """The six lines with their own slider; the total before the what-if factors stays as ghost."""
+    if maps_fields.flat(robot) not in (None, 2):
+        raise WorkspaceError("The six lines lie in a plane of constant Z_M; this arm moves in another plane.")
+    _, at = (
+        maps_fields.plane_at(robot, view, box)
+        if view.normal == "z"
+        else ("z", min(max(0.0, box.lower[2]), box.upper[2]))
+    )
+    maps_inputs.plane_slider(robot, box, "z", at, unit)
+    _, at = maps_fields.plane_at(robot, maps(robot), box) if view.normal == "z" else ("z", at)
+    found = maps_fields.lines(robot, box, at)
+    scale = factors(view, robot)
+    changed = bool((scale != 1.0).any())
+    panels = []
+    for line in found:
+        by_joint = from_si(line.along_normal(), unit)
+        now = by_joint / scale
+        axis = 0 if abs(line.feed[0]) > 0.5 else 1
+        fixed = "YX"[axis]
+        panels.append(
+            LinePanel(
+                f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = "
+                f"{from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
+                from_si(line.p[:, axis], unit),
+                now.sum(axis=1),
+                now,
+                by_joint.sum(axis=1) if changed else None,
+            )
+        )
+    if not any(np.isfinite(q.total).any() for q in panels):
+        st.info("None of the six lines is reached in this plane: move the slider or change the region.")
+        return
+    titles = [f"{'X' if abs(line.feed[0]) > 0.5 else 'Y'}<sub>M</sub>, {unit_label(unit)}" for line in found]
+    maps_table.figure(
+        line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()),
+        "lines",
+        name="path-lines",
+        table=lambda: _line_columns(panels, robot),
+        alt="Deviation along six straight lines, total and by joint.",
+        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
+        "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
+    )
+
+
+def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:
+    columns: dict[str, Any] = {
+        "line": np.repeat([p.title.replace("<sub>M</sub>", "_M") for p in panels], [len(p.s) for p in panels]),
+        "s": np.concatenate([p.s for p in panels]),
+        "total": np.concatenate([p.total for p in panels]),
+    }
+    for j, number in enumerate(robot.joint_numbers):
+        columns[f"joint {number}"] = np.concatenate([p.by_joint[:, j] for p in panels])
+    return columns

@@ -1,0 +1,289 @@
+"""The pictures of the compliance page: nine maps, joint shares, dominant joint, six lines, comparison."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobomillError
+from robomill.kinematics.decoupled import decoupled
+from robomill.robot.model import Robot
+from robomill.ui import inputs, parts, shell, state
+from robomill.ui.maps import compare as compare_panel
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui.maps import lines as lines_panel
+from robomill.ui.maps import table as maps_table
+from robomill.ui.maps.point import default_point
+from robomill.ui.maps.state import MapView, factors, maps, see
+from robomill.units import from_si, to_si, unit_label
+from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
+from robomill.workspace.fields import ComplianceField
+from robomill.workspace.grid import Grid
+from robomill.workspace.quantities import COMPONENTS
+from robomill.workspace.reach import Box
+
+SHEETS = {
+    "nine": "3 × 3 maps",
+    "shares": "By joint",
+    "dominant": "Who gives most",
+    "lines": "Path lines",
+    "compare": "Compare",
+}
+MATRIX = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
+SHARES = {"direct": "Direct (Fig. 6)", "cross": "Cross (Fig. 7)"}
+ROWS = {"direct": ("xx", "yy", "zz"), "cross": ("xy", "xz", "yz")}
+UM = "um/N"
+
+
+@st.fragment
+def picture() -> None:
+    """The picture with its own controls; a slider step redraws this part alone, a click opens the point's report."""
+    project = state.project()
+    robot, unit = project.setup.robot, project.view.length
+    view = maps(robot)
+    inputs.choice("Picture", "maps:sheet", SHEETS, view.sheet, lambda s: see(sheet=s), label_visibility="collapsed")
+    view = maps(robot)
+    try:
+        box = maps_fields.region(robot, view)
+        if view.sheet == "lines":
+            lines_panel.show(robot, view, box, unit)
+            return
+        normal, at = maps_fields.plane_at(robot, view, box)
+        maps_inputs.plane_slider(robot, box, normal, at, unit)
+        normal, at = maps_fields.plane_at(robot, maps(robot), box)
+        grid = maps_fields.plane(robot, view, box, normal, at)
+        known = maps_fields.field(robot, grid, view.A, view.B)
+        if view.sheet != "compare" and not known.reached.any():
+            st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
+            return
+        _SHEETS[view.sheet](robot, view, box, known, normal, at, unit)
+    except RobomillError as exc:
+        parts.error(exc)
+
+
+def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
+    """A coarse field over the whole region, for scales that stay while the plane moves."""
+    grid = maps_fields.solid(robot, box, 700 if decoupled(robot) is not None else 150)
+    return maps_fields.field(robot, grid, view.A, view.B)
+
+
+def slab(values: FloatArray, normal: str) -> FloatArray:
+    """(nu, nv) from a plane's (nx, ny, nz)."""
+    return values.squeeze(axis="xyz".index(normal))
+
+
+def sheet(
+    rows: list[list[Map | None]],
+    grid: Grid,
+    normal: str,
+    at: float,
+    unit: str,
+    scales: dict[str, Scale],
+    view: MapView,
+    box: Box,
+    known: ComplianceField,
+) -> MapSheet:
+    """Panels over a plane with the point in hand marked."""
+    i = "xyz".index(normal)
+    u_name, v_name = (a for a in "xyz" if a != normal)
+    point = default_point(view, box, known)
+    u, v = (float(from_si(point["xyz".index(a)], unit)) for a in (u_name, v_name))
+    return MapSheet(
+        rows,
+        from_si(getattr(grid, u_name), unit),
+        from_si(getattr(grid, v_name), unit),
+        *maps_inputs.axes_titles(normal, unit),
+        scales,
+        point=(u, v),
+        on_plane=abs(point[i] - at) < 1e-6,
+    )
+
+
+def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, caption: str, alt: str, table: Any) -> None:
+    """Show a sheet; a click in it makes its cell the point in hand and runs the page again."""
+    ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
+    most = {1: 400, 2: 240}.get(len(drawn.rows), 165)
+    least = 88 if len(drawn.scales) == 1 else 130  # the title of a colour bar stands along it
+    panel = int(min(max(700 / columns * ratio, least), most))
+    fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=f"{key}-{normal}", gap_x=0.03, gap_y=34)
+    widget = f"sheet-{key}"
+
+    def take() -> None:
+        found = picked_point(drawn.u, drawn.v, st.session_state.get(widget))
+        if found is not None:
+            st.session_state["maps:clicked"] = (normal, at, found)
+
+    maps_table.figure(fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take)
+    clicked = st.session_state.pop("maps:clicked", None)
+    if clicked is not None:
+        _open(clicked)
+
+
+def _open(clicked: tuple[str, float, tuple[float, float]]) -> None:
+    normal, at, (u, v) = clicked
+    unit = state.project().view.length
+    point = {normal: at}
+    for name, shown in zip((a for a in "xyz" if a != normal), (u, v), strict=True):
+        point[name] = float(to_si(shown, unit))
+    see(point=(point["x"], point["y"], point["z"]))
+    st.rerun(scope="app")
+
+
+def _columns(known: ComplianceField, names: list[str]) -> Any:
+    from robomill.io.maps import map_columns
+
+    return map_columns([known.field(name) for name in names])
+
+
+def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    scale = factors(view, robot)
+    now = maps_fields.stiffer(known, scale)
+    whole = from_si(overview(robot, view, box).total, UM)
+    direct, cross = whole[..., :3], whole[..., 3:]
+    label = f"C, {unit_label(UM)}"
+    if view.common:
+        top = symmetric_limit([whole])
+        scales = {"main": Scale(label, -top, top, "diverging"), "cross": Scale(label, -top, top, "diverging")}
+    else:
+        high, low = symmetric_limit([direct]), float(np.nanmin(direct)) if np.isfinite(direct).any() else 0.0
+        side = symmetric_limit([cross])
+        scales = {
+            "main": Scale(f"direct, {unit_label(UM)}", low, high),
+            "cross": Scale(f"cross, {unit_label(UM)}", -side, side, "diverging"),
+        }
+    rows: list[list[Map | None]] = []
+    for i, names in enumerate(MATRIX):
+        row: list[Map | None] = []
+        for j, c in enumerate(names):
+            k = COMPONENTS.index(c)
+            shown = slab(from_si(now.total[..., k], UM), normal)
+            change = shown - slab(from_si(known.total[..., k], UM), normal)
+            title = f"<b>C<sub>{'xyz'[i]}{'xyz'[j]}</sub></b>  {span(shown)}" + _moved(change)
+            row.append(Map(title, shown, "main" if view.common or i == j else "cross", unit_label(UM)))
+        rows.append(row)
+    about = (
+        "One scale for all nine, centred on zero: the robot's own largest value over the region, so colours stay "
+        "while the "
+        "plane moves."
+        if view.common
+        else "Direct terms on a scale of sizes, cross terms on one centred on zero."
+    )
+    draw(
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
+        "nine",
+        3,
+        normal,
+        at,
+        f"{about} Click a cell for the report of that pose.",
+        "The nine components of the compliance matrix over the plane.",
+        lambda: _columns(now, [f"C_{c}" for c in COMPONENTS]),
+    )
+
+
+def span(values: FloatArray) -> str:
+    """The range of a map in words."""
+    if not np.isfinite(values).any():
+        return "not reached"
+    return f"{np.nanmin(values):.2f} … {np.nanmax(values):.2f}".replace("-", "−")
+
+
+def _moved(change: FloatArray) -> str:
+    if not np.isfinite(change).any() or np.nanmax(np.abs(change)) < 5e-4:
+        return ""
+    return f"  <i>({np.nanmean(change):+.2f} mean)</i>".replace("-", "−")
+
+
+def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    inputs.choice(
+        "Components", "maps:shares", SHARES, view.shares, lambda s: see(shares=s), label_visibility="collapsed"
+    )
+    kind = maps(robot).shares
+    now = maps_fields.stiffer(known, factors(view, robot))
+    index = [COMPONENTS.index(c) for c in ROWS[kind]]
+    whole = from_si(overview(robot, view, box).shares[..., index], UM)
+    top = symmetric_limit([whole])
+    label = f"share, {unit_label(UM)}"
+    scale = Scale(label, 0.0, top) if kind == "direct" else Scale(label, -top, top, "diverging")
+    rows: list[list[Map | None]] = []
+    for c, k in zip(ROWS[kind], index, strict=True):
+        values = from_si(now.shares[..., k], UM)
+        rows.append(
+            [
+                Map(
+                    f"C<sub>{c}</sub> joint {number}  {_mean(values[..., j])}",
+                    slab(values[..., j], normal),
+                    unit=unit_label(UM),
+                )
+                for j, number in enumerate(robot.joint_numbers)
+            ]
+        )
+    words = "sizes, from zero" if kind == "direct" else "signed, centred on zero"
+    draw(
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
+        f"shares-{kind}",
+        robot.n,
+        normal,
+        at,
+        f"Each joint's summand of eq. (16), mean beside its name; one scale, {words}. Joints in a row add up to "
+        f"the map.",
+        "Shares of each joint in the compliance over the plane.",
+        lambda: _columns(now, [f"C_{c}_{j}" for c in ROWS[kind] for j in range(1, robot.n + 1)]),
+    )
+
+
+def _mean(values: FloatArray) -> str:
+    return f"{np.nanmean(values):.2f}".replace("-", "−") if np.isfinite(values).any() else "none"
+
+
+def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    now = maps_fields.stiffer(known, factors(view, robot))
+    position = {number: i for i, number in enumerate(robot.joint_numbers)}
+
+    def panel(title: str, name: str) -> Map:
+        values = slab(now.values(name), normal)
+        return Map(
+            title, np.vectorize(lambda v: position.get(int(v), np.nan) if v == v else np.nan)(values).astype(float)
+        )
+
+    rows: list[list[Map | None]] = [
+        [
+            panel("<b>all three directions</b>", "dominant"),
+            *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["direct"]),
+        ],
+        [None, *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["cross"])],
+    ]
+    scale = Scale("", 0, 1, "joints", joints=robot.joint_numbers)
+    draw(
+        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
+        "dominant",
+        4,
+        normal,
+        at,
+        "The joint with the largest share: where to stiffen first.",
+        "The joint that gives most, over the plane.",
+        lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
+    )
+
+
+def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
+    compare_panel.controls(robot, view)
+    view = maps(robot)
+    rows, scales, rows_of_text, columns = compare_panel.panels(robot, view, known, normal)
+    draw(
+        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
+        "compare",
+        max(len(rows[0]), 2),
+        normal,
+        at,
+        "The compared ones on one scale; the difference to the first on its own, centred on zero.",
+        "The same compliance of up to three robots or compliance sets, and the differences.",
+        lambda: columns,
+    )
+    parts.facts(rows_of_text)
+
+
+_SHEETS = {"nine": _nine, "shares": _shares, "dominant": _dominant, "compare": _compare}

@@ -1,0 +1,342 @@
+"""The workspace page: reach and dexterity as planes, two planes, or voxels; the largest machining box."""
+
+from __future__ import annotations
+
+import html
+import re
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.errors import RobomillError
+from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.forward import joint_frames
+from robomill.robot.model import Robot
+from robomill.ui import inputs, parts, shell, state
+from robomill.ui.maps import fields as maps_fields
+from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui.maps import table as maps_table
+from robomill.ui.maps.state import MapView, maps, see
+from robomill.units import UNITS, format_si, from_si, to_si, unit_label
+from robomill.viz.arm import ArmScene, arm_figure
+from robomill.viz.maps import Map, MapSheet, Scale, sheet_figure
+from robomill.viz.theme import palette
+from robomill.viz.voxels import voxel_trace, widen, wire_box
+from robomill.workspace.fields import ComplianceField
+from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
+from robomill.workspace.quantities import Quantity, quantity
+from robomill.workspace.reach import Box, against_paper
+
+QUANTITIES = ("reach", "det_J", "manipulability", "inverse_condition", "smallest_singular_value", "limit_distance")
+PICTURES = {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}
+SIGNED = ("det_J",)
+
+
+def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[parts.Tile]:
+    """Share in reach, least determinant, nearest limit, largest box."""
+    share = float(known.reached.mean())
+    det = np.abs(known.det_J[known.reached])
+    what = quantity(robot, "det_J")
+    least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
+    limit = known.values("limit_distance")
+    nearest = f"{100 * float(np.nanmin(limit)):.0f} %" if np.isfinite(limit).any() else "not reached"
+    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    size = "none" if largest is None else " × ".join(f"{v:.1f}" for v in largest.size if v > 1e-6) + " m"
+    note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
+    singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
+    return [
+        parts.Tile(
+            "Region in reach",
+            f"{100 * share:.0f} %",
+            f"of {box_size(box.size, unit)} {unit_label(unit)}",
+            tone="ok" if share > 0.999 else "tight" if share > 0 else "out",
+        ),
+        parts.Tile(
+            "Least |det(J)|",
+            least,
+            "a singularity is near" if singular else "no singularity in this region" if len(det) else "",
+        ),
+        parts.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
+        parts.Tile("Largest box in reach", size, note, kind="computed"),
+    ]
+
+
+def box_size(size: FloatArray, unit: str) -> str:
+    """``1200 x 600 x 500`` without its unit; a flat box has two numbers."""
+    digits = 0 if unit == "mm" else 1
+    return " × ".join(f"{from_si(float(v), unit):.{digits}f}" for v in size if v > 1e-6) or "0"
+
+
+def _against(box: Box, robot: Robot, unit: str) -> str:
+    if maps_fields.flat(robot) is not None:
+        return "in the plane of the arm"
+    ratio = against_paper(box)
+    turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
+    words = "holds" if ratio["holds_paper_box"] else "turned by 90° holds" if turned else "does not hold"
+    return f"{words} the paper's {box_size(PAPER_BOX_SIZE, unit)} · {ratio['volume_ratio']:.1f} × its volume"
+
+
+def sentence(robot: Robot, known: ComplianceField | None) -> str:
+    """What can be said of the region in one line."""
+    if known is None:
+        return "Nothing is in reach here."
+    share = float(known.reached.mean())
+    if share == 0:
+        return f"The arm reaches nothing of this region: {_why(known)}"
+    det = known.det_J[known.reached]
+    crosses = bool((det > 0).any() and (det < 0).any())
+    where = "all of this region" if share > 0.999 else f"{100 * share:.0f} % of this region"
+    fit = "passes a singularity" if crosses else "meets no singularity"
+    return f"The arm reaches {where} and {fit} there."
+
+
+def _why(known: ComplianceField) -> str:
+    """Why the middle of the region is not reached."""
+    from robomill.kinematics.inverse import inverse_kinematics
+    from robomill.kinematics.transforms import pose_from_world
+
+    middle = [float(axis[len(axis) // 2]) for axis in (known.grid.x, known.grid.y, known.grid.z)]
+    reason = inverse_kinematics(known.robot, pose_from_world([*middle, known.A, known.B])).reason()
+    return f"at its middle, {reason}." if reason else "choose another plane."
+
+
+def controls(robot: Robot, view: MapView, unit: str) -> None:
+    """The left column: quantity, region, tilt, plane, the meaning of it all."""
+    names = {name: quantity(robot, name).title for name in QUANTITIES}
+    inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: see(quantity=q), horizontal=False)
+    what = quantity(robot, view.quantity)
+    st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
+    maps_inputs.where(robot, view, unit)
+    parts.note(maps_inputs.tilt_note(robot))
+
+
+def formula_html(formula: str) -> str:
+    """A formula with its indices set low and omega as a letter."""
+    text = html.escape(formula, quote=False).replace("omega_", "ω_").replace("sigma_", "σ_")
+    return re.sub(r"([A-Za-zσωθ])_(\w+)", r"\1<sub>\2</sub>", text)
+
+
+def box_card(robot: Robot, view: MapView, unit: str) -> None:
+    """The largest box beside the paper's, with its place."""
+    st.markdown("**Machining boxes**")
+    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    rows = []
+    digits = 0 if unit == "mm" else 1
+    flat = maps_fields.flat(robot) is not None
+    for name, box, kind in (("largest in reach", largest, "computed"), ("the paper's", Box(*PAPER_BOX), "paper")):
+        if box is None or (flat and kind == "paper"):
+            continue
+        corner = ", ".join(f"{from_si(float(v), unit):.{digits}f}" for v in box.lower).replace("-", "−")
+        mark = parts.badge(kind) + (" place in Y " + parts.badge("assumed") if kind == "paper" else "")
+        rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
+    parts.facts(rows)
+    if largest is not None and view.region != "largest":
+        st.button(
+            "Show the largest box",
+            on_click=see,
+            kwargs={"region": "largest", "at": None, "point": None},
+            icon=":material/crop_free:",
+            key="maps:largest",
+        )
+    parts.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
+
+
+@st.fragment
+def picture() -> None:
+    """The picture with its own controls; a slider step redraws this part alone."""
+    project = state.project()
+    robot, unit = project.setup.robot, project.view.length
+    view = maps(robot)
+    inputs.choice(
+        "Picture", "maps:picture", PICTURES, view.picture, lambda p: see(picture=p), label_visibility="collapsed"
+    )
+    view = maps(robot)
+    try:
+        box = maps_fields.region(robot, view)
+        {"plane": _plane, "pair": _pair, "solid": _solid}[view.picture](robot, view, box, unit)
+    except RobomillError as exc:
+        parts.error(exc)
+
+
+def _plane(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+    normal, at = maps_fields.plane_at(robot, view, box)
+    maps_inputs.plane_slider(robot, box, normal, at, unit)
+    normal, at = maps_fields.plane_at(robot, maps(robot), box)
+    _sheet(robot, view, box, normal, [at], unit, "plane")
+
+
+def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+    normal, _ = maps_fields.plane_at(robot, view, box)
+    i = "xyz".index(normal)
+    low, high = float(box.lower[i]), float(box.upper[i])
+    if high - low < 1e-9:
+        _sheet(robot, view, box, normal, [low], unit, "pair")
+        parts.note("The region has no depth: there is only one plane.")
+        return
+    first, second = view.pair if view.pair and low <= min(view.pair) and max(view.pair) <= high else (low, high)
+    left, right = st.columns(2, gap="large")
+    name, step = normal.upper() + "ₘ", float(f"{(high - low) / 50:.1g}")
+    for k, (column, at) in enumerate(((left, first), (right, second))):
+        with column:
+            ends = [float(from_si(v, unit)) for v in (low, high, at)]
+            inputs.slider(
+                f"{name} {'left' if k == 0 else 'right'}, {unit_label(unit)}",
+                f"maps:pair:{k}:{normal}:{unit}",
+                ends[0],
+                ends[1],
+                ends[2],
+                lambda v, k=k: _put_pair(k, to_si(v, unit), (first, second)),  # type: ignore[misc]
+                step=float(from_si(step, unit)),
+                form="%.0f" if unit == "mm" else "%.2f",
+            )
+    first, second = maps(robot).pair or (first, second)
+    _sheet(robot, view, box, normal, [first, second], unit, "pair")
+
+
+def _put_pair(k: int, at: float, now: tuple[float, float]) -> None:
+    see(pair=(at, now[1]) if k == 0 else (now[0], at))
+
+
+def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float], unit: str, key: str) -> None:
+    """One or two planes of the quantity on a scale that stays while they move."""
+    what = quantity(robot, view.quantity)
+    maps_row, grid = [], None
+    for at in ats:
+        grid = maps_fields.plane(robot, view, box, normal, at)
+        values = maps_fields.field(robot, grid, view.A, view.B).values(what.name)
+        shown = from_si(values, what.unit).squeeze(axis="xyz".index(normal))
+        maps_row.append(
+            Map(f"{what.title}, {maps_inputs.plane_title(normal, at, unit)}", shown, unit=unit_label(what.unit))
+        )
+    assert grid is not None
+    u_name, v_name = (a for a in "xyz" if a != normal)
+    u, v = from_si(getattr(grid, u_name), unit), from_si(getattr(grid, v_name), unit)
+    titles = maps_inputs.axes_titles(normal, unit)
+    sheet = MapSheet([maps_row], u, v, *titles, {"main": scale_of(robot, view, box, what)})
+    ratio = float(np.ptp(v) / max(np.ptp(u), 1e-9)) if len(u) > 1 else 1.0
+    width = 760 if len(ats) == 1 else 370
+    height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
+    fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
+    maps_table.figure(
+        fig,
+        f"workspace-{key}",
+        name=f"workspace-{what.name}",
+        alt=f"{what.title} over a plane of the workspace.",
+        table=lambda: plane_columns(robot, view, grid, what),
+        caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
+    )
+
+
+def plane_columns(robot: Robot, view: MapView, grid: Grid, what: Quantity) -> dict[str, FloatArray]:
+    """The table twin of a plane."""
+    from robomill.io.maps import map_columns
+
+    return map_columns([maps_fields.field(robot, grid, view.A, view.B).field(what.name)])
+
+
+def scale_of(robot: Robot, view: MapView, box: Box, what: Quantity) -> Scale:
+    """The scale of a quantity over the whole region: signed ones about zero, sizes from least to largest."""
+    if what.name == "reach":
+        return Scale("reach", 0, 1, "reach")
+    known = maps_fields.field(robot, maps_fields.solid(robot, box, _overview(robot)), view.A, view.B)
+    values = from_si(known.values(what.name), what.unit)
+    values = values[np.isfinite(values)]
+    title = f"{what.title}, {unit_label(what.unit)}" if unit_label(what.unit) else what.title
+    digits = UNITS[what.unit].digits
+    if len(values) == 0:
+        return Scale(title, 0.0, 1.0, digits=digits)
+    low, high = float(values.min()), float(values.max())
+    if what.name in SIGNED and low < 0 < high:
+        return Scale(title, low, high, "diverging", digits=digits)
+    return Scale(title, low, high, digits=digits)
+
+
+def _overview(robot: Robot) -> int:
+    return 700 if decoupled(robot) is not None else 150
+
+
+def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+    what = quantity(robot, view.quantity)
+    grid = maps_fields.solid(robot, box)
+    known = maps_fields.field(robot, grid, view.A, view.B)
+    if not known.reached.any():
+        parts.note(sentence(robot, known))
+        return
+    values = None if what.name == "reach" else from_si(known.values(what.name), what.unit)
+    mask = known.reached
+    caption = "Everything in reach at this tilt."
+    if values is not None:
+        low, high = float(np.nanmin(values)), float(np.nanmax(values))
+        share = _level(low, high, view, unit_label(what.unit))
+        cut = low + share * (high - low)
+        mask = mask & (np.nan_to_num(values, nan=-np.inf) >= cut)
+        caption = f"Cells where {what.title} is at least {cut:.3g} {unit_label(what.unit)}.".replace(" .", ".")
+    _solid_figure(robot, view, box, grid, mask, values, what, caption)
+
+
+def _level(low: float, high: float, view: MapView, unit: str) -> float:
+    key = "maps:level"
+    label = f"Cells from the lowest value, {low:.3g}, up to the highest, {high:.3g} {unit}".replace("-", "−")
+    inputs.slider(label, key, 0.0, 1.0, view.level, lambda v: see(level=v), step=0.02, form="percent")
+    return float(st.session_state.get(key, view.level))
+
+
+def _solid_figure(
+    robot: Robot,
+    view: MapView,
+    box: Box,
+    grid: Grid,
+    mask: BoolArray,
+    values: FloatArray | None,
+    what: Quantity,
+    caption: str,
+) -> None:
+    dark = shell.dark()
+    p = palette(dark)
+    theta = _standing(robot, view, box)
+    fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=dark, height=560, revision="workspace-solid")
+    signed = values is not None and what.name in SIGNED and bool(np.nanmin(values) < 0 < np.nanmax(values))
+    limits = None
+    if values is not None:
+        top = float(np.nanmax(np.abs(values)))
+        limits = (-top, top) if signed else (float(np.nanmin(values)), float(np.nanmax(values)))
+    if mask.any():
+        fig.add_trace(
+            voxel_trace(
+                mask,
+                (grid.x, grid.y, grid.z),
+                dark=dark,
+                values=values,
+                limits=limits,
+                signed=signed,
+                title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "),
+                opacity=0.25 if values is None else 1.0,
+            )
+        )
+    low, high = np.array(box.lower), np.array(box.upper)
+    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    if largest is not None and view.region != "paper":
+        fig.add_traces(wire_box(largest.lower, largest.upper, p.accent, "largest box"))
+    if view.region == "paper" or (robot.n >= 5 and view.region != "own"):
+        fig.add_traces(wire_box(*PAPER_BOX, p.warm, "the paper's box"))
+        low, high = np.minimum(low, PAPER_BOX[0]), np.maximum(high, PAPER_BOX[1])
+    widen(fig, low, high)
+    maps_table.figure(
+        fig,
+        "workspace-solid",
+        name=f"workspace-{what.name}",
+        caption=caption,
+        alt="The arm with the cells of its workspace as voxels.",
+        table=lambda: plane_columns(robot, view, grid, what),
+    )
+
+
+def _standing(robot: Robot, view: MapView, box: Box) -> FloatArray:
+    """A configuration in the middle of the region, so that the arm is drawn where it works."""
+    from robomill.kinematics.inverse import inverse_kinematics
+    from robomill.kinematics.transforms import pose_from_world
+
+    middle = 0.5 * (np.asarray(box.lower) + box.upper)
+    found = inverse_kinematics(robot, pose_from_world([*middle, view.A, view.B]))
+    return found.theta if bool(found.reached) else np.asarray(robot.home)

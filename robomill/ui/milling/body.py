@@ -1,0 +1,183 @@
+"""The milling page's body: inputs on the left, one scrubber, and three questions that share it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import streamlit as st
+
+from robomill.cutting.conditions import cut_warnings
+from robomill.cutting.milling import ForceSpread
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
+from robomill.ui import cache, inputs, parts, state
+from robomill.ui.milling import cut as cut_panel
+from robomill.ui.milling import film, force_view
+from robomill.ui.milling import force as force_panel
+from robomill.ui.milling import metrology as metrology_panel
+from robomill.ui.milling import pictures as picture_panel
+from robomill.ui.milling import scrubber as linked
+from robomill.ui.milling import springs as springs_panel
+from robomill.ui.milling import station as station_views
+from robomill.ui.parts import Tile
+from robomill.ui.start import evidence as evidence_panel
+
+QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
+QUESTION = "milling.question"
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _spread(digest: str, _result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread | None]:
+    return alloy_spread(_result), peak_force(_result)
+
+
+def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread | None]:
+    """Range over the alloy's rows and over a revolution, from the cache."""
+    return _spread(result.setup.digest(), result)
+
+
+def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:
+    """The page's tiles with the band of the alloy beside the verdict."""
+    unit = state.project().view.length
+    band = linked.band_words(spread_of(result)[0], result, unit)
+    return [*made[:-1], dataclasses.replace(made[-1], note=f"{made[-1].note} · {band}")] if band else made
+
+
+def verdict_link(result: SimulationResult) -> None:
+    """The verdict as a sentence that leads to its place."""
+    st.button(
+        result.verdict.sentence,
+        key="milling.verdict",
+        icon=":material/my_location:",
+        type="tertiary",
+        on_click=_land,
+        args=(result,),
+        disabled=result.worst < 0,
+        help="Go there: code line, arm, force and section",
+    )
+
+
+def _land(result: SimulationResult) -> None:
+    linked.go_to(result, result.worst)
+    st.session_state[QUESTION] = "tip"
+
+
+def inputs_column(result: SimulationResult | None) -> None:
+    """Force, cutter, stock, what else gives, tolerance."""
+    setup = state.project().setup
+    with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
+        force_panel.inputs_panel()
+        if result is not None and result.coupling is not None and not result.coupling.converged:
+            st.warning(result.coupling.sentence, icon=":material/warning:")
+    with st.expander("**Cutter**", expanded=True, key="milling.open.cutter"):
+        cut_panel.cutter_inputs()
+        if result is not None:
+            for words in dict.fromkeys(
+                [*setup.stock_block.warnings(setup.cutter), *cut_warnings(setup.cutter, result.conditions)]
+            ):
+                st.warning(words, icon=":material/warning:")
+    with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
+        cut_panel.stock_inputs()
+    with st.expander("**Beside the joints**", expanded=False, key="milling.open.springs"):
+        springs_panel.inputs_panel()
+    with st.expander("**Tolerance and accuracy**", expanded=True, key="milling.open.accuracy"):
+        cut_panel.judgement_inputs()
+
+
+@st.fragment
+def workbench(digest: str, dark: bool) -> None:
+    """Everything below the tiles. Runs alone while the scrubber moves; a changed set-up runs the whole page."""
+    project = state.project()
+    if project.setup.digest() != digest:
+        st.rerun()
+    result = cache.result(project.setup)
+    spread, peak = spread_of(result)
+    left, right = parts.thirds()
+    with left:
+        inputs_column(result)
+    with right:
+        current = st.session_state.get(QUESTION, "part")
+        inputs.choice("Question", "milling.ask", QUESTIONS, current, _ask, label_visibility="collapsed")
+        question = st.session_state.get(QUESTION, "part")
+        with st.container(border=True):
+            i = linked.scrubber(result)
+            linked.where(result, i, spread)
+        with st.container(border=True):
+            if question == "force":
+                force_view.force_plot(result, i, spread, peak, dark)
+                force_view.facts(result, i, peak)
+            elif question == "tip":
+                linked.deviation_plot(result, i, spread, dark)
+            else:
+                picture_panel.panel(result, i, dark)
+        if question == "force":
+            _engaged(result, i, spread, peak, dark)
+        elif question == "tip":
+            _code_and_arm(result, i, dark)
+        else:
+            with st.container(border=True):
+                metrology_panel.section_facts(station_views.section(result, i, dark))
+    if question == "force":
+        st.subheader("How sure is the force?")
+        force_view.alloy_table(result, i, spread)
+        force_view.worth_knowing(result)
+    elif question == "tip":
+        _tip(result, i, spread, peak, dark)
+    else:
+        _part(result, i, spread, dark)
+
+
+def _ask(question: str) -> None:
+    st.session_state[QUESTION] = question
+
+
+def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:
+    code, arm = parts.split([1, 1.15], "code-arm")
+    with code, st.container(border=True, height="stretch"):
+        st.markdown("**Program**")
+        station_views.code(result, i)
+    with arm, st.container(border=True, height="stretch"):
+        station_views.arm(result, i, dark)
+
+
+def _engaged(
+    result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool
+) -> None:
+    dial, along = parts.split([1, 1.35], "force-engagement")
+    with dial, st.container(border=True, height="stretch"):
+        station_views.dial(result, i, spread, peak, dark)
+    with along, st.container(border=True, height="stretch"):
+        force_view.engagement_plot(result, i, dark)
+        force_view.coupling_facts(result)
+
+
+def _tip(result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool) -> None:
+    dial, section = parts.split([1, 1.9], "dial-section")
+    with dial, st.container(border=True, height="stretch"):
+        station_views.dial(result, i, spread, peak, dark)
+    with section, st.container(border=True, height="stretch"):
+        station_views.section(result, i, dark)
+    shares, lines = parts.split([1.3, 1], "shares-lines")
+    with shares, st.container(border=True, height="stretch"):
+        station_views.shares(result, i, dark)
+    with lines, st.container(border=True, height="stretch"):
+        st.markdown("**Line by line, at the station**")
+        station_views.lines_of(result, i)
+
+
+def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
+    along, spread_over = parts.split([1, 1], "profile-histogram")
+    with along, st.container(border=True, height="stretch"):
+        st.markdown("**Along the groove**")
+        metrology_panel.profile_panel(result, spread, dark)
+    with spread_over, st.container(border=True, height="stretch"):
+        st.markdown("**Over the whole surface**")
+        metrology_panel.spread_panel(result, dark)
+    if evidence_panel.is_papers_path(state.project()):
+        st.subheader("The paper's test, and ours")
+        with st.container(border=True):
+            evidence_panel.panel(state.project(), dark)
+    st.subheader("Take it away")
+    picture_panel.downloads(result, i)
+    with st.expander("Film of the cut", icon=":material/movie:", key="milling.open.film"):
+        film.panel(result, dark)

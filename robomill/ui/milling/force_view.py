@@ -1,0 +1,184 @@
+"""How hard it pushes: force along the path with its peak and its band, engagement, the alloy's rows, the coupling."""
+
+from __future__ import annotations
+
+import html
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.cutting.milling import ForceSpread, ProcessForce
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import AlloySpread
+from robomill.ui import parts, state
+from robomill.ui.milling import scrubber as linked
+from robomill.units import format_si, from_si
+from robomill.viz.engagement import ForceCurves, engagement_figure, force_figure
+
+NAMES = ("feed", "feed-normal", "axial")
+
+
+def force_plot(
+    result: SimulationResult,
+    i: int,
+    spread: AlloySpread | None,
+    peak: ForceSpread | None,
+    dark: bool,
+    height: int = 360,
+) -> None:
+    """Mean force by component along the cut; shaded: the alloy's rows; dotted: the extremes of a revolution."""
+    unit = state.project().view.length
+    s = from_si(result.path.s, unit)
+    curves = ForceCurves(
+        s,
+        linked.at_feed(result, result.force_components),
+        unit,
+        peak=None if peak is None else (linked.at_feed(result, peak.low), linked.at_feed(result, peak.high)),
+        alloy=_band(result, spread),
+    )
+    words = "Mean force on the tool; feed-normal is the left of the feed, axial positive out of the part."
+    parts.figure(
+        force_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
+        "force",
+        name="force",
+        table=lambda: force_columns(result, peak),
+        caption=words,
+        alt="Mean force on the tool along the path by component, with the peak of a turn and the alloy's band.",
+    )
+
+
+def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatArray, FloatArray] | None:
+    if spread is None or len(spread.titles) < 2:
+        return None
+    rows = np.einsum("mij,rmi->rmj", result.R_MF, spread.F)
+    return linked.at_feed(result, rows.min(axis=0)), linked.at_feed(result, rows.max(axis=0))
+
+
+def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[str, FloatArray]:
+    """The force along the path as columns."""
+    c = result.conditions
+    columns: dict[str, FloatArray] = {
+        "line": result.path.block.astype(float),
+        "station_mm": from_si(result.path.s, "mm"),
+        "depth_mm": from_si(c.a_p, "mm"),
+        "phi_st_deg": from_si(c.phi_st, "deg"),
+        "phi_ex_deg": from_si(c.phi_ex, "deg"),
+    }
+    for k, name in enumerate(NAMES):
+        columns[f"F_{name.replace('-', '_')}_N"] = result.force_components[:, k]
+        if peak is not None:
+            columns[f"low_{name.replace('-', '_')}_N"] = peak.low[:, k]
+            columns[f"high_{name.replace('-', '_')}_N"] = peak.high[:, k]
+    return columns
+
+
+def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
+    """Mean and peak at the station, side by side, so that nobody takes one for the other."""
+    if i < 0:
+        return
+    mean = result.force_components[i]
+    rows = [("Mean force", format_si(float(np.linalg.norm(mean)), "N"), _three(mean) + ", what deflects here")]
+    if peak is not None:
+        worst = peak.at_peak[i]
+        rows.append(
+            (
+                "Peak of a turn",
+                format_si(float(np.linalg.norm(worst)), "N"),
+                _three(worst) + ", what shakes: teeth alike, no run-out",
+            )
+        )
+    c = result.conditions
+    if bool(c.engaged[i]) and bool(c.n_s[i] > 0):
+        f_z = c.v_f[i] / c.n_s[i] / result.setup.cutter.flutes
+        rows.append(
+            (
+                "Chip",
+                format_si(float(f_z), "mm/tooth", 3),
+                f"{format_si(float(c.n_s[i]), '1/min')}, {format_si(float(c.v_f[i]), 'mm/min')}",
+            )
+        )
+    parts.facts(rows)
+
+
+def _three(force: FloatArray) -> str:
+    return ", ".join(f"{name} {format_si(float(v), 'N', sign=True)}" for name, v in zip(NAMES, force, strict=True))
+
+
+def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 300) -> None:
+    """Arc and depth along the path."""
+    unit, c = state.project().view.length, result.conditions
+    engaged = c.engaged[:, None]
+    arc = np.where(engaged, np.stack([c.phi_st, c.phi_ex], axis=1), np.nan)
+    s = from_si(result.path.s, unit)
+    depth = np.where(result.path.cutting, from_si(c.a_p, unit), np.nan)
+    source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
+    parts.figure(
+        engagement_figure(
+            s,
+            from_si(arc[:, 0], "deg"),
+            from_si(arc[:, 1], "deg"),
+            depth,
+            unit,
+            dark=dark,
+            height=height,
+            station=float(s[i]) if i >= 0 else None,
+        ),
+        "engagement",
+        name="engagement",
+        table=lambda: force_columns(result, None),
+        caption=f"Arc of engagement and depth, {source}.",
+        alt="Arc of engagement and axial depth along the path.",
+    )
+
+
+def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
+    """Every coefficient row of the alloy: its force at the station and the deviation it leads to."""
+    force = result.setup.force
+    if spread is None or not isinstance(force, ProcessForce) or i < 0:
+        parts.note("A band comes with a force from the material: the other rows of the same alloy.")
+        return
+    unit = state.project().view.length
+    materials = (force.material, *force.alternatives)
+    F = np.einsum("ij,ri->rj", result.R_MF[i], spread.F[:, i])
+    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
+    body = ""
+    for row, (material, known) in enumerate(zip(materials, spread.axial, strict=True)):
+        shown = [format_si(float(v), "N", 0, sign=True).partition(" ")[0] for v in F[row]]
+        cells = "".join(f'<td class="n">{v}</td>' for v in shown[:2])
+        axial = shown[2] if known else "not given"
+        strong = ' style="font-weight:600"' if row == 0 else ""
+        body += (
+            f"<tr{strong}><td>{html.escape(material.title)}</td>{cells}<td class='n'>{axial}</td>"
+            f"<td class='n'>{format_si(float(largest[row]), unit)}</td>"
+            f"<td>{parts.badge(material.provenance.kind)}{' in force' if row == 0 else ''}</td></tr>"
+        )
+    head = "".join(f'<th class="n">{name}, N</th>' for name in NAMES)
+    st.html(
+        f'<table class="rm-facts"><tr><th>Row</th>{head}<th class="n">tip off, max</th><th></th></tr>{body}</table>'
+    )
+    parts.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
+
+
+def coupling_facts(result: SimulationResult) -> None:
+    """What the iteration of force and deflection did."""
+    coupling = result.coupling
+    if coupling is None:
+        return
+    if not coupling.converged:
+        return  # said beside its switch
+    known = not np.isnan(coupling.contraction)
+    rate = f"each change {coupling.contraction:.2g} of the last" if known else "one step sufficed"
+    parts.facts(
+        [
+            ("Coupling", f"{coupling.iterations} iterations", rate),
+            ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
+        ]
+    )
+
+
+def worth_knowing(result: SimulationResult) -> None:
+    """Notes on force, stock and cutter."""
+    for words in result.notes:
+        if result.coupling is None or words != result.coupling.sentence:
+            parts.note(f"• {html.escape(words)}")

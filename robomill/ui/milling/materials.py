@@ -1,0 +1,183 @@
+"""Material rows: pick one, see its source, edit its coefficients, add a row of one's own."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.cutting.materials import COEFFICIENT_UNITS, KIENZLE, MECHANISTIC, Material
+from robomill.cutting.materials import alternatives as others_of
+from robomill.cutting.milling import ProcessForce
+from robomill.errors import CuttingError
+from robomill.io.force_models import PROCESS
+from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
+from robomill.provenance import Provenance
+from robomill.ui import boxes, inputs, parts, state
+from robomill.ui.editors import table_editor
+from robomill.units import from_si, to_si, unit_label
+
+OWN = "milling.materials"
+
+
+@st.cache_resource(show_spinner=False)
+def _samples() -> tuple[Material, ...]:
+    return tuple(sample_materials())
+
+
+def rows(kind: str) -> dict[str, Material]:
+    """Every row of a kind ("mechanistic", "kienzle"): the samples, then those of this session."""
+    every = [*_samples(), *st.session_state.get(OWN, {}).values()]
+    force = state.project().setup.force
+    if isinstance(force, ProcessForce):
+        every.append(force.material)  # a project may bring a row of its own
+    return {m.name: m for m in every if m.kind == kind}
+
+
+def model(material: Material, *, axial: bool = True) -> ProcessForce:
+    """The force model of a row, with the other rows of its alloy as its band."""
+    cutter = state.project().setup.cutter
+    found = others_of(material, rows(material.kind).values())
+    return PROCESS[material.kind](cutter, material, found, axial)
+
+
+def picker(force: ProcessForce) -> None:
+    """The row in force with its source, its coefficients and the way to a new one."""
+    material = force.material
+    found = rows(force.kind)
+    inputs.choice(
+        "Material",
+        f"force.material.{force.kind}",
+        {m.name: m.title for m in found.values()},
+        material.name,
+        lambda name: state.change(force=model(found[name], axial=force.axial)),
+        horizontal=False,
+    )
+    others = len(force.alternatives)
+    words = f" The band comes from {others} other rows of {material.alloy}." if others else " No other row: no band."
+    source = material.provenance.source
+    parts.note(f"{parts.badge(material.provenance.kind)} {source}.{words}")
+    left, right = st.columns(2)
+    with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
+        _coefficients(force)
+    with right, st.popover("Add a row", icon=":material/add:", width="stretch"):
+        _add(material)
+    boxes.switch(
+        "Axial pull of the helix",
+        "force.axial_on",
+        force.axial,
+        lambda on: state.change(force=model(material, axial=on)),
+        hint="Off names what the feed force and the feed-normal force do alone.",
+    )
+
+
+def _coefficients(force: ProcessForce) -> None:
+    material = force.material
+    st.markdown(f"**{material.title}**")
+    table_editor(
+        f"material:{material.name}",
+        lambda: coefficient_frame(material),
+        lambda frame: _keep(with_coefficients(material, frame), force.axial, from_editor=True),
+        columns={"value": st.column_config.NumberColumn("value", format="%.6g")},
+        locked=("coefficient", "unit"),
+    )
+    parts.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
+    parts.download(
+        "Row as TOML",
+        lambda: material_to_toml(material),
+        f"{material.name}.toml",
+        "application/toml",
+        key="get:material",
+    )
+
+
+def _add(material: Material) -> None:
+    name = st.text_input("Name of the new row", key="material:name", placeholder="7075 from my own tests")
+    alloy = st.text_input("Alloy (rows of one alloy make the band)", key="material:alloy", value=material.alloy)
+    source = st.text_input("Where the numbers come from", key="material:source", placeholder="our dynamometer, May")
+    st.button(
+        "Add as a copy of this row",
+        key="material:add",
+        icon=":material/add:",
+        on_click=_copy,
+        args=(material, name, alloy, source),
+    )
+    st.file_uploader(
+        "Or a row from a file (.toml)",
+        key="material:file",
+        type=["toml"],
+        max_upload_size=1,
+        on_change=lambda: _from_file(st.session_state.get("material:file")),
+    )
+    inputs.sentence("material:add")
+
+
+def _copy(material: Material, name: str, alloy: str, source: str) -> None:
+    def put() -> None:
+        key = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+        if not key or not source.strip():
+            raise CuttingError("A new row needs a name and where its numbers come from.")
+        if key in rows(material.kind):
+            raise CuttingError(f"There is a row named {key!r} already; choose another name.")
+        _keep(
+            material.replace(
+                name=key, title=name.strip(), alloy=alloy.strip(), provenance=Provenance("user", source.strip())
+            )
+        )
+
+    inputs.attempt("material:add", None, put)
+
+
+def _from_file(file: object) -> None:
+    if file is None:
+        return
+
+    def put() -> None:
+        name = str(getattr(file, "name", "material"))
+        try:
+            text = file.getvalue().decode("utf-8")  # type: ignore[attr-defined]
+        except UnicodeDecodeError:
+            raise CuttingError(f"{name}: this is not a text file; expected a material row (.toml).") from None
+        _keep(material_from_toml(text, name))
+
+    inputs.attempt("material:add", None, put)
+
+
+def _keep(material: Material, axial: bool = True, from_editor: bool = False) -> None:
+    """Add or replace a row of this session and put it in force."""
+    st.session_state[OWN] = {**st.session_state.get(OWN, {}), material.name: material}
+    state.change(force=model(material, axial=axial), from_editor=from_editor)
+
+
+def coefficient_frame(material: Material) -> pd.DataFrame:
+    """One row a coefficient in the units of the trade; empty where the source does not give it."""
+    names = MECHANISTIC if material.kind == "mechanistic" else KIENZLE
+    values = [getattr(material, name) for name in names]
+    units = [COEFFICIENT_UNITS[name] for name in names]
+    return pd.DataFrame(
+        {
+            "coefficient": list(names),
+            "value": [
+                None if v is None else float(f"{from_si(v, u):.10g}") for v, u in zip(values, units, strict=True)
+            ],
+            "unit": [unit_label(u) for u in units],
+        }
+    )
+
+
+def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
+    """``material`` with the table's coefficients, as a row of one's own. Raises CuttingError naming the coefficient."""
+    values: dict[str, float | None] = {}
+    for name, value in zip(frame["coefficient"], frame["value"], strict=True):
+        empty = value is None or value is pd.NA or (isinstance(value, float) and np.isnan(value))
+        values[name] = None if empty else to_si(float(value), COEFFICIENT_UNITS[name])
+    if material.provenance.kind == "user":
+        return material.replace(**values)
+    return material.replace(
+        **values,
+        name=f"{material.name}_edited",
+        title=f"{material.title}, edited",
+        provenance=Provenance("user", f"edited in the app, from: {material.provenance.source}"),
+    )

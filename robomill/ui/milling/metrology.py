@@ -1,0 +1,251 @@
+"""What the measuring room would say: section, profile along the groove, best fit, areas, a measured profile beside."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.errors import RobomillError, SurfaceError
+from robomill.io.profiles import MeasuredProfile, read_profile
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import AlloySpread
+from robomill.surface.groove import GrooveSection
+from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
+from robomill.ui import inputs, parts, state
+from robomill.ui.milling.scrubber import station_m
+from robomill.units import format_si, from_si
+from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
+
+STATIONS, FEW_STATIONS = 41, 13
+MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
+MEASURED = "milling.profile"
+MAX_PROFILE_MB = 10
+
+
+@st.cache_resource(max_entries=16, show_spinner="Measuring the groove along its length")
+def _profile(digest: str, _result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
+    count = STATIONS if len(_result.path) <= MANY_SAMPLES else FEW_STATIONS
+    sections = _result.grooves(np.linspace(0.02, 0.98, count) * float(_result.path.s[-1]))
+    return groove_profile(sections), np.array([s.block for s in sections])
+
+
+def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
+    """The groove at its stations (fewer on a very long program) and the line of each, from the cache."""
+    return _profile(result.setup.digest(), result)
+
+
+def straight(result: SimulationResult) -> bool:
+    """Whether every cut goes the same way, so that the groove is one straight line."""
+    step = np.diff(result.path.p, axis=0)[result.path.cutting[1:]]
+    length = np.linalg.norm(step, axis=1)
+    along = step[length > 0] / length[length > 0, None]
+    return bool(len(along) and np.abs(np.cross(along, along[0])).max() < 1e-6)
+
+
+def section_facts(groove: GrooveSection | None) -> None:
+    """The dimensions of the section, as a measuring report lists them."""
+    if groove is None or not len(groove.w):
+        return
+    unit = state.project().view.length
+
+    def length(value: float, sign: bool = False) -> str:
+        return format_si(value, unit, sign=sign) if np.isfinite(value) else "open"
+
+    def wall(side: str) -> tuple[str, str, str]:
+        if getattr(groove, f"open_{side}"):
+            return f"{side.capitalize()} wall", "open", "the cut reaches the stock's side"
+        angle = format_si(getattr(groove, f"wall_{side}_angle"), "deg")
+        form = format_si(getattr(groove, f"wall_{side}_straightness"), "um")
+        return f"{side.capitalize()} wall", angle, f"straight within {form}"
+
+    if groove.note:
+        parts.note(f"{groove.note.capitalize()}.")
+        sides = [
+            (f"{side.capitalize()} wall off", length(off, True), "its ideal place, positive to the left of the feed")
+            for side, off in (
+                ("left", groove.wall_left - groove.wall_left_ideal),
+                ("right", groove.wall_right - groove.wall_right_ideal),
+            )
+        ]
+    else:
+        sides = [("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed")]
+    parts.facts(
+        [
+            ("Width", length(groove.width), ""),
+            ("Depth", length(groove.depth), ""),
+            *sides,
+            ("Floor", length(groove.floor_error, True), f"tilted by {format_si(groove.floor_tilt, 'deg', 3)} across"),
+            wall("left"),
+            wall("right"),
+        ]
+    )
+
+
+def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool, height: int = 320) -> None:
+    """Centre offset and floor along the groove, best fit, and a measured profile over it."""
+    unit = state.project().view.length
+    found, block = profile(result)
+    measured = st.session_state.get(MEASURED)
+    fit = None
+    if straight(result) and np.isfinite(found.centre_offset).sum() >= 3:
+        fit = fit_groove(found)
+    curves = ProfileCurves(
+        from_si(found.station, unit),
+        from_si(found.centre_offset, unit),
+        from_si(found.floor_error, unit),
+        unit,
+        float(from_si(result.setup.tolerance, unit)),
+        band=None if spread is None or len(spread.titles) < 2 else from_si(offset_band(result, spread, found), unit),
+        fit=None if fit is None else from_si(found.centre_offset - fit.side.residual, unit),
+        measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
+    )
+    missing = f" {found.missing} of {len(found.station)} stations have no groove to measure." if found.missing else ""
+    parts.figure(
+        profile_figure(curves, dark=dark, height=height, station=float(from_si(station_m(result), unit)), block=block),
+        "profile",
+        name="groove-profile",
+        table=lambda: profile_columns(found, block),
+        caption="Middle line and floor of the groove against the ideal ones." + missing,
+        alt="Centre offset and floor error of the groove along its length, with the tolerance.",
+    )
+    if fit is not None:
+        side, floor = fit.side, fit.floor
+        parts.facts(
+            [
+                ("Shift", f"{format_si(side.offset, unit, sign=True)}", "zeroing the part again would take it out"),
+                ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
+                (
+                    "Form error",
+                    format_si(side.form_error, "um"),
+                    f"left after both; the floor keeps {format_si(floor.form_error, 'um')}",
+                ),
+            ]
+        )
+    else:
+        parts.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
+    _overlay(found, measured, unit)
+
+
+def offset_band(result: SimulationResult, spread: AlloySpread, found: GrooveProfile) -> FloatArray:
+    """(2, q) m: lowest and highest centre offset over the alloy's rows at the profile's stations."""
+    i = np.array([result.sample_at(float(s)) for s in found.station])
+    normal = result.R_MF[i][:, :, 1]
+    moved = np.einsum("rqc,qc->rq", spread.delta[:, i] - result.delta[i], normal)
+    every = found.centre_offset + moved
+    return np.stack([every.min(axis=0), every.max(axis=0)])
+
+
+def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:
+    """The profile as a table; its first two columns are what a measured profile looks like, too."""
+    names = {
+        "station_mm": found.station,
+        "offset_mm": found.centre_offset,
+        "floor_mm": found.floor_error,
+        "width_mm": found.width,
+        "depth_mm": found.depth,
+    }
+    return {**{k: from_si(v, "mm") for k, v in names.items()}, "line": block}
+
+
+def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) -> None:
+    with st.popover("Lay a measured profile over it", icon=":material/straighten:", type="secondary"):
+        st.file_uploader(
+            "Measured profile (.csv): station_mm, offset_mm",
+            key="profile:file",
+            max_upload_size=MAX_PROFILE_MB,
+            on_change=lambda: _take(st.session_state.get("profile:file")),
+        )
+        parts.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
+        if measured is not None:
+            st.button(
+                "Take it away",
+                key="profile:clear",
+                icon=":material/close:",
+                on_click=lambda: st.session_state.pop(MEASURED, None),
+            )
+    inputs.sentence("profile:file")
+    if measured is None:
+        return
+    for words in measured.findings:
+        st.warning(words, icon=":material/straighten:")
+    try:
+        against = compare_profile(found, measured.station, measured.offset)
+    except RobomillError as exc:
+        parts.error(exc)
+        return
+    outside = f"; {against.outside} measured stations lie outside" if against.outside else ""
+    parts.facts(
+        [
+            (
+                measured.name,
+                f"{format_si(against.mean, unit, sign=True)}",
+                f"mean of prediction minus measurement; it gives {100 * against.explained:.0f} % of what was measured",
+            ),
+            (
+                "Largest miss",
+                format_si(against.largest, unit, sign=True),
+                f"RMS {format_si(against.rms, unit)} over {len(against.station)} stations{outside}",
+            ),
+        ]
+    )
+
+
+def _take(file: Any) -> None:
+    if file is None:
+        inputs.accept("profile:file")
+        return
+
+    def read() -> None:
+        try:
+            text = file.getvalue().decode("utf-8-sig")
+        except UnicodeDecodeError:
+            raise SurfaceError(f"{file.name}: this is not a text file; expected a CSV table.") from None
+        # Without a line break the text could be taken for the name of a file.
+        st.session_state[MEASURED] = read_profile(text + "\n", name=file.name)
+
+    inputs.attempt("profile:file", None, read)
+
+
+def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> None:
+    """How the error is spread over the cut area: histogram, volumes, share out of tolerance."""
+    tolerance = result.setup.tolerance
+    try:
+        error = result.error
+    except RobomillError:
+        parts.note("There is no surface to measure: the reason stands beside the picture.")
+        return
+    largest = float(np.abs(error.worst).max())
+    limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)
+    edges, area = error.histogram(48, limit)
+    share = 100.0 * area / error.cut_area if error.cut_area else area
+    parts.figure(
+        histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), "µm", dark=dark, height=height),
+        "histogram",
+        name="error-histogram",
+        table=lambda: {
+            "from_um": from_si(edges[:-1], "um"),
+            "to_um": from_si(edges[1:], "um"),
+            "area_mm2": from_si(area, "mm2"),
+            "share_percent": share,
+        },
+        caption="Shortest distance of the machined surface to the ideal one, over the cut area seen from above.",
+        alt="Histogram of the signed error over the cut area.",
+    )
+    out, out_share = error.area_out(tolerance)
+    parts.facts(
+        [
+            ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
+            ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
+            (
+                "Out of tolerance",
+                f"{100 * out_share:.1f} %",
+                f"{format_si(out, 'mm2')} of the {format_si(error.cut_area, 'mm2')} that were cut",
+            ),
+            ("RMS error", format_si(error.rms, "um"), "over the cut area"),
+        ]
+    )
+    for words in result.machined.notes():
+        st.warning(words, icon=":material/layers:")

@@ -1,0 +1,192 @@
+"""Pictures of the machined surface: rendered, beside the ideal one, or turnable; surfaces to take away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.io.meshes import FORMATS, mesh_bytes
+from robomill.report.tables import csv_text, deviation_columns
+from robomill.simulation.result import SimulationResult
+from robomill.ui import cache, inputs, parts, render, state
+from robomill.ui.milling import scrubber as linked
+from robomill.units import format_si, from_si
+from robomill.viz.posed import posed
+from robomill.viz.scene import CAMERAS, SurfacePicture
+from robomill.viz.surfaces import surface_figure
+from robomill.viz.views import Exaggerated, so_far, surface_picture, tip_drawn
+
+HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
+EXTRAS = {
+    "plane": "Section plane",
+    "away": "Cut open",
+    "ghost": "Ideal as ghost",
+    "tool": "Tool",
+    "arm": "Arm",
+    "so_far": "Cut so far",
+}
+EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
+HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
+EYES = {
+    "iso": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "up": {"x": 0, "y": 0, "z": 1}},
+    "along": {"eye": {"x": -1.6, "y": 0.0, "z": 0.55}, "up": {"x": 0, "y": 0, "z": 1}},
+    "top": {"eye": {"x": 0.0, "y": 0.0, "z": 1.8}, "up": {"x": 0, "y": 1, "z": 0}},
+    "front": {"eye": {"x": 0.0, "y": -1.8, "z": 0.05}, "up": {"x": 0, "y": 0, "z": 1}},
+}
+STANDING = frozenset({"tool", "arm"})
+SIZE = (1360, 720)
+
+
+def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
+    """The picture with its controls."""
+    how = _controls()
+    view = state.project().view
+    shown = parts.attempt(cache.pictured, result.setup, view.exaggeration)
+    if shown is None:
+        return
+    png = _rendered(result, i, dark) if how != "turn" else None
+    if png is not None:
+        st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
+    else:
+        parts.figure(
+            turnable(result, shown, view, dark, height),
+            "surface",
+            alt="The machined surface, to be turned with the mouse.",
+        )
+    times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
+    parts.note(
+        f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
+        f"± {format_si(result.setup.tolerance, 'um', 0)}."
+    )
+
+
+def turnable(result: SimulationResult, shown: Exaggerated, view: state.View, dark: bool, height: int) -> Any:
+    """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
+    unit, z = view.length, shown.drawn
+    fig = surface_figure(
+        from_si(z.x, unit),
+        from_si(z.y, unit),
+        from_si(z.z, unit),
+        from_si(shown.error, "um"),
+        float(from_si(result.setup.tolerance, "um")),
+        dark=dark,
+        height=height,
+        unit=unit,
+        revision=f"surface-{view.camera}",
+    )
+    ratio = fig.layout.scene.aspectratio
+    fig.update_layout(
+        scene_camera={**EYES[view.camera], "projection": {"type": "orthographic"}},
+        scene_aspectratio={a: 1.4 * float(getattr(ratio, a)) for a in "xyz"},
+    )
+    return fig
+
+
+def _controls() -> str:
+    view = state.project().view
+    how = st.session_state.get(HOW_KEY, "one")
+    first, camera, times = parts.split([2.1, 1.3, 0.9], "picture", gap="small")
+    with first:
+        inputs.choice("View", "picture.how", HOW, how, lambda v: st.session_state.update({HOW_KEY: v}))
+    how = st.session_state.get(HOW_KEY, "one")
+    with camera:
+        inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: state.look(camera=c), horizontal=False)
+    with times:
+        known = view.exaggeration in EXAGGERATIONS
+        options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: f"× {view.exaggeration:g}"}
+        inputs.choice(
+            "Exaggeration",
+            "view.exaggeration",
+            options,
+            view.exaggeration,
+            lambda v: state.look(exaggeration=float(v)),
+            horizontal=False,
+        )
+    if how != "turn":
+        chosen = st.session_state.get(EXTRAS_KEY, ["plane"])
+        inputs.seed("picture.extras", list(chosen))
+        st.pills(
+            "With",
+            list(EXTRAS),
+            selection_mode="multi",
+            key="picture.extras",
+            format_func=lambda k: EXTRAS[k],
+            label_visibility="collapsed",
+            on_change=_take_extras,
+        )
+    return str(how)
+
+
+def _take_extras() -> None:
+    st.session_state[EXTRAS_KEY] = list(st.session_state["picture.extras"])
+
+
+def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
+    """What is drawn, and the key it is kept under: all that it depends on."""
+    view = state.project().view
+    extras = frozenset(st.session_state.get(EXTRAS_KEY, ["plane"]))
+    pair = st.session_state.get(HOW_KEY, "one") == "pair"
+    shown = cache.pictured(result.setup, view.exaggeration)
+    moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
+    station = linked.station_m(result)
+    camera: Any = view.camera
+    solids = posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras) if extras & STANDING and i >= 0 else ()
+    picture = surface_picture(
+        result,
+        so_far(result, shown, i) if "so_far" in extras else shown,
+        camera=camera,
+        dark=dark,
+        station=station if extras & {"plane", "away"} else None,
+        at=station,
+        size=SIZE,
+        words=True,
+        layout="pair" if pair else "one",
+        cutaway="away" in extras,
+        ghost="ghost" in extras,
+        solids=solids,
+        whole="arm" in extras and bool(solids),
+    )
+    key = (result.setup.digest(), view.exaggeration, round(station, 6) if moves else None, tuple(sorted(extras)), pair)
+    return ("milling", *key), picture
+
+
+def _rendered(result: SimulationResult, i: int, dark: bool) -> bytes | None:
+    return render.picture(*scene(result, i, dark))
+
+
+def downloads(result: SimulationResult, i: int) -> None:
+    """Deviation as CSV, picture as PNG, the surface in the formats people ask for."""
+    setup = result.setup
+    with st.container(horizontal=True, gap="small"):
+        parts.download(
+            "Deviation CSV",
+            lambda: csv_text(deviation_columns(result)),
+            "deviation.csv",
+            "text/csv",
+            key="get:deviation",
+        )
+        parts.download(
+            "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="get:png"
+        )
+        for kind in FORMATS:
+            parts.download(
+                f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"get:{kind}"
+            )
+    parts.note(
+        f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
+        "VTP carries the signed error."
+    )
+
+
+MIME = {"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"}
+
+
+def _mesh(result: SimulationResult, kind: str) -> Callable[[], bytes]:
+    def made() -> bytes:
+        error = np.asarray(result.error.error) if kind == "vtp" else None
+        return mesh_bytes(result.machined, kind, error=error)
+
+    return made

@@ -1,0 +1,200 @@
+"""What stands at the station: program lines, arm, dial, section, shares; all drawn for one sample of the path."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.report.tables import deviation_columns, section_columns
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import AlloySpread
+from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
+from robomill.ui import cache, inputs, parts, state
+from robomill.ui.milling import springs as springs_panel
+from robomill.ui.milling.scrubber import at_feed, station_m
+from robomill.ui.toolpath.program_view import program_lines
+from robomill.units import format_si, from_si
+from robomill.viz.arm import arm_figure, displacement_scale
+from robomill.viz.engagement import Dial, dial_figure
+from robomill.viz.paths import shares_figure
+from robomill.viz.sections import section_figure
+from robomill.viz.views import arm_scene, section_drawing
+
+AROUND = 5
+
+
+def code(result: SimulationResult, i: int, height: int = 300) -> None:
+    """The program around the line in force."""
+    lines = source_lines(result.setup.source)
+    block = int(result.path.block[i]) if i >= 0 else 0
+    first = max(0, min(block - 1 - AROUND, len(lines) - 2 * AROUND - 1))
+    shown = []
+    for k in range(first, min(first + 2 * AROUND + 1, len(lines))):
+        tone = (
+            "background:color-mix(in srgb, var(--rm-code) 24%, transparent);font-weight:600;" if k + 1 == block else ""
+        )
+        mark = "▸" if k + 1 == block else " "
+        shown.append(
+            f'<div style="display:flex;gap:.8rem;padding:.1rem .5rem;border-radius:4px;{tone}">'
+            f'<span style="opacity:.5;min-width:3.2rem;text-align:right">{mark} {k + 1}</span>'
+            f'<span style="white-space:pre;overflow:hidden;text-overflow:ellipsis">{html.escape(lines[k][:160])}</span>'
+            "</div>"
+        )
+    st.html(
+        f'<div style="--rm-code:#2F7FD0;font-family:Source Code Pro,monospace;font-size:.84rem;line-height:1.75;'
+        f'min-height:{height}px">{"".join(shown)}</div>'
+    )
+
+
+def source_lines(source: PathSource) -> list[str]:
+    """What a block number points at: lines of a program, rows of a table, shapes of a sketch."""
+    if isinstance(source, GCodeSource):
+        return list(program_lines(source.text))
+    if isinstance(source, LinesSource):
+        ends = zip(from_si(source.start, "mm"), from_si(source.end, "mm"), from_si(source.v_f, "mm/min"), strict=True)
+        return [f"({_point(a)}) → ({_point(b)})  {v:.0f} mm/min" for a, b, v in ends]
+    assert isinstance(source, SketchSource)
+    return [
+        f"{e.shape}, {len(e.points)} points, {format_si(e.depth, 'mm', 2)} deep, {format_si(e.v_f, 'mm/min', 0)}"
+        for e in source.sketch.elements
+    ]
+
+
+def _point(p: FloatArray) -> str:
+    return ", ".join(f"{v:g}" for v in np.round(p, 3))
+
+
+def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None:
+    """The arm as it stands at the station."""
+    if i < 0:
+        return
+    scene = arm_scene(result, i)
+    drawn = displacement_scale(result.delta[i], scene.frames)
+    parts.figure(
+        arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86),
+        "linked-arm",
+        alt="The arm at the station with force and displacement.",
+        caption=f"Blue: force on the tool. Orange: displacement, shown × {int(float(f'{drawn:.2g}')):,}.",
+    )
+
+
+def dial(
+    result: SimulationResult, i: int, spread: AlloySpread | None, peak: Any, dark: bool, height: int = 300
+) -> None:
+    """Engagement and force at the station, seen from the spindle."""
+    if i < 0:
+        return
+    c, unit = result.conditions, state.project().view.length
+    across = np.hypot(result.force_components[:, 0], result.force_components[:, 1])
+    top = float(np.nanmax(np.where(result.judged, across, 0.0), initial=0.0))
+    others = None
+    if spread is not None and len(spread.titles) > 1:
+        others = np.einsum("ij,ri->rj", result.R_MF[i], spread.F[1:, i])
+        top = max(top, float(np.hypot(others[:, 0], others[:, 1]).max()))
+    worst_turn = None if peak is None else peak.at_peak[i]
+    if worst_turn is not None:
+        top = max(top, float(np.hypot(*worst_turn[:2])))
+    fig = dial_figure(
+        Dial(
+            float(from_si(float(c.phi_st[i]), "deg")),
+            float(from_si(float(c.phi_ex[i]), "deg")),
+            float(from_si(float(c.a_p[i]), unit)),
+            unit,
+            result.force_components[i],
+            top / 1.45 or 1.0,
+            result.setup.cutter.hand,
+            result.setup.cutter.flutes,
+            bool(c.engaged[i]),
+            others,
+            worst_turn,
+        ),
+        dark=dark,
+        height=height,
+    )
+    words = "Seen from the spindle. Orange: the arc that cuts, blue: the mean force"
+    words += ", pale blue: the peak of a turn" if worst_turn is not None else ""
+    words += ", rings: the alloy's other rows" if others is not None else ""
+    assumed = "" if result.setup.engagement else " The arc is a full slot, as assumed."
+    parts.figure(
+        fig,
+        "linked-dial",
+        caption=words + "." + assumed,
+        alt="Arc of engagement and force on the tool at the station, seen from the spindle.",
+    )
+
+
+def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> Any:
+    """The dimensioned section at the station; returns it."""
+    unit = state.project().view.length
+    groove = parts.attempt(cache.groove, result.setup, station_m(result))
+    if groove is None:
+        return None
+    if not len(groove.w):
+        parts.note(f"No section here: {groove.note}.")
+        return groove
+    parts.figure(
+        section_figure(section_drawing(groove, unit), dark=dark, height=height),
+        "linked-section",
+        name="groove-sections",
+        table=lambda: section_columns(result),
+        caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale. "
+        "Dashed: the ideal groove.",
+        alt="Cross-section of the groove with its dimensions and the ideal groove dashed.",
+    )
+    return groove
+
+
+def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> None:
+    """Which joint or spring gives, stacked along the path."""
+    view, unit = state.project().view, state.project().view.length
+    title, pick = st.columns([1, 1.2], vertical_alignment="center")
+    title.markdown("**What gives**")
+    with pick:
+        inputs.choice(
+            "Shares of",
+            "view.share_axis",
+            {a: f"in {a.upper()}" for a in "xyz"},
+            view.share_axis,
+            lambda a: state.look(share_axis=a),
+            label_visibility="collapsed",
+        )
+    axis = state.project().view.share_axis
+    column = "xyz".index(axis)
+    every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
+    names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
+    s = from_si(result.path.s, unit)
+    fig = shares_figure(
+        s,
+        from_si(at_feed(result, every), unit),
+        names,
+        from_si(at_feed(result, result.delta), unit)[:, column],
+        axis,
+        unit,
+        dark=dark,
+        station=float(s[i]) if i >= 0 else None,
+        height=height,
+    )
+    named: set[str] = set()
+    for trace in fig.data:  # a joint that pushes both ways has two areas and needs one name
+        trace.showlegend = trace.name not in named
+        named.add(trace.name)
+    parts.figure(
+        fig,
+        f"shares-{axis}",
+        name=f"joint-shares-{axis}",
+        table=lambda: deviation_columns(result),
+        caption="Shares stack to the total line.",
+        alt="Deviation along the path stacked by joint and spring.",
+    )
+
+
+def lines_of(result: SimulationResult, i: int) -> None:
+    """Every compliance with its own line, at the station."""
+    if i >= 0:
+        springs_panel.lines_table(result, i)
+        if result.setup.links is not None and not result.setup.add_sag:
+            parts.note("The sag is a constant offset that zeroing the part takes out; it is shown, not added.")

@@ -1,0 +1,188 @@
+"""The robot page's inputs and its matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import joint_contributions
+from robomill.io.robots import load_robot, robot_names
+from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.robot.model import USER_SET, Robot
+from robomill.ui import inputs, parts, state, tables
+from robomill.ui.editors import table_editor
+from robomill.ui.robot.pose import PoseNumbers
+from robomill.units import from_si, unit_label
+from robomill.viz.theme import joint_colours
+
+SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
+
+
+def editors(project: state.Project) -> None:
+    """Compliances, geometry, limits and tool, each in its own tab."""
+    robot = project.setup.robot
+    _which_robot(robot)
+    compliance, geometry, limits, tool = st.tabs(["Compliances", "D-H table", "Limits", "Tool"])
+    with compliance:
+        _compliances(robot, project.view.joint_unit)
+    with geometry:
+        table_editor(
+            "geometry",
+            lambda: tables.geometry_frame(state.project().setup.robot),
+            _write_geometry,
+            columns={
+                "joint": st.column_config.TextColumn("#", width=34),
+                **{
+                    label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
+                    for label in tables.GEOMETRY.values()
+                },
+            },
+            locked=("joint",),
+        )
+        parts.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
+        _said(robot, "geometry")
+        _said(robot, "lengths")
+    with limits:
+        prismatic = bool(tables.slides(robot).any())
+        unit = "° (mm where it slides)" if prismatic else "°"
+        table_editor(
+            "limits",
+            lambda: tables.limits_frame(state.project().setup.robot),
+            _write_limits,
+            columns={
+                "joint": st.column_config.TextColumn("Joint", width="small"),
+                "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
+                "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g"),
+            },
+            locked=("joint",),
+        )
+        _said(robot, "limits")
+    with tool:
+        _tool(robot)
+
+
+def _which_robot(robot: Robot) -> None:
+    names = {name: _title(name) for name in robot_names()}
+    if robot.name not in names:
+        names = {robot.name: robot.name, **names}
+    inputs.choice("Robot", "robot.name", names, robot.name, _take_robot, horizontal=False)
+
+
+@st.cache_resource(max_entries=64, show_spinner=False)
+def _title(name: str) -> str:
+    return load_robot(name).title or name.replace("_", " ")
+
+
+def _take_robot(name: str) -> None:
+    state.change(robot=load_robot(name))
+    state.look(theta=None)
+
+
+def _compliances(robot: Robot, unit: str) -> None:
+    sets = {name: name.replace("_", " ").capitalize() for name in robot.compliance_sets}
+    if robot.compliance_set == USER_SET:
+        sets[USER_SET] = "Edited"
+    if sets:
+        inputs.choice(
+            "Set in force",
+            "robot.compliance_set",
+            sets,
+            robot.compliance_set,
+            lambda name: (
+                None if name == USER_SET else state.change(robot=state.project().setup.robot.with_compliance_set(name))
+            ),
+        )
+    stiff = tables.is_stiffness(unit)
+    heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
+    table_editor(
+        f"compliance:{unit}",
+        lambda: tables.compliance_frame(state.project().setup.robot, unit),
+        lambda frame: _write_compliance(frame, unit),
+        columns={
+            "joint": st.column_config.TextColumn("Joint", width="small"),
+            "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS),
+        },
+        locked=("joint",),
+    )
+    if robot.compliance_set == USER_SET:
+        parts.note(f"{parts.badge('user')} entered in the app")
+    else:
+        _said(robot, f"compliance.{robot.compliance_set}")
+
+
+def _write_compliance(frame: pd.DataFrame, unit: str) -> None:
+    robot = tables.with_compliance(state.project().setup.robot, frame, unit)
+    # What was typed in SI comes back in the column's unit, so that the cell agrees with its heading.
+    spelled = not tables.is_stiffness(unit) and any(map(tables.is_si_text, frame["value"]))
+    state.change(robot=robot, from_editor=not spelled)
+
+
+def _write_geometry(frame: pd.DataFrame) -> None:
+    robot = tables.with_geometry(state.project().setup.robot, frame)
+    state.change(robot=robot, from_editor=True)
+
+
+def _write_limits(frame: pd.DataFrame) -> None:
+    robot = tables.with_limits(state.project().setup.robot, frame)
+    state.change(robot=robot, from_editor=True)
+
+
+def _tool(robot: Robot) -> None:
+    st.markdown("Tool tip from the last axis, along its own axes")
+    columns = st.columns(3)
+    for i, (axis, column) in enumerate(zip("xyz", columns, strict=True)):
+        with column:
+            inputs.number(axis, f"robot.T_tool[{i},3]", "mm", step=1.0, digits=2)
+    _said(robot, "tool")
+
+
+def _said(robot: Robot, block: str) -> None:
+    found = robot.provenance.get(block)
+    if found is not None:
+        parts.note(f"{parts.badge(found.kind)} {parts.subscripts(found.source)}")
+
+
+def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
+    """C at the pose in um/N, and how it changed."""
+    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
+    parts.matrix([[_signed(v) for v in row] for row in from_si(now.C, "um/N")], ["X", "Y", "Z"])
+    parts.note("Row: where the tip goes. Column: where you push.")
+    if old is not None:
+        st.markdown("**Before the last change**")
+        parts.matrix([[_signed(v) for v in row] for row in from_si(old.C, "um/N")], ["X", "Y", "Z"])
+
+
+def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:
+    """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
+    J = geometric_jacobian(robot, theta)
+    C_yy = joint_contributions(J[:3], robot.C_theta)[:, 1, 1]
+    total = float(C_yy.sum()) or 1.0
+    st.markdown("**Where the give along Y comes from**")
+    rows = "".join(
+        f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
+        f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
+        f'<td class="n">{100 * value / total:.0f} %</td></tr>'
+        for number, value, colour in zip(robot.joint_numbers, C_yy, joint_colours(7, dark))
+    )
+    st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
+
+
+def _signed(value: float) -> str:
+    text = f"{value:.3f}"
+    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
+
+
+def direction_words(C: FloatArray) -> str:
+    """The softest direction of C as a unit vector in words."""
+    vector = np.linalg.eigh(C)[1][:, -1]
+    vector = vector * np.sign(vector[np.argmax(np.abs(vector))])
+    return "along (" + ", ".join(_signed(round(float(v), 2))[:-1] for v in vector) + ") in {M}"
+
+
+def det_words(now: PoseNumbers) -> str:
+    """What det(J) says in words."""
+    if not np.isfinite(now.det):
+        return "the task Jacobian of this arm is not square"
+    return "singular here" if abs(now.det) < 1e-6 else "0 at a singularity"

@@ -1,0 +1,97 @@
+"""The paper's milling test on one chart: what it claims, what it measured, and what comes out of process data here."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import streamlit as st
+
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.spread import alloy_spread
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import cache, parts, state
+from robomill.ui.start.story import PAPER, PAPER_MAP, PAPER_MEASURED, PAPER_TABLE_2
+from robomill.units import from_si
+from robomill.viz.evidence import Claim, evidence_figure
+
+
+@st.cache_resource(show_spinner=False)
+def _process_setup() -> SimulationSetup:
+    return load_setup(samples_dir() / PAPER / "setup_process.toml")
+
+
+def is_papers_path(project: state.Project) -> bool:
+    """Whether the project cuts the paper's slot, by the text of its program: beside another part the chart misleads."""
+    source, paper = project.setup.source, state.preset_setup(PAPER).source
+    if isinstance(source, GCodeSource) and isinstance(paper, GCodeSource):
+        return source.text == paper.text
+    return source == paper
+
+
+def claims(project: state.Project) -> list[Claim]:
+    """Every number of the paper's slot in m, the paper's first; computed ones with the band of the alloy's rows."""
+    plain, process = state.preset_setup(PAPER), _process_setup()
+    third = plain.robot.with_compliance_set("table_3")
+    rows = [
+        Claim("paper, predicted from Table 2", "paper", PAPER_TABLE_2, note="100 N measured force"),
+        _computed("100 N and Table 3", plain.replace(robot=third)),
+        Claim("paper, predicted from its measured map", "paper", PAPER_MAP, note="raw data not printed"),
+        Claim("paper, measured on the part", "measured", PAPER_MEASURED, note="about 0.3 mm"),
+        _computed("process data and Table 2", process),
+        _computed("process data and Table 3", process.replace(robot=third)),
+    ]
+    known = {plain.digest(), process.digest()}
+    if project.setup.source == plain.source and project.setup.digest() not in known:
+        rows.append(dataclasses.replace(_computed("your set-up", project.setup), kind="user"))
+    return rows
+
+
+def _computed(label: str, setup: SimulationSetup) -> Claim:
+    result = cache.result(setup)
+    value, low, high = sideways(result)
+    return Claim(label, "computed", value, low, high, note="middle of the groove")
+
+
+def sideways(result: SimulationResult) -> tuple[float, float, float]:
+    """Centre offset at mid-cut with its range over the alloy's rows (NaN without), m."""
+    middle = 0.5 * float(result.path.s[-1])
+    offset = result.groove(middle).centre_offset
+    spread = alloy_spread(result)
+    if spread is None or len(spread.titles) < 2:
+        return offset, float("nan"), float("nan")
+    i = result.sample_at(middle)
+    every = offset + (spread.delta[:, i] - result.delta[i]) @ result.R_MF[i][:, 1]
+    return offset, float(np.min(every)), float(np.max(every))
+
+
+def panel(project: state.Project, dark: bool) -> None:
+    """The chart with its caption and its table."""
+    unit = project.view.length
+    found = parts.attempt(claims, project)
+    if found is None:
+        return
+    lengths = ("value", "low", "high")
+    shown = [
+        Claim(c.label, c.kind, _shown(c.value, unit), _shown(c.low, unit), _shown(c.high, unit), c.note) for c in found
+    ]
+    parts.figure(
+        evidence_figure(shown, unit, dark=dark),
+        "evidence",
+        name="paper-evidence",
+        table=lambda: {
+            "what": [c.label for c in shown],
+            "kind": [c.kind for c in shown],
+            **{f"{k}_{unit}": [getattr(c, k) for c in shown] for k in lengths},
+        },
+        caption="Bars: every coefficient row of 7075 in the literature. The paper names neither alloy nor helix; "
+        "7075-T6 and a right-hand helix are assumed, and nothing is tuned.",
+        alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
+    )
+
+
+def _shown(value: float, unit: str) -> float:
+    return float(from_si(value, unit))

@@ -1,0 +1,210 @@
+"""The path in detail: what was found while it was read, its extents, lengths and feeds, and one line of it in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.provenance import Finding
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.apt import is_apt
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import parts
+from robomill.ui.toolpath.program_view import LEVELS, program_lines, select_line, selected_line
+from robomill.ui.toolpath.reach import PathReach
+from robomill.ui.toolpath.summary import path_summary
+from robomill.units import format_si, format_value, from_si, unit_label
+
+DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
+
+ASSUMED_UNITS = "lengths are taken as mm"
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it."""
+    if seconds < 120:
+        return format_si(seconds, "s", 1)
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def counted(count: int, word: str) -> str:
+    """``1 cut``, ``12 cuts``."""
+    return f"{count:,} {word}{'' if count == 1 else 's'}"
+
+
+def worst_first(findings: Sequence[Finding]) -> list[Finding]:
+    """Findings in the order of the list: by level, then by line."""
+    order = list(LEVELS)
+    return sorted(findings, key=lambda f: (order.index(f.level), f.line))
+
+
+def finding_words(finding: Finding, most: int = 64) -> str:
+    """A finding in one line of about ``most`` characters, cut between words."""
+    said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
+    return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
+
+
+def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
+    """The program's units and who says so: ``mm (G21)``, ``mm, assumed (no G20 or G21)``."""
+    name = {"mm": "millimetres" if long else "mm", "in": "inches" if long else "in"}.get(path.units, path.units)
+    silent = [f.message.partition(":")[0] for f in path.findings if f.message.endswith(ASSUMED_UNITS)]
+    if silent:
+        return f"{name}, assumed ({silent[0]})"
+    if is_apt(source.text[:200_000].encode()):
+        return f"{name} (UNITS)"
+    return f"{name} ({'G20' if path.units == 'in' else 'G21'})"
+
+
+def move_words(path: Toolpath) -> str:
+    """``27 moves, 5 arcs``: every move of the program, an arc as one; without arcs where they are not known."""
+    counts = path.counts
+    if counts is None:
+        return counted(len(path) - 1, "move")
+    return f"{counted(sum(counts), 'move')}, {counted(counts[2], 'arc') if counts[2] else 'no arcs'}"
+
+
+def findings_list(findings: Sequence[Finding]) -> None:
+    """What the reader noticed, worst first; a click on a row points at its line."""
+    st.markdown("**What was read**")
+    if not findings:
+        parts.note("Every word was understood; nothing was skipped or guessed.")
+        return
+    found = worst_first(findings)
+    shown = found[:500]
+    frame = pd.DataFrame(
+        {
+            "level": [LEVELS[f.level] for f in shown],
+            "line": [f"{f.line:,}" if f.line else "all" for f in shown],
+            "what": [f.message + (f" ({f.count:,} times)" if f.count > 1 else "") for f in shown],
+        }
+    )
+
+    def take() -> None:
+        rows = st.session_state["toolpath.findings"]["selection"]["rows"]
+        if rows:
+            select_line(shown[rows[0]].line)
+
+    st.dataframe(
+        frame,
+        hide_index=True,
+        height=min(36 * (len(frame) + 1) + 2, 290),
+        key="toolpath.findings",
+        on_select=take,
+        selection_mode="single-row",
+        row_height=36,
+        column_config={
+            "level": st.column_config.TextColumn("level", width=86),
+            "line": st.column_config.TextColumn("line", width=60),
+            "what": st.column_config.TextColumn("what", width="large"),
+        },
+    )
+    hidden = len(found) - len(shown)
+    parts.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
+
+
+def path_facts(setup: SimulationSetup, unit: str) -> None:
+    """Extents, lengths, time and feeds in the units of the shop floor."""
+    path = setup.toolpath
+    summary = path_summary(path)
+    low, high = summary.low, summary.high
+    rows = [
+        (
+            f"{axis}<sub>W</sub>",
+            f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
+            f"{_plain(high[i] - low[i], unit)} {unit_label(unit)}",
+        )
+        for i, axis in enumerate("xyz")
+    ]
+    rows.append(
+        ("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(summary.rapids, unit, 1)} rapid")
+    )
+    rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
+    if summary.feeds:
+        rows.append(("Feed", _range(summary.feeds, "mm/min"), _range(summary.feeds, "mm/s")))
+    if summary.spindles:
+        rows.append(("Spindle", _range(summary.spindles, "1/min"), ""))
+    if isinstance(setup.source, GCodeSource):
+        tools = summary.tools
+        words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
+        rows.append(("Written in", written_in(setup.source, path, long=True), words))
+        rows.append(("Moves", move_words(path), ""))
+    body = "".join(f'<tr><td class="q">{a}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
+    st.html(f'<table class="rm-facts">{body}</table>')
+
+
+def _plain(value: float, unit: str) -> str:
+    return format_si(float(value), unit, 2 if unit == "mm" else 4).partition(" ")[0]
+
+
+def _range(values: tuple[float, float], unit: str) -> str:
+    low, high = values
+    text = format_si(high, unit)
+    return text if np.isclose(low, high) else f"{format_value(from_si(low, unit), unit).partition(' ')[0]} … {text}"
+
+
+def line_words(setup: SimulationSetup, reach: PathReach | None, result: SimulationResult | None, unit: str) -> str:
+    """The selected line in words: its text, its move, its reach and deviation; "" where none is selected."""
+    line = selected_line()
+    if not line:
+        return ""
+    path = setup.toolpath
+    name = {"GCodeSource": "Line", "LinesSource": "Row"}.get(type(setup.source).__name__, "Shape")
+    text = ""
+    if isinstance(setup.source, GCodeSource):
+        lines = program_lines(setup.source.text)
+        text = lines[line - 1].strip()[:80] if line <= len(lines) else ""
+    words = [f"{name} {line:,}" + (f": {text}" if text else "")]
+    i = np.flatnonzero(path.block == line)
+    i = i[path.step_length[i] > 0]
+    if len(i) == 0:
+        return words[0] + ". It moves nothing."
+    at_feed = i[path.cutting[i]]
+    moves = f"{counted(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
+    if len(at_feed):
+        feeds = (float(path.v_f[at_feed].min()), float(path.v_f[at_feed].max()))
+        moves += f" at {_range(feeds, 'mm/min')} ({_range(feeds, 'mm/s')})"
+    else:
+        moves += " as a rapid"
+    words.append(moves)
+    if reach is not None and (reach.missed & (reach.path.block == line)).any():
+        words.append(f"out of reach: {reach.reason}")
+    elif result is not None:
+        of_line = result.judged & (result.path.block == line)
+        if of_line.any():
+            largest = float(result.deviation[of_line].max())
+            words.append(f"deviation up to {format_si(largest, unit, 3 if unit == 'mm' else 4)}")
+    return f"{words[0]} — {'; '.join(words[1:])}."
+
+
+def support_table() -> None:
+    """Which words are read, left out or refused; every row has its test."""
+    from robomill.toolpath.gcode.support import SUPPORT
+
+    said = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
+    with st.expander("What is supported", icon=":material/fact_check:"):
+        frame = pd.DataFrame(
+            {
+                "words": [row.words for row in SUPPORT],
+                "meaning": [row.meaning for row in SUPPORT],
+                "": [said[row.status] for row in SUPPORT],
+                "dialect": ["all" if row.dialect == "linuxcnc" else DIALECTS[row.dialect] for row in SUPPORT],
+            }
+        )
+        st.dataframe(
+            frame,
+            hide_index=True,
+            height=330,
+            column_config={
+                "words": st.column_config.TextColumn(width=150),
+                "meaning": st.column_config.TextColumn(width="medium"),
+                "": st.column_config.TextColumn(width=110),
+                "dialect": st.column_config.TextColumn(width=80),
+            },
+        )
+        parts.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")

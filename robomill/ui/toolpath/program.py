@@ -1,0 +1,192 @@
+"""The program's inputs: a file, its dialect, its text with findings in place, and what was refused."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+
+import streamlit as st
+
+from robomill.errors import GCodeError, RobomillError, ToolpathError
+from robomill.io.programs import program_from_bytes
+from robomill.provenance import Finding
+from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import inputs, parts, state
+from robomill.ui.toolpath import reading
+from robomill.ui.toolpath.details import DIALECTS
+from robomill.ui.toolpath.program_view import program_lines, program_view, select_line, selected_line
+from robomill.ui.toolpath.sources import put
+
+SUFFIXES = ("nc", "ngc", "tap", "gcode", "cnc", "txt", "mpf", "eia", "min")
+MAX_PROGRAM_MB = 100
+EDITABLE_CHARACTERS = 200_000
+FILE, TEXT, MODE, REFUSED = "program.file", "program.text", "program.mode", "program.refused"
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A program that was not taken, and why."""
+
+    source: GCodeSource
+    reason: str
+    line: int
+
+
+def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
+    """File, dialect and text."""
+    key = f"{FILE}:{state.store().revision}"
+    # Any name is let in and judged here, so that upper case and odd endings get a sentence and not a grey refusal.
+    st.file_uploader(
+        "Program file",
+        key=key,
+        max_upload_size=MAX_PROGRAM_MB,
+        on_change=lambda: _take_file(st.session_state.get(key)),
+        help=f"Endings {', '.join(SUFFIXES)}, upper or lower case; up to {MAX_PROGRAM_MB} MB.",
+    )
+    inputs.sentence(FILE)
+    reading.reading_panel(_accept, _refuse)
+    refused = st.session_state.get(REFUSED)
+    if isinstance(refused, Refused):
+        _show_refused(refused, dark)
+        return
+    _dialect(source)
+    _text(source, path, dark)
+
+
+def _dialect(source: GCodeSource) -> None:
+    inputs.choice("Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, horizontal=False)
+    parts.note(dialect_words(source))
+
+
+def dialect_words(source: GCodeSource) -> str:
+    """As what the program is read, and who said so."""
+    chosen = choose_dialect(source.text, source.dialect)
+    said = "guessed from how it looks" if chosen.guessed else "as you chose"
+    return f"Read as {DIALECTS[chosen.name]} code, {said}."
+
+
+def _take_dialect(name: str) -> None:
+    assert name == "auto" or name in NAMES
+    source = state.project().setup.source
+    assert isinstance(source, GCodeSource)
+    changed = dataclasses.replace(source, dialect=name)
+    changed.read()
+    put(changed, f"program {source.name}")
+
+
+def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
+    lines = program_lines(source.text)
+    if MODE not in st.session_state:
+        st.session_state[MODE] = "code"
+    with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
+        mode = st.segmented_control(
+            "Program",
+            ["code", "edit"],
+            key=MODE,
+            required=True,
+            label_visibility="collapsed",
+            format_func=lambda k: {"code": "Code", "edit": "Edit"}[k],
+        )
+        if mode == "code":
+            inputs.seed("program.line", min(selected_line(), len(lines)))
+            st.number_input(
+                "Line",
+                key="program.line",
+                min_value=0,
+                max_value=max(len(lines), 1),
+                step=1,
+                width=130,
+                on_change=lambda: select_line(int(st.session_state["program.line"] or 0)),
+                label_visibility="collapsed",
+                help="Go to a line; 0 points at none.",
+            )
+            st.caption(f"of {len(lines):,} lines")
+    if mode == "code":
+        height = min(max(22 * len(lines) + 24, 130), 420)
+        program_view(source.text, path.findings if path is not None else (), dark, height)
+    elif len(source.text) > EDITABLE_CHARACTERS:
+        parts.note(f"{len(lines):,} lines are too many for this box: change them in their own file and drop it here.")
+    else:
+        inputs.seed(TEXT, source.text)
+        st.text_area(
+            "Program text",
+            key=TEXT,
+            height=420,
+            label_visibility="collapsed",
+            on_change=lambda: inputs.attempt(TEXT, st.session_state[TEXT], lambda: _take_text(st.session_state[TEXT])),
+        )
+        inputs.sentence(TEXT)
+
+
+def _take_file(file: object) -> None:
+    if file is None:
+        return
+    name = str(getattr(file, "name", "program"))
+    inputs.attempt(FILE, None, lambda: take_program(file.getvalue(), name))  # type: ignore[attr-defined]
+
+
+def take_program(data: bytes, name: str) -> None:
+    """A dropped file: read at once, or beside the page where it is big. Raises the refusal of what is no program."""
+    st.session_state.pop(REFUSED, None)
+    if Path(name).suffix.lower().lstrip(".") not in SUFFIXES:
+        raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
+    source = program_from_bytes(data, name)
+    if len(source.text) > reading.BACKGROUND_CHARACTERS:
+        reading.read_beside(source)
+        return
+    try:
+        source.read()
+    except GCodeError as exc:
+        _refuse(source, exc)
+    else:
+        _accept(source)
+
+
+def _accept(source: GCodeSource) -> None:
+    put(source, f"program {source.name}")
+    inputs.accept(TEXT)
+    if reading.current() is None and st.session_state.get(MODE) == "edit":
+        st.session_state[MODE] = "code"
+
+
+def _refuse(source: GCodeSource, exc: RobomillError) -> None:
+    st.session_state[REFUSED] = Refused(source, str(exc), int(getattr(exc, "line", 0)))
+
+
+def _show_refused(refused: Refused, dark: bool) -> None:
+    """A program that cannot be read is shown at the line that is at fault; the one before it stays in force."""
+    parts.error(f"{refused.source.name} was not taken. {refused.reason}")
+    with st.container(horizontal=True, gap="small"):
+        st.button(
+            "Mend it here",
+            icon=":material/edit:",
+            key="refused.edit",
+            on_click=_mend,
+            args=(refused,),
+            disabled=len(refused.source.text) > EDITABLE_CHARACTERS,
+        )
+        st.button("Leave it", icon=":material/close:", key="refused.leave", on_click=_leave, type="tertiary")
+    level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
+    program_view(refused.source.text, level, dark, fixed=refused.line)
+
+
+def _mend(refused: Refused) -> None:
+    _leave()
+    st.session_state[MODE] = "edit"
+    inputs.refuse(TEXT, refused.source.text, refused.reason)
+
+
+def _leave() -> None:
+    st.session_state.pop(REFUSED, None)
+
+
+def _take_text(text: str) -> None:
+    old = state.project().setup.source
+    if not text.strip():
+        raise ToolpathError("The program is empty; type at least one G1 move.")
+    source = GCodeSource(text, old.name if isinstance(old, GCodeSource) else "program.nc")
+    source.read()
+    put(source, f"program {source.name}, edited")

@@ -1,0 +1,133 @@
+"""The sketch's inputs: ready-made sketches, feeds and heights, the table of shapes, and the way out as G-code."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+import streamlit as st
+
+from robomill.toolpath.sketch import SHAPES
+from robomill.toolpath.sketch_presets import PRESETS, preset
+from robomill.ui import inputs, parts, state
+from robomill.ui.editors import table_editor
+from robomill.ui.toolpath.part_zero import kept_number
+from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
+from robomill.ui.toolpath.sources import put_sketch, sketch_source
+from robomill.units import UNITS, format_si, from_si, to_si, unit_label
+
+CHOICE, WORD = "sketch.preset", "sketch.word"
+
+
+def sketch_inputs() -> None:
+    """Everything about the sketch but the board."""
+    _presets()
+    _settings()
+    _table()
+    export()
+
+
+def _presets() -> None:
+    st.session_state.setdefault(CHOICE, "slot")
+    with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
+        st.selectbox("Ready-made sketch", list(PRESETS), key=CHOICE, format_func=lambda k: PRESETS[k])
+        st.button("Draw it", icon=":material/draw:", key="sketch.draw", on_click=_draw)
+    if st.session_state[CHOICE] == "word":
+        st.session_state.setdefault(WORD, "ROBOMILL")
+        st.text_input("Word", key=WORD, max_chars=40, on_change=_draw)
+    inputs.sentence(CHOICE)
+
+
+def _draw() -> None:
+    name, word = st.session_state[CHOICE], st.session_state.get(WORD, "ROBOMILL")
+
+    def draw() -> None:
+        setup = state.project().setup
+        put_sketch(preset(name, sketch_source().sketch, setup.cutter.diameter, word), f"ready-made: {PRESETS[name]}")
+
+    inputs.attempt(CHOICE, None, draw)
+
+
+def _settings() -> None:
+    view = state.project().view
+    st.markdown("**New shapes**")
+    left, right = st.columns(2)
+    with left:
+        _setting("Feed", "v_f", view.feed, 60.0 if view.units == "mm" else 1.0)
+        st.caption(f"that is {format_si(sketch_source().sketch.v_f, 'mm/s', 1)}")
+    with right:
+        _setting("Depth", "depth", view.length, 0.5 if view.units == "mm" else 0.02)
+        st.button("For all shapes", key="sketch.all", type="tertiary", icon=":material/done_all:", on_click=_all)
+    with st.expander("Plunge, clearance, spindle", icon=":material/height:"):
+        one, two, three = st.columns(3)
+        with one:
+            _setting("Plunge feed", "v_plunge", view.feed, 60.0 if view.units == "mm" else 1.0)
+        with two:
+            _setting("Clearance", "clearance", view.length, 1.0 if view.units == "mm" else 0.05)
+        with three:
+            _setting("Spindle", "n_s", "1/min", 500.0)
+
+
+def _setting(label: str, field: str, unit: str, step: float) -> None:
+    value = float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}")
+    digits = {"in": 3, "in/min": 1, "mm": 2}.get(unit, UNITS[unit].digits)
+
+    def write(typed: float) -> None:
+        put_sketch(sketch_source().sketch.replace(**{field: to_si(typed, unit)}))
+
+    kept_number(f"{label}, {unit_label(unit)}", f"sketch.{field}:{unit}", value, step, digits, write)
+
+
+def _all() -> None:
+    sketch = sketch_source().sketch
+    same: dict[str, Any] = {"v_f": sketch.v_f, "depth": sketch.depth}
+    put_sketch(sketch.replace(elements=tuple(e.replace(**same) for e in sketch.elements)))
+
+
+def _table() -> None:
+    view = state.project().view
+    length, feed = view.length, view.feed
+
+    def write(frame: pd.DataFrame) -> None:
+        put_sketch(sketch_from_frame(frame, sketch_source().sketch, length, feed), from_editor=True)
+
+    column = st.column_config
+    table_editor(
+        f"sketch:{view.units}",
+        lambda: sketch_frame(sketch_source().sketch, length, feed),
+        write,
+        columns={
+            "line": column.NumberColumn("no.", width=38, help="The order of the cuts, and the line in the results"),
+            "shape": column.SelectboxColumn("shape", options=list(SHAPES), width=80),
+            "points": column.TextColumn(
+                f"points ({unit_label(length)})",
+                width=122,
+                help="x, y; x, y; … · line: start; end · rectangle: two corners · circle: centre; point on it · "
+                "arc: start; on the way; end · polyline and polygon: any number",
+            ),
+            "depth": column.NumberColumn("depth", format="%.6g", width=68),
+            "feed": column.NumberColumn("feed", format="%.6g", width=58),
+        },
+        locked=("line",),
+        dynamic=True,
+        height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
+    )
+    parts.note(
+        f"Points and depth in {unit_label(length)} from the part zero {{W}} on the top face, feed in "
+        f"{unit_label(feed)}. Table and board are the same sketch."
+    )
+
+
+def export() -> None:
+    """The path as a G-code file."""
+    if not sketch_source().sketch.elements:
+        return
+    # Taken now: when the file is asked for, there is no session to ask for its project.
+    setup = state.project().setup
+
+    def text() -> str:
+        from robomill.io.gcode_out import write_gcode
+
+        return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
+
+    parts.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="sketch.export")

@@ -1,0 +1,114 @@
+"""The sketch pad: a drawing board in the browser that writes the project's sketch.
+
+While a shape is being drawn it lives in the browser; every finished step is sent here and becomes one change of the
+project, so that undo, the table and saved files see the same sketch. The pad is overwritten only when its ``rev``
+changes: after undo, a preset, or an edit of the table.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import streamlit as st
+
+from robomill.arrays import digest
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.source import SketchSource
+from robomill.ui import inputs, state
+from robomill.ui.toolpath.sketch_table import pad_elements, sketch_from_pad
+from robomill.ui.toolpath.sources import put_sketch
+from robomill.units import UNITS, from_si
+
+KEY = "sketch.pad"
+MEMORY = "sketch.memory"
+HEIGHT = 430
+
+
+def _read(suffix: str) -> str:
+    return Path(__file__).with_suffix(suffix).read_text(encoding="utf-8")
+
+
+_component = st.components.v2.component(
+    "robomill_sketch_pad",
+    html=_read(".html"),
+    css=_read(".css"),
+    js=_read(".js"),
+)
+
+
+@dataclass
+class PadMemory:
+    """What the browser knows: ``rev`` counts overwrites, ``known`` is the digest of the shapes it has."""
+
+    rev: int = 0
+    known: str = ""
+
+
+def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, height: int = HEIGHT) -> None:
+    """The drawing board for ``sketch``. ``cutter`` (m) is its diameter; ``reach`` hatches what the arm cannot reach.
+
+    ``reach``: x, y, dx, dy of a grid in display units and runs [row, from, to) of cells out of reach.
+    """
+    view, kept = state.project().view, state.store()
+    memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
+    shown = _fingerprint(sketch, view.length)
+    if shown != memory.known:
+        memory.rev, memory.known = memory.rev + 1, shown
+    data = {
+        "rev": memory.rev,
+        "unit": UNITS[view.length].label,
+        "height": height,
+        "elements": pad_elements(sketch, view.length, view.feed),
+        "grid": _plain(sketch.grid, view.length),
+        "depth": _plain(sketch.depth, view.length),
+        "feed": _plain(sketch.v_f, view.feed),
+        "cutter": _plain(cutter, view.length),
+        "reach": reach,
+        "undo": _leads_to_a_sketch(kept.past),
+        "redo": _leads_to_a_sketch(kept.future),
+    }
+    _component(key=KEY, data=data, on_sketch_change=_take, on_history_change=_history)
+    inputs.sentence(KEY)
+
+
+def _take() -> None:
+    sent = st.session_state[KEY].get("sketch")
+    memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
+    source = state.project().setup.source
+    # What was drawn on a board that has been overwritten since is not merged into the new one.
+    if not sent or sent.get("rev") != memory.rev or not isinstance(source, SketchSource):
+        return
+    inputs.attempt(KEY, None, lambda: _write(dict(sent), source, memory))
+    if KEY in state.store().refused:
+        memory.known = ""
+
+
+def _write(sent: dict[str, Any], source: SketchSource, memory: PadMemory) -> None:
+    view = state.project().view
+    new = sketch_from_pad(sent, source.sketch, view.length, view.feed)
+    put_sketch(new)
+    memory.known = _fingerprint(new, view.length)
+
+
+def _history() -> None:
+    asked, kept = st.session_state[KEY].get("history"), state.store()
+    if not asked:
+        return
+    back = asked.get("way") == "undo"
+    if _leads_to_a_sketch(kept.past if back else kept.future):
+        (state.undo if back else state.redo)()
+
+
+def _leads_to_a_sketch(steps: list[state.Project]) -> bool:
+    """The board's own undo stays with the sketch; the one in the sidebar goes on."""
+    return bool(steps) and isinstance(steps[-1].setup.source, SketchSource)
+
+
+def _fingerprint(sketch: Sketch, unit: str) -> str:
+    return digest((sketch.elements, unit))
+
+
+def _plain(value: float, unit: str) -> float:
+    return round(float(from_si(value, unit)), 6)

@@ -1,0 +1,126 @@
+"""Where the path comes from: switching between program, table of lines and sketch without losing the path."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+
+from robomill.errors import RobomillError, ToolpathError
+from robomill.provenance import Provenance
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sketch import Element, Sketch
+from robomill.toolpath.sketch_presets import preset
+from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
+from robomill.ui import inputs, state
+from robomill.ui.toolpath import program_view
+
+KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
+MAX_ROWS = 200
+
+
+def kind_of(source: PathSource) -> str:
+    """A key of ``KINDS``."""
+    return {"GCodeSource": "program", "LinesSource": "lines", "SketchSource": "sketch"}[type(source).__name__]
+
+
+def kind_switch() -> None:
+    """The choice between the three."""
+    source = state.project().setup.source
+    inputs.choice("Path from", "source.kind", KINDS, kind_of(source), switch)
+
+
+def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
+    """Make ``source`` the project's path; ``words`` say where it comes from. Raises its refusal."""
+    setup = state.project().setup
+    provenance = {**setup.provenance, "path": Provenance("user", words)}
+    force = setup.provenance.get("force")
+    if force is not None and force.kind in ("paper", "measured"):
+        # What was measured on one cut is an assumption on another.
+        provenance["force"] = Provenance("assumed", f"carried over from {setup.name!r}: {force.source}")
+    more.setdefault("name", PurePath(source.name).stem if isinstance(source, GCodeSource) else "Drawn here")
+    state.change(source=source, provenance=provenance, from_editor=from_editor, **more)
+    program_view.select_line(0)
+
+
+def switch(kind: str) -> None:
+    """The same path by other means, as far as that goes; undo leads back."""
+    setup = state.project().setup
+    if kind == kind_of(setup.source):
+        return
+    if kind == "lines":
+        put(lines_of_path(_path()), "converted to a table of lines")
+    elif kind == "program":
+        from robomill.io.gcode_out import write_gcode
+
+        name = "sketch.nc" if isinstance(setup.source, SketchSource) else "lines.nc"
+        put(GCodeSource(write_gcode(_path()), name), f"written from a {setup.source.name}")
+    else:
+        put(SketchSource(_sketch(setup.cutter.diameter)), "sketched by hand", **_stock_follows())
+
+
+def _path() -> Toolpath:
+    return state.project().setup.toolpath
+
+
+def _stock_follows() -> dict[str, Any]:
+    """A stated block rarely fits what will be drawn: the stock becomes the bounds of the path."""
+    setup = state.project().setup
+    if setup.stock is None:
+        return {}
+    return {"stock": None}
+
+
+def _sketch(diameter: float) -> Sketch:
+    try:
+        path = _path()
+        traced = sketch_of_path(path)
+    except RobomillError:
+        traced = None
+    return traced or preset("slot", Sketch(), diameter)
+
+
+def lines_of_path(path: Toolpath) -> LinesSource:
+    """Every feed move as a row. Raises ToolpathError where a table would be too long."""
+    i = np.flatnonzero(path.cutting & (path.step_length > 0))
+    if len(i) > MAX_ROWS:
+        raise ToolpathError(f"The path has {len(i):,} cuts; a table holds at most {MAX_ROWS}. It stays as it is.")
+    n_s = float(path.n_s[i].max()) if len(i) else 0.0
+    return LinesSource(path.p[i - 1], path.p[i], path.v_f[i], n_s)
+
+
+def sketch_of_path(path: Toolpath) -> Sketch | None:
+    """The level cuts below z = 0 as lines and polylines; None where there are none, or too many to draw."""
+    level = path.cutting & (path.step_length > 0) & (np.abs(np.diff(path.p[:, 2], prepend=path.p[0, 2])) < 1e-9)
+    level &= path.p[:, 2] < -1e-6
+    i = np.flatnonzero(level)
+    if len(i) == 0 or len(i) > MAX_ROWS:
+        return None
+    same = np.append(False, (np.diff(i) == 1) & (path.v_f[i[1:]] == path.v_f[i[:-1]]))
+    elements = []
+    for run in np.split(i, np.flatnonzero(~same)[1:]):
+        points = path.p[np.append(run[0] - 1, run), :2]
+        shape: Any = "line" if len(points) == 2 else "polyline"
+        elements.append(Element(shape, points, float(-path.p[run[0], 2]), float(path.v_f[run[0]])))
+    first = elements[0]
+    return Sketch(tuple(elements), n_s=float(path.n_s[i].max()), v_f=first.v_f, depth=first.depth)
+
+
+def sketch_source() -> SketchSource:
+    """The project's sketch; only where the path is sketched."""
+    source = state.project().setup.source
+    assert isinstance(source, SketchSource)
+    return source
+
+
+def put_sketch(sketch: Sketch, words: str = "sketched by hand", from_editor: bool = False) -> None:
+    """Replace the sketch; what only concerns drawing (snap, next feed and depth) is no step to undo."""
+    kept, source = state.store(), sketch_source()
+    changed = dataclasses.replace(source, sketch=sketch)
+    setup = kept.project.setup
+    if setup.replace(source=changed).digest() == setup.digest():
+        kept.project = dataclasses.replace(kept.project, setup=setup.replace(source=changed))
+    else:
+        put(changed, words, from_editor=from_editor)
