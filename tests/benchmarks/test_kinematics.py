@@ -1,7 +1,7 @@
 """Speed of kinematics, compliance and maps against peers in the same run, one thread each.
 
 The peers are more general than our special case: Pinocchio does any tree of joints, EAIK any arm with a decomposition.
-Run with ``pytest -m benchmark -s tests/benchmarks/test_bench_kinematics.py``.
+Run with ``pytest -m benchmark -s tests/benchmarks/test_kinematics.py``.
 """
 
 import os

@@ -1,19 +1,14 @@
 """Kinematics of random arms: the Jacobian is the derivative, inverse undoes forward, an independent library agrees."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_arm
 
 import robomill as rm
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.inverse import all_branches
-
-sys.path.insert(0, str(Path(__file__).parent))
-from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_arm
 
 POSES = 10_000
 # The numeric solver: share of reachable poses of general arms that it must find.
