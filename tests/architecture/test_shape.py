@@ -1,0 +1,141 @@
+"""The shape of the code, read off the source: no circles, short functions, few parameters, nothing that nobody uses."""
+
+from __future__ import annotations
+
+import ast
+import graphlib
+from functools import cache
+from pathlib import Path
+
+import pytest
+from vulture import Vulture
+
+ROOT = Path(__file__).resolve().parents[2]
+PRODUCT = sorted([*(ROOT / "robomill").rglob("*.py"), *(ROOT / "pages").glob("*.py"), ROOT / "app.py", ROOT / "run.py"])
+MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): p for p in PRODUCT}
+
+MOST_LINES = 60
+MOST_PARAMETERS = 6
+# Functions that take more. The number only falls: whoever groups what belongs together lowers it.
+MANY_PARAMETERS = 81
+# Longer functions, to be cut. Whoever shortens one strikes it out here.
+LONG = {
+    "intervals_figure",
+    "plan_figure",
+    "solve",
+    "evidence_figure",
+    "_plain",
+    "plan_picture",
+    "profile_figure",
+    "search_block",
+    "section_figure",
+    "inverse_kinematics",
+    "turnable_picture",
+    "components_figure",
+}
+# Modules that import each other inside functions, to be untied.
+CIRCLES = {frozenset({"robomill.ui.files", "robomill.ui.state"})}
+# What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
+UNUSED = {
+    "__getattr__": "Python asks the package for a public name",
+    "__dir__": "Python lists the package",
+    "task_jacobian": "public name",
+    "invert": "public: the other direction of a frame",
+    "_do_*": "o-words are found by their name",
+    "showlegend": "plotly's",
+    "camera_position": "pyvista's",
+    "parallel_projection": "pyvista's",
+    "parallel_scale": "pyvista's",
+    "clipping_range": "pyvista's",
+}
+# Dead or used by tests alone; each is to go, or to find its use.
+DEAD = {
+    *("joint_torques", "arc_of_cut", "cv_by_pose", "rotations", "C_theta_covariance", "parameter_rows"),
+    *("residual_rows", "three_directions", "magnitude", "identified_deflection", "monte_carlo"),
+    *("write_mesh", "NOTE", "smallest_singular_value", "condition_number", "all_branches", "FLAGS", "P_S", "P_W"),
+    *("residual_angle", "with_convention", "with_blocked", "error_bound", "delta_rest", "plunge"),
+    *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "floor_ideal"),
+    *("open_left", "open_right", "groove_section", "feed_length", "compensated", "says", "DIFFERENCES", "snap"),
+    *("compliance_std", "plan_figure", "plan_view", "reset", "compute_field", "quantity_names", "machining_box"),
+}
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def functions(path: Path) -> list[ast.FunctionDef]:
+    return [node for node in ast.walk(tree(path)) if isinstance(node, ast.FunctionDef)]
+
+
+def imports(module: str, *, inside_functions: bool) -> set[str]:
+    """Modules of the product that ``module`` imports; those needed for annotations alone do not count."""
+    found: set[str] = set()
+
+    def visit(node: ast.AST) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.FunctionDef | ast.Lambda) and not inside_functions:
+                continue
+            if isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING":
+                continue
+            if isinstance(child, ast.Import):
+                found.update(alias.name for alias in child.names)
+            elif isinstance(child, ast.ImportFrom):
+                assert child.module is not None
+                assert not child.level, f"{module}: imports name the package from its root"
+                for alias in child.names:
+                    inner = f"{child.module}.{alias.name}"
+                    found.add(inner if inner in MODULES else child.module)
+            visit(child)
+
+    visit(tree(MODULES[module]))
+    return (found & set(MODULES)) - {module}
+
+
+@pytest.mark.parametrize("inside_functions", [False, True], ids=["at the top", "inside functions too"])
+def test_no_circle_among_imports(inside_functions: bool) -> None:
+    graph = {module: imports(module, inside_functions=inside_functions) for module in MODULES}
+    for one, other in (sorted(pair) for pair in CIRCLES if inside_functions):
+        graph[one].discard(other)
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as exc:
+        pytest.fail(f"modules import each other: {' <- '.join(exc.args[1])}")
+
+
+def test_functions_are_short() -> None:
+    lengths = {
+        (path.relative_to(ROOT), f.name): f.end_lineno - f.lineno + 1 for path in PRODUCT for f in functions(path)
+    }
+    long = {f"{path}: {name}, {n} lines" for (path, name), n in lengths.items() if n > MOST_LINES and name not in LONG}
+    assert not long, f"functions have at most {MOST_LINES} lines"
+
+
+def test_functions_with_many_parameters_become_fewer() -> None:
+    found = []
+    for path in PRODUCT:
+        for f in functions(path):
+            a = f.args
+            names = [*(p.arg for p in (*a.posonlyargs, *a.args, *a.kwonlyargs)), *(v for v in (a.vararg, a.kwarg) if v)]
+            if len([name for name in names if name not in ("self", "cls")]) > MOST_PARAMETERS:
+                found.append(f"{path.relative_to(ROOT)}:{f.lineno} {f.name}")
+    assert len(found) <= MANY_PARAMETERS, "group what belongs together in a frozen dataclass:\n" + "\n".join(found)
+
+
+def test_lines_are_as_the_formatter_leaves_them() -> None:
+    mark = "fmt: " + "skip"
+    assert not [
+        str(path.relative_to(ROOT)) for path in (*PRODUCT, *ROOT.glob("tests/**/*.py")) if mark in path.read_text()
+    ]
+
+
+def test_nothing_is_there_that_nobody_uses() -> None:
+    search = Vulture(ignore_names=list(UNUSED))
+    search.scavenge([str(path) for path in PRODUCT])
+    dead = {
+        f"{Path(item.filename).relative_to(ROOT)}:{item.first_lineno} {item.name}"
+        for item in search.get_unused_code(min_confidence=60)
+        if item.name not in DEAD
+    }
+    assert not dead, "used by nothing, or by tests alone: delete it, or move it to the tests that need it"
