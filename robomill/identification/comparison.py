@@ -70,7 +70,7 @@ class Comparison:
         """What joint-only values mean when a richer model predicts better; empty when they stand as they are."""
         joints = next((r for r in self.results if r.model == "joints"), None)
         richer = self.simplest_good
-        if joints is None or richer.model in ("joints", "constant"):
+        if joints is None or richer is joints or not richer.has_joints:
             return ""
         with np.errstate(invalid="ignore", divide="ignore"):
             grown = joints.C_theta / richer.C_theta - 1.0

@@ -78,7 +78,6 @@ def _result(
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
     found = diagnostics.fit_findings(system, fit, active, lumped)
     return IdentificationResult(
-        model=choice.name,
         choice=choice,
         labels=system.parameters,
         parameters=frozen(fit.x),

@@ -51,6 +51,11 @@ class Model:
             raise LoadTestError(f"Model {self.name!r}: expected one of {', '.join(MODELS)}.")
 
     @property
+    def has_joints(self) -> bool:
+        """Whether its first parameters are the joints' compliances."""
+        return self.name != "constant"
+
+    @property
     def bends(self) -> bool:
         return "bending" in self.name
 
@@ -60,7 +65,7 @@ class Model:
 
     def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
         """What is fitted, in the order of the regressor's columns."""
-        if self.name == "constant":
+        if not self.has_joints:
             return tuple(Parameter(f"C_{_XYZ[i]}{_XYZ[j]}", "m/N", None, i != j) for i, j in _SYMMETRIC)
         slides = robot.chain.prismatic
         listed = [
@@ -119,7 +124,7 @@ class Model:
         """(m, 6, p): displacement and rotation of the measuring point per unit of each parameter."""
         if tests.theta is None:
             raise LoadTestError("Load tests: the poses are given in the world; call with_joints(robot) first.")
-        if self.name == "constant":
+        if not self.has_joints:
             D = np.full((len(tests), 6, len(_SYMMETRIC)), np.nan)
             D[:, :3] = _constant(tests.wrench[:, :3])
             return D
@@ -132,7 +137,7 @@ class Model:
     def tip_regressor(self, robot: Robot, theta: FloatArray, F: FloatArray) -> FloatArray:
         """(..., 3, p) D with delta = D @ parameters, for a force F (..., 3) N in {M} at the tool tip."""
         theta, F = np.asarray(theta, dtype=np.float64), np.asarray(F, dtype=np.float64)
-        if self.name == "constant":
+        if not self.has_joints:
             return np.broadcast_to(_constant(F), (*np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3, 6))
         a = self.columns(robot, theta)[..., :3, :]
         load = np.einsum("...cs,...c->...s", a, F)

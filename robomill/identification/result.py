@@ -57,7 +57,6 @@ class IdentificationResult:
     exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
     """
 
-    model: str
     choice: Model
     labels: tuple[Parameter, ...]
     parameters: FloatArray
@@ -89,31 +88,41 @@ class IdentificationResult:
     rotations: bool = False
 
     @property
+    def model(self) -> str:
+        """The name of the model that was fitted."""
+        return self.choice.name
+
+    @property
+    def has_joints(self) -> bool:
+        """Whether the model has the joints' compliances at all."""
+        return self.choice.has_joints
+
+    @property
     def C_theta(self) -> FloatArray:
         """(n,) joint compliances; NaN for a joint that is not seen (or not in the model)."""
-        if self.model == "constant":
+        if not self.has_joints:
             return np.full(self.n, np.nan)
         return np.where(np.isfinite(self.parameter_stderr[: self.n]), self.parameters[: self.n], np.nan)
 
     @property
     def stderr(self) -> FloatArray:
         """(n,) standard errors of C_theta."""
-        return np.full(self.n, np.inf) if self.model == "constant" else self.parameter_stderr[: self.n]
+        return np.full(self.n, np.inf) if not self.has_joints else self.parameter_stderr[: self.n]
 
     @property
     def ci95(self) -> FloatArray:
         """(n, 2) 95 % intervals of C_theta, cut at zero."""
-        return np.full((self.n, 2), np.nan) if self.model == "constant" else self.parameter_ci95[: self.n]
+        return np.full((self.n, 2), np.nan) if not self.has_joints else self.parameter_ci95[: self.n]
 
     @property
     def C_theta_covariance(self) -> FloatArray:
         """(n, n) covariance of C_theta."""
-        return np.full((self.n, self.n), np.nan) if self.model == "constant" else self.covariance[: self.n, : self.n]
+        return np.full((self.n, self.n), np.nan) if not self.has_joints else self.covariance[: self.n, : self.n]
 
     @property
     def weakest_joint(self) -> int:
         """The joint (1-based) with the widest interval for its size."""
-        if self.model == "constant":
+        if not self.has_joints:
             raise LoadTestError("The constant model has no joints.")
         with np.errstate(invalid="ignore", divide="ignore"):
             relative = np.where(self.parameters[: self.n] > 0, self.stderr / self.parameters[: self.n], np.inf)
@@ -142,7 +151,7 @@ class IdentificationResult:
 
     def applied_to(self, robot: Robot) -> Robot:
         """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""
-        if self.model == "constant":
+        if not self.has_joints:
             raise LoadTestError("The constant model has no joint compliances to give to a robot.")
         seen = np.isfinite(self.C_theta)
         kept = [str(robot.joint_numbers[i]) for i in np.flatnonzero(~seen)]

@@ -8,8 +8,9 @@ from scipy.optimize import curve_fit
 
 import robomill as rm
 from robomill.identification.estimate import identify
+from robomill.identification.knowledge import Knowledge
+from robomill.identification.propagation import uncertain_deflection
 from robomill.identification.system import build_system
-from robomill.improve.uncertainty import Sources, deflection_uncertainty
 from robomill.io.load_tests import read_measured_map
 from robomill.io.samples import samples_dir
 
@@ -93,7 +94,7 @@ def test_deviation_at_the_milling_test_with_its_band(result):
     """0.264 mm per 100 N with Table 3 and the assumed lengths, from both methods; the fit adds its own uncertainty."""
     arm = result.applied_to(ROBOT)
     theta = rm.inverse_kinematics(arm, rm.pose_from_world([0, -1.3, 0, 0, 0])).theta
-    found = deflection_uncertainty(arm, theta, [0, 100.0, 0], Sources.of(result, arm))
+    found = uncertain_deflection(arm, theta, [0, 100.0, 0], Knowledge.of(result, arm))
     half = found.half_width()[1]
     assert abs(found.delta[1] - 0.2644e-3) < half
     assert half < 2e-6

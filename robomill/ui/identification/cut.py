@@ -9,13 +9,14 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
-from robomill.improve.uncertainty import quantile
 from robomill.robot.model import Robot
+from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, inputs, parts, state, uncertainty
 from robomill.ui.identification.bench import Bench
-from robomill.ui.identification.inputs import adopted, field
+from robomill.ui.identification.inputs import adopted, field, knowledge
 from robomill.units import format_si, from_si
 from robomill.viz.bands import band_figure
 
@@ -28,7 +29,7 @@ def cut_of(robot: Robot) -> SimulationResult:
 
 def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
     """Value and note of the tile on the cut: its worst deviation by the compliances found, with its band."""
-    if result.model == "constant":
+    if not result.has_joints:
         return "no joints", "choose a model with joint springs"
     try:
         found, known = predicted(kept, robot, result)
@@ -36,29 +37,27 @@ def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str)
         return "not computed", "see In the cut"
     if found.worst < 0:
         return "out of reach", "no point of the cut is reached"
-    half = float(uncertainty.size_band(found, uncertainty.deviation_band(found, known, found.worst), found.worst))
+    half = worst_half(found, known)
     now = cut_of(robot).max_deviation
     if not np.isfinite(half):
         return "not known", "no residuals to judge the noise by"
     digits = uncertainty.band_digits(half, unit)
     text = uncertainty.band_text(found.max_deviation, half, unit)
-    if uncertainty.fingerprint(found.setup) == uncertainty.fingerprint(state.project().setup):
+    setup = state.project().setup
+    if known.held_by(found.setup.robot, found.setup.springs).holds_for(setup.robot, setup.springs):
         return text, "95 % band; in force in the project"
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
 
 
-def predicted(
-    kept: Bench, robot: Robot, result: IdentificationResult
-) -> tuple[SimulationResult, uncertainty.Knowledge]:
+def predicted(kept: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:
     """The project's cut with the compliances found, and how unsure they, force and lengths are."""
     found = cache.result(adopted(state.project().setup, robot, result, kept.name))
-    known = uncertainty.knowledge(result, robot, f"from {len(result.row)} load tests")
-    return found, uncertainty.widened(known, robot, kept.force_unsure, kept.length_unsure)
+    return found, knowledge(kept, robot, result)
 
 
 def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """The deviation along the project's path with its band, and what the band is made of."""
-    if result.model == "constant":
+    if not result.has_joints:
         parts.note("One constant matrix has no joint compliances; choose a model with joint springs.")
         return
     first, second, third = parts.split([1.5, 1, 1], "cut", gap="small")
@@ -100,27 +99,27 @@ def _component() -> str:
 
 
 def _curves(
-    found: SimulationResult, now: SimulationResult, known: uncertainty.Knowledge, axis: str
+    found: SimulationResult, now: SimulationResult, known: Knowledge, axis: str
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Length cut, value, half width and the project's value now (m,), all m, where the tool cuts."""
-    band = uncertainty.deviation_band(found, known)
+    band = deviation_band(found, known)
     cutting = found.judged
     if axis:
         i = "xyz".index(axis)
-        value, half, before = found.delta[:, i], band.half_width(uncertainty.LEVEL)[:, i], now.delta[:, i]
+        value, half, before = found.delta[:, i], band.half_width(LEVEL)[:, i], now.delta[:, i]
     else:
-        value, half, before = found.deviation, uncertainty.size_band(found, band), now.deviation
+        value, half, before = found.deviation, size_band(found, band), now.deviation
     blank = np.where(cutting, 1.0, np.nan)
     return found.path.s, value * blank, half * blank, before * blank
 
 
-def band_columns(found: SimulationResult, known: uncertainty.Knowledge) -> dict[str, Any]:
+def band_columns(found: SimulationResult, known: Knowledge) -> dict[str, Any]:
     """Along the path: station, deviation and the standard deviation by source, mm."""
-    band = uncertainty.deviation_band(found, known)
+    band = deviation_band(found, known)
     columns: dict[str, Any] = {"line": found.path.block, "station_mm": from_si(found.path.s, "mm")}
     for i, axis in enumerate("xyz"):
         columns[f"delta_{axis}_mm"] = from_si(found.delta[:, i], "mm")
-        columns[f"half95_{axis}_mm"] = from_si(quantile(uncertainty.LEVEL, band.dof) * band.std[:, i], "mm")
+        columns[f"half95_{axis}_mm"] = from_si(band.half_width(LEVEL)[:, i], "mm")
     for name in ("compliance", "force", "lengths"):
         spread = np.linalg.norm(getattr(band, f"by_{name}"), axis=1)
         columns[f"std_by_{name}_mm"] = from_si(spread, "mm")

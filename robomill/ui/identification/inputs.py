@@ -8,6 +8,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.errors import LoadTestError, RobomillError
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
@@ -170,15 +171,15 @@ def findings(
 
 def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
     """The button that puts the compliances in force, with their uncertainty."""
-    if result.model == "constant":
+    if not result.has_joints:
         parts.note("One constant matrix has no joints to give to the project; choose a model with joint springs.")
         return
     setup = state.project().setup
     fitted = adopted(setup, robot, result, kept.name)
     known = uncertainty.known(setup)
-    in_force = known is not None and uncertainty.fingerprint(setup) == uncertainty.fingerprint(fitted)
+    in_force = known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
-        uncertainty.keep(setup, _knowledge(kept, robot, result))  # force and lengths may have been stated since
+        uncertainty.keep(setup, knowledge(kept, robot, result))  # force and lengths may have been stated since
     st.button(
         "In force in the project" if in_force else "Use these compliances in the project",
         type="primary",
@@ -211,14 +212,15 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
     return setup.replace(robot=result.applied_to(robot).replace(provenance=marked), springs=old + found)
 
 
-def _knowledge(kept: Bench, robot: Robot, result: IdentificationResult) -> uncertainty.Knowledge:
-    known = uncertainty.knowledge(result, robot, f"from {len(result.row)} load tests")
-    return uncertainty.widened(known, robot, kept.force_unsure, kept.length_unsure)
+def knowledge(kept: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:
+    """How sure the compliances found are, with what was stated of force and lengths."""
+    known = Knowledge.of(result, robot, f"from {len(result.row)} load tests")
+    return known.widened(robot, kept.force_unsure, kept.length_unsure)
 
 
 def _use(kept: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     def put() -> None:
-        known = _knowledge(kept, robot, result)
+        known = knowledge(kept, robot, result)
         state.change(robot=fitted.robot, springs=fitted.springs)
         uncertainty.keep(fitted, known)
         kept.robot_name = ""

@@ -97,7 +97,7 @@ def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> Non
 def _joint(kept: Bench, robot: Robot, result: IdentificationResult) -> int:
     if kept.goal_joint in robot.joint_numbers:
         return kept.goal_joint
-    return result.weakest_joint if result.model != "constant" else robot.joint_numbers[0]
+    return result.weakest_joint if result.has_joints else robot.joint_numbers[0]
 
 
 def _take_sheet(kept: Bench, robot: Robot, text: str, name: str) -> None:

@@ -71,7 +71,7 @@ def unseen(result: IdentificationResult) -> None:
     if result.unseen_joints:
         for joint in result.unseen_joints:
             st.warning(joint.sentence, icon=":material/visibility_off:")
-    elif result.model != "constant" and not words.is_single(result):
+    elif result.has_joints and not words.is_single(result):
         st.info(result.explain(result.weakest_joint), icon=":material/lightbulb:")
 
 

@@ -134,7 +134,7 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
         "unit": [unit_label(u) for u in units],
         "share of displacement, %": from_si(result.share, "%"),
     }
-    if result.model == "constant":
+    if not result.has_joints:
         return columns
     for name, values in reference_sets(robot):
         columns[name] = [
@@ -197,7 +197,7 @@ def title(result: IdentificationResult) -> str:
         if np.isfinite(cv)
         else f"There are too few {what} to leave any out"
     )
-    if result.model == "constant":
+    if not result.has_joints:
         return f"{said}: one matrix for every pose, the naive baseline."
     label, half = weakest(result)
     if not np.isfinite(half):
@@ -218,7 +218,7 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
             kind="computed",
         ),
     ]
-    if result.model == "constant":
+    if not result.has_joints:
         items.append(Tile("Least known joint", "none", "this model has no joints"))
     else:
         label, half = weakest(result)

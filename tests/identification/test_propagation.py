@@ -7,19 +7,12 @@ import pytest
 
 import robomill as rm
 from robomill.identification.estimate import identify
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.models import Model
+from robomill.identification.propagation import length_derivative, quantile, uncertain_deflection
 from robomill.identification.synthesis import simulated_tests
-from robomill.improve.uncertainty import (
-    Sources,
-    compliance_uncertainty,
-    deflection_uncertainty,
-    identified_deflection,
-    length_derivative,
-    monte_carlo,
-    quantile,
-    with_band,
-)
 from robomill.io.samples import samples_dir
+from tests.identification.oracles import guessed, monte_carlo
 
 ROBOT = rm.load_robot("slavkovic_5r")
 PATH = np.stack([np.linspace(-0.12, 0.12, 5), np.full(5, -1.3), *np.zeros((3, 5))], axis=-1)
@@ -36,26 +29,26 @@ def close(found, drawn, within):
 
 
 @pytest.mark.parametrize(
-    "sources",
+    "known",
     [
-        Sources.relative(ROBOT, compliance=0.1),
-        Sources.relative(ROBOT, force=[5.0, 10.0, 3.0]),
-        Sources.relative(ROBOT, compliance=[0.05, 0.1, 0.02, 0.3, 0.08], force=[5.0, 10.0, 3.0]),
-        Sources.of(RESULT, ROBOT),
+        guessed(ROBOT, compliance=0.1),
+        guessed(ROBOT, force=[5.0, 10.0, 3.0]),
+        guessed(ROBOT, compliance=[0.05, 0.1, 0.02, 0.3, 0.08], force=[5.0, 10.0, 3.0]),
+        Knowledge.of(RESULT, ROBOT),
     ],
     ids=["compliance", "force", "both", "identified"],
 )
-def test_bands_agree_with_monte_carlo(sources):
+def test_bands_agree_with_monte_carlo(known):
     """5 % is the bar; 8000 draws leave 0.8 % of sampling error on a standard deviation."""
     arm = RESULT.applied_to(ROBOT)
-    found = deflection_uncertainty(arm, THETA, F, sources)
-    close(found.std, monte_carlo(arm, THETA, F, sources, draws=8000, seed=1), 0.05)
+    found = uncertain_deflection(arm, THETA, F, known)
+    close(found.std, monte_carlo(arm, THETA, F, known, draws=8000, seed=1), 0.05)
 
 
 def test_bands_from_lengths_agree_with_monte_carlo():
-    sources = Sources.relative(ROBOT, compliance=0.08, force=[5.0, 8.0, 3.0], length=5e-3)
-    found = deflection_uncertainty(ROBOT, THETA[:2], F[:2], sources)
-    close(found.std, monte_carlo(ROBOT, THETA[:2], F[:2], sources, draws=3000, seed=2), 0.05)
+    known = guessed(ROBOT, compliance=0.08, force=[5.0, 8.0, 3.0], length=5e-3)
+    found = uncertain_deflection(ROBOT, THETA[:2], F[:2], known)
+    close(found.std, monte_carlo(ROBOT, THETA[:2], F[:2], known, draws=3000, seed=2), 0.05)
 
 
 def test_identification_repeated_scatters_as_the_band_says():
@@ -68,7 +61,7 @@ def test_identification_repeated_scatters_as_the_band_says():
         again = simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=seed)
         predicted.append(D @ identify(arm, again).parameters)
     once = identify(arm, simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=0))
-    band = deflection_uncertainty(arm, THETA, F, Sources.of(once, arm)).std * (1e-6 / once.noise)
+    band = uncertain_deflection(arm, THETA, F, Knowledge.of(once, arm)).std * (1e-6 / once.noise)
     scatter = np.std(predicted, axis=0, ddof=1)
     np.testing.assert_allclose(
         band, scatter, rtol=0.2, atol=1e-9
@@ -78,33 +71,29 @@ def test_identification_repeated_scatters_as_the_band_says():
 def test_closed_form_at_the_milling_test():
     """At X = 0, tool vertical: C_yy = C_3 h^2 + C_5 a_5^2, so 10 % of each joint gives 10 % of each share."""
     theta = rm.inverse_kinematics(ROBOT, rm.pose_from_world([0, -1.3, 0, 0, 0])).theta
-    found = deflection_uncertainty(ROBOT, theta, [0, 100.0, 0], Sources.relative(ROBOT, compliance=0.1))
+    found = uncertain_deflection(ROBOT, theta, [0, 100.0, 0], guessed(ROBOT, compliance=0.1))
     J_v = rm.geometric_jacobian(ROBOT, theta)[:3]
     shares = ROBOT.C_theta * J_v[1] ** 2 * 100.0
     assert found.delta[1] == pytest.approx(shares.sum())
     assert found.delta[1] == pytest.approx(0.2295e-3, abs=1e-7)
     assert found.std[1] == pytest.approx(0.1 * np.linalg.norm(shares))
-    value, std = found.along([0, 1.0, 0])
-    assert (value, std) == (pytest.approx(found.delta[1]), pytest.approx(found.std[1]))
-    size, spread = found.magnitude()
-    assert size == pytest.approx(np.linalg.norm(found.delta))
-    assert 0 < spread < 0.1 * size
+    assert found.half_along([0, 1.0, 0]) == pytest.approx(1.959964 * 0.1 * np.linalg.norm(shares))
 
 
 def test_sources_add_in_squares_and_batch_is_loop():
-    sources = Sources.relative(ROBOT, compliance=0.1, force=[5.0, 10.0, 3.0], length=2e-3)
-    found = deflection_uncertainty(ROBOT, THETA, F, sources)
+    known = guessed(ROBOT, compliance=0.1, force=[5.0, 10.0, 3.0], length=2e-3)
+    found = uncertain_deflection(ROBOT, THETA, F, known)
     total = found.by_compliance**2 + found.by_force**2 + found.by_lengths**2
     np.testing.assert_allclose(found.std**2, total, rtol=1e-12)
     for k in range(5):
-        one = deflection_uncertainty(ROBOT, THETA[k], F[k], sources)
+        one = uncertain_deflection(ROBOT, THETA[k], F[k], known)
         np.testing.assert_allclose(one.covariance, found.covariance[k], rtol=1e-9, atol=1e-20)
-    nothing = deflection_uncertainty(ROBOT, THETA, F, Sources())
+    nothing = uncertain_deflection(ROBOT, THETA, F, Knowledge(Model(), ROBOT.C_theta, np.zeros((5, 5))))
     assert (nothing.std == 0).all()
 
 
 def test_length_derivative_is_of_second_order():
-    L = length_derivative(ROBOT, THETA, F, Model(), ROBOT.C_theta)
+    L = length_derivative(ROBOT, THETA, F, guessed(ROBOT))
     assert L.shape == (5, 3, 10)
     delta = Model().tip_regressor(ROBOT, THETA, F) @ ROBOT.C_theta
     errors = []
@@ -115,22 +104,12 @@ def test_length_derivative_is_of_second_order():
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
 
 
-def test_map_entries_agree_with_monte_carlo():
-    covariance = np.diag((0.1 * ROBOT.C_theta) ** 2)
-    found = compliance_uncertainty(ROBOT, THETA, covariance)
-    rng = np.random.default_rng(0)
-    drawn = ROBOT.C_theta * (1 + 0.1 * rng.standard_normal((6000, 5)))
-    J_v = rm.geometric_jacobian(ROBOT, THETA)[..., :3, :]
-    C = np.einsum("mik,dk,mjk->dmij", J_v, drawn, J_v)
-    close(found, C, 0.05)
-
-
 def test_unseen_joints_widen_the_band_rather_than_narrow_it():
     theta = rm.read_load_tests(samples_dir() / "load_tests" / "nine_points.csv").theta[::3]
     blind = identify(ROBOT, simulated_tests(ROBOT, theta, np.tile([0.0, 0.0, -250.0], (9, 1)), noise=1e-6))
-    sources = Sources.of(blind, ROBOT)
-    assert sources.covariance[0, 0] == pytest.approx(ROBOT.C_theta[0] ** 2)
-    push = deflection_uncertainty(blind.applied_to(ROBOT), THETA, [100.0, 0, 0], sources)
+    known = Knowledge.of(blind, ROBOT)
+    assert known.covariance[0, 0] == pytest.approx(ROBOT.C_theta[0] ** 2)
+    push = uncertain_deflection(blind.applied_to(ROBOT), THETA, [100.0, 0, 0], known)
     assert (push.std[:, 0] > 0.3 * push.delta[:, 0]).all()
 
 
@@ -138,7 +117,7 @@ def test_what_was_identified_is_predicted_with_its_extra_springs():
     tests = rm.read_load_tests(samples_dir() / "load_tests" / "tilted_bending_tool.csv")
     result = identify(ROBOT, tests, "joints+bending+tool")
     theta, load = tests.theta[::3], tests.wrench[::3, :3]
-    found = identified_deflection(ROBOT, result, theta, load, force=np.eye(3) * 4.0)
+    found = uncertain_deflection(ROBOT, theta, load, Knowledge.of(result, ROBOT).widened(ROBOT, force=2.0))
     gap = np.abs(found.delta - tests.displacement[::3, :3])
     assert gap.max() < 4 * result.noise
     assert (found.by_compliance < result.noise).all()
@@ -149,14 +128,13 @@ def test_what_was_identified_is_predicted_with_its_extra_springs():
 def test_unreached_points_are_nan():
     theta = THETA.copy()
     theta[2] = np.nan
-    found = deflection_uncertainty(ROBOT, theta, F, Sources.relative(ROBOT, compliance=0.1))
+    found = uncertain_deflection(ROBOT, theta, F, guessed(ROBOT, compliance=0.1))
     assert np.isnan(found.std[2]).all()
     assert np.isfinite(found.std[[0, 1, 3, 4]]).all()
 
 
-def test_quantiles_and_words():
+def test_quantiles():
     assert quantile(0.95) == pytest.approx(1.959964, abs=1e-6)
     assert quantile(0.95, 76) == pytest.approx(1.9917, abs=1e-4)
-    assert with_band(2.3e-4, 2e-5) == "0.23 ± 0.02 mm"
-    found = deflection_uncertainty(ROBOT, THETA, F, Sources.of(RESULT, ROBOT))
+    found = uncertain_deflection(ROBOT, THETA, F, Knowledge.of(RESULT, ROBOT))
     np.testing.assert_allclose(found.half_width(), quantile(0.95, RESULT.dof) * found.std)

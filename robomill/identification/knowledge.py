@@ -1,0 +1,120 @@
+"""How sure the compliances in force are: a value that is kept, saved and undone with the compliances it belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.compliance.springs import Spring
+from robomill.errors import ProjectError
+from robomill.identification.models import Model
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """Compliances of a model's springs, and what is not known exactly of them, of the force and of the arm.
+
+    model: the springs; parameters (p,) SI and their covariance (p, p); dof of the fit that gave it (None: known
+    exactly, normal quantiles); F (3, 3) N^2 covariance of the force, the same along a path; lengths (2 rows,) m
+    standard deviations of a_1..a_k, then d_1..d_k; what is None is taken as certain. source: from where, in words;
+    compliances: the ``compliance_digest`` of the arm it holds for, "" while it belongs to none.
+    """
+
+    model: Model
+    parameters: FloatArray
+    covariance: FloatArray
+    dof: int | None = None
+    F: FloatArray | None = None
+    lengths: FloatArray | None = None
+    source: str = ""
+    compliances: str = ""
+
+    def __post_init__(self) -> None:
+        p = np.shape(self.parameters)[-1] if np.ndim(self.parameters) else 0
+        checked = {
+            "parameters": ((p,), self.parameters),
+            "covariance": ((p, p), self.covariance),
+            "F": ((3, 3), self.F),
+            "lengths": ((None,), self.lengths),
+        }
+        for name, (shape, value) in checked.items():
+            if value is not None:
+                object.__setattr__(self, name, frozen(as_floats(value, name, shape, error=ProjectError)))
+
+    @classmethod
+    def of(cls, result: IdentificationResult, robot: Robot, source: str = "") -> Knowledge:
+        """What an identification knows of ``result.applied_to(robot)``.
+
+        A joint it did not see keeps the robot's own value there, and counts here as unsure by all of that value.
+        """
+        parameters, covariance = np.array(result.parameters), np.nan_to_num(result.covariance)
+        if result.has_joints:
+            unseen = np.flatnonzero(~np.isfinite(result.stderr))
+            parameters[unseen] = robot.C_theta[unseen]
+            covariance[unseen, unseen] = robot.C_theta[unseen] ** 2
+        return cls(result.choice, parameters, covariance, result.dof, source=source)
+
+    def widened(self, robot: Robot, force: float = 0.0, length: float = 0.0) -> Knowledge:
+        """The same with each force component unsure by ``force`` N and each D-H length by ``length`` m (one std)."""
+        F = np.eye(3) * force**2 if force > 0 else None
+        return replace(self, F=F, lengths=np.full(2 * robot.rows, length) if length > 0 else None)
+
+    def held_by(self, robot: Robot, springs: Sequence[Spring]) -> Knowledge:
+        """The same, said to be of these compliances."""
+        return replace(self, compliances=compliance_digest(robot, springs))
+
+    def holds_for(self, robot: Robot, springs: Sequence[Spring]) -> bool:
+        """Whether exactly the compliances it belongs to are in force: an edit ends that, an undo brings it back."""
+        return self.compliances == compliance_digest(robot, springs)
+
+    def to_table(self) -> dict[str, Any]:
+        """Plain numbers for a project file; ``from_table`` reads them back."""
+        table: dict[str, Any] = {
+            "model": self.model.name,
+            "bending_joints": list(self.model.bending_joints),
+            "parameters": self.parameters.tolist(),
+            "covariance": self.covariance.tolist(),
+            "words": self.source,
+        }
+        if self.dof is not None:
+            table["dof"] = int(self.dof)
+        if self.F is not None:
+            table["force_covariance"] = self.F.tolist()
+        if self.lengths is not None:
+            table["lengths"] = self.lengths.tolist()
+        return table
+
+    @classmethod
+    def from_table(cls, table: Any, robot: Robot, springs: Sequence[Spring], where: str) -> Knowledge:
+        """What a project file knows of the compliances in it. Raises ProjectError, naming ``where``."""
+        if not isinstance(table, dict):
+            raise ProjectError(f"{where} is not a table; remove it or save the project again.")
+        try:
+            model = Model(str(table["model"]), tuple(int(j) for j in table.get("bending_joints", (2, 3))))
+            p, rows = len(model.parameters(robot)), 2 * robot.rows
+            given = {name: table[name] for name in ("force_covariance", "lengths", "dof") if name in table}
+            if "lengths" in given:
+                as_floats(given["lengths"], "lengths", (rows,))
+            known = cls(
+                model,
+                as_floats(table["parameters"], "parameters", (p,)),
+                as_floats(table["covariance"], "covariance", (p, p)),
+                int(given["dof"]) if "dof" in given else None,
+                given.get("force_covariance"),
+                given.get("lengths"),
+                str(table.get("words", "from load tests")),
+            )
+        except (KeyError, TypeError, ValueError) as exc:
+            raise ProjectError(f"{where} cannot be used ({exc}); remove it or save the project again.") from exc
+        return known.held_by(robot, springs)
+
+
+def compliance_digest(robot: Robot, springs: Sequence[Spring]) -> str:
+    """SHA-256 over the compliances in force: joints, blocked axes, springs."""
+    return digest({"C_theta": robot.C_theta_all, "blocked": robot.blocked, "springs": tuple(springs)})

@@ -1,0 +1,100 @@
+"""How sure a predicted deflection is: the uncertainty of compliances, force and lengths carried to the tool tip.
+
+Linear propagation. With delta = D C_theta + ..., D (3 x p) the regressor of eqs. (13)-(16),
+
+    cov(delta) = D cov(C_theta) D^T + C cov(F) C^T + L cov(lengths) L^T
+
+where L is the derivative of delta with respect to the D-H lengths a and d at fixed joint coordinates (the control
+drives the joints by its nominal table, the true lengths are what is unsure). delta is exactly linear in C_theta and
+in F apart; their product and the lengths are of second order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ndtri, stdtrit
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.errors import RobomillError
+from robomill.identification.knowledge import Knowledge
+from robomill.robot.model import Robot
+
+STEP = 1e-6  # m, for the derivative with respect to a length
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertain:
+    """A displacement with its uncertainty: delta (..., 3) m, covariance (..., 3, 3) m^2, and the part of each source.
+
+    by_compliance, by_force, by_lengths (..., 3): standard deviations (m) each source alone would give.
+    """
+
+    delta: FloatArray
+    covariance: FloatArray
+    by_compliance: FloatArray
+    by_force: FloatArray
+    by_lengths: FloatArray
+    dof: int | None = None
+
+    @property
+    def std(self) -> FloatArray:
+        """(..., 3) m, one standard deviation of each component."""
+        return _spread(self.covariance)
+
+    def half_width(self, level: float = 0.95) -> FloatArray:
+        """(..., 3) m: delta +- this holds the truth with that probability."""
+        return quantile(level, self.dof) * self.std
+
+    def half_along(self, direction: ArrayLike, level: float = 0.95) -> FloatArray:
+        """(...) m: the same of the component along unit vectors (..., 3)."""
+        u = np.asarray(direction, dtype=np.float64)
+        variance = np.einsum("...i,...ij,...j->...", u, self.covariance, u)
+        return quantile(level, self.dof) * np.sqrt(variance)
+
+
+def quantile(level: float = 0.95, dof: int | None = None) -> float:
+    """How many standard deviations a two-sided interval takes: Student's t with ``dof``, normal when None."""
+    upper = 0.5 + 0.5 * level
+    return float(ndtri(upper)) if dof is None else float(stdtrit(max(dof, 1), upper))
+
+
+def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Knowledge) -> Uncertain:
+    """delta = C F with its uncertainty, at theta (..., n) under F (..., 3) N in {M}. Eqs. (15), (16).
+
+    By the model and parameters of ``known`` (joints, bending, tool). NaN where theta is NaN.
+    """
+    theta = as_floats(theta, "theta", (robot.n,), error=RobomillError, finite=False)
+    F = as_floats(F, "F", (3,), error=RobomillError, finite=False)
+    D = known.model.tip_regressor(robot, theta, F)
+    delta = D @ known.parameters
+    parts = [D @ known.covariance @ np.swapaxes(D, -1, -2), np.zeros((*delta.shape, 3)), np.zeros((*delta.shape, 3))]
+    if known.F is not None:
+        C = known.model.compliance(robot, theta, known.parameters)
+        parts[1] = parts[1] + C @ known.F @ np.swapaxes(C, -1, -2)
+    if known.lengths is not None and np.any(known.lengths):
+        L = length_derivative(robot, theta, F, known) * known.lengths
+        parts[2] = L @ np.swapaxes(L, -1, -2)
+    spread = [frozen(_spread(part)) for part in parts]
+    return Uncertain(frozen(delta), frozen(sum(parts)), spread[0], spread[1], spread[2], known.dof)
+
+
+def length_derivative(robot: Robot, theta: FloatArray, F: FloatArray, known: Knowledge) -> FloatArray:
+    """(..., 3, 2 rows) m/m: change of delta with a_1..a_k, d_1..d_k, by central differences at fixed joints."""
+    columns = []
+    for name in ("a", "d"):
+        for i in range(robot.rows):
+            moved = []
+            for step in (STEP, -STEP):
+                lengths = np.array(getattr(robot, name))
+                lengths[i] += step
+                arm = robot.replace(**{name: lengths})
+                moved.append(known.model.tip_regressor(arm, theta, F) @ known.parameters)
+            columns.append((moved[0] - moved[1]) / (2.0 * STEP))
+    return np.stack(columns, axis=-1)
+
+
+def _spread(covariance: FloatArray) -> FloatArray:
+    return np.sqrt(np.clip(np.diagonal(covariance, axis1=-2, axis2=-1), 0.0, None))
