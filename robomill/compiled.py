@@ -1,33 +1,255 @@
-"""Where compiled kernels are kept: a cache on disk that knows every source they were made from."""
+"""Compiled kernels: what marks one, where its machine code is kept, what is not compiled yet, and who compiles it.
+
+A kernel module is an ordinary module called ``kernels`` or ``*_kernels``. It is imported inside the functions that
+call it, so that nothing imports the compiler before its first use:
+
+    @part                                             # compiled into the kernels that call it
+    def squared(x: float) -> float: ...
+
+    @kernel                                           # an entry point: compiled for the types of its annotations when
+    def norms(p: In2, norm: Out1) -> None: ...        # the module is imported, or loaded from disk
+
+Importing a kernel module compiles what the cache on disk does not hold: correct, only slow. A program that talks to
+people asks ``missing()`` first, says ``WORDS``, and calls ``build()``.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
 import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import cache
+from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
-_lock = threading.RLock()
+from robomill.arrays import BoolArray, FloatArray, IntArray
+
+PACKAGE = Path(__file__).parent
+PATTERNS = ("*/**/kernels.py", "*/**/*_kernels.py")
+WORDS = "Preparing the kernels, once, about 20 s"
+COMPLETE = "complete"
+PLACE = "ROBOMILL_CACHE"
+KEPT_FOLDERS = 4  # of older sources: so many stay beside the one in use
+# No reciprocals or reassociation: only a * b + c in one rounding.
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+
+F = TypeVar("F", bound=Callable[..., Any])
+_lock = threading.RLock()  # around the compiler's configuration
+_building = threading.Lock()
+_tried = False
+
+
+class Axes(NamedTuple):
+    """An array a kernel takes: C-ordered, ``dims`` axes of ``dtype``; read only unless it is there to be written."""
+
+    dtype: str
+    dims: int
+    written: bool = False
+
+
+In1 = Annotated[FloatArray, Axes("float64", 1)]
+In2 = Annotated[FloatArray, Axes("float64", 2)]
+In3 = Annotated[FloatArray, Axes("float64", 3)]
+InInt1 = Annotated[IntArray, Axes("int64", 1)]
+InBool1 = Annotated[BoolArray, Axes("bool_", 1)]
+Out1 = Annotated[FloatArray, Axes("float64", 1, written=True)]
+Out2 = Annotated[FloatArray, Axes("float64", 2, written=True)]
+Out3 = Annotated[FloatArray, Axes("float64", 3, written=True)]
+OutInt1 = Annotated[IntArray, Axes("int64", 1, written=True)]
+OutBool1 = Annotated[BoolArray, Axes("bool_", 1, written=True)]
+OutBool2 = Annotated[BoolArray, Axes("bool_", 2, written=True)]
+
+
+def part(function: F) -> F:
+    """Mark a function that kernels call: compiled into each of them, for the types it is called with."""
+    from numba import njit
+
+    return njit(forceinline=True, **OPTIONS)(function)  # type: ignore[no-any-return]
+
+
+def kernel(function: F) -> F:
+    """Mark an entry point: compiled here and now for the types of its annotations, or loaded from the cache on disk.
+
+    Annotations: float, int, bool, the aliases of this module (``In2``, ``Out3``, ...), tuples of these, and NamedTuples
+    whose fields are annotated so. An entry of the cache that cannot be read is removed and made again.
+    """
+    from numba import config, njit
+    from numba.core.errors import NumbaError
+
+    def compile_it() -> F:
+        return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)  # type: ignore[no-any-return]
+
+    with _lock:
+        before = config.CACHE_DIR  # type: ignore[attr-defined]
+        config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
+        try:
+            return compile_it()
+        except NumbaError:
+            raise
+        except Exception:  # whatever a damaged file makes of the unpickling or of the linker
+            for file in kept_in().glob(f"*/*{function.__name__}-*"):
+                file.unlink(missing_ok=True)
+            return compile_it()
+        finally:
+            config.CACHE_DIR = before  # type: ignore[attr-defined]
+
+
+def _signature(function: Callable[..., Any]) -> Any:
+    hints = get_type_hints(function, include_extras=True)
+    returned = _numba_type(hints.pop("return"))
+    return returned(*map(_numba_type, hints.values()))
+
+
+def _numba_type(hint: Any) -> Any:
+    from numba import types
+
+    plain = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.void}
+    if hint in plain:
+        return plain[hint]
+    if get_origin(hint) is Annotated:
+        axes = get_args(hint)[1]
+        return types.Array(getattr(types, axes.dtype), axes.dims, "C", readonly=not axes.written)
+    if get_origin(hint) is tuple:
+        return types.Tuple([_numba_type(item) for item in get_args(hint)])
+    return types.NamedTuple([_numba_type(item) for item in get_type_hints(hint, include_extras=True).values()], hint)
+
+
+# ---- where machine code is kept ------------------------------------------------------------------------------------
+
+
+def modules() -> tuple[str, ...]:
+    """The names of all kernel modules."""
+    return tuple(".".join(source.relative_to(PACKAGE.parent).with_suffix("").parts) for source in _sources())
+
+
+def _sources() -> list[Path]:
+    return sorted({source for pattern in PATTERNS for source in PACKAGE.glob(pattern)})
+
+
+@cache
+def kept_in() -> Path:
+    """The folder of the machine code of these sources, this Python, this compiler and this processor.
+
+    Where ROBOMILL_CACHE says, else beside the package where that can be written, else in the user's cache, else in a
+    private temporary folder.
+    """
+    name = f"kernels-{_key()}"
+    for root in _roots():
+        folder = root / name
+        if _own(folder):
+            _forget_older(folder)
+            return folder
+        if (folder / COMPLETE).is_file():  # made by whoever installed the package; the compiler wants to write there
+            copy = next(other / name for other in _roots() if _own(other / name))
+            return Path(shutil.copytree(folder, copy, dirs_exist_ok=True))
+    os.environ[PLACE] = tempfile.mkdtemp(prefix="robomill-")  # the process that compiles inherits it
+    folder = Path(os.environ[PLACE]) / name
+    folder.mkdir()
+    return folder
+
+
+def _key() -> str:
+    """A digest of every source that kernels are made from: the compiler by itself looks only at a function's own file,
+    and would keep running old code of the functions it calls."""
+    state = hashlib.sha256(f"{sys.implementation.cache_tag} {version('numba')} {_processor()}".encode())
+    for source in [Path(__file__), *_sources()]:
+        state.update(source.name.encode() + source.read_bytes())
+    return state.hexdigest()[:16]
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
+    except OSError:
+        return f"{platform.machine()} {platform.processor()}"
+    return " ".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
+
+
+def _roots() -> Iterator[Path]:
+    if os.environ.get(PLACE):
+        yield Path(os.environ[PLACE])
+    yield PACKAGE / "__pycache__"
+    yield Path.home() / ".cache" / "robomill"
+
+
+def _own(folder: Path) -> bool:
+    """Whether the folder stands, made if need be, and can be written."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
+
+
+def _forget_older(folder: Path) -> None:
+    others = [other for other in folder.parent.glob("kernels-*") if other != folder]
+    others.sort(key=lambda other: other.stat().st_mtime if other.exists() else 0.0)
+    for other in others[:-KEPT_FOLDERS]:
+        shutil.rmtree(other, ignore_errors=True)
+
+
+# ---- what is missing, and making it ----------------------------------------------------------------------------------
+
+
+def missing() -> tuple[str, ...]:
+    """The kernel modules that nobody has compiled for this machine yet; cheap, without the compiler."""
+    try:
+        done = (kept_in() / COMPLETE).read_text().split()
+    except OSError:
+        done = []
+    return tuple(name for name in modules() if name not in done)
+
+
+def build() -> None:
+    """Compile what is missing in a process of its own, which leaves this one's interpreter free; returns when done.
+
+    Tried once: where no process can be had nothing is lost, kernels are then compiled as they are imported.
+    """
+    global _tried
+    with _building:
+        if _tried or not missing():
+            return
+        _tried = True
+        command = f"import sys; sys.path[:0] = {sys.path!r}; from robomill import compiled; compiled.compile_all()"
+        with suppress(OSError, subprocess.SubprocessError):
+            subprocess.run([sys.executable, "-c", command], check=False, capture_output=True, timeout=600)
+
+
+def compile_all() -> None:
+    """Compile or load every kernel, and note that they are there."""
+    for name in modules():
+        import_module(name)
+    note = kept_in() / f"{COMPLETE}.{os.getpid()}"
+    note.write_text("\n".join(modules()) + "\n")
+    note.replace(kept_in() / COMPLETE)
+
+
+def prepare(say: Callable[[str], Any]) -> None:
+    """``build()`` where something is missing, after ``say(WORDS)``; nothing at all where nothing is."""
+    if missing():
+        say(WORDS)
+        build()
+
+
+# ---- until every kernel module is marked as above ----------------------------------------------------------------
 
 
 def cache_folder(sources: Sequence[Path]) -> Path | None:
-    """The folder for kernels made from ``sources``, or None for the compiler's own choice.
-
-    Its name holds a digest of all of them: the compiler by itself looks only at a function's own file, and would
-    keep running old code of the functions it calls.
-    """
+    """The folder for kernels made from ``sources``, or None for the compiler's own choice."""
     key = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:12]
     for root in (sources[0].parent / "__pycache__", Path.home() / ".cache" / "robomill"):
-        folder = root / f"kernels-{key}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
+        if _own(root / f"kernels-{key}"):
+            return root / f"kernels-{key}"
     return None
 
 

@@ -1,0 +1,176 @@
+"""Compiled kernels are what their Python says, are kept on disk, and heal; nothing imports the compiler too soon."""
+
+import importlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robomill import compiled
+
+SOURCE = """
+from __future__ import annotations
+from robomill.compiled import In2, Out1, kernel, part
+from scale_of_sums import Scale
+
+@part
+def times(x, scale, i):
+    return x * scale.by[i] if scale.on[i] else x
+
+@kernel
+def total(p: In2, scale: Scale, shift: tuple[float, float], count: int, out: Out1) -> float:
+    whole = 0.0
+    for i in range(count):
+        out[i] = times(p[i, 0] + p[i, 1], scale, i) + shift[0] * shift[1]
+        whole += out[i]
+    return whole
+"""
+SCALE = """
+from __future__ import annotations
+from typing import NamedTuple
+from robomill.compiled import In1, InBool1
+
+class Scale(NamedTuple):
+    by: In1
+    on: InBool1
+"""
+P, BY = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]), np.array([10.0, 100.0, 1000.0])
+ON = np.array([True, False, True])
+for array in (BY, ON):
+    array.flags.writeable = False
+EXPECTED = [30.0 + 6.0, 7.0 + 6.0, 11_000.0 + 6.0]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _scale(tmp_path_factory):
+    place = tmp_path_factory.mktemp("scale")
+    (place / "scale_of_sums.py").write_text(SCALE)
+    sys.path.insert(0, str(place))
+    importlib.import_module("scale_of_sums")
+    yield
+    sys.path.remove(str(place))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "sums_kernels.py").write_text(SOURCE)
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    monkeypatch.setattr(compiled, "kept_in", lambda: kept)
+    monkeypatch.syspath_prepend(tmp_path)
+    return kept
+
+
+def result():
+    """What a freshly imported copy of the module answers."""
+    sys.modules.pop("sums_kernels", None)
+    module = importlib.import_module("sums_kernels")
+    out = np.empty(3)
+    whole = module.total(P, module.Scale(BY, ON), (2.0, 3.0), 3, out)
+    assert whole == pytest.approx(sum(EXPECTED))
+    return out, module.total
+
+
+def test_a_kernel_computes_what_its_python_says_and_is_kept(folder):
+    np.testing.assert_allclose(result()[0], EXPECTED)
+    kept = sorted(folder.rglob("*.nb?"))
+    assert [file.suffix for file in kept] == [".nbc", ".nbi"]
+    times = [file.stat().st_mtime_ns for file in kept]
+    out, total = result()
+    assert sum(total.stats.cache_hits.values()) == 1
+    assert [file.stat().st_mtime_ns for file in kept] == times
+    np.testing.assert_allclose(out, EXPECTED)
+
+
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
+@pytest.mark.parametrize("damage", [b"", b"not a pickle", None])
+def test_a_damaged_cache_heals(folder, suffix, damage):
+    result()
+    (file,) = folder.rglob(f"*{suffix}")
+    file.write_bytes(file.read_bytes()[:-40] if damage is None else damage)
+    np.testing.assert_allclose(result()[0], EXPECTED)
+    _, total = result()
+    assert sum(total.stats.cache_hits.values()) == 1
+
+
+def test_every_kernel_module_is_found_and_none_is_imported_by_the_core():
+    names = compiled.modules()
+    assert "robomill.kinematics.kernels" in names
+    assert all(name.startswith("robomill.") for name in names)
+    core = ["kinematics.inverse", "compliance.cartesian", "workspace.fields", "simulation.run"]
+    code = "import sys; " + "; ".join(f"import robomill.{name}" for name in core) + "; print('numba' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "False"
+
+
+def test_a_place_that_is_all_there_is_nothing_to_say(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiled, "kept_in", lambda: tmp_path)
+    said = []
+    assert set(compiled.missing()) == set(compiled.modules())
+    monkeypatch.setattr(compiled, "build", lambda: said.append("built"))
+    compiled.prepare(said.append)
+    assert said == [compiled.WORDS, "built"]
+    (tmp_path / compiled.COMPLETE).write_text("\n".join(compiled.modules()))
+    assert compiled.missing() == ()
+    compiled.prepare(said.append)
+    assert len(said) == 2
+
+
+@pytest.fixture
+def fresh(monkeypatch):
+    compiled.kept_in.cache_clear()
+    monkeypatch.setattr(compiled, "_key", lambda: "key")
+    yield
+    monkeypatch.undo()
+    compiled.kept_in.cache_clear()
+
+
+def test_where_the_package_cannot_be_written_the_users_cache_serves(tmp_path, monkeypatch, fresh):
+    shut, home = tmp_path / "shut", tmp_path / "home"
+    monkeypatch.setattr(compiled, "_roots", lambda: iter([shut, home]))
+    real = compiled._own
+    monkeypatch.setattr(compiled, "_own", lambda folder: shut not in folder.parents and real(folder))
+    assert compiled.kept_in() == home / "kernels-key"
+    # What the installer compiled there is taken along.
+    compiled.kept_in.cache_clear()
+    (shut / "kernels-key").mkdir(parents=True)
+    (shut / "kernels-key" / compiled.COMPLETE).write_text("all")
+    assert (compiled.kept_in() / compiled.COMPLETE).read_text() == "all"
+    assert compiled.kept_in() == home / "kernels-key"
+
+
+def test_where_nothing_can_be_written_a_temporary_folder_serves_and_its_child_finds_it(monkeypatch, fresh):
+    monkeypatch.setenv(compiled.PLACE, "")
+    real = compiled._roots
+    monkeypatch.setattr(compiled, "_own", lambda folder: False)
+    folder = compiled.kept_in()
+    assert folder.is_dir()
+    assert next(real()) == folder.parent
+
+
+def test_only_a_few_older_folders_are_kept(tmp_path):
+    folders = [tmp_path / f"kernels-{i}" for i in range(9)]
+    for i, folder in enumerate(folders):
+        folder.mkdir()
+        os.utime(folder, (i, i))
+    compiled._forget_older(folders[0])
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == ["kernels-0", "kernels-5", "kernels-6", "kernels-7", "kernels-8"]
+
+
+def test_the_digest_covers_every_source(tmp_path, monkeypatch):
+    room = tmp_path / "room"
+    room.mkdir()
+    first, second = room / "kernels.py", room / "more_kernels.py"
+    first.write_text("a")
+    second.write_text("b")
+    (room / "other.py").write_text("c")
+    monkeypatch.setattr(compiled, "PACKAGE", tmp_path)
+    assert [Path(name).suffix for name in compiled.modules()] == [".kernels", ".more_kernels"]
+    before = compiled._key()
+    (room / "other.py").write_text("d")
+    assert compiled._key() == before
+    second.write_text("e")
+    assert compiled._key() != before
