@@ -42,6 +42,7 @@ UNITS: dict[str, Unit] = {
     "mm/tooth": Unit("mm/tooth", 1e-3, 4),
     "1/min": Unit("min⁻¹", 1.0 / 60.0, 0),
     "s": Unit("s", 1.0, 1),
+    "Hz": Unit("Hz", 1.0, 1),
     "min": Unit("min", 60.0, 2),
     "N": Unit("N", 1.0, 1),
     "kN": Unit("kN", 1e3, 3),
@@ -89,11 +90,20 @@ def format_value(value: float, unit: str, digits: int | None = None, sign: bool 
     text = f"{value:+.{decimals}f}" if sign else f"{value:.{decimals}f}"
     if float(text) == 0.0:
         text = text.lstrip("+-")
-    text = text.replace("-", "−")
-    label = UNITS[unit].label
-    return f"{text}{label}" if label == "°" else f"{text} {label}".rstrip()
+    return _with_label(text, unit)
 
 
 def format_si(value: float, unit: str, digits: int | None = None, sign: bool = False) -> str:
     """An SI value shown in ``unit``: ``format_si(2.3e-4, "mm") == "0.230 mm"``."""
     return format_value(from_si(float(value), unit), unit, digits, sign)
+
+
+def format_short(value: float, unit: str) -> str:
+    """An SI value with the digits that say it, six at most: ``format_short(8e-3, "mm") == "8 mm"``."""
+    return _with_label(f"{from_si(float(value), unit):.6g}", unit)
+
+
+def _with_label(text: str, unit: str) -> str:
+    label = UNITS[unit].label
+    blank = "" if label == "°" else " "
+    return f"{text.replace('-', '−')}{blank}{label}".rstrip()

@@ -68,10 +68,10 @@ def depth_moment(cutter: Cutter, depth: ArrayLike, p: float, q: int) -> FloatArr
     a = np.asarray(depth, dtype=np.float64)
     nose = np.minimum(a, cutter.nose_height)
     side = (a - nose) if q == 0 else np.zeros_like(a)
-    if cutter.kind == "flat":
+    if cutter.nose_height == 0.0:
         return side
-    if cutter.kind == "chamfer":
-        half = 0.5 * float(cutter.tip_angle or 0.0)
+    if cutter.conical:
+        half = cutter.half_angle
         return side + nose * math.cos(half) ** p * math.sin(half) ** q
     rho = cutter.corner_radius
     kappa = 2.0 * np.arcsin(np.sqrt(np.clip(nose / (2.0 * rho), 0.0, 0.5)))

@@ -4,23 +4,40 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.errors import CuttingError
+from robomill.quantities import choice, quantity, settle, whole
 from robomill.units import format_si, to_si
 
 CutterKind = Literal["flat", "ball", "bull", "chamfer"]
 Hand = Literal["right", "left"]
+HANDS = {"right": "right", "left": "left"}
 
-KIND_TITLES: dict[str, str] = {
-    "flat": "flat end mill",
-    "ball": "ball-nose mill",
-    "bull": "bull-nose mill",
-    "chamfer": "chamfer mill",
+
+@dataclass(frozen=True)
+class Shape:
+    """A family of cutters: what people call it, and which numbers it needs beside those of every cutter."""
+
+    short: str
+    title: str
+    needs: tuple[str, ...] = ()
+
+    def first(self, diameter: float) -> dict[str, float]:
+        """A value to start from for each number in ``needs``, for a cutter of that diameter."""
+        first = {"corner_radius": diameter / 8, "tip_angle": to_si(90.0, "deg"), "tip_diameter": 0.0}
+        return {name: first[name] for name in self.needs}
+
+
+SHAPES: dict[str, Shape] = {
+    "flat": Shape("Flat", "flat end mill"),
+    "ball": Shape("Ball", "ball-nose mill"),
+    "bull": Shape("Bull", "bull-nose mill", ("corner_radius",)),
+    "chamfer": Shape("Chamfer", "chamfer mill", ("tip_angle", "tip_diameter")),
 }
 
 
@@ -36,119 +53,78 @@ class Cutter:
     Raises CuttingError for a cutter that cannot be.
     """
 
-    kind: CutterKind
-    diameter: float
-    corner_radius: float = 0.0
-    flutes: int = 2
-    helix: Hand = "right"
-    helix_angle: float = to_si(30.0, "deg")
-    flute_length: float | None = None
-    stick_out: float | None = None
-    tip_angle: float | None = None
-    tip_diameter: float = 0.0
-    hand: Hand = "right"
+    kind: CutterKind = choice("Kind", {kind: shape.short for kind, shape in SHAPES.items()})
+    diameter: float = quantity("Diameter", "mm", above=0.0, step=1.0)
+    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, step=0.25)
+    flutes: int = whole("Flutes", default=2, least=1)
+    helix: Hand = choice(
+        "Helix",
+        HANDS,
+        default="right",
+        hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
+    )
+    helix_angle: float = quantity(
+        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), step=5.0, digits=1
+    )
+    flute_length: float | None = quantity(
+        "Flute length",
+        "mm",
+        optional=True,
+        above=0.0,
+        step=1.0,
+        digits=1,
+        hint="Deeper cuts are warned of: the shank would rub.",
+    )
+    stick_out: float | None = quantity(
+        "Stick-out",
+        "mm",
+        optional=True,
+        above=0.0,
+        step=1.0,
+        digits=1,
+        hint="Free length from the holder; tool bending grows with its cube.",
+    )
+    tip_angle: float | None = quantity(
+        "Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"), step=5.0
+    )
+    tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, step=0.25)
+    hand: Hand = choice("Hand", HANDS, default="right")
 
     def __post_init__(self) -> None:
-        if self.kind not in get_args(CutterKind):
-            raise CuttingError(
-                f"Cutter kind {self.kind!r} is not known: use flat, ball, bull or chamfer.", where="kind"
-            )
-        for name in ("helix", "hand"):
-            if getattr(self, name) not in get_args(Hand):
-                raise CuttingError(f"Cutter {name} {getattr(self, name)!r}: expected 'right' or 'left'.", where=name)
-        self._settle_numbers()
-        self._check_size()
-        if self.kind == "ball":
-            self._check_ball()
-        elif self.kind == "bull":
-            self._check_bull()
-        elif self.corner_radius != 0.0:
-            raise CuttingError(
-                f"A {KIND_TITLES[self.kind]} has no corner radius, found {format_si(self.corner_radius, 'mm')}: "
-                "set it to 0 or choose a bull-nose mill.",
-                where="corner_radius",
-            )
-        self._check_cone()
-
-    def _settle_numbers(self) -> None:
-        """Every number a finite float (or None where it may be absent), flutes a whole number."""
-        for name in (
-            "diameter",
-            "corner_radius",
-            "helix_angle",
-            "flute_length",
-            "stick_out",
-            "tip_angle",
-            "tip_diameter",
-        ):
-            value = getattr(self, name)
-            if value is None and name in ("flute_length", "stick_out", "tip_angle"):
-                continue
-            label = name.replace("_", " ")
-            try:
-                number = float(value)
-            except (TypeError, ValueError) as exc:
-                raise CuttingError(f"Cutter {label}: expected a number, found {value!r:.40}.", where=name) from exc
-            if not math.isfinite(number):
-                raise CuttingError(f"Cutter {label}: expected a finite number, found {number}.", where=name)
-            object.__setattr__(self, name, number)
-        try:
-            whole = float(self.flutes) == int(self.flutes)
-        except (TypeError, ValueError, OverflowError):
-            whole = False
-        if not whole or isinstance(self.flutes, str | bool):
-            raise CuttingError(f"Cutter flutes: expected a whole number, found {self.flutes!r:.40}.", where="flutes")
-        object.__setattr__(self, "flutes", int(self.flutes))
-
-    def _check_size(self) -> None:
-        if self.diameter <= 0.0:
-            raise CuttingError(
-                f"Cutter diameter {format_si(self.diameter, 'mm')}: it must be greater than 0.", where="diameter"
-            )
-        if self.flutes < 1:
-            raise CuttingError(f"Cutter with {self.flutes} flutes: it needs at least one.", where="flutes")
-        if not 0.0 <= self.helix_angle < to_si(85.0, "deg"):
-            raise CuttingError(
-                f"Helix angle {format_si(self.helix_angle, 'deg')}: expected 0° to 85°; "
-                "the hand of the helix is set apart from its angle.",
-                where="helix_angle",
-            )
-        for name in ("flute_length", "stick_out"):
-            length = getattr(self, name)
-            if length is not None and length <= 0.0:
-                raise CuttingError(
-                    f"Cutter {name.replace('_', ' ')} {format_si(length, 'mm')}: "
-                    "it must be greater than 0, or left out if unknown.",
-                    where=name,
-                )
+        settle(self, CuttingError, "Cutter")
         if self.flute_length is not None and self.stick_out is not None and self.flute_length > self.stick_out:
             raise CuttingError(
                 f"Flute length {format_si(self.flute_length, 'mm')} is longer than the stick-out "
                 f"{format_si(self.stick_out, 'mm')}: the flutes cannot reach into the holder.",
                 where="flute_length",
             )
-        if self.corner_radius < 0.0:
-            raise CuttingError(
-                f"Corner radius {format_si(self.corner_radius, 'mm')}: it cannot be negative.", where="corner_radius"
-            )
+        self._check_corner()
+        self._check_cone()
 
-    def _check_ball(self) -> None:
-        if self.corner_radius not in (0.0, self.radius) and not math.isclose(self.corner_radius, self.radius):
+    def _check_corner(self) -> None:
+        """A ball nose has the cutter's radius; without a need for one it is 0."""
+        if self.kind == "ball":
+            if self.corner_radius not in (0.0, self.radius) and not math.isclose(self.corner_radius, self.radius):
+                raise CuttingError(
+                    f"A ball-nose mill of {format_si(self.diameter, 'mm')} has corner radius "
+                    f"{format_si(self.radius, 'mm')}, found {format_si(self.corner_radius, 'mm')}: "
+                    "leave it out or choose a bull-nose mill.",
+                    where="corner_radius",
+                )
+            object.__setattr__(self, "corner_radius", self.radius)
+        elif "corner_radius" not in self.shape.needs:
+            if self.corner_radius != 0.0:
+                raise CuttingError(
+                    f"A {self.shape.title} has no corner radius, found {format_si(self.corner_radius, 'mm')}: "
+                    "set it to 0 or choose a bull-nose mill.",
+                    where="corner_radius",
+                )
+        elif self.corner_radius == 0.0:
             raise CuttingError(
-                f"A ball-nose mill of {format_si(self.diameter, 'mm')} has corner radius "
-                f"{format_si(self.radius, 'mm')}, found {format_si(self.corner_radius, 'mm')}: "
-                "leave it out or choose a bull-nose mill.",
+                f"A {self.shape.title} needs a corner radius greater than 0: give one or choose a flat end mill.",
                 where="corner_radius",
             )
-        object.__setattr__(self, "corner_radius", self.radius)
-
-    def _check_bull(self) -> None:
-        if self.corner_radius == 0.0:
-            raise CuttingError(
-                "A bull-nose mill needs a corner radius greater than 0: give one or choose a flat end mill.",
-                where="corner_radius",
-            )
-        if self.corner_radius > self.radius:
+        elif self.corner_radius > self.radius:
             raise CuttingError(
                 f"Corner radius {format_si(self.corner_radius, 'mm')} is larger than the cutter's radius "
                 f"{format_si(self.radius, 'mm')}: it can be at most that (a ball nose).",
@@ -156,24 +132,37 @@ class Cutter:
             )
 
     def _check_cone(self) -> None:
-        if self.kind != "chamfer":
+        if not self.conical:
             if self.tip_angle is not None or self.tip_diameter != 0.0:
                 raise CuttingError(
-                    f"A {KIND_TITLES[self.kind]} has no tip angle or tip diameter: leave them out.", where="tip_angle"
+                    f"A {self.shape.title} has no tip angle or tip diameter: leave them out.", where="tip_angle"
                 )
-            return
-        if self.tip_angle is None or not 0.0 < self.tip_angle < math.pi:
-            found = "none" if self.tip_angle is None else format_si(self.tip_angle, "deg")
+        elif self.tip_angle is None:
             raise CuttingError(
-                f"A chamfer mill needs a tip angle between 0° and 180° (the full cone), found {found}.",
+                f"A {self.shape.title} needs a tip angle between 0° and 180° (the full cone), found none.",
                 where="tip_angle",
             )
-        if not 0.0 <= self.tip_diameter < self.diameter:
+        elif self.tip_diameter >= self.diameter:
             raise CuttingError(
                 f"Tip diameter {format_si(self.tip_diameter, 'mm')}: expected 0 to less than the cutter's diameter "
                 f"{format_si(self.diameter, 'mm')}.",
                 where="tip_diameter",
             )
+
+    @property
+    def shape(self) -> Shape:
+        """Its family."""
+        return SHAPES[self.kind]
+
+    @property
+    def conical(self) -> bool:
+        """Whether its nose is a cone; the others are round (a flat mill with radius 0)."""
+        return "tip_angle" in self.shape.needs
+
+    @property
+    def half_angle(self) -> float:
+        """Between the axis and the flank of a cone, rad (0 on the others)."""
+        return 0.5 * (self.tip_angle or 0.0)
 
     @property
     def radius(self) -> float:
@@ -183,15 +172,13 @@ class Cutter:
     @property
     def flat_radius(self) -> float:
         """Radius of the flat end face, m: R (flat), 0 (ball), R - corner radius (bull), tip radius (chamfer)."""
-        if self.kind == "chamfer":
-            return 0.5 * self.tip_diameter
-        return max(self.radius - self.corner_radius, 0.0)
+        return 0.5 * self.tip_diameter if self.conical else max(self.radius - self.corner_radius, 0.0)
 
     @property
     def nose_height(self) -> float:
         """Height above the tip at which the full radius is reached, m; from there on the side is a cylinder."""
-        if self.kind == "chamfer":
-            return (self.radius - self.flat_radius) / math.tan(0.5 * float(self.tip_angle or 0.0))
+        if self.conical:
+            return (self.radius - self.flat_radius) / math.tan(self.half_angle)
         return self.corner_radius
 
     @property
@@ -209,16 +196,14 @@ class Cutter:
     def title(self) -> str:
         """For people, e.g. ``"8.00 mm flat end mill, 3 flutes"``."""
         plural = "flute" if self.flutes == 1 else "flutes"
-        return f"{format_si(self.diameter, 'mm', 2)} {KIND_TITLES[self.kind]}, {self.flutes} {plural}"
+        return f"{format_si(self.diameter, 'mm', 2)} {self.shape.title}, {self.flutes} {plural}"
 
     def profile(self, r: ArrayLike) -> FloatArray:
         """Height (m) of the cutting surface above the tip at radius ``r`` (...) m; inf for r < 0 or r > R."""
         radius = np.asarray(r, dtype=np.float64)
         beyond = np.maximum(radius - self.flat_radius, 0.0)
-        if self.kind == "flat":
-            height = np.zeros_like(radius)
-        elif self.kind == "chamfer":
-            height = beyond / math.tan(0.5 * float(self.tip_angle or 0.0))
+        if self.conical:
+            height = beyond / math.tan(self.half_angle)
         else:
             rho = self.corner_radius
             height = rho - np.sqrt(np.maximum((rho - beyond) * (rho + beyond), 0.0))
@@ -228,10 +213,8 @@ class Cutter:
         """Radius (m) of the cutter ``height`` (...) m above the tip, the inverse of ``profile``; NaN below the tip."""
         z = np.asarray(height, dtype=np.float64)
         inside = np.clip(z, 0.0, self.nose_height)
-        if self.kind == "flat":
-            radius = np.full_like(z, self.radius)
-        elif self.kind == "chamfer":
-            radius = self.flat_radius + inside * math.tan(0.5 * float(self.tip_angle or 0.0))
+        if self.conical:
+            radius = self.flat_radius + inside * math.tan(self.half_angle)
         else:
             radius = self.flat_radius + np.sqrt(inside * (2.0 * self.corner_radius - inside))
         return np.where(z < 0.0, np.nan, radius)
@@ -241,3 +224,8 @@ class Cutter:
         if self.kind == "ball" and "corner_radius" not in changes:
             changes["corner_radius"] = 0.0
         return replace(self, **changes)
+
+    def reshaped(self, kind: CutterKind) -> Cutter:
+        """The same cutter of another shape, with a first value for each number that one needs."""
+        plain: dict[str, Any] = {"corner_radius": 0.0, "tip_angle": None, "tip_diameter": 0.0}
+        return replace(self, kind=kind, **(plain | SHAPES[kind].first(self.diameter)))

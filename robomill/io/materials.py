@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from robomill.cutting.materials import COEFFICIENT_UNITS, KIENZLE, MECHANISTIC, Material
-from robomill.errors import CuttingError, RobotError
+from robomill.errors import CuttingError, RobomillError
 from robomill.io.samples import samples_dir
 from robomill.provenance import Provenance
 from robomill.units import from_si, to_si
@@ -62,7 +62,7 @@ def material_from_toml(text: str, where: str = "material") -> Material:
     kind, source = (_text(provenance, key, f"{where} [provenance]") for key in ("kind", "source"))
     try:
         return Material(**words, provenance=Provenance(kind, source), **values)  # type: ignore[arg-type]
-    except (CuttingError, RobotError) as exc:
+    except RobomillError as exc:
         raise CuttingError(f"{where}: {exc}", where=exc.where) from exc
 
 

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
+from robomill.io.declared import from_table, to_table
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import read_program
@@ -17,8 +19,6 @@ from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import links_from_table, links_to_table, spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.workpiece import (
-    cutter_from_table,
-    cutter_to_table,
     part_from_table,
     part_to_table,
     stock_from_table,
@@ -68,7 +68,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     if version != VERSION:
         raise top.refuse("version", f"this file is version {version}; this robomill reads version {VERSION}.")
     robot = _robot(top.table("robot"), folder)
-    cutter = cutter_from_table(top.table("cutter"))
+    cutter = from_table(top.table("cutter"), Cutter)
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
@@ -157,7 +157,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "robot": _robot_table(setup.robot),
         "path": _source_table(setup.source),
         "part": part_to_table(T_MW),
-        "cutter": cutter_to_table(setup.cutter),
+        "cutter": to_table(setup.cutter),
         "force": force_to_table(setup.force),
         "numerics": {
             "step_mm": shown(setup.step, "mm"),

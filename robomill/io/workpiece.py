@@ -1,4 +1,4 @@
-"""Part zero, cutter and stock, to and from the tables of a set-up."""
+"""Part zero and stock, to and from the tables of a set-up."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.tool import Cutter
 from robomill.io.tables import Table, shown
 from robomill.surface.stock import Stock
 from robomill.units import to_si
@@ -45,35 +44,6 @@ def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
     rows = T_MW.copy()
     rows[:3, 3] = zero
     return {"frame": rows.tolist()}
-
-
-CUTTER_LENGTHS = ("diameter", "corner_radius", "flute_length", "stick_out", "tip_diameter")
-CUTTER_ANGLES = ("helix_angle", "tip_angle")
-
-
-def cutter_from_table(table: Table) -> Cutter:
-    given: dict[str, Any] = {"kind": table.text("kind"), "diameter": table.number("diameter_mm", "mm")}
-    for names, unit in ((CUTTER_LENGTHS[1:], "mm"), (CUTTER_ANGLES, "deg")):
-        for name in names:
-            value = table.number(f"{name}_{unit}", unit, None)
-            if value is not None:
-                given[name] = value
-    for name in ("helix", "hand"):
-        if table.has(name):
-            given[name] = table.text(name)
-    given["flutes"] = table.whole("flutes", 2)
-    table.finish()
-    return Cutter(**given)
-
-
-def cutter_to_table(cutter: Cutter) -> dict[str, Any]:
-    out: dict[str, Any] = {"kind": cutter.kind, "flutes": cutter.flutes, "helix": cutter.helix, "hand": cutter.hand}
-    for names, unit in ((CUTTER_LENGTHS, "mm"), (CUTTER_ANGLES, "deg")):
-        for name in names:
-            value = getattr(cutter, name)
-            if value is not None and (value != 0.0 or name == "diameter" or name == "helix_angle"):
-                out[f"{name}_{unit}"] = shown(value, unit)
-    return out
 
 
 def stock_from_table(table: Table, folder: Path | None) -> Stock:

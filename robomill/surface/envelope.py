@@ -35,7 +35,7 @@ class Shape(NamedTuple):
 def cutter_shape(cutter: Cutter) -> Shape:
     """The numbers of a cutter's profile (m); a bull-nose with no corner is flat, with a full one a ball."""
     R, r0 = float(cutter.radius), float(cutter.flat_radius)
-    if cutter.kind == "chamfer":
+    if cutter.conical:
         return Shape(CHAMFER, R, r0, 0.0, float(cutter.nose_height) / (R - r0))
     if r0 >= R:
         return Shape(FLAT, R, R, 0.0, 0.0)

@@ -78,7 +78,7 @@ BAD = [
         "[numerics], cel_mm: this key is not known here; known are: add_sag, cell_mm",
     ),
     (TEXT.replace("diameter_mm = 8.0", ""), "[cutter], diameter_mm: missing; add it"),
-    (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "diameter"),
+    (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "Cutter, Diameter: found −8 mm"),
     (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of constant, path"),
     (TEXT.replace('name = "slavkovic_5r"', 'name = "robbie"'), "robbie"),
     (TEXT.replace('"table_2"', '"table_9"'), "table_9"),

@@ -1,0 +1,145 @@
+"""Values of declared classes as TOML tables: every quantity under its own key, every other field by its type's codec.
+
+``to_table`` writes each quantity (None only where files have a number for it); a field of another type is written
+where it differs from its default. A type without a codec is not in the file: ``given`` must bring it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, field, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from robomill.io.tables import Table, shown
+from robomill.provenance import Provenance
+from robomill.quantities import Quantity, declared_types, quantities
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Around:
+    """What a codec may need beside its own keys: the folder of the file, and the fields known so far."""
+
+    folder: Path | None = None
+    known: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Codec:
+    """How fields of one type stand in a table: under which keys (``"{name}"`` is the field's), read and written.
+
+    A codec without keys finds its value from what is ``Around``.
+    """
+
+    keys: tuple[str, ...]
+    read: Callable[[Table, str, Around], Any]
+    write: Callable[[str, Any], dict[str, Any]]
+
+    def keys_of(self, name: str) -> tuple[str, ...]:
+        return tuple(key.format(name=name) for key in self.keys)
+
+
+CODECS: dict[Any, Codec] = {
+    str: Codec(("{name}",), lambda table, name, _: table.text(name), lambda name, text: {name: text}),
+    tuple[str, ...]: Codec(
+        ("{name}",), lambda table, name, _: tuple(table.words(name)), lambda name, words: {name: list(words)}
+    ),
+    Provenance: Codec(
+        ("source",),
+        lambda table, name, _: table.provenance("source"),
+        lambda name, value: {"source": {"kind": value.kind, "source": value.source}},
+    ),
+}
+
+
+def from_table(
+    table: Table,
+    cls: type[T],
+    *,
+    given: Mapping[str, Any] | None = None,
+    codecs: Mapping[Any, Codec] = CODECS,
+    folder: Path | None = None,
+) -> T:
+    """A value of ``cls`` from ``table``; refuses keys that are not its own. ``given`` are fields from elsewhere."""
+    known = dict(given or {})
+    for name, declared in quantities(cls).items():
+        if name not in known:
+            known[name] = read_quantity(table, declared)
+    absent = {each.name for each in fields(cls) if each.default is not MISSING}  # type: ignore[arg-type]
+    for name, kind in declared_types(cls).items():
+        codec = codecs.get(kind)
+        if name in known or codec is None:
+            continue
+        keys = codec.keys_of(name)
+        if not keys or name not in absent or any(table.has(key) for key in keys):
+            known[name] = codec.read(table, name, Around(folder, known))
+        table.asked.update(keys)
+    table.finish()
+    return cls(**known)
+
+
+def to_table(value: Any, codecs: Mapping[Any, Codec] = CODECS) -> dict[str, Any]:
+    """The table that ``from_table`` reads back to an equal value."""
+    out: dict[str, Any] = {}
+    for name, declared in quantities(type(value)).items():
+        written = write_quantity(declared, getattr(value, name))
+        if written is not None:
+            out[declared.key] = written
+    defaults = {each.name: each.default for each in fields(value)}
+    for name, kind in declared_types(type(value)).items():
+        codec = codecs.get(kind)
+        if codec is not None and getattr(value, name) != defaults[name]:
+            out |= codec.write(name, getattr(value, name))
+    return out
+
+
+def read_quantity(table: Table, declared: Quantity) -> Any:
+    """The declared number in SI (array, flag, code), or its default where it may be left out."""
+    key = declared.key
+    if not declared.needed and not table.has(key):
+        table.asked.add(key)
+        return declared.default
+    value = _READERS[declared.kind](table, declared)
+    return None if declared.written_none is not None and value == declared.written_none else value
+
+
+def write_quantity(declared: Quantity, value: Any) -> Any:
+    """The value as TOML holds it, in the unit of its key; None where the key is left out."""
+    if value is None:
+        return declared.written_none
+    if declared.kind == "number":
+        return shown(value, declared.unit)
+    if declared.kind == "array":
+        flat = [shown(number, declared.unit) for number in np.ravel(value)]
+        return np.reshape(flat, np.shape(value)).tolist()
+    return value
+
+
+def _array(table: Table, declared: Quantity) -> Any:
+    length, *rest = declared.shape
+    if rest:
+        return table.rows(declared.key, int(rest[0] or 0), declared.unit)
+    if length is None:
+        listed = table.data.get(declared.key)
+        length = len(listed) if isinstance(listed, list) else 0
+    return np.array(table.numbers(declared.key, length, declared.unit))
+
+
+def _choice(table: Table, declared: Quantity) -> str:
+    code = table.text(declared.key)
+    if code not in declared.options:
+        raise table.refuse(declared.key, f"expected {declared.expected}, found {code!r:.40}.")
+    return code
+
+
+_READERS: dict[str, Callable[[Table, Quantity], Any]] = {
+    "number": lambda table, declared: table.number(declared.key, declared.unit),
+    "whole": lambda table, declared: table.whole(declared.key),
+    "switch": lambda table, declared: table.flag(declared.key, False),
+    "array": _array,
+    "choice": _choice,
+}

@@ -1,0 +1,274 @@
+"""A number is declared once, with the field that holds it: label, unit, bounds, step, default and name in files.
+
+    @dataclass(frozen=True)
+    class Groove:
+        width: float = quantity("Width", "mm", above=0.0, step=0.5)
+        walls: int = whole("Walls", least=1, default=2)
+
+        def __post_init__(self) -> None:
+            settle(self, CuttingError, "Groove")
+
+The class checks itself with ``settle``; files, boxes on the page and reports ask ``quantities(Groove)``. Bounds and
+defaults are SI, steps and digits are meant in the unit of the edge. Fields of another kind (a material, a record) are
+not declared here: whoever reads, writes or draws them goes by their type (``declared_types``).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, field, fields, replace
+from functools import cache
+from typing import Any, Literal, get_type_hints
+
+import numpy as np
+
+from robomill.arrays import as_floats, frozen
+from robomill.errors import RobomillError
+from robomill.units import UNITS, format_short, unit_label
+
+QuantityKind = Literal["number", "array", "whole", "switch", "choice"]
+_KEY = "quantity"
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """What is to know of one field.
+
+    label     what people call it; ``unit`` a key of ``units.UNITS``, in which it is typed, shown and written to files
+    above, least, below, most   bounds in SI: more than, at least, less than, at most (None: free)
+    step      what a click in its box adds, and ``digits`` the decimals shown, both in ``unit``
+    optional  None is a value ("not given"); ``written_none`` is the number that files write for it (None: no key)
+    shape, axes   of an array (None: any length) and the names of its entries in boxes
+    options   of a choice: code -> title
+    boxed     whether the page offers a box for it
+    name, key   of the field, and in files (with the unit in it)
+    default     where nothing is given, unless it is ``needed``
+    """
+
+    label: str
+    unit: str = "1"
+    kind: QuantityKind = "number"
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    step: float | None = None
+    digits: int | None = None
+    hint: str | None = None
+    optional: bool = False
+    written_none: float | None = None
+    shape: tuple[int | None, ...] = ()
+    axes: tuple[str, ...] = ()
+    options: Mapping[str, str] = field(default_factory=dict)
+    boxed: bool = True
+    name: str = ""
+    key: str = ""
+    default: Any = None
+    needed: bool = True
+
+    def digits_in(self, unit: str) -> int:
+        """Decimals that show in ``unit`` what ``digits`` show in the unit of the edge."""
+        digits = UNITS[self.unit].digits if self.digits is None else self.digits
+        return max(0, digits + math.ceil(math.log10(UNITS[unit].factor / UNITS[self.unit].factor) - 1e-9))
+
+    def step_in(self, unit: str) -> float | None:
+        """The step in another display unit, rounded to 1, 2 or 5 times a power of ten."""
+        if self.step is None or unit == self.unit:
+            return self.step
+        return round_step(self.step * UNITS[self.unit].factor / UNITS[unit].factor)
+
+    @property
+    def expected(self) -> str:
+        """What it should be, in words: ``"more than 0 mm"``, ``"0 to less than 85°"``, ``"right or left"``."""
+        if self.kind == "choice":
+            return " or ".join(", ".join(self.options).rsplit(", ", 1))
+        if self.kind == "switch":
+            return "true or false"
+        low, high = (None if bound is None else self._short(bound) for bound in (self._lowest, self._highest))
+        if low is None and high is None:
+            words = "a whole number" if self.kind == "whole" else "a finite number"
+        elif high is None:
+            words = f"more than {low}" if self.above is not None else f"{low} or more"
+        elif low is None:
+            words = f"less than {high}" if self.below is not None else f"at most {high}"
+        else:
+            start = f"more than {low}" if self.above is not None else low
+            words = f"{start} to {f'less than {high}' if self.below is not None else high}"
+        return f"{words}, or left out" if self.optional else words
+
+    def settled(self, value: Any, error: type[RobomillError] = RobomillError, who: str = "") -> Any:
+        """``value`` as the field keeps it: float, int, bool, code or frozen array; ``error`` where it cannot be."""
+        if value is None and self.optional:
+            return None
+        found = _CONVERTERS[self.kind](self, value, error, who)
+        if self.kind in ("number", "array", "whole") and not np.all(self._allowed(found)):
+            raise self._refusal(self._offending(found), error, who)
+        return found
+
+    @property
+    def _lowest(self) -> float | None:
+        return self.above if self.above is not None else self.least
+
+    @property
+    def _highest(self) -> float | None:
+        return self.below if self.below is not None else self.most
+
+    def _allowed(self, value: Any) -> Any:
+        """Where ``value`` lies within the bounds; NaN and infinity never do."""
+        good = np.isfinite(value)
+        if self.above is not None:
+            good &= value > self.above
+        if self.least is not None:
+            good &= value >= self.least
+        if self.below is not None:
+            good &= value < self.below
+        if self.most is not None:
+            good &= value <= self.most
+        return good
+
+    def _offending(self, value: Any) -> str:
+        """The first number out of bounds, as people read it."""
+        worst = float(np.ravel(value)[np.flatnonzero(~np.ravel(self._allowed(value)))[0]])
+        return self._short(worst) if math.isfinite(worst) else str(worst)
+
+    def _short(self, value: float) -> str:
+        return format_short(value, self.unit)
+
+    def _refusal(self, found: str, error: type[RobomillError], who: str) -> RobomillError:
+        return error(f"{self.said_of(who)}: found {found}; expected {self.expected}.", where=self.name)
+
+    def said_of(self, who: str) -> str:
+        """The head of a refusal: ``"Cutter, Diameter"``, or ``"Diameter"`` of nobody."""
+        return f"{who}, {self.label}" if who else self.label
+
+
+def quantity(
+    label: str,
+    unit: str = "1",
+    *,
+    default: Any = MISSING,
+    optional: bool = False,
+    shape: tuple[int | None, ...] = (),
+    axes: str = "",
+    **said: Any,
+) -> Any:
+    """A number (or an array of ``shape``) as a dataclass field; ``said`` are further fields of ``Quantity``."""
+    if optional and default is MISSING:
+        default = None
+    return _declared(
+        Quantity(label, unit, "array" if shape else "number", optional=optional, shape=shape, axes=tuple(axes), **said),
+        default,
+    )
+
+
+def whole(label: str, *, default: Any = MISSING, **said: Any) -> Any:
+    """A whole number as a dataclass field."""
+    return _declared(Quantity(label, kind="whole", **{"step": 1.0, "digits": 0, **said}), default)
+
+
+def switch(label: str, *, default: Any = MISSING, **said: Any) -> Any:
+    """True or False as a dataclass field."""
+    return _declared(Quantity(label, kind="switch", **said), default)
+
+
+def choice(label: str, options: Mapping[str, str], *, default: Any = MISSING, **said: Any) -> Any:
+    """One of a few codes as a dataclass field; ``options`` maps each to its title."""
+    return _declared(Quantity(label, kind="choice", options=dict(options), **said), default)
+
+
+def quantities(cls: type) -> Mapping[str, Quantity]:
+    """The declared fields of a dataclass in their order, by field name."""
+    return _quantities(cls)
+
+
+@cache
+def _quantities(cls: type) -> Mapping[str, Quantity]:
+    found = {}
+    for each in fields(cls):
+        declared = each.metadata.get(_KEY)
+        if declared is not None:
+            key = declared.key or each.name + file_suffix(declared.unit)
+            needed = each.default is MISSING
+            found[each.name] = replace(
+                declared, name=each.name, key=key, default=None if needed else each.default, needed=needed
+            )
+    return found
+
+
+def declared_types(cls: type) -> Mapping[str, Any]:
+    """The types of the fields that are not quantities, by field name: a material, a record, a provenance."""
+    return _types(cls)
+
+
+@cache
+def _types(cls: type) -> Mapping[str, Any]:
+    hints = get_type_hints(cls)
+    return {each.name: hints[each.name] for each in fields(cls) if _KEY not in each.metadata}
+
+
+def settle(value: Any, error: type[RobomillError], who: str = "") -> None:
+    """Check and convert every declared field of a frozen dataclass; for its ``__post_init__``.
+
+    Raises ``error`` with one sentence: ``who``, the label, what was found, what was expected; ``where`` is the field.
+    """
+    for name, declared in quantities(type(value)).items():
+        object.__setattr__(value, name, declared.settled(getattr(value, name), error, who))
+
+
+def file_suffix(unit: str) -> str:
+    """How a unit ends a key in files: ``"_mm"``, ``"_N_mm2"``, nothing for a plain number."""
+    return "" if unit == "1" else "_" + unit.replace("/", "_").replace(" ", "_")
+
+
+def round_step(step: float) -> float:
+    """The nearest of 1, 2, 5 times a power of ten (nearest by ratio)."""
+    power = 10.0 ** math.floor(math.log10(step))
+    nearest = min((1.0, 2.0, 5.0, 10.0), key=lambda mantissa: abs(math.log(mantissa * power / step)))
+    return float(f"{nearest * power:.1g}")
+
+
+def _declared(declared: Quantity, default: Any) -> Any:
+    return field(default=default, metadata={_KEY: declared})
+
+
+def _number(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as exc:
+        raise declared._refusal(f"{value!r:.40}", error, who) from exc
+
+
+def _array(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> Any:
+    label = unit_label(declared.unit)
+    name = f"{declared.said_of(who)} ({label})" if label else declared.said_of(who)
+    array = as_floats(value, name, declared.shape, error=error)
+    if array.ndim != len(declared.shape):
+        want = ", ".join("any" if length is None else str(length) for length in declared.shape)
+        raise error(f"{name}: expected shape ({want}), found {array.shape}.", where=declared.name)
+    return frozen(array)
+
+
+def _whole(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> int:
+    try:
+        number = float(value)
+        if number.is_integer() and not isinstance(value, str | bool):
+            return int(number)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise declared._refusal(f"{value!r:.40}", error, who)
+
+
+def _switch(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> bool:
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise declared._refusal(f"{value!r:.40}", error, who)
+
+
+def _choice(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> str:
+    if isinstance(value, str) and value in declared.options:
+        return value
+    raise declared._refusal(f"{value!r:.40}", error, who)
+
+
+_CONVERTERS = {"number": _number, "array": _array, "whole": _whole, "switch": _switch, "choice": _choice}
