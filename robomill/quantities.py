@@ -16,7 +16,7 @@ not declared here: whoever reads, writes or draws them goes by their type (``dec
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
 from typing import Any, Literal, get_type_hints
@@ -59,7 +59,7 @@ class Quantity:
     optional: bool = False
     written_none: float | None = None
     shape: tuple[int | None, ...] = ()
-    axes: tuple[str, ...] = ()
+    axes: Sequence[str] = ()
     options: Mapping[str, str] = field(default_factory=dict)
     boxed: bool = True
     name: str = ""
@@ -143,23 +143,14 @@ class Quantity:
         return f"{who}, {self.label}" if who else self.label
 
 
-def quantity(
-    label: str,
-    unit: str = "1",
-    *,
-    default: Any = MISSING,
-    optional: bool = False,
-    shape: tuple[int | None, ...] = (),
-    axes: str = "",
-    **said: Any,
-) -> Any:
-    """A number (or an array of ``shape``) as a dataclass field; ``said`` are further fields of ``Quantity``."""
-    if optional and default is MISSING:
+def quantity(label: str, unit: str = "1", *, default: Any = MISSING, **said: Any) -> Any:
+    """A number (an array, where ``shape`` is given) as a dataclass field; ``said`` are further fields of ``Quantity``.
+
+    An ``optional`` one is None unless it is given, where no other default is stated.
+    """
+    if said.get("optional") and default is MISSING:
         default = None
-    return _declared(
-        Quantity(label, unit, "array" if shape else "number", optional=optional, shape=shape, axes=tuple(axes), **said),
-        default,
-    )
+    return _declared(Quantity(label, unit, "array" if said.get("shape") else "number", **said), default)
 
 
 def whole(label: str, *, default: Any = MISSING, **said: Any) -> Any:

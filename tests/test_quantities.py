@@ -132,7 +132,7 @@ def test_a_class_is_asked_for_its_numbers() -> None:
     assert (found["width"].needed, found["width"].default) == (True, None)
     assert (found["ratio"].needed, found["ratio"].default) == (False, 0.5)
     assert (found["reach"].needed, found["reach"].default) == (False, None)
-    assert found["push"].axes == ("X", "Y", "Z")
+    assert found["push"].axes == "XYZ"
     assert found["teeth"].kind == "whole"
     assert (found["teeth"].step, found["teeth"].digits) == (1.0, 0)
     assert found["hand"].options == {"l": "left", "r": "right"}
