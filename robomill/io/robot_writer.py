@@ -8,8 +8,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.io.robot_reader import ANGLE, FORMAT, LENGTH, VERSION
+from robomill.io.tables import exactly, toml_value
 from robomill.robot.model import Robot
-from robomill.units import from_si, to_si
 
 
 def robot_to_toml(robot: Robot) -> str:
@@ -17,8 +17,8 @@ def robot_to_toml(robot: Robot) -> str:
     lines = [
         f'format = "{FORMAT}"',
         f"version = {VERSION}",
-        f"name = {_quoted(robot.name)}",
-        f"title = {_quoted(robot.title)}",
+        f"name = {toml_value(robot.name)}",
+        f"title = {toml_value(robot.title)}",
         f'convention = "{robot.convention}"',
     ]
     for i in range(robot.rows):
@@ -38,15 +38,15 @@ def robot_to_toml(robot: Robot) -> str:
         if not robot.free[i]:
             lines.append(_entry("blocked_at", robot.blocked[i], units))
     for name, T in (("base", robot.T_base), ("tool", robot.T_tool)):
-        lines += ["", f"[{name}]", _entry("xyz", T[:3, 3], LENGTH), f"rotation = {T[:3, :3].tolist()}"]
-    lines += ["", "[compliance]", f"use = {_quoted(robot.compliance_set)}"]
+        lines += ["", f"[{name}]", _entry("xyz", T[:3, 3], LENGTH), f"rotation = {toml_value(T[:3, :3].tolist())}"]
+    lines += ["", "[compliance]", f"use = {toml_value(robot.compliance_set)}"]
     if not _in_force_is_its_set(robot):
         lines.append(_compliance_entry(robot.C_theta_all))
     for key, values in robot.compliance_sets.items():
         lines += ["", f"[compliance.{_key(key)}]", _compliance_entry(values)]
     lines += ["", "[provenance]"]
     for block, entry in robot.provenance.items():
-        lines.append(f'{_key(block)} = {{ kind = "{entry.kind}", source = {_quoted(entry.source)} }}')
+        lines.append(f'{_key(block)} = {{ kind = "{entry.kind}", source = {toml_value(entry.source)} }}')
     return "\n".join(lines) + "\n"
 
 
@@ -55,42 +55,19 @@ def _in_force_is_its_set(robot: Robot) -> bool:
     return values is not None and np.array_equal(values, robot.C_theta_all)
 
 
-def _quoted(text: str) -> str:
-    """A TOML basic string."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04X}" for c in escaped) + '"'
-
-
 def _key(text: str) -> str:
-    return text if text and all(c.isascii() and (c.isalnum() or c in "_-") for c in text) else _quoted(text)
-
-
-def _exact(value: FloatArray, unit: str) -> FloatArray | None:
-    """Numbers in ``unit`` that convert back to ``value`` bit by bit, round ones first; None where there are none."""
-    rough = np.atleast_1d(from_si(value, unit))
-    target = np.atleast_1d(value)
-    result = np.empty_like(rough)
-    for i, (r, t) in enumerate(zip(rough, target, strict=True)):
-        near = [float(f"{r:.12g}"), float(r), float(np.nextafter(r, np.inf)), float(np.nextafter(r, -np.inf))]
-        hits = [c for c in near if to_si(c, unit) == t]
-        if not hits:
-            return None
-        result[i] = hits[0]
-    return result
+    return text if text and all(c.isascii() and (c.isalnum() or c in "_-") for c in text) else toml_value(text)
 
 
 def _entry(stem: str, value: Any, units: dict[str, str]) -> str:
+    """``stem_<suffix> = value``, in the first unit that gives every number back to the last bit."""
     array = np.asarray(value, dtype=np.float64)
     for suffix, unit in units.items():
-        exact = _exact(array, unit)
-        if exact is not None:
-            number = exact.tolist() if array.ndim else float(exact[0])
-            return f"{stem}_{suffix} = {number!r}"
+        written = [exactly(number, unit) for number in array.ravel()]
+        if None not in written:
+            return f"{stem}_{suffix} = {toml_value(written if array.ndim else written[0])}"
     raise AssertionError("the SI unit is always exact")
 
 
 def _compliance_entry(values: FloatArray) -> str:
-    exact = _exact(values, "1e-7 rad/(N m)")
-    if exact is None:
-        return f"C_theta_SI = {values.tolist()!r}"
-    return f"C_theta_1e-7_rad_per_Nm = {exact.tolist()!r}"
+    return _entry("C_theta", values, {"1e-7_rad_per_Nm": "1e-7 rad/(N m)", "SI": "1"})

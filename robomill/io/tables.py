@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,28 +15,37 @@ from robomill.errors import ProjectError, RobomillError
 from robomill.provenance import KINDS, Provenance
 from robomill.units import from_si, to_si
 
-_MISSING: Any = object()
+MISSING: Any = object()  # a key without a default has to be there
 
 
-def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The document, or a ProjectError naming the line that is not TOML."""
+def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError) -> dict[str, Any]:
+    """The document, or a refusal naming the line that is not TOML."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as exc:
-        raise ProjectError(f"{where}: this is not a readable TOML file: {exc}.", where=where) from None
+        raise error(f"{where}: this is not a readable TOML file: {exc}.", where=where) from None
+
+
+def exactly(value: float, unit: str) -> float | None:
+    """The value in ``unit`` with as few digits as read back to the very same SI number; None where no number does."""
+    full = float(from_si(float(value), unit))
+    for digits in range(1, 18):
+        short = float(f"{full:.{digits}g}")
+        if to_si(short, unit) == value:
+            return short
+    return None
 
 
 def shown(value: float, unit: str) -> float:
-    """The value in ``unit`` with as few digits as read back to the very same SI number."""
-    exact = float(from_si(float(value), unit))
-    for digits in range(1, 18):
-        short = float(f"{exact:.{digits}g}")
-        if to_si(short, unit) == value:
-            return short
-    for near in (exact, np.nextafter(exact, -np.inf), np.nextafter(exact, np.inf)):
-        if to_si(float(near), unit) == value:
-            return float(near)
-    return exact
+    """The value in ``unit`` with as few digits as possible; nearly always ``exactly``."""
+    found = exactly(value, unit)
+    return float(from_si(float(value), unit)) if found is None else found
+
+
+def toml_value(value: Any) -> str:
+    """A text, a number or a list of numbers as TOML on one line."""
+    # JSON writes these as TOML does, but for one character that TOML wants escaped.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
 
 
 class Table:
@@ -56,14 +66,14 @@ class Table:
         self.asked.add(key)
         if key in self.data:
             return self.data[key]
-        if default is _MISSING:
+        if default is MISSING:
             raise self.refuse(key, "missing; add it.")
         return default
 
     def has(self, key: str) -> bool:
         return key in self.data
 
-    def text(self, key: str, default: Any = _MISSING) -> str:
+    def text(self, key: str, default: Any = MISSING) -> str:
         value = self._get(key, default)
         if value is not default and not isinstance(value, str):
             raise self.refuse(key, f"expected text in quotes, found {value!r:.40}.")
@@ -76,35 +86,43 @@ class Table:
             raise self.refuse(key, f"expected a list of texts, found {value!r:.40}.")
         return value
 
+    def choice(self, key: str, allowed: Sequence[str], default: Any = MISSING) -> str:
+        """One of the codes ``allowed``."""
+        code = self.text(key, default)
+        if code not in allowed:
+            raise self.refuse(key, f"expected one of {', '.join(allowed)}, found {code!r:.40}.")
+        return code
+
     def flag(self, key: str, default: bool) -> bool:
         value = self._get(key, default)
         if not isinstance(value, bool):
             raise self.refuse(key, f"expected true or false, found {value!r:.40}.")
         return value
 
-    def whole(self, key: str, default: Any = _MISSING) -> int:
+    def whole(self, key: str, default: Any = MISSING) -> int:
         value = self._get(key, default)
         if isinstance(value, bool) or not isinstance(value, int):
             raise self.refuse(key, f"expected a whole number, found {value!r:.40}.")
         return value
 
-    def number(self, key: str, unit: str, default: Any = _MISSING) -> Any:
+    def number(self, key: str, unit: str, default: Any = MISSING) -> Any:
         """The value in SI (``default`` is returned as it is)."""
         value = self._get(key, default)
         return value if value is default else self._si(key, value, unit)
 
-    def numbers(self, key: str, count: int, unit: str, default: Any = _MISSING) -> Any:
-        """``count`` values in SI as a list (``default`` is returned as it is)."""
+    def numbers(self, key: str, count: int, unit: str, default: Any = MISSING, expected: str = "") -> Any:
+        """``count`` values in SI as a list (``default`` as it is); ``expected`` says what they are, for the refusal."""
         value = self._get(key, default)
         if value is default:
             return value
         if not isinstance(value, list) or len(value) != count:
-            raise self.refuse(key, f"expected a list of {count} numbers, found {value!r:.60}.")
+            found = f"{len(value)}: {value!r:.60}" if isinstance(value, list) else f"{value!r:.60}"
+            raise self.refuse(key, f"expected {expected or f'a list of {count} numbers'}, found {found}.")
         return [self._si(key, item, unit) for item in value]
 
     def rows(self, key: str, count: int, unit: str) -> FloatArray:
         """A list of lists of ``count`` numbers, in SI, as (r, count)."""
-        value = self._get(key, _MISSING)
+        value = self._get(key, MISSING)
         if not isinstance(value, list) or not value:
             raise self.refuse(key, f"expected a list of rows of {count} numbers, found {value!r:.60}.")
         for i, row in enumerate(value):
@@ -112,7 +130,31 @@ class Table:
                 raise self.refuse(key, f"row {i + 1}: expected {count} numbers, found {row!r:.60}.")
         return np.array([[self._si(key, item, unit) for item in row] for row in value])
 
-    def table(self, key: str, default: Any = _MISSING) -> Table:
+    def measure(self, stem: str, suffixes: Mapping[str, str], default: Any = MISSING) -> Any:
+        """A number in SI written as ``stem_<suffix>``; ``suffixes`` maps what may stand in the key to its unit."""
+        key = self._spelled(stem, suffixes, default)
+        return default if key is None else self.number(key, suffixes[key.removeprefix(f"{stem}_")])
+
+    def measures(self, stem: str, suffixes: Mapping[str, str], count: int, default: Any, expected: str) -> Any:
+        """``count`` numbers in SI written as ``stem_<suffix>``, as ``numbers`` gives them."""
+        key = self._spelled(stem, suffixes, default)
+        if key is None:
+            return default
+        return self.numbers(key, count, suffixes[key.removeprefix(f"{stem}_")], expected=expected)
+
+    def _spelled(self, stem: str, suffixes: Mapping[str, str], default: Any) -> str | None:
+        """The one key of ``stem`` that is there; None where there is none and need not be."""
+        keys = [f"{stem}_{suffix}" for suffix in suffixes]
+        self.asked.update(keys)
+        found = [key for key in keys if key in self.data]
+        if len(found) > 1:
+            raise self.refuse(stem, f"it is given twice, as {' and '.join(found)}; keep one.")
+        if not found and default is MISSING:
+            near = [f", not {key}" for key in self.data if key.startswith(f"{stem}_")]
+            raise self.error(f"{self.where}: {stem} is missing; give {' or '.join(keys)}{''.join(near[:1])}.")
+        return found[0] if found else None
+
+    def table(self, key: str, default: Any = MISSING) -> Table:
         name = self.where.removesuffix("]") + f".{key}]" if self.where.endswith("]") else f"{self.where}, [{key}]"
         return Table(self._get(key, default), name, self.error)
 
@@ -121,23 +163,22 @@ class Table:
         entries = self._get(key, [])
         if not isinstance(entries, list):
             raise self.refuse(key, f"expected entries written as [[{key}]], found {entries!r:.40}.")
-        return [Table(entry, f"{self.where}, [[{key}]] {i}", self.error) for i, entry in enumerate(entries, start=1)]
+        return [Table(entry, f"{self.where}, {key} {i}", self.error) for i, entry in enumerate(entries, start=1)]
 
     def provenance(self, key: str) -> Provenance:
         """An entry ``{ kind = "paper", source = "..." }``."""
         entry = self.table(key)
-        kind = entry.text("kind")
-        if kind not in KINDS:
-            raise entry.refuse("kind", f"expected one of {', '.join(KINDS)}, found {kind!r:.40}.")
+        kind = entry.choice("kind", KINDS)
         source = entry.text("source")
         entry.finish()
         return Provenance(kind, source)  # type: ignore[arg-type]
 
     def _si(self, key: str, value: Any, unit: str) -> float:
+        label = "" if unit == "1" else f" in {unit}"
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self.refuse(key, f"expected a number in {unit}, found {value!r:.40}.")
+            raise self.refuse(key, f"expected a number{label}, found {value!r:.40}.")
         if not math.isfinite(value):
-            raise self.refuse(key, f"expected a finite number in {unit}, found {value}.")
+            raise self.refuse(key, f"expected a finite number{label}, found {value}.")
         return float(to_si(float(value), unit))
 
     def finish(self) -> None:

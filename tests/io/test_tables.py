@@ -1,0 +1,177 @@
+"""Tables of a file: what is asked for comes back in SI, and a refusal names the place, what was found and expected."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robomill.errors import LoadTestError, ProjectError
+from robomill.io.tables import Table, exactly, parse_toml, shown, toml_value
+from robomill.provenance import Provenance
+
+MM_IN_M, DEG_IN_RAD = 1e-3, math.pi / 180
+
+
+def table(text: str, where: str = "f.toml") -> Table:
+    return Table(tomllib.loads(text), where)
+
+
+@given(st.floats(-1e6, 1e6))
+def test_what_is_written_reads_back_to_the_last_bit(value: float) -> None:
+    written = exactly(value, "mm")
+    if written is not None:
+        assert written * MM_IN_M == value
+        assert shown(value, "mm") == written
+    else:  # no number of millimetres is this number of metres
+        near = value / MM_IN_M
+        assert shown(value, "mm") == near
+        assert all(
+            n * MM_IN_M != value for n in (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+        )
+
+
+@given(st.integers(-999_999, 999_999), st.sampled_from([1, 10, 100, 1000]))
+def test_a_typed_number_comes_back_as_it_was_typed(digits: int, scale: int) -> None:
+    typed = digits / scale
+    assert shown(typed * MM_IN_M, "mm") == typed
+    assert repr(shown(typed * DEG_IN_RAD, "deg")) == repr(typed)
+
+
+def test_as_few_digits_as_possible() -> None:
+    assert repr(shown(0.1 + 0.2, "1")) == "0.30000000000000004"
+    assert repr(shown(0.3, "1")) == "0.3"
+    assert repr(shown(1e-3 / 60, "mm/min")) == "1.0"
+
+
+@given(st.one_of(st.text(st.characters(exclude_categories=["Cs"])), st.floats(allow_nan=False, allow_infinity=False)))
+def test_values_on_one_line_are_toml(value: str | float) -> None:
+    written = toml_value([value, value])
+    assert "\n" not in written
+    assert tomllib.loads(f"x = {written}")["x"] == [value, value]
+
+
+def test_what_is_not_toml_names_the_line() -> None:
+    with pytest.raises(ProjectError, match=r"^mine: this is not a readable TOML file: .*line 2") as caught:
+        parse_toml("a = 1\nb 2", "mine")
+    assert caught.value.where == "mine"
+    with pytest.raises(LoadTestError):
+        parse_toml("a", "mine", LoadTestError)
+
+
+def test_values_come_in_si_and_defaults_as_they_are() -> None:
+    t = table('a_mm = 2\nb = [1, 2.5]\nc = "text"\nd = true\ne = 3\nf = [[1, 2], [3, 4]]\ng = ["x", "y"]\nh = "two"')
+    assert t.number("a_mm", "mm") == 0.002
+    assert t.numbers("b", 2, "mm") == [0.001, 0.0025]
+    assert t.text("c") == "text"
+    assert t.flag("d", False) is True
+    assert t.whole("e") == 3
+    np.testing.assert_array_equal(t.rows("f", 2, "kN"), [[1e3, 2e3], [3e3, 4e3]])
+    assert t.words("g") == ["x", "y"]
+    assert t.choice("h", ("one", "two")) == "two"
+    t.finish()
+    nothing = table("")
+    assert nothing.number("a", "mm", None) is None
+    assert nothing.number("a", "mm", 5.0) == 5.0
+    assert nothing.numbers("b", 2, "mm", "none") == "none"
+    assert nothing.text("c", "else") == "else"
+    assert nothing.flag("d", True) is True
+    assert nothing.whole("e", 7) == 7
+    assert nothing.words("g") == []
+    assert nothing.choice("h", ("one", "two"), "one") == "one"
+    assert nothing.tables("i") == []
+    assert nothing.table("j", {}).data == {}
+    assert not nothing.has("a")
+    assert table("a = 1").has("a")
+
+
+UNITS = {"mm": "mm", "m": "m"}
+
+
+def test_the_key_may_name_the_unit() -> None:
+    assert table("a_mm = 2").measure("a", UNITS) == 0.002
+    assert table("a_m = 2").measure("a", UNITS) == 2.0
+    assert table("").measure("a", UNITS, 9.0) == 9.0
+    assert table("a_m = [1, 2]").measures("a", UNITS, 2, None, "a pair") == [1.0, 2.0]
+    assert table("a_mm = [1, 2]").measures("a", UNITS, 2, None, "a pair") == [0.001, 0.002]
+    assert table("").measures("a", UNITS, 2, (0.0, 0.0), "a pair") == (0.0, 0.0)
+    t = table("a_mm = 2\nb = 1")
+    t.measure("a", UNITS)
+    with pytest.raises(ProjectError, match="b: this key is not known here; known are: a_m, a_mm"):
+        t.finish()
+
+
+@pytest.mark.parametrize(
+    ("text", "ask", "sentence"),
+    [
+        ("", lambda t: t.number("a", "mm"), "f.toml, a: missing; add it."),
+        ("a = true", lambda t: t.number("a", "mm"), "f.toml, a: expected a number in mm, found True."),
+        ("a = 'x'", lambda t: t.number("a", "1"), "f.toml, a: expected a number, found 'x'."),
+        ("a = nan", lambda t: t.number("a", "mm"), "f.toml, a: expected a finite number in mm, found nan."),
+        ("a = inf", lambda t: t.number("a", "1"), "f.toml, a: expected a finite number, found inf."),
+        ("a = 5", lambda t: t.text("a"), "f.toml, a: expected text in quotes, found 5."),
+        ("a = 5", lambda t: t.words("a"), "f.toml, a: expected a list of texts, found 5."),
+        ("a = [5]", lambda t: t.words("a"), "f.toml, a: expected a list of texts, found [5]."),
+        ("a = 1", lambda t: t.flag("a", False), "f.toml, a: expected true or false, found 1."),
+        ("a = 1.5", lambda t: t.whole("a"), "f.toml, a: expected a whole number, found 1.5."),
+        ("a = true", lambda t: t.whole("a"), "f.toml, a: expected a whole number, found True."),
+        ("a = 'c'", lambda t: t.choice("a", ("x", "y")), "f.toml, a: expected one of x, y, found 'c'."),
+        ("a = 1", lambda t: t.numbers("a", 2, "mm"), "f.toml, a: expected a list of 2 numbers, found 1."),
+        ("a = [1]", lambda t: t.numbers("a", 2, "mm"), "f.toml, a: expected a list of 2 numbers, found 1: [1]."),
+        ("a = [1]", lambda t: t.numbers("a", 2, "mm", expected="a pair"), "f.toml, a: expected a pair, found 1: [1]."),
+        ("a = [1, '']", lambda t: t.numbers("a", 2, "mm"), "f.toml, a: expected a number in mm, found ''."),
+        ("a = []", lambda t: t.rows("a", 2, "mm"), "f.toml, a: expected a list of rows of 2 numbers, found []."),
+        ("a = 1", lambda t: t.rows("a", 2, "mm"), "f.toml, a: expected a list of rows of 2 numbers, found 1."),
+        ("a = [[1, 2], [3]]", lambda t: t.rows("a", 2, "m"), "f.toml, a: row 2: expected 2 numbers, found [3]."),
+        ("a = [3, 4]", lambda t: t.rows("a", 2, "m"), "f.toml, a: row 1: expected 2 numbers, found 3."),
+        (
+            "a_mm = 1\na_m = 1",
+            lambda t: t.measure("a", UNITS),
+            "f.toml, a: it is given twice, as a_mm and a_m; keep one.",
+        ),
+        ("", lambda t: t.measure("a", UNITS), "f.toml: a is missing; give a_mm or a_m."),
+        ("a_cm = 1", lambda t: t.measure("a", UNITS), "f.toml: a is missing; give a_mm or a_m, not a_cm."),
+        ("a_m = 1", lambda t: t.measures("a", UNITS, 2, None, "x, y"), "f.toml, a_m: expected x, y, found 1."),
+        ("a = 1", lambda t: t.table("a"), "f.toml, [a]: expected a table of keys, found 1."),
+        ("a = 1", lambda t: t.tables("a"), "f.toml, a: expected entries written as [[a]], found 1."),
+        ("a = [1]", lambda t: t.tables("a"), "f.toml, a 1: expected a table of keys, found 1."),
+        (
+            "[[a]]\n[[a]]\nb = 1",
+            lambda t: t.tables("a")[1].finish(),
+            "f.toml, a 2, b: this key is not known here; known are: .",
+        ),
+        ("[a]\nb = 1", lambda t: t.table("a").text("b"), "f.toml, [a], b: expected text in quotes, found 1."),
+        ("[a.b]", lambda t: t.table("a").table("b").text("c"), "f.toml, [a.b], c: missing; add it."),
+        (
+            "p = { kind = 'hearsay', source = '' }",
+            lambda t: t.provenance("p"),
+            "f.toml, [p], kind: expected one of paper, measured, assumed, user, computed, synthetic, found 'hearsay'.",
+        ),
+        (
+            "p = { kind = 'paper', source = '', year = 1 }",
+            lambda t: t.provenance("p"),
+            "f.toml, [p], year: this key is not known here; known are: kind, source.",
+        ),
+    ],
+)
+def test_refusals(text, ask, sentence: str) -> None:
+    with pytest.raises(ProjectError) as caught:
+        ask(table(text))
+    assert str(caught.value) == sentence
+    assert caught.value.where is not None or "missing; give" in sentence
+
+
+def test_the_refusal_is_of_the_kind_asked_for_in_tables_inside_too() -> None:
+    t = Table({"a": {}, "b": [{}]}, "x", LoadTestError)
+    for inner in (t.table("a"), t.tables("b")[0]):
+        with pytest.raises(LoadTestError):
+            inner.text("c")
+
+
+def test_provenance() -> None:
+    found = table("p = { kind = 'paper', source = 'Table 2' }").provenance("p")
+    assert found == Provenance("paper", "Table 2")
