@@ -27,6 +27,12 @@ def square_rows(robot: Robot) -> tuple[str, ...]:
     return tuple(ROWS[i] for i in _row_indices(robot))
 
 
+def determinant_unit(robot: Robot) -> str:
+    """The unit of ``determinant`` as a key of ``UNITS``: one power of m for each row of v."""
+    powers = sum(row.startswith("v") for row in square_rows(robot))
+    return {1: "m", 2: "m2", 3: "m3"}.get(powers, "1")
+
+
 @lru_cache(maxsize=64)
 def _row_indices(robot: Robot) -> tuple[int, ...]:
     """The first n rows of J (v before omega) that are independent of each other over random configurations."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from robomill.errors import WorkspaceError
-from robomill.kinematics.dexterity import square_rows
+from robomill.kinematics.dexterity import determinant_unit, square_rows
 from robomill.robot.model import Robot
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -98,9 +98,7 @@ def _of_joint(robot: Robot, key: str, c: str, joint: int, share: bool) -> Quanti
 
 def _plain(robot: Robot) -> dict[str, Quantity]:
     rows = ", ".join(square_rows(robot))
-    # Rows in m and rows in rad: a determinant counts one power of m for each row of v.
-    powers = sum(row.startswith("v") for row in square_rows(robot))
-    unit = {1: "m", 2: "m2", 3: "m3"}.get(powers, "1")
+    unit = determinant_unit(robot)
     entries = (
         Quantity(
             "reach",

@@ -1,0 +1,131 @@
+"""What holds at one configuration: pose, Jacobian, determinant, compliance and the joints' shares of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.compliance.cartesian import full_compliance, joint_contributions
+from robomill.compliance.deflection import deflection, soft_direction
+from robomill.errors import KinematicsError
+from robomill.kinematics import dexterity
+from robomill.kinematics.forward import joint_frames
+from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.robot.model import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class PoseReport:
+    """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN."""
+
+    robot: Robot
+    theta: FloatArray
+
+    @property
+    def reached(self) -> bool:
+        """False for the NaN that inverse kinematics answers where a pose is not reached."""
+        return not np.isnan(self.theta).any()
+
+    @cached_property
+    def frames(self) -> FloatArray:
+        """(n + 1, 4, 4) in {M}: the frame each joint moves about, then {T}."""
+        return self._known(joint_frames(self.robot, self.theta))
+
+    @property
+    def T_MT(self) -> FloatArray:
+        """(4, 4) the pose of the tool."""
+        return self.frames[-1]
+
+    @cached_property
+    def J(self) -> FloatArray:
+        """(6, n) geometric Jacobian in {M}, m/rad and rad/rad. Eq. (9)."""
+        return self._known(geometric_jacobian(self.robot, self.theta))
+
+    @cached_property
+    def C_joint(self) -> FloatArray:
+        """(n, 3, 3) m/N: what each joint gives. Eqs. (13), (14)."""
+        return joint_contributions(self.J[:3], self.robot.C_theta)
+
+    @cached_property
+    def C(self) -> FloatArray:
+        """(3, 3) m/N: the tip's compliance, the sum of the joints' shares. Eqs. (11), (12)."""
+        return self.C_joint.sum(axis=0)
+
+    @cached_property
+    def C_X(self) -> FloatArray:
+        """(6, 6): rotations and moments too. Eq. (11)."""
+        return self._known(full_compliance(self.robot, self.theta))
+
+    @cached_property
+    def det_J(self) -> float:
+        """Determinant of the arm's task Jacobian (see ``dexterity.determinant``); ``det_J_unit`` is its unit."""
+        return float(dexterity.determinant(self.robot, self.theta))
+
+    @property
+    def det_J_unit(self) -> str:
+        """A key of ``UNITS``."""
+        return dexterity.determinant_unit(self.robot)
+
+    @cached_property
+    def manipulability(self) -> float:
+        """sqrt(det(J J^T)) of the task Jacobian."""
+        return float(dexterity.manipulability(self.robot, self.theta))
+
+    @cached_property
+    def singular_values(self) -> FloatArray:
+        """(r,) falling, of the task Jacobian."""
+        return dexterity.singular_values(self.robot, self.theta)
+
+    @cached_property
+    def limit_distance(self) -> float:
+        """Room of the joint nearest to a limit, as a share of its half range."""
+        return float(dexterity.limit_distance(self.robot, self.theta))
+
+    @cached_property
+    def principal(self) -> tuple[FloatArray, FloatArray]:
+        """(values (3,) m/N rising, axes (3, 3) as columns): the compliance ellipsoid; the last axis gives most.
+
+        Each axis points to the side of its largest component.
+        """
+        if not self.reached:
+            return np.full(3, np.nan), np.full((3, 3), np.nan)
+        values, axes = soft_direction(self.C)
+        largest = np.take_along_axis(axes, np.abs(axes).argmax(axis=0)[None], axis=0)
+        return values, axes * np.sign(largest)
+
+    def component(self, name: str) -> float:
+        """C_ab in m/N, ``name`` two of x, y, z: "yy", "xz"."""
+        return float(self.C[_indices(name)])
+
+    def shares(self, name: str) -> FloatArray:
+        """(n,) m/N: the joints' shares of C_ab, which add up to it."""
+        return self.C_joint[(slice(None), *_indices(name))]
+
+    def gives_most(self, name: str) -> int:
+        """Number (as in the robot's table) of the joint with the largest share of C_ab."""
+        return self.robot.joint_numbers[int(np.argmax(np.abs(self.shares(name))))]
+
+    def deflection(self, F: ArrayLike) -> FloatArray:
+        """(n, 3) m in {M}: each joint's share of the tip displacement under F (3,) N on the tool. Eqs. (15), (16)."""
+        return deflection(self.C_joint, F)
+
+    def _known(self, value: FloatArray) -> FloatArray:
+        return value if self.reached else np.full(value.shape, np.nan)
+
+
+def at_pose(robot: Robot, theta: ArrayLike) -> PoseReport:
+    """What holds at theta (n,). Raises KinematicsError where theta is not one entry a free joint."""
+    one = as_floats(theta, f"theta of {robot.name!r}", (robot.n,), error=KinematicsError, finite=False)
+    if one.ndim != 1:
+        raise KinematicsError(f"theta of {robot.name!r}: expected one configuration, found shape {one.shape}.")
+    return PoseReport(robot, frozen(one))
+
+
+def _indices(name: str) -> tuple[int, int]:
+    if len(name) != 2 or not set(name) <= set("xyz"):
+        raise KinematicsError(f"Component {name!r}: expected two of x, y, z, as in 'xy'.")
+    return "xyz".index(name[0]), "xyz".index(name[1])

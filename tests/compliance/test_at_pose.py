@@ -1,0 +1,112 @@
+"""What holds at a pose: every number found another way, by products of matrices and numeric derivatives."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.at_pose import at_pose
+from robomill.errors import KinematicsError
+
+NAMES = ("slavkovic_5r", "kuka_kr500", "planar_2r", "planar_3r")
+
+
+def turned(axis, angle):
+    """Rodrigues' rotation."""
+    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numbers_by_numeric_derivatives(name):
+    robot = rm.load_robot(name)
+    theta = np.random.default_rng(3).uniform(0.2, 0.6, robot.n) * robot.limits[:, 1]
+    here = at_pose(robot, theta)
+    assert here.reached
+    np.testing.assert_allclose(here.T_MT, rm.tool_pose(robot, theta), atol=1e-15)
+    J, h = np.empty((6, robot.n)), 1e-6
+    for i in range(robot.n):
+        step = h * np.eye(robot.n)[i]
+        one, two = rm.tool_pose(robot, theta - step), rm.tool_pose(robot, theta + step)
+        W = (two[:3, :3] - one[:3, :3]) @ here.T_MT[:3, :3].T / (2 * h)
+        J[:, i] = [*(two[:3, 3] - one[:3, 3]) / (2 * h), W[2, 1], W[0, 2], W[1, 0]]
+    np.testing.assert_allclose(here.J, J, atol=1e-8)
+    C_theta = np.diag(robot.C_theta)
+    np.testing.assert_allclose(here.C_X, J @ C_theta @ J.T, rtol=1e-6, atol=1e-12)
+    np.testing.assert_allclose(here.C, (J @ C_theta @ J.T)[:3, :3], rtol=1e-6, atol=1e-12)
+    # A force by hand: each joint turned by what its torque makes it give.
+    F = np.array([30.0, -20.0, 50.0])
+    for i in range(robot.n):
+        tip, axis = here.T_MT[:3, 3], here.frames[i][:3, 2]
+        torque = J[:3, i] @ F
+        angle = robot.chain.sign[i] * robot.C_theta[i] * torque
+        moved = turned(axis, angle) @ (tip - here.frames[i][:3, 3]) + here.frames[i][:3, 3] - tip
+        np.testing.assert_allclose(here.deflection(F)[i], moved, rtol=2e-3, atol=1e-9)
+    task = {5: J[:5], 6: J, 2: J[:2], 3: J[[0, 1, 5]]}[robot.n]
+    if name == "slavkovic_5r":
+        k = here.T_MT[:3, 2]
+        B = np.arctan2(k[0], np.hypot(k[1], k[2]))
+        A = np.arctan2(-k[1], k[2])
+        across = turned([1, 0, 0], A) @ turned([0, 1, 0], B)[:, :2]
+        task = np.vstack([J[:3], across.T @ J[3:]])
+    assert here.det_J == pytest.approx(np.linalg.det(task), rel=1e-6, abs=1e-9)
+    assert here.manipulability == pytest.approx(abs(np.linalg.det(task)), rel=1e-6, abs=1e-7)
+    np.testing.assert_allclose(here.singular_values**2, np.linalg.eigvalsh(task @ task.T)[::-1], atol=1e-7)
+    assert here.det_J_unit == {2: "m2", 3: "m2"}.get(robot.n, "m3")
+    low, high = robot.limits.T
+    room = [min(t - a, b - t) / ((b - a) / 2) for t, a, b in zip(theta, low, high, strict=True)]
+    assert here.limit_distance == pytest.approx(min(room))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_components_shares_and_axes(name):
+    robot = rm.load_robot(name)
+    theta = np.random.default_rng(4).uniform(0.2, 0.6, robot.n) * robot.limits[:, 1]
+    here = at_pose(robot, theta)
+    for a, b in ("xx", "yy", "zz", "xy", "xz", "yz", "zy"):
+        unit_a, unit_b = np.eye(3)["xyz".index(a)], np.eye(3)["xyz".index(b)]
+        # Push along b, look along a.
+        assert here.component(a + b) == pytest.approx(float(here.deflection(unit_b).sum(axis=0) @ unit_a), abs=1e-18)
+        shares = here.deflection(unit_b) @ unit_a
+        np.testing.assert_allclose(here.shares(a + b), shares, atol=1e-18)
+        largest = max(range(robot.n), key=lambda i: abs(shares[i]))
+        assert here.gives_most(a + b) == robot.joint_numbers[largest]
+    values, axes = here.principal
+    assert (np.diff(values) >= 0).all()
+    for value, axis in zip(values, axes.T, strict=True):
+        np.testing.assert_allclose(here.C @ axis, value * axis, atol=1e-16)
+        assert np.linalg.norm(axis) == pytest.approx(1.0)
+        assert max(axis, key=abs) > 0
+    push = np.random.default_rng(0).normal(size=(500, 3))
+    push /= np.linalg.norm(push, axis=1)[:, None]
+    along = np.einsum("mi,ij,mj->m", push, here.C, push)
+    assert values[0] - 1e-15 <= along.min()
+    assert along.max() <= values[2] + 1e-15
+
+
+def test_joint_numbers_are_those_of_the_table():
+    robot = rm.load_robot("kuka_kr500").with_blocked(1, 0.0)
+    here = at_pose(robot, np.full(5, 0.3))
+    assert here.gives_most("zz") in (2, 3, 4, 5, 6)
+    assert here.gives_most("zz") == robot.joint_numbers[int(np.abs(here.C_joint[:, 2, 2]).argmax())]
+
+
+def test_a_pose_that_is_not_reached_is_nan_throughout():
+    robot = rm.load_robot("slavkovic_5r")
+    here = at_pose(robot, rm.inverse_kinematics(robot, rm.pose_from_world([0, -9, 0, 0, 0])).theta)
+    assert not here.reached
+    for value in (here.frames, here.J, here.C_joint, here.C, here.C_X, here.det_J, here.manipulability):
+        assert np.isnan(value).all()
+    for value in (here.singular_values, here.limit_distance, *here.principal, here.deflection([1, 0, 0])):
+        assert np.isnan(value).all()
+
+
+@pytest.mark.parametrize("theta", [[0.0] * 4, np.zeros((2, 5)), "text"])
+def test_what_is_not_one_configuration_is_refused(theta):
+    with pytest.raises(KinematicsError, match="theta of 'slavkovic_5r'"):
+        at_pose(rm.load_robot("slavkovic_5r"), theta)
+
+
+@pytest.mark.parametrize("name", ["x", "xw", "xyz", ""])
+def test_unknown_components_are_refused(name):
+    with pytest.raises(KinematicsError, match="two of x, y, z"):
+        at_pose(rm.load_robot("planar_2r"), [0.1, 0.2]).component(name)
