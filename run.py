@@ -23,10 +23,6 @@ ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 MARKER = VENV / ".robomill-ready"
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-COMPILE = (
-    "from robomill.kinematics import compiled; from robomill.surface import compiler; "
-    "compiled.warm_up(wait=True); compiler.warm_up(wait=True)"
-)
 APT_PACKAGES = ["libegl1", "libgl1-mesa-dri"]
 
 
@@ -63,8 +59,9 @@ def set_up(extra: str) -> None:
     target = f"{ROOT}[{','.join(extras)}]" if extras else str(ROOT)
     quiet = ["install", "--quiet", "--disable-pip-version-check", "--no-warn-script-location"]
     run([*installer, *quiet, "-c", str(ROOT / "constraints.txt"), "-e", target])
-    # Compiled once here, so that no screen waits for it; a failure only means that NumPy serves until it is mended.
-    subprocess.run([str(PYTHON), "-c", COMPILE], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    # Compiled once here, so that no screen waits for it; a failure only means that the first use compiles.
+    command = [str(PYTHON), "-m", "robomill.compiled"]
+    subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     MARKER.write_text(" ".join([wanted, *extras]) + "\n")
     print(f"Set up in {time.monotonic() - began:.0f} s.", flush=True)
 

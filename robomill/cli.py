@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from robomill import __version__
+from robomill import __version__, compiled
 from robomill.errors import RobomillError
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
@@ -27,6 +27,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not words or (words[0].startswith("--") and words[0] not in ("--help", "--version")):
         return start_app(words)
     arguments = parser().parse_args(_joined(words))
+    compiled.announce(lambda word: print(f"{word} ...", file=sys.stderr, flush=True))
     try:
         code: int = arguments.run(arguments)
     except RobomillError as exc:

@@ -10,7 +10,8 @@ call it, so that nothing imports the compiler before its first use:
     def norms(p: In2, norm: Out1) -> None: ...        # the module is imported, or loaded from disk
 
 Importing a kernel module compiles what the cache on disk does not hold: correct, only slow. A program that talks to
-people asks ``missing()`` first, says ``WORDS``, and calls ``build()``.
+people says so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m
+robomill.compiled`` compiles everything.
 """
 
 from __future__ import annotations
@@ -46,6 +47,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 _lock = threading.RLock()  # around the compiler's configuration
 _building = threading.Lock()
 _tried = False
+_announced: list[Callable[[str], Any]] = []
 
 
 class Axes(NamedTuple):
@@ -89,6 +91,7 @@ def kernel(function: F) -> F:
         return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)  # type: ignore[no-any-return]
 
     with _lock:
+        _prepare()
         before = config.CACHE_DIR  # type: ignore[attr-defined]
         config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
         try:
@@ -220,9 +223,10 @@ def build() -> None:
         if _tried or not missing():
             return
         _tried = True
-        command = f"import sys; sys.path[:0] = {sys.path!r}; from robomill import compiled; compiled.compile_all()"
+        there = {**os.environ, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
         with suppress(OSError, subprocess.SubprocessError):
-            subprocess.run([sys.executable, "-c", command], check=False, capture_output=True, timeout=600)
+            command = [sys.executable, "-m", "robomill.compiled"]
+            subprocess.run(command, check=False, capture_output=True, timeout=600, env=there)
 
 
 def compile_all() -> None:
@@ -234,10 +238,14 @@ def compile_all() -> None:
     note.replace(kept_in() / COMPLETE)
 
 
-def prepare(say: Callable[[str], Any]) -> None:
-    """``build()`` where something is missing, after ``say(WORDS)``; nothing at all where nothing is."""
-    if missing():
-        say(WORDS)
+def announce(say: Callable[[str], Any]) -> None:
+    """From now on the first kernel that is needed and missing has ``say(WORDS)`` called, then all are built."""
+    _announced.append(say)
+
+
+def _prepare() -> None:
+    if _announced and missing() and not _tried:
+        _announced[-1](WORDS)
         build()
 
 
@@ -266,3 +274,7 @@ def cached_in(folder: Path | None) -> Iterator[None]:
             yield
         finally:
             config.CACHE_DIR = before
+
+
+if __name__ == "__main__":
+    compile_all()

@@ -7,22 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
-from robomill.kinematics import compiled
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.surface import compiler
 from robomill.surface.groove import GrooveSection
 from robomill.viz.views import Exaggerated, exaggerated
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
-
-
-@st.cache_resource(show_spinner=False)
-def warm() -> bool:
-    """Once a server: get the compiled kernels ready in the background."""
-    return all([compiled.warm_up(), compiler.warm_up()])
 
 
 def result(setup: SimulationSetup) -> SimulationResult:

@@ -7,8 +7,9 @@ from typing import Any
 
 import streamlit as st
 
+from robomill import compiled
 from robomill.errors import RobomillError
-from robomill.ui import cache, inputs, render, state, uncertainty
+from robomill.ui import inputs, render, state, uncertainty
 from robomill.ui.files import SUFFIX, project_to_toml
 from robomill.ui.parts import error
 from robomill.ui.style import CSS, LOGO
@@ -25,7 +26,9 @@ def begin(title: str) -> state.Project:
     st.set_page_config(page_title=f"{title} · robomill", page_icon=":material/precision_manufacturing:", layout="wide")
     st.html(CSS)
     render.worker()
-    cache.warm()
+    if compiled.missing():
+        with st.spinner(f"{compiled.WORDS} ..."):
+            compiled.build()
     p = palette(dark())
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:

@@ -105,17 +105,44 @@ def test_every_kernel_module_is_found_and_none_is_imported_by_the_core():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "False"
 
 
-def test_a_place_that_is_all_there_is_nothing_to_say(tmp_path, monkeypatch):
-    monkeypatch.setattr(compiled, "kept_in", lambda: tmp_path)
+def test_the_word_is_said_once_and_only_where_something_is_missing(folder, monkeypatch):
     said = []
-    assert set(compiled.missing()) == set(compiled.modules())
+    monkeypatch.setattr(compiled, "_announced", [said.append])
+    monkeypatch.setattr(compiled, "_tried", False)
     monkeypatch.setattr(compiled, "build", lambda: said.append("built"))
-    compiled.prepare(said.append)
-    assert said == [compiled.WORDS, "built"]
-    (tmp_path / compiled.COMPLETE).write_text("\n".join(compiled.modules()))
+    (folder / compiled.COMPLETE).write_text("\n".join(compiled.modules()))
     assert compiled.missing() == ()
-    compiled.prepare(said.append)
+    result()
+    assert said == []
+    (folder / compiled.COMPLETE).unlink()
+    assert compiled.missing() == compiled.modules()
+    result()
+    assert said == [compiled.WORDS, "built"]
+    monkeypatch.setattr(compiled, "_tried", True)
+    result()
     assert len(said) == 2
+
+
+def test_building_compiles_in_another_process_and_notes_it(tmp_path, monkeypatch):
+    """Here into a package of one small kernel."""
+    package = tmp_path / "robomill"
+    (package / "room").mkdir(parents=True)
+    for name in ("compiled.py", "arrays.py", "errors.py"):
+        (package / name).write_text((compiled.PACKAGE / name).read_text())
+    (package / "__init__.py").write_text("")
+    (package / "room" / "__init__.py").write_text("")
+    (package / "room" / "kernels.py").write_text(
+        "from robomill.compiled import kernel\n@kernel\ndef twice(x: float) -> float:\n    return 2.0 * x\n"
+    )
+    code = (
+        "import sys; from robomill import compiled; before = compiled.missing(); compiled.build()\n"
+        "assert 'numba' not in sys.modules\n"
+        "print(before, compiled.missing(), len(list(compiled.kept_in().rglob('*.nbc'))))\n"
+        "from robomill.room import kernels; print(kernels.twice(4.0), sum(kernels.twice.stats.cache_hits.values()))"
+    )
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=env)
+    assert found.stdout.split("\n")[:2] == ["('robomill.room.kernels',) () 1", "8.0 1"], found.stderr
 
 
 @pytest.fixture
