@@ -1,12 +1,21 @@
-"""One row of the reproduction table, and the table as columns and as a sentence."""
+"""The reproduction table: what it is computed from, its rows, and the table as columns and as a sentence."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
-Status = Literal["reproduced", "assumed", "gap", "not computed"]
+from robomill.cutting.materials import Material
+from robomill.identification.result import IdentificationResult
+from robomill.report.paper import Statement, Status
+from robomill.robot.model import Robot
+from robomill.simulation.result import SimulationResult
+from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.grid import PAPER_BOX, plane_grid
+
+STEP = 0.1  # m: grid of the checks
 WORDS: dict[Status, str] = {
     "reproduced": "reproduced",
     "assumed": "reproduced with the assumed lengths",
@@ -15,37 +24,69 @@ WORDS: dict[Status, str] = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What the rows are computed from: the paper's robot, its milling test with both tables, and identifications.
+
+    nine: from the (synthetic) nine points; single: from the (synthetic) tests of one joint at a time.
+    """
+
+    given: Robot
+    flute: SimulationResult
+    flute_3: SimulationResult
+    nine: IdentificationResult
+    single: IdentificationResult
+    materials: Sequence[Material]
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The robot with the paper's Table 2."""
+        return self.given.with_compliance_set("table_2")
+
+    @cached_property
+    def plane(self) -> ComplianceField:
+        """Its compliances over the plane Z_M = 0 of the paper's box."""
+        return compliance_field(self.robot, plane_grid("z", 0.0, *PAPER_BOX, STEP))
+
+
+class Found(NamedTuple):
+    """What robomill finds for a statement, whether that agrees, and the numbers that its reading speaks of."""
+
+    text: str
+    holds: bool
+    numbers: dict[str, float] = {}
+
+
 @dataclass(frozen=True)
 class Row:
-    """One table, figure or claim: what the paper gives, what robomill finds now, how they stand, and why.
+    """A statement of the paper, what robomill finds now, and why they stand as they do.
 
     ``holds`` is the check behind the status; a test asserts it for every row.
     """
 
-    item: str
-    paper: str
+    statement: Statement
     found: str
-    status: Status
-    reason: str
     holds: bool
+    reason: str = field(default="")
 
 
 def columns(rows: Sequence[Row]) -> dict[str, list[str]]:
     """The rows as a table."""
     return {
-        "of the paper": [r.item for r in rows],
-        "paper": [r.paper for r in rows],
+        "of the paper": [r.statement.where for r in rows],
+        "paper": [r.statement.gives for r in rows],
         "robomill": [r.found for r in rows],
-        "status": [WORDS[r.status] for r in rows],
+        "status": [WORDS[r.statement.status] for r in rows],
         "reason": [r.reason for r in rows],
+        "quotation": [" … ".join(r.statement.quotations) for r in rows],
     }
 
 
 def summary(rows: Sequence[Row]) -> str:
     """How many of which status, in one sentence."""
-    count = {status: sum(r.status == status for r in rows) for status in WORDS}
+    count = {status: sum(r.statement.status == status for r in rows) for status in WORDS}
     return (
         f"{len(rows)} tables, figures and claims: {count['reproduced']} reproduced, {count['assumed']} reproduced "
-        f"with the "
-        f"assumed lengths, {count['gap']} with a gap that is named, {count['not computed']} with nothing to compute."
+        f"with the assumed lengths, {count['gap']} with a gap that is named, {count['not computed']} with nothing to "
+        "compute."
     )

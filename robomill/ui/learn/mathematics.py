@@ -13,8 +13,9 @@ from robomill.io.load_tests import read_load_tests
 from robomill.io.materials import sample_materials
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
-from robomill.report.reproduction import Evidence, reproduction
-from robomill.report.reproduction_row import WORDS, Row, columns, summary
+from robomill.report.paper import Statement
+from robomill.report.reproduction import reproduction
+from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cache, parts, state
 from robomill.ui.maps.point import FORCE, PointReport
 from robomill.units import from_si, unit_label
@@ -105,14 +106,21 @@ def reproduced() -> None:
         f"<th>{name}</th>" for name in ("Of the paper", "What it gives", "What robomill finds", "", "Reason")
     )
     body = "".join(
-        f"<tr><td><b>{html.escape(r.item)}</b></td><td>{html.escape(r.paper)}</td><td>{html.escape(r.found)}</td>"
-        f"<td>{parts.badge(TONE[r.status], SHORT[r.status])}</td>"
+        f"<tr><td><b>{html.escape(r.statement.where)}</b></td><td>{_given(r.statement)}</td>"
+        f"<td>{html.escape(r.found)}</td>"
+        f"<td>{parts.badge(TONE[r.statement.status], SHORT[r.statement.status])}</td>"
         f"<td>{html.escape(r.reason)}</td></tr>"
         for r in found
     )
     table = f'<table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table>'
     st.html(f'<div style="overflow-x:auto">{table}</div>')
     parts.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
+
+
+def _given(statement: Statement) -> str:
+    """What the paper gives, and its own words."""
+    quoted = " ".join(f"“{html.escape(q)}”" for q in statement.quotations)
+    return f"{html.escape(statement.gives)}<details><summary>in its words</summary>{quoted}</details>"
 
 
 def _csv(found: list[Row]) -> str:

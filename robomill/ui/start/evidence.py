@@ -9,12 +9,13 @@ import streamlit as st
 
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.report.paper import SLOT
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import cache, parts, state
-from robomill.ui.start.story import PAPER, PAPER_MAP, PAPER_MEASURED, PAPER_TABLE_2
+from robomill.ui.start.story import PAPER
 from robomill.units import from_si
 from robomill.viz.evidence import Claim, evidence_figure
 
@@ -36,11 +37,12 @@ def claims(project: state.Project) -> list[Claim]:
     """Every number of the paper's slot in m, the paper's first; computed ones with the band of the alloy's rows."""
     plain, process = state.preset_setup(PAPER), _process_setup()
     third = plain.robot.with_compliance_set("table_3")
+    about = f"about {from_si(SLOT.measured, 'mm'):g} mm"
     rows = [
-        Claim("paper, predicted from Table 2", "paper", PAPER_TABLE_2, note="100 N measured force"),
-        _computed("100 N and Table 3", plain.replace(robot=third)),
-        Claim("paper, predicted from its measured map", "paper", PAPER_MAP, note="raw data not printed"),
-        Claim("paper, measured on the part", "measured", PAPER_MEASURED, note="about 0.3 mm"),
+        Claim("paper, predicted from Table 2", "paper", SLOT.from_table_2, note=f"{SLOT.force:.0f} N measured force"),
+        _computed(f"{SLOT.force:.0f} N and Table 3", plain.replace(robot=third)),
+        Claim("paper, predicted from its measured map", "paper", SLOT.from_map, note="raw data not printed"),
+        Claim("paper, measured on the part", "measured", SLOT.measured, note=about),
         _computed("process data and Table 2", process),
         _computed("process data and Table 3", process.replace(robot=third)),
     ]

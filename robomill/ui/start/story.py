@@ -10,6 +10,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.io.samples import app_dir
+from robomill.report.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -19,8 +20,6 @@ from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
 PAPER = "paper_flute"
-# The paper's own numbers for this cut, in m: section 5.2 and figs. 15, 16.
-PAPER_TABLE_2, PAPER_MAP, PAPER_MEASURED = 0.23e-3, 0.29e-3, 0.30e-3
 
 DOORS = (
     (
@@ -134,15 +133,15 @@ def evidence(project: state.Project) -> None:
     ):
         if label:
             rows.append((label, _aside(cache.result(setup)), "computed"))
-    rows[-1:-1] = [("paper, predicted from Table 2", PAPER_TABLE_2, "paper")]
+    rows[-1:-1] = [("paper, predicted from Table 2", SLOT.from_table_2, "paper")]
     rows += [
-        ("paper, predicted from its measured map", PAPER_MAP, "paper"),
-        ("paper, measured on the part (about)", PAPER_MEASURED, "measured"),
+        ("paper, predicted from its measured map", SLOT.from_map, "paper"),
+        ("paper, measured on the part (about)", SLOT.measured, "measured"),
     ]
     bars(rows, project.view.length)
     parts.note(
-        "Sideways error of the groove. 0.29 mm is read off a map whose raw data are not printed; "
-        "Table 3 alone cannot give it, and nothing here is tuned to match."
+        f"Sideways error of the groove. {format_si(SLOT.from_map, 'mm', 2)} is read off a map whose raw data are "
+        "not printed; Table 3 alone cannot give it, and nothing here is tuned to match."
     )
 
 
