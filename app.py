@@ -6,16 +6,11 @@ import streamlit as st
 
 from robomill import ui
 from robomill.ui.start import story
-from robomill.units import format_si
+from robomill.units import format_si, format_times
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.views import arm_scene, sample_at
 
 HEIGHT = 430
-
-
-def _round(times: float) -> int:
-    """A scale to two digits, as a caption says it."""
-    return int(float(f"{times:.2g}"))
 
 
 project = ui.begin("Start")
@@ -43,7 +38,7 @@ with left, st.container(border=True, height="stretch"):
             arm,
             "start-arm",
             alt="The arm at the cut with the cutting force and the displacement of the tool tip.",
-            caption=f"Blue: force on the tool. Orange: displacement, shown × {_round(drawn):,}.",
+            caption=f"Blue: force on the tool. Orange: displacement, shown {format_times(drawn)}.",
         )
 with right, st.container(border=True, height="stretch"):
     story.groove_picture(result, project.view, HEIGHT, dark)

@@ -1,19 +1,23 @@
 """The only door between SI, used inside, and the units of the shop floor, used at the edge.
 
-Every factor lives in ``UNITS``. A value is converted with ``to_si`` and ``from_si`` and shown with
-``format_si``, which is the one formatter for tiles, tables, hover texts, CSV files and reports.
+Every factor lives in ``UNITS``. A value is converted with ``to_si`` and ``from_si`` and shown with ``format_si``
+or one of its kin below: decimals, minus signs, thousands and the taking off of units are their business alone.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import SupportsFloat, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Number = TypeVar("Number", float, NDArray[np.float64])
+
+NOT_REACHED = "not reached"
+MINUS = "−"
 
 
 @dataclass(frozen=True)
@@ -82,28 +86,109 @@ def unit_label(unit: str) -> str:
     return UNITS[unit].label
 
 
-def format_value(value: float, unit: str, digits: int | None = None, sign: bool = False) -> str:
-    """A value already in ``unit`` as text with its unit; NaN reads "not reached"."""
-    if not math.isfinite(value):
-        return "not reached" if math.isnan(value) else ("∞" if value > 0 else "−∞")
-    decimals = UNITS[unit].digits if digits is None else digits
-    text = f"{value:+.{decimals}f}" if sign else f"{value:.{decimals}f}"
-    if float(text) == 0.0:
-        text = text.lstrip("+-")
-    return _with_label(text, unit)
+def rounded(value: SupportsFloat, digits: int = 12) -> float:
+    """``value`` to so many significant digits; 12 take away what a conversion left in the last bits."""
+    return float(f"{float(value):.{digits}g}")
 
 
-def format_si(value: float, unit: str, digits: int | None = None, sign: bool = False) -> str:
+def format_number(value: SupportsFloat, digits: int, sign: bool = False, missing: str = NOT_REACHED) -> str:
+    """A bare number with so many decimals: a true minus, no negative zero, ``missing`` for NaN."""
+    number = float(value)
+    if not math.isfinite(number):
+        return missing if math.isnan(number) else ("∞" if number > 0 else "−∞")
+    text = f"{number:+.{digits}f}" if sign else f"{number:.{digits}f}"
+    return _typeset(text.lstrip("+-") if float(text) == 0.0 else text)
+
+
+def format_significant(value: SupportsFloat, digits: int = 6) -> str:
+    """A bare number by its leading digits, without trailing zeros: ``format_significant(-0.12345, 3) == "−0.123"``."""
+    number = float(value)
+    return _typeset(f"{number:.{digits}g}") if math.isfinite(number) else format_number(number, 0)
+
+
+def format_percent(share: SupportsFloat, digits: int = 0, sign: bool = False) -> str:
+    """A share of 1 in per cent: ``format_percent(0.42) == "42 %"``."""
+    return format_si(share, "%", digits, sign)
+
+
+def format_count(count: int, noun: str = "") -> str:
+    """``1 cut``, ``12,400 cuts``; the number alone without a noun."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}" if noun else f"{count:,}"
+
+
+def format_short_count(count: int) -> str:
+    """A large count as people say it: 812k, 1.2M."""
+    if count < 10_000:
+        return format_count(count)
+    return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
+
+
+def format_times(times: SupportsFloat, digits: int = 2) -> str:
+    """How many times larger something is drawn, by its leading digits: ``× 1,200``."""
+    return f"× {rounded(times, digits):,.12g}"
+
+
+def format_value(
+    value: SupportsFloat,
+    unit: str,
+    digits: int | None = None,
+    sign: bool = False,
+    with_unit: bool = True,
+    missing: str = NOT_REACHED,
+) -> str:
+    """A value already in ``unit`` as text; NaN reads ``missing``, and no unit follows what is not finite."""
+    text = format_number(value, UNITS[unit].digits if digits is None else digits, sign, missing)
+    return _with_label(text, unit) if with_unit and math.isfinite(float(value)) else text
+
+
+def format_si(
+    value: SupportsFloat,
+    unit: str,
+    digits: int | None = None,
+    sign: bool = False,
+    with_unit: bool = True,
+    missing: str = NOT_REACHED,
+) -> str:
     """An SI value shown in ``unit``: ``format_si(2.3e-4, "mm") == "0.230 mm"``."""
-    return format_value(from_si(float(value), unit), unit, digits, sign)
+    return format_value(from_si(float(value), unit), unit, digits, sign, with_unit, missing)
 
 
-def format_short(value: float, unit: str) -> str:
+def format_short(value: SupportsFloat, unit: str) -> str:
     """An SI value with the digits that say it, six at most: ``format_short(8e-3, "mm") == "8 mm"``."""
-    return _with_label(f"{from_si(float(value), unit):.6g}", unit)
+    return _with_label(format_significant(from_si(float(value), unit)), unit)
+
+
+def format_many(
+    values: Iterable[SupportsFloat],
+    unit: str,
+    digits: int | None = None,
+    between: str = ", ",
+    sign: bool = False,
+    with_unit: bool = True,
+) -> str:
+    """SI values with the unit once, at the end: points, sizes (`` × ``), ranges (`` to ``), bands (`` ± ``)."""
+    *first, last = values
+    texts = [format_si(value, unit, digits, sign, with_unit=False) for value in first]
+    return between.join([*texts, format_si(last, unit, digits, sign, with_unit)])
+
+
+def parse_number(text: str) -> float:
+    """The number that a text shows: decimal point or comma, either minus. Raises ValueError."""
+    return float(text.strip().replace(MINUS, "-").replace(",", "."))
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """``"0.230 mm"`` as number and unit, for screens that set the unit small; ``(text, "")`` where none follows."""
+    number, _, unit = text.rpartition(" ")
+    if number[-1:].isdigit() and len(unit) < 7 and not any(c.isdigit() for c in unit):
+        return number, unit
+    return text, ""
 
 
 def _with_label(text: str, unit: str) -> str:
     label = UNITS[unit].label
-    blank = "" if label == "°" else " "
-    return f"{text.replace('-', '−')}{blank}{label}".rstrip()
+    return f"{text}{label}" if label == "°" else f"{text} {label}".rstrip()
+
+
+def _typeset(text: str) -> str:
+    return text.replace("-", MINUS)

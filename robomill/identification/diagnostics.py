@@ -11,7 +11,7 @@ from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.identification.system import System
 from robomill.provenance import Finding
-from robomill.units import format_si
+from robomill.units import format_percent, format_si
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
@@ -115,7 +115,7 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
             f"{name} cannot be told from {other}: at these poses both move the tool alike (correlation "
             f"{table[j]:+.2f}), so only a mix of the two is known; measure where they move it differently."
         )
-    known = f"is known to ±{format_si(half, '%', 0)}" if half < 1.0 else "cannot be told from a rigid one"
+    known = f"is known to ±{format_percent(half)}" if half < 1.0 else "cannot be told from a rigid one"
     text = f"{name} {known}: it makes {part} of the measured displacement"
     if alike >= 0.3:
         text += f", and here it moves the tool much as {other} does (correlation {table[j]:+.2f})"

@@ -16,7 +16,7 @@ from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.report import reproduction_experiments as experiments
 from robomill.report.paper import BOX_SIZE, STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction_row import STEP, Evidence, Found, Row
-from robomill.units import format_si, format_value, from_si
+from robomill.units import format_many, format_percent, format_si, format_significant, format_value, from_si
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
 from robomill.workspace.lines import border_and_middle_lines
@@ -36,7 +36,7 @@ def _table_1(evidence: Evidence) -> Found:
     robot = evidence.robot
     shown = tuple(np.round(from_si(values, "deg"), 9) for values in (robot.alpha, robot.theta_offset))
     holds = all(np.allclose(s, t) for s, t in zip(shown, TABLE_1[:2])) and np.allclose(robot.sign, TABLE_1[2])
-    angles = ", ".join(f"{v:g}" for v in shown[0]).replace("-", "−")
+    angles = ", ".join(format_significant(v) for v in shown[0])
     return Found(
         f"α = {angles}°; joint 4 counted backwards; all entries equal" if holds else "entries differ",
         holds,
@@ -71,9 +71,8 @@ def _jacobian(evidence: Evidence) -> Found:
 def _workspace(evidence: Evidence) -> Found:
     field = compliance_field(evidence.robot, box_grid(*PAPER_BOX, STEP))
     share, size = float(field.reached.mean()), Box(*PAPER_BOX).size
-    shown = " × ".join(f"{from_si(float(v), 'mm'):.0f}" for v in size)
     return Found(
-        f"{100 * share:.0f} % of the {shown} mm box is in reach",
+        f"{format_percent(share)} of the {format_many(size, 'mm', 0, ' × ')} box is in reach",
         share == 1.0 and np.allclose(size, BOX_SIZE),
     )
 
@@ -94,7 +93,7 @@ def _table_2(evidence: Evidence) -> Found:
     shown = from_si(C, "1e-7 rad/(N m)")
     worst = float(np.abs(evidence.single.C_theta / C - 1.0).max())
     return Found(
-        f"{_joints(shown)}; loading one joint at a time gives them back to {100 * worst:.1f} %",
+        f"{_joints(shown)}; loading one joint at a time gives them back to {format_percent(worst, 1)}",
         bool(np.allclose(shown, TABLES["table_2"])) and worst < 0.02,
     )
 
@@ -120,7 +119,7 @@ def _figure_6(evidence: Evidence) -> Found:
     part = [float(shares[[0, 2, 4], k].sum() / shares[:, k].sum()) for k in (0, 1)]
     others = float(np.abs(plane.shares[..., [0, 3, 4], 2]).max() / plane.total[..., 2].max())
     return Found(
-        f"joints 1, 3, 5 make {100 * part[0]:.0f} % of C_xx and {100 * part[1]:.0f} % of C_yy; others in C_zz: "
+        f"joints 1, 3, 5 make {format_percent(part[0])} of C_xx and {format_percent(part[1])} of C_yy; others in C_zz: "
         f"{_nothing(others)}",
         min(part) >= 0.9 and others < 1e-12,
     )
@@ -132,7 +131,7 @@ def _figure_7(evidence: Evidence) -> Found:
     part = float(sizes[[0, 2, 4], 3].sum() / sizes[:, 3].sum())
     rest = float(sizes[[0, 1, 3, 4]][:, [4, 5]].max() / sizes[2, [4, 5]].min())
     return Found(
-        f"joints 1, 3, 5 make {100 * part:.0f} % of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}",
+        f"joints 1, 3, 5 make {format_percent(part)} of |C_xy|; others in C_xz, C_zy: {_nothing(rest)}",
         part >= 0.9 and rest < 1e-12,
     )
 
@@ -159,7 +158,7 @@ def _nothing(share: float) -> str:
 
 
 def _span(values: FloatArray) -> str:
-    return f"{np.nanmin(values):.2f} to {np.nanmax(values):.2f}".replace("-", "−")
+    return format_many((np.nanmin(values), np.nanmax(values)), "1", 2, " to ")
 
 
 def _mm(value: float, digits: int = 0) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from robomill.provenance import Provenance
 from robomill.robot.model import USER_SET
 from robomill.simulation.setup import SimulationSetup
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_many, format_si, format_significant, from_si
 
 NOT_STATED = Provenance("user", "not stated")
 MODEL = Provenance("assumed", "static force, stiff links, joints as linear springs, small deflections")
@@ -28,13 +28,13 @@ def sources(setup: SimulationSetup) -> list[Source]:
     """One row for each block that the result rests on, the assumed ones among them."""
     robot, given = setup.robot, {**setup.robot.provenance, **setup.provenance}
     unit = "1e-7 rad/(N m)"
-    compliances = ", ".join(f"{from_si(v, unit):.2f}" for v in robot.C_theta)
+    compliances = format_many(robot.C_theta, unit, 2)
     name = robot.compliance_set.replace("_", " ").capitalize() if robot.compliance_set != USER_SET else "Edited"
     set_source = given.get(f"compliance.{robot.compliance_set}", Provenance("user", "entered by hand"))
-    lengths = ", ".join(f"{from_si(v, 'mm'):g}" for v in _lengths(setup))
+    lengths = ", ".join(format_significant(from_si(v, "mm")) for v in _lengths(setup))
     path = setup.toolpath
     return [
-        Source("Joint compliances", f"{name}: {compliances} {unit_label(unit)}", set_source),
+        Source("Joint compliances", f"{name}: {compliances}", set_source),
         Source("D-H table", f"{robot.rows} joints, {robot.convention}", given.get("geometry", NOT_STATED)),
         Source("Link lengths", f"{lengths} mm", given.get("lengths", given.get("geometry", NOT_STATED))),
         Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
@@ -54,13 +54,13 @@ def _lengths(setup: SimulationSetup) -> list[float]:
 
 def _stock(setup: SimulationSetup) -> str:
     size = from_si(setup.stock_block.upper - setup.stock_block.lower, "mm")
-    return " × ".join(f"{v:g}" for v in np.round(size, 3)) + " mm"
+    return " × ".join(format_significant(v) for v in np.round(size, 3)) + " mm"
 
 
 def _force(setup: SimulationSetup) -> str:
     vector = getattr(setup.force, "vector_M", None)
     if vector is not None:
-        return "(" + ", ".join(format_si(float(v), "N", 0).partition(" ")[0] for v in vector) + ") N in {M}"
+        return "(" + format_many(vector, "N", 0, with_unit=False) + ") N in {M}"
     parts = [
         f"{format_si(getattr(setup.force, name), 'N', 0)} {word}"
         for name, word in (("feed", "along the feed"), ("feed_normal", "left of the feed"), ("axial", "axial"))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.units import split_unit
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -43,9 +44,8 @@ def tiles(items: Sequence[Tile]) -> None:
 
 
 def _tile(tile: Tile) -> str:
-    number, _, unit = tile.value.rpartition(" ")
-    split = number and not any(c.isdigit() for c in unit) and len(unit) < 7 and number[-1:].isdigit()
-    value = f"{html.escape(number)}<small>{html.escape(unit)}</small>" if split else html.escape(tile.value)
+    number, unit = split_unit(tile.value)
+    value = html.escape(number) + (f"<small>{html.escape(unit)}</small>" if unit else "")
     note = html.escape(tile.note)
     if tile.was and tile.was != tile.value:
         moved = f" · {html.escape(tile.change)}" if tile.change else ""

@@ -13,7 +13,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError, ToolpathError
 from robomill.robot.model import Robot
 from robomill.toolpath.source import LinesSource
-from robomill.units import from_si, to_si, unit_label
+from robomill.units import from_si, parse_number, to_si, unit_label
 
 PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
 GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
@@ -71,7 +71,7 @@ def compliance_from_text(typed: Any, unit: str, where: str) -> float:
         raise RobotError(
             f"{where}: the {word} {text[:40]!r} is not a number; type one in {unit_label(unit)}, like 7.14."
         )
-    value = float(text.replace("−", "-").replace(",", "."))
+    value = parse_number(text)
     if value < 0 or not np.isfinite(value) or (is_stiffness(unit) and value == 0):
         least = "a finite number greater than 0" if is_stiffness(unit) else "a finite number, 0 or more"
         raise RobotError(f"{where}: the {word} is {text[:40]}; expected {least} {unit_label(unit)}.")
@@ -85,7 +85,7 @@ def is_si_text(typed: Any) -> bool:
     text = "" if _empty(typed) else str(typed).strip()
     if not _NUMBER.fullmatch(text) or "e" not in text.lower():
         return False
-    return abs(float(text.replace("−", "-").replace(",", "."))) < SI_BELOW
+    return abs(parse_number(text)) < SI_BELOW
 
 
 def geometry_frame(robot: Robot) -> pd.DataFrame:

@@ -16,7 +16,7 @@ from robomill.identification.knowledge import Knowledge, compliance_digest
 from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_many, format_si, from_si
 from robomill.viz.bands import add_band
 
 if TYPE_CHECKING:
@@ -59,9 +59,7 @@ def tile_text(result: SimulationResult, unit: str = "mm") -> str:
 
 def band_text(value: float, half: float, unit: str) -> str:
     """A value with its half width (m), to the digit that the half width allows."""
-    digits = band_digits(half, unit)
-    number = format_si(value, unit, digits).removesuffix(f" {unit_label(unit)}")
-    return f"{number} ± {format_si(half, unit, digits)}"
+    return format_many((value, half), unit, band_digits(half, unit), " ± ")
 
 
 def band_digits(half: float, unit: str) -> int:

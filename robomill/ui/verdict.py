@@ -9,7 +9,7 @@ from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, state, uncertainty
 from robomill.ui.parts import Tile
-from robomill.units import format_si
+from robomill.units import format_percent, format_si
 
 WORDS = {
     "ok": "In tolerance",
@@ -43,7 +43,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
         parts = " · ".join(
             f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
         )
-    share = f"{100 * verdict.share:.0f} % of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
+    share = f"{format_percent(verdict.share)} of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
     largest = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
     return [
         Tile("Max deviation", largest, parts, *was("max_deviation"), kind="computed"),

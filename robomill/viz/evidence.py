@@ -76,7 +76,7 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
         text = f"<b>{about}{format_value(claim.value, unit, shown)}</b>"
         if band:
             ends = [
-                format_value(v, unit, 2 if unit == "mm" else digits).partition(" ")[0] for v in (claim.low, claim.high)
+                format_value(v, unit, 2 if unit == "mm" else digits, with_unit=False) for v in (claim.low, claim.high)
             ]
             text += f"  ({ends[0]} to {ends[1]})"
         fig.add_annotation(

@@ -12,6 +12,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.units import format_number
 from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba
 
 MAX_TESTS = 3000
@@ -310,7 +311,7 @@ def _correlation(value: float) -> str:
     """A correlation as it is written in its cell."""
     if np.isnan(value):
         return ""
-    return f"{value:+.2f}".replace("-", "−") if abs(value) >= 0.005 else "0"
+    return format_number(value, 2, sign=True) if abs(value) >= 0.005 else "0"
 
 
 def _clipped(shown: Intervals) -> tuple[FloatArray, FloatArray]:

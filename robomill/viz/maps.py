@@ -11,6 +11,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.units import format_number
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
 
@@ -215,7 +216,7 @@ def hover_text(value: float, unit: str, scale: Scale) -> str:
         return f"joint {scale.joints[int(value)]}"
     if scale.kind == "reach":
         return "reached" if value > 0.5 else "not reached"
-    return f"{value:.{scale.digits}f} {unit}".strip().replace("-", "−")
+    return f"{format_number(value, scale.digits)} {unit}".rstrip()
 
 
 def _thin(count: int, every: int) -> IntArray:

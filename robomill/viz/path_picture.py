@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.units import format_short_count
 
 BUDGET = 20_000
 
@@ -53,14 +54,9 @@ class PathPicture:
         drawn = len(self.kept) - 1
         if drawn >= len(self.points) - 1:
             return ""
-        return f"Showing {short(drawn)} of {short(segments)} segments; results use all of them."
-
-
-def short(count: int) -> str:
-    """A count as people say it: 812k, 1.2M."""
-    if count < 10_000:
-        return f"{count:,}"
-    return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
+        return (
+            f"Showing {format_short_count(drawn)} of {format_short_count(segments)} segments; results use all of them."
+        )
 
 
 def decimate(

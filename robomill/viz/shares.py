@@ -9,6 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
+from robomill.units import format_number, format_significant
 from robomill.viz.theme import axis, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, Trace, house_layout, unchecked, words
 
@@ -53,7 +54,7 @@ def share_bars(
     right = np.maximum(shares, 0).sum(axis=0)
     left = float(np.minimum(shares, 0).sum(axis=0).min(initial=0.0))
     layout["annotations"] = [
-        words(_signed(value), max(edge, 0.0), name, 12.5, p.text, xanchor="left", xshift=8)  # type: ignore[arg-type]
+        words(format_number(value, 3, sign=True), max(edge, 0.0), name, 12.5, p.text, xanchor="left", xshift=8)  # type: ignore[arg-type]
         for name, value, edge in zip(names, total, right, strict=True)
     ]
     span = [1.12 * left - 0.02 * top, 1.10 * float(right.max(initial=0.1)) + 0.05 * top]
@@ -76,12 +77,7 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
 
 def _amount(value: float, top: float) -> str:
     """Three digits; what is a thousandth of the largest or less is none."""
-    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-3 * top else "0"
-
-
-def _signed(value: float) -> str:
-    text = f"{value:+.3f}"
-    return (text[1:] if float(text) == 0 else text).replace("-", "−")
+    return format_significant(value, 3) if abs(value) > 1e-3 * top else "0"
 
 
 def gain_bars(

@@ -4,11 +4,29 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robomill.units import UNITS, format_si, format_value, from_si, to_si
+from robomill.units import (
+    UNITS,
+    format_count,
+    format_many,
+    format_number,
+    format_percent,
+    format_short_count,
+    format_si,
+    format_significant,
+    format_times,
+    format_value,
+    from_si,
+    parse_number,
+    rounded,
+    split_unit,
+    to_si,
+    unit_label,
+)
 
 # The factor of each unit, written independently of the table: one unit in SI.
 ONE = {
@@ -49,6 +67,95 @@ def test_one_formatter() -> None:
     assert format_si(2.2954e-4, "mm") == "0.230 mm"
     assert format_si(-1.024e-4, "mm") == "−0.102 mm"
     assert format_si(1e-9, "mm", sign=True) == "0.000 mm"
+    assert format_si(-1e-9, "mm") == "0.000 mm"
+    assert format_si(1.5e-3, "mm", 1, sign=True) == "+1.5 mm"
     assert format_si(math.nan, "mm") == "not reached"
+    assert format_si(math.nan, "mm", missing="–") == "–"
+    assert format_si(math.inf, "N/um") == "∞"
+    assert format_si(-math.inf, "N/um") == "−∞"
     assert format_value(45.0, "deg") == "45.00°"
+    assert format_value(-45.0, "deg", 0, with_unit=False) == "−45"
     assert format_si(7.14e-7, "1e-7 rad/(N m)") == "7.14 ×10⁻⁷ rad/(N m)"
+    assert format_si(0.5, "1") == "0.500"
+    assert format_si(math.nan, "mm", with_unit=False) == "not reached"
+
+
+def test_bare_numbers() -> None:
+    assert [format_number(-0.0001, 3), format_number(-1.5, 3), format_number(0.25, 3, True)] == [
+        "0.000",
+        "−1.500",
+        "+0.250",
+    ]
+    assert format_number(-0.0006, 3, sign=True) == "−0.001"
+    assert format_number(np.float64(2.0), 0, sign=True) == "+2"
+    assert format_significant(-0.00012345, 3) == "−0.000123"
+    assert format_significant(1e-7, 3) == "1e−07"
+    assert format_significant(12.5) == "12.5"
+    assert format_significant(math.inf, 3) == "∞"
+    assert format_percent(0.416) == "42 %"
+    assert format_percent(-0.416, 1, sign=True) == "−41.6 %"
+    assert format_percent(0.1, sign=True) == "+10 %"
+    assert format_times(1234.0) == "× 1,200"
+    assert format_times(2.5, 6) == "× 2.5"
+    assert format_times(1.0, 6) == "× 1"
+    assert rounded(0.1 + 0.2) == 0.3
+    assert rounded(1234.0, 2) == 1200.0
+
+
+def test_counts() -> None:
+    assert [format_count(n, "cut") for n in (0, 1, 2, 12400)] == ["0 cuts", "1 cut", "2 cuts", "12,400 cuts"]
+    assert format_count(12400) == "12,400"
+    assert [format_short_count(n) for n in (12, 9_999, 10_000, 812_345, 999_499, 999_500, 1_234_567)] == [
+        "12",
+        "9,999",
+        "10k",
+        "812k",
+        "999k",
+        "1.0M",
+        "1.2M",
+    ]
+
+
+def test_several_values_carry_their_unit_once() -> None:
+    assert format_many(np.array([1e-3, -2e-3, 0.5]), "mm", 1) == "1.0, −2.0, 500.0 mm"
+    assert format_many((0.1, 0.02), "mm", 0, " × ") == "100 × 20 mm"
+    assert format_many((2.3e-4, 2e-5), "mm", 2, " ± ") == "0.23 ± 0.02 mm"
+    assert format_many((1e-3, 2e-3), "mm", 0, sign=True) == "+1, +2 mm"
+    assert format_many((1e-3, 2e-3), "mm", 0, " to ", with_unit=False) == "1 to 2"
+    assert format_many([0.5], "m", 1, " × ") == "0.5 m"
+
+
+@given(value=st.floats(-1e6, 1e6), unit=st.sampled_from(sorted(UNITS)), digits=st.integers(0, 6))
+def test_what_is_shown_can_be_read_back(value: float, unit: str, digits: int) -> None:
+    text = format_value(value, unit, digits)
+    assert parse_number(format_value(value, unit, digits, with_unit=False)) == round(value, digits)
+    assert not text.startswith("-")
+    assert text == f"{format_value(value, unit, digits, with_unit=False)} {UNITS[unit].label}".rstrip().replace(
+        " °", "°"
+    )
+
+
+def test_numbers_as_people_type_them() -> None:
+    assert parse_number("−1,5 ") == -1.5
+    assert parse_number("-7.14e-7") == -7.14e-7
+    with pytest.raises(ValueError, match="could not convert"):
+        parse_number("7 mm")
+
+
+def test_the_unit_comes_off_where_one_follows() -> None:
+    assert split_unit("0.230 mm") == ("0.230", "mm")
+    assert split_unit("24 lines") == ("24", "lines")
+    assert split_unit("−0.5 µm/N") == ("−0.5", "µm/N")
+    for whole in ("not reached", "0.5", "of 1200", "100 of 500", "45.00°", "2 samples", "2 h 05 min", "80 of 100", ""):
+        number, unit = split_unit(whole)
+        assert " ".join(filter(None, (number, unit))) == whole
+    assert split_unit("not reached") == ("not reached", "")
+    assert split_unit("2 samples") == ("2 samples", "")
+    assert split_unit("2 sample") == ("2", "sample")
+    assert split_unit("3 x2") == ("3 x2", "")
+    assert split_unit("joint 4") == ("joint 4", "")
+
+
+def test_labels_are_written_for_people() -> None:
+    assert unit_label("um/N") == "µm/N"
+    assert unit_label("1") == ""

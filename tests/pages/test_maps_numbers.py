@@ -14,7 +14,7 @@ from robomill.ui.learn.edge import _ray
 from robomill.ui.learn.lesson import compliance_table, went
 from robomill.ui.learn.mathematics import component, product
 from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps.point import PointReport, headline, place, report, share_columns, signed
+from robomill.ui.maps.point import PointReport, headline, place, report, share_columns
 from robomill.ui.maps.state import MapView
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
@@ -62,10 +62,6 @@ def test_headline_words(found: PointReport) -> None:
 
 def test_place_in_inches() -> None:
     assert place((0.0254, 0.0, -0.254), "in") == "(1.0, 0.0, −10.0) in"
-
-
-def test_signed_has_no_negative_zero() -> None:
-    assert [signed(-0.0001), signed(-1.5), signed(0.25, True)] == ["0.000", "−1.500", "+0.250"]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.viz.path_picture import BUDGET, PathPicture, decimate, short
+from robomill.units import format_short_count
+from robomill.viz.path_picture import BUDGET, PathPicture, decimate
 from robomill.viz.toolpath import plan_picture, turnable_picture
 
 
@@ -59,8 +60,11 @@ def test_a_path_on_one_spot_has_its_ends() -> None:
 def test_the_caption_counts_segments() -> None:
     p, c, r = long_path()
     picture = PathPicture(p, c, r, np.arange(len(p)), total=812_000)
-    assert picture.caption == f"Showing {short(len(picture.kept) - 1)} of 812k segments; results use all of them."
-    assert [short(n) for n in (12, 9_999, 20_000, 812_345, 999_500, 1_234_567)] == [
+    assert (
+        picture.caption
+        == f"Showing {format_short_count(len(picture.kept) - 1)} of 812k segments; results use all of them."
+    )
+    assert [format_short_count(n) for n in (12, 9_999, 20_000, 812_345, 999_500, 1_234_567)] == [
         "12",
         "9,999",
         "20k",

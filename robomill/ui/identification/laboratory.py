@@ -20,7 +20,7 @@ from robomill.robot.model import Robot
 from robomill.ui import inputs, parts, state
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import SAMPLE_ROBOT, Bench, robot_of
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_number, format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
 
@@ -79,7 +79,7 @@ def title(lab: Laboratory, done: int, result: IdentificationResult | None, hande
     if result is None:
         return f"{done} readings, {lab.budget} left: not enough yet to tell the joints apart."
     label, half = words.weakest(result)
-    known = f"known to ± {100 * half:.0f} %" if np.isfinite(half) else "not seen at all"
+    known = f"known to ± {format_percent(half)}" if np.isfinite(half) else "not seen at all"
     return f"{done} readings, {lab.budget} left: {label} is {known}."
 
 
@@ -90,7 +90,7 @@ def tiles(lab: Laboratory, done: int, result: IdentificationResult | None, hande
         least = parts.Tile("Least known", "everything", "measure first")
     else:
         label, half = weakest
-        known = f"± {100 * half:.0f} %" if np.isfinite(half) else "not seen"
+        known = f"± {format_percent(half)}" if np.isfinite(half) else "not seen"
         least = parts.Tile("Least known", label.capitalize(), known)
     score = lab.score(result) if handed_in and result is not None else None
     covered = int(np.nansum(score.covered)) if score else 0
@@ -106,7 +106,7 @@ def tiles(lab: Laboratory, done: int, result: IdentificationResult | None, hande
         least,
         parts.Tile(
             "Score",
-            f"{score.points:.0f} of 100" if score else "not handed in",
+            f"{format_number(score.points, 0)} of 100" if score else "not handed in",
             f"{covered} of {lab.robot.n} intervals hold the truth" if score else "up to 100, shared by joints",
             tone=tone,
         ),
@@ -275,7 +275,7 @@ def _hand_in(kept: Bench, lab: Laboratory, result: IdentificationResult) -> None
 
 
 def _off(error: float) -> str:
-    return "not seen" if np.isnan(error) else f"{100 * error:.1f} % off"
+    return "not seen" if np.isnan(error) else f"{format_percent(error, 1)} off"
 
 
 def _readings(tests: LoadTests | None) -> None:

@@ -16,7 +16,7 @@ from robomill.ui import inputs, parts, state
 from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.measured_maps import both_figure, level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
@@ -100,7 +100,8 @@ def title(field: MeasuredField, robot: Robot) -> str:
     mean = float(np.nanmean(gap))
     bias = float(np.nanmean(_sizes(field.C) - _sizes(model_at_points(field, robot))))
     word = "higher" if bias > 0 else "lower"
-    return f"Measured and calculated compliances differ by {100 * mean:.0f} % on average; the measured ones are {word}."
+    far = format_percent(mean)
+    return f"Measured and calculated compliances differ by {far} on average; the measured ones are {word}."
 
 
 def model_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
@@ -127,19 +128,19 @@ def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit
     gap = gap_at_points(field, robot)
     lines = field.lines
     shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
-    shown = 100 * float(np.nanmean(gap)) if np.isfinite(gap).any() else float("nan")
-    worst = int(np.nanargmax(gap)) if np.isfinite(gap).any() else 0
+    seen = bool(np.isfinite(gap).any())
+    worst = int(np.nanargmax(gap)) if seen else 0
     digits = 0 if unit == "mm" else 1
-    where = ", ".join(format_si(float(v), unit, digits).partition(" ")[0] for v in field.p[worst])
+    where = format_many(field.p[worst], unit, digits, with_unit=False)
     text, note = cut_words(field, cut, unit)
     return [
         parts.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
         parts.Tile(
             "Off the joint model",
-            f"{shown:.1f} %" if np.isfinite(shown) else "not reached",
-            f"most at ({where}) {unit_label(unit)}: {100 * float(np.nanmax(gap)):.0f} %",
+            format_percent(np.nanmean(gap), 1) if seen else NOT_REACHED,
+            f"most at ({where}) {unit_label(unit)}: {format_percent(gap[worst])}",
         ),
-        parts.Tile("Asymmetry", f"{100 * float(field.asymmetry.mean()):.1f} %", "of |C|, on average"),
+        parts.Tile("Asymmetry", format_percent(field.asymmetry.mean(), 1), "of |C|, on average"),
         parts.Tile("The cut by the map", text, note),
     ]
 

@@ -19,7 +19,7 @@ from robomill.ui import inputs, parts, state
 from robomill.ui.identification.bench import Bench, appended, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import field, upload
-from robomill.units import from_si, unit_label
+from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import gain_figure
 
 GOALS = {"joint": "One joint", "all": "All of them", "path": "The project's cut"}
@@ -90,7 +90,7 @@ def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> Non
         field("Tilt up to", kept, "tilt", "deg", 0, 90, 5, 0)
     parts.note(
         "Chosen among 300 poses within the joint limits and "
-        f"{from_si(MARGIN, 'mm'):.0f} mm of the measured ones, each pushed along X, Y or Z."
+        f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."
     )
 
 

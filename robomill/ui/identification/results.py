@@ -12,7 +12,7 @@ from robomill.robot.model import Robot
 from robomill.ui import inputs, parts
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
     correlation_figure,
     intervals_figure,
@@ -56,8 +56,8 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         _table(result, robot, joint_unit)
         before, after = result.condition
         parts.note(
-            f"Condition number {before:.0f} as measured, {after:.1f} after scaling the columns. One reading is good to "
-            f"{_noise(result)} by the residuals; {result.dof:,} equations to spare."
+            f"Condition number {format_number(before, 0)} as measured, {format_number(after, 1)} after scaling the "
+            f"columns. One reading is good to {_noise(result)} by the residuals; {result.dof:,} equations to spare."
         )
 
 
@@ -159,7 +159,7 @@ def _outliers(kept: Bench, result: IdentificationResult) -> None:
     if rows:
         unit = "urad" if result.residual.shape[1] == 1 else "um"
         named = "; ".join(
-            f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {o.times:.0f} times the usual"
+            f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {format_number(o.times, 0)} times the usual"
             for o in result.outliers[:6]
         )
         more = f"; and {len(rows) - 6} more" if len(rows) > 6 else ""

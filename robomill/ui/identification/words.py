@@ -14,7 +14,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui.parts import Tile
 from robomill.ui.tables import PRISMATIC_UNITS, is_stiffness
-from robomill.units import UNITS, format_si, from_si, unit_label
+from robomill.units import format_percent, format_si, format_value, from_si, unit_label
 from robomill.viz.identification import Intervals
 
 MODEL_TITLES = {
@@ -51,10 +51,7 @@ def interval(low_high: FloatArray, unit: str) -> tuple[float, float]:
 
 def number(value: float, unit: str) -> str:
     """A value already in ``unit`` with that unit's digits, without its name; a dash where there is none."""
-    if not np.isfinite(value):
-        return "∞" if value > 0 else "–"
-    text = f"{value:.{UNITS[unit].digits}f}"
-    return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+    return format_value(value, unit, with_unit=False, missing="–")
 
 
 def intervals(
@@ -202,7 +199,7 @@ def title(result: IdentificationResult) -> str:
     label, half = weakest(result)
     if not np.isfinite(half):
         return f"{said}; {label} cannot be seen."
-    return f"{said}; {label} is known least, to ± {100 * half:.0f} %."
+    return f"{said}; {label} is known least, to ± {format_percent(half)}."
 
 
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
@@ -227,7 +224,9 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
         low, high = interval(result.parameter_ci95[k], unit)
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
         note = note if np.isfinite(half) else "these tests do not see it"
-        items.append(Tile(f"Least known: {label}", f"± {100 * half:.0f} %" if np.isfinite(half) else "not seen", note))
+        items.append(
+            Tile(f"Least known: {label}", f"± {format_percent(half)}" if np.isfinite(half) else "not seen", note)
+        )
     odd = len(result.outliers)
     items += [
         Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),

@@ -22,7 +22,7 @@ from robomill.ui.learn.lesson import SIDE, lesson
 from robomill.ui.learn.lesson import go as step_on
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps.point import FORCE, PointReport, report
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
@@ -107,7 +107,7 @@ def edge(found: PointReport) -> None:
         f"Distance from the base, {unit_label(unit)}",
         list(range(len(radius))),
         key=key,
-        format_func=lambda k: f"{radius[k]:.0f}" if unit == "mm" else f"{radius[k]:.1f}",
+        format_func=lambda k: format_value(radius[k], unit, 0 if unit == "mm" else 1, with_unit=False),
         on_change=lambda: step_on(out=float(way.radius[st.session_state[key]])),
     )
     here = report(found.robot, tuple(map(float, way.p[i])), 0.0, 0.0)  # type: ignore[arg-type]
@@ -136,12 +136,12 @@ def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         return fig.update_layout(scene_camera=SIDE)
 
     fig = cache.kept_figure("learn-edge", (found.robot.digest(), digest(here.theta), way.start, dark), draw)
-    grown = int(float(f"{times / FORCE:.2g}"))
+    grown = format_times(times / FORCE)
     parts.figure(
         fig,
         "learn-edge",
         alt="The arm with its compliance ellipsoid at the chosen distance.",
-        caption=f"Where 100 N in every direction take the tip, shown × {grown:,}; the same scale at every distance.",
+        caption=f"Where 100 N in every direction take the tip, shown {grown}; the same scale at every distance.",
     )
 
 
@@ -149,9 +149,7 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     what = quantity(found.robot, "det_J")
     det = float(way.det[i])
     soft = float(np.linalg.eigvalsh(here.C)[-1]) if here.reached else float("nan")
-    number, _, label = format_si(det, what.unit, 3).rpartition(" ")
-    if not number:
-        number, label = label, ""
+    number, label = split_unit(format_si(det, what.unit, 3))
     near = (
         "A singularity: one direction is lost."
         if abs(det) < 0.05 * float(np.abs(way.det).max())

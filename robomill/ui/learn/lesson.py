@@ -15,9 +15,9 @@ from robomill.ui import cache, inputs, parts, shell, state
 from robomill.ui.learn.style import BIG
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import sheets as compliance_sheets
-from robomill.ui.maps.point import FORCE, PointReport, default_point, report, signed
+from robomill.ui.maps.point import FORCE, PointReport, default_point, report
 from robomill.ui.maps.state import maps
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 
 KEY = "robomill.learn"
@@ -143,7 +143,7 @@ def compliance_table(C: FloatArray) -> str:
         for j in range(3):
             value = float(from_si(float(C[i, j]), "um/N"))
             lit = "" if j != 1 else "on" if i == 1 else "off" if abs(value) > 5e-3 else ""
-            cells += f'<td class="{lit}">{signed(value)}</td>'
+            cells += f'<td class="{lit}">{format_number(value, 3)}</td>'
         rows += f"<tr><th>tip {name}</th>{cells}</tr>"
     return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'
 
@@ -166,12 +166,12 @@ def _push(found: PointReport, revealed: bool) -> None:
         key,
         lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
     )
-    drawn = int(float(f"{displacement_scale(delta, found.frames):.2g}"))
+    drawn = format_times(displacement_scale(delta, found.frames))
     parts.figure(
         fig,
         "learn-push",
         alt="The arm seen from the side with a force of 100 N along Y on the tool.",
-        caption=f"Seen from the side. Displacement shown × {drawn:,}."
+        caption=f"Seen from the side. Displacement shown {drawn}."
         if revealed
         else "Seen from the side: 100 N along Y.",
     )

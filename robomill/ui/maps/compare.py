@@ -14,7 +14,7 @@ from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, parts
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps.state import MapView, factors, see
-from robomill.units import from_si, unit_label
+from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
 from robomill.viz.maps import Map, Scale, symmetric_limit
 from robomill.workspace.fields import ComplianceField
 
@@ -112,7 +112,7 @@ def _field(key: str, robot: Robot, view: MapView, known: ComplianceField) -> Com
 
 
 def _mean(values: FloatArray) -> str:
-    return f"mean {np.nanmean(values):.3f}".replace("-", "−") if np.isfinite(values).any() else "not reached"
+    return f"mean {format_number(np.nanmean(values), 3)}" if np.isfinite(values).any() else NOT_REACHED
 
 
 def _text(names: dict[str, str], values: dict[str, FloatArray], keys: list[str]) -> list[tuple[str, str, str]]:
@@ -125,9 +125,11 @@ def _text(names: dict[str, str], values: dict[str, FloatArray], keys: list[str])
             continue
         mean, base = float(values[key][both].mean()), float(first[both].mean())
         change = (
-            "" if key == keys[0] or abs(base) < 1e-9 else f"{100 * (mean / base - 1):+.0f} % against {names[keys[0]]}"
+            ""
+            if key == keys[0] or abs(base) < 1e-9
+            else f"{format_percent(mean / base - 1, sign=True)} against {names[keys[0]]}"
         )
-        rows.append((names[key], f"{mean:.3f} {unit_label(UM)}".replace("-", "−"), f"mean over the plane {change}"))
+        rows.append((names[key], format_value(mean, UM, 3), f"mean over the plane {change}"))
     return rows
 
 

@@ -14,7 +14,7 @@ from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps import table as maps_table
 from robomill.ui.maps.state import MapView, factors, maps
-from robomill.units import from_si, unit_label
+from robomill.units import format_significant, from_si, unit_label
 from robomill.viz.shares import LinePanel, line_panels
 from robomill.workspace.reach import Box
 
@@ -42,7 +42,7 @@ def show(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         panels.append(
             LinePanel(
                 f"along {'XY'[axis]}<sub>M</sub>, {fixed}<sub>M</sub> = "
-                f"{from_si(float(line.p[0, 1 - axis]), unit):.5g}".replace("-", "−"),
+                f"{format_significant(from_si(float(line.p[0, 1 - axis]), unit), 5)}",
                 from_si(line.p[:, axis], unit),
                 now.sum(axis=1),
                 now,

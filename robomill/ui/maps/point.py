@@ -21,7 +21,15 @@ from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.ui import cache, parts, shell
 from robomill.ui.maps.state import MapView, Point
-from robomill.units import format_si, format_value, from_si, unit_label
+from robomill.units import (
+    format_number,
+    format_percent,
+    format_si,
+    format_times,
+    format_value,
+    from_si,
+    unit_label,
+)
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
@@ -153,13 +161,13 @@ def _arm(found: PointReport, component: str, unit: str) -> None:
         return fig.add_traces(ellipsoid_traces(found.C, tip, times, dark=dark, width=0.0065 * size, away=delta))
 
     fig = cache.kept_figure("point-arm", (found.robot.digest(), digest(found.theta), component, unit, dark), draw)
-    drawn = int(float(f"{displacement_scale(delta, frames):.2g}"))
+    drawn = format_times(displacement_scale(delta, frames))
     parts.figure(
         fig,
         "point-arm",
         alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
         caption=f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} "
-        f"push and displacement, shown × {drawn:,}.",
+        f"push and displacement, shown {drawn}.",
     )
 
 
@@ -200,22 +208,22 @@ def _joints(found: PointReport) -> None:
     det = float(determinant(robot, found.theta))
     rows += [
         ("det(J)", format_si(det, what.unit, 3), ""),
-        ("to the limits", f"{100 * float(limit_distance(robot, found.theta)):.0f} %", ""),
+        ("to the limits", format_percent(limit_distance(robot, found.theta)), ""),
     ]
     parts.facts(rows)
 
 
 def _matrix(found: PointReport, old: PointReport) -> None:
     st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    parts.matrix([[signed(v) for v in row] for row in from_si(found.C, "um/N")], list(AXES))
+    parts.matrix(_numbers(from_si(found.C, "um/N")), list(AXES))
     change = from_si(found.C - old.C, "um/N")
     if np.abs(change).max() > 5e-4:
         parts.note("Change by the factors:")
-        parts.matrix([[signed(v, True) for v in row] for row in change], list(AXES))
+        parts.matrix(_numbers(change, sign=True), list(AXES))
     values, axes = soft_direction(found.C)
     parts.note("Principal compliances and their directions:")
     shown = [
-        [signed(float(from_si(float(values[i]), "um/N"))), *(signed(float(v), digits=2) for v in _forward(axes[:, i]))]
+        [format_si(values[i], "um/N", with_unit=False), *(format_number(v, 2) for v in _forward(axes[:, i]))]
         for i in (2, 1, 0)
     ]
     grid(shown, ["softest", "middle", "stiffest"], [unit_label("um/N"), *AXES])
@@ -233,13 +241,13 @@ def _six(found: PointReport) -> None:
     shown[3:, :3], shown[:3, 3:] = from_si(six[3:, :3], "urad/N"), from_si(six[:3, 3:], "urad/N")
     shown[3:, 3:] = from_si(six[3:, 3:], "urad/(N m)")
     grid(
-        [[signed(v) for v in row] for row in shown],
+        _numbers(shown),
         ["δx", "δy", "δz", "φx", "φy", "φz"],
         ["Fx", "Fy", "Fz", "Mx", "My", "Mz"],
     )
     parts.note("δ per F in µm/N, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
     grid(
-        [[signed(v) for v in row] for row in found.J],
+        _numbers(found.J),
         ["vx", "vy", "vz", "ωx", "ωy", "ωz"],
         [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in found.robot.joint_numbers],
     )
@@ -261,9 +269,5 @@ def _low(name: str) -> str:
     return f"{html.escape(name[0])}<sub>{html.escape(name[1:])}</sub>" if len(name) == 2 else html.escape(name)
 
 
-def signed(value: float, plus: bool = False, digits: int = 3) -> str:
-    """A number of a matrix, with a true minus and no negative zero."""
-    text = f"{value:+.{digits}f}" if plus else f"{value:.{digits}f}"
-    if float(text) == 0.0:
-        text = text.lstrip("+-")
-    return text.replace("-", "−")
+def _numbers(matrix: FloatArray, sign: bool = False) -> list[list[str]]:
+    return [[format_number(value, 3, sign) for value in row] for row in matrix]

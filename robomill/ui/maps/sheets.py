@@ -19,7 +19,7 @@ from robomill.ui.maps import lines as lines_panel
 from robomill.ui.maps import table as maps_table
 from robomill.ui.maps.point import default_point
 from robomill.ui.maps.state import MapView, factors, maps, see
-from robomill.units import from_si, to_si, unit_label
+from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import Grid
@@ -187,14 +187,14 @@ def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal:
 def span(values: FloatArray) -> str:
     """The range of a map in words."""
     if not np.isfinite(values).any():
-        return "not reached"
-    return f"{np.nanmin(values):.2f} … {np.nanmax(values):.2f}".replace("-", "−")
+        return NOT_REACHED
+    return format_many((np.nanmin(values), np.nanmax(values)), "1", 2, " … ")
 
 
 def _moved(change: FloatArray) -> str:
     if not np.isfinite(change).any() or np.nanmax(np.abs(change)) < 5e-4:
         return ""
-    return f"  <i>({np.nanmean(change):+.2f} mean)</i>".replace("-", "−")
+    return f"  <i>({format_number(np.nanmean(change), 2, sign=True)} mean)</i>"
 
 
 def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
@@ -236,7 +236,7 @@ def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, norma
 
 
 def _mean(values: FloatArray) -> str:
-    return f"{np.nanmean(values):.2f}".replace("-", "−") if np.isfinite(values).any() else "none"
+    return format_number(np.nanmean(values), 2) if np.isfinite(values).any() else "none"
 
 
 def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:

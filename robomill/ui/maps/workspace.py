@@ -18,7 +18,18 @@ from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps import table as maps_table
 from robomill.ui.maps.state import MapView, maps, see
-from robomill.units import UNITS, format_si, from_si, to_si, unit_label
+from robomill.units import (
+    NOT_REACHED,
+    UNITS,
+    format_many,
+    format_number,
+    format_percent,
+    format_si,
+    format_significant,
+    from_si,
+    to_si,
+    unit_label,
+)
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.maps import Map, MapSheet, Scale, sheet_figure
 from robomill.viz.theme import palette
@@ -40,15 +51,15 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     what = quantity(robot, "det_J")
     least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
     limit = known.values("limit_distance")
-    nearest = f"{100 * float(np.nanmin(limit)):.0f} %" if np.isfinite(limit).any() else "not reached"
+    nearest = format_percent(np.nanmin(limit)) if np.isfinite(limit).any() else NOT_REACHED
     largest = maps_fields.proposed_box(robot, view.A, view.B)
-    size = "none" if largest is None else " × ".join(f"{v:.1f}" for v in largest.size if v > 1e-6) + " m"
+    size = "none" if largest is None else format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
     return [
         parts.Tile(
             "Region in reach",
-            f"{100 * share:.0f} %",
+            format_percent(share),
             f"of {box_size(box.size, unit)} {unit_label(unit)}",
             tone="ok" if share > 0.999 else "tight" if share > 0 else "out",
         ),
@@ -64,8 +75,8 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
 
 def box_size(size: FloatArray, unit: str) -> str:
     """``1200 x 600 x 500`` without its unit; a flat box has two numbers."""
-    digits = 0 if unit == "mm" else 1
-    return " × ".join(f"{from_si(float(v), unit):.{digits}f}" for v in size if v > 1e-6) or "0"
+    sides = [v for v in size if v > 1e-6] or [0.0]
+    return format_many(sides, unit, 0 if unit == "mm" else 1, " × ", with_unit=False)
 
 
 def _against(box: Box, robot: Robot, unit: str) -> str:
@@ -74,7 +85,9 @@ def _against(box: Box, robot: Robot, unit: str) -> str:
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
     words = "holds" if ratio["holds_paper_box"] else "turned by 90° holds" if turned else "does not hold"
-    return f"{words} the paper's {box_size(PAPER_BOX_SIZE, unit)} · {ratio['volume_ratio']:.1f} × its volume"
+    return (
+        f"{words} the paper's {box_size(PAPER_BOX_SIZE, unit)} · {format_number(ratio['volume_ratio'], 1)} × its volume"
+    )
 
 
 def sentence(robot: Robot, known: ComplianceField | None) -> str:
@@ -86,7 +99,7 @@ def sentence(robot: Robot, known: ComplianceField | None) -> str:
         return f"The arm reaches nothing of this region: {_why(known)}"
     det = known.det_J[known.reached]
     crosses = bool((det > 0).any() and (det < 0).any())
-    where = "all of this region" if share > 0.999 else f"{100 * share:.0f} % of this region"
+    where = "all of this region" if share > 0.999 else f"{format_percent(share)} of this region"
     fit = "passes a singularity" if crosses else "meets no singularity"
     return f"The arm reaches {where} and {fit} there."
 
@@ -127,7 +140,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     for name, box, kind in (("largest in reach", largest, "computed"), ("the paper's", Box(*PAPER_BOX), "paper")):
         if box is None or (flat and kind == "paper"):
             continue
-        corner = ", ".join(f"{from_si(float(v), unit):.{digits}f}" for v in box.lower).replace("-", "−")
+        corner = format_many(box.lower, unit, digits, with_unit=False)
         mark = parts.badge(kind) + (" place in Y " + parts.badge("assumed") if kind == "paper" else "")
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
     parts.facts(rows)
@@ -271,13 +284,16 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         share = _level(low, high, view, unit_label(what.unit))
         cut = low + share * (high - low)
         mask = mask & (np.nan_to_num(values, nan=-np.inf) >= cut)
-        caption = f"Cells where {what.title} is at least {cut:.3g} {unit_label(what.unit)}.".replace(" .", ".")
+        caption = (
+            f"Cells where {what.title} is at least {format_significant(cut, 3)} {unit_label(what.unit)}".rstrip() + "."
+        )
     _solid_figure(robot, view, box, grid, mask, values, what, caption)
 
 
 def _level(low: float, high: float, view: MapView, unit: str) -> float:
     key = "maps:level"
-    label = f"Cells from the lowest value, {low:.3g}, up to the highest, {high:.3g} {unit}".replace("-", "−")
+    lowest, highest = format_significant(low, 3), format_significant(high, 3)
+    label = f"Cells from the lowest value, {lowest}, up to the highest, {highest} {unit}"
     inputs.slider(label, key, 0.0, 1.0, view.level, lambda v: see(level=v), step=0.02, form="percent")
     return float(st.session_state.get(key, view.level))
 

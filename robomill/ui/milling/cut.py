@@ -11,7 +11,7 @@ from robomill.cutting.tool import Cutter
 from robomill.io.meshes import read_stl_stock
 from robomill.surface.stock import Stock
 from robomill.ui import boxes, inputs, parts, state
-from robomill.units import format_si
+from robomill.units import format_count, format_many
 
 KINDS = {"flat": "Flat", "ball": "Ball", "bull": "Bull", "chamfer": "Chamfer"}
 HANDS = {"right": "right", "left": "left"}
@@ -108,7 +108,7 @@ def stock_inputs() -> None:
 
 def _size(stock: Stock) -> str:
     unit = state.project().view.length
-    return " × ".join(format_si(float(v), unit, 1).partition(" ")[0] for v in stock.upper - stock.lower) + f" {unit}"
+    return format_many(stock.upper - stock.lower, unit, 1, " × ")
 
 
 def _switch_stock(kind: str) -> None:
@@ -144,7 +144,7 @@ def _stl(stock: Stock | None) -> None:
         st.warning(words, icon=":material/straighten:")
     if stock is not None:
         count = 0 if stock.triangles is None else len(stock.triangles)
-        parts.note(f"{parts.badge('user')} solid of {count:,} triangles, {_size(stock)}")
+        parts.note(f"{parts.badge('user')} solid of {format_count(count, 'triangle')}, {_size(stock)}")
     elif not state.store().refused.get("stock:file"):
         parts.note("Until a file is given, the stock stays as it was.")
 

@@ -11,7 +11,7 @@ import streamlit as st
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, parts, state
-from robomill.units import from_si
+from robomill.units import format_times, from_si
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
 from robomill.viz.scene import Camera
 from robomill.viz.views import surface_picture
@@ -165,4 +165,6 @@ def _finished(film: Film) -> None:
     else:
         st.video(film.data, autoplay=True, loop=True, muted=True)
     parts.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="get:film")
-    parts.note(f"{film.frames} pictures, {len(film.data) / 1e6:.1f} MB, displacement shown × {film.times:g}.")
+    parts.note(
+        f"{film.frames} pictures, {len(film.data) / 1e6:.1f} MB, displacement shown {format_times(film.times, 6)}."
+    )

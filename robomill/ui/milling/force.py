@@ -14,6 +14,7 @@ from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
 from robomill.ui import boxes, cache, inputs, parts, state
 from robomill.ui.milling import materials as material_panel
+from robomill.units import format_count, format_si
 
 KINDS = {
     "path": "Follows the path",
@@ -44,9 +45,9 @@ def title(force: ForceModel) -> str:
     if isinstance(force, MeasuredForce):
         return force.record.source
     if isinstance(force, ConstantForce):
-        return f"{np.linalg.norm(force.vector_M):.0f} N, fixed in {{M}}"
+        return f"{format_si(np.linalg.norm(force.vector_M), 'N', 0)}, fixed in {{M}}"
     if isinstance(force, PathForce):
-        return f"{np.linalg.norm([force.feed, force.feed_normal, force.axial]):.0f} N, follows the path"
+        return f"{format_si(np.linalg.norm([force.feed, force.feed_normal, force.axial]), 'N', 0)}, follows the path"
     return type(force).__name__
 
 
@@ -183,7 +184,8 @@ def _measured(force: MeasuredForce | None) -> None:
             lambda v: state.change(force=MeasuredForce(record, force.cutoff, float(v or 0.0))),
             digits=3,
         )
-    parts.note(f"{parts.badge('measured')} {force.provenance.source}: {len(record.x):,} samples against {record.axis}.")
+    samples = format_count(len(record.x), "sample")
+    parts.note(f"{parts.badge('measured')} {force.provenance.source}: {samples} against {record.axis}.")
 
 
 def _take(file: Any) -> None:

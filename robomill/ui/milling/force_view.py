@@ -13,7 +13,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.ui import parts, state
 from robomill.ui.milling import scrubber as linked
-from robomill.units import format_si, from_si
+from robomill.units import format_si, format_significant, from_si
 from robomill.viz.engagement import ForceCurves, engagement_figure, force_figure
 
 NAMES = ("feed", "feed-normal", "axial")
@@ -144,7 +144,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
     largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
     body = ""
     for row, (material, known) in enumerate(zip(materials, spread.axial, strict=True)):
-        shown = [format_si(float(v), "N", 0, sign=True).partition(" ")[0] for v in F[row]]
+        shown = [format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row]]
         cells = "".join(f'<td class="n">{v}</td>' for v in shown[:2])
         axial = shown[2] if known else "not given"
         strong = ' style="font-weight:600"' if row == 0 else ""
@@ -168,7 +168,7 @@ def coupling_facts(result: SimulationResult) -> None:
     if not coupling.converged:
         return  # said beside its switch
     known = not np.isnan(coupling.contraction)
-    rate = f"each change {coupling.contraction:.2g} of the last" if known else "one step sufficed"
+    rate = f"each change {format_significant(coupling.contraction, 2)} of the last" if known else "one step sufficed"
     parts.facts(
         [
             ("Coupling", f"{coupling.iterations} iterations", rate),

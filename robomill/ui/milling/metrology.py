@@ -16,7 +16,7 @@ from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import inputs, parts, state
 from robomill.ui.milling.scrubber import station_m
-from robomill.units import format_si, from_si
+from robomill.units import format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 
 STATIONS, FEW_STATIONS = 41, 13
@@ -182,7 +182,8 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
             (
                 measured.name,
                 f"{format_si(against.mean, unit, sign=True)}",
-                f"mean of prediction minus measurement; it gives {100 * against.explained:.0f} % of what was measured",
+                "mean of prediction minus measurement; it gives "
+                f"{format_percent(against.explained)} of what was measured",
             ),
             (
                 "Largest miss",
@@ -241,7 +242,7 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
             ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
             (
                 "Out of tolerance",
-                f"{100 * out_share:.1f} %",
+                format_percent(out_share, 1),
                 f"{format_si(out, 'mm2')} of the {format_si(error.cut_area, 'mm2')} that were cut",
             ),
             ("RMS error", format_si(error.rms, "um"), "over the cut area"),

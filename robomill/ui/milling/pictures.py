@@ -13,7 +13,7 @@ from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, inputs, parts, render, state
 from robomill.ui.milling import scrubber as linked
-from robomill.units import format_si, from_si
+from robomill.units import format_si, format_times, from_si
 from robomill.viz.posed import posed
 from robomill.viz.scene import CAMERAS, SurfacePicture
 from robomill.viz.surfaces import surface_figure
@@ -56,7 +56,9 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
             "surface",
             alt="The machined surface, to be turned with the mouse.",
         )
-    times = "True displacement" if view.exaggeration == 1 else f"Displacement shown × {view.exaggeration:g}"
+    times = (
+        "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
+    )
     parts.note(
         f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
@@ -96,7 +98,7 @@ def _controls() -> str:
         inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: state.look(camera=c), horizontal=False)
     with times:
         known = view.exaggeration in EXAGGERATIONS
-        options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: f"× {view.exaggeration:g}"}
+        options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: format_times(view.exaggeration, 6)}
         inputs.choice(
             "Exaggeration",
             "view.exaggeration",

@@ -12,7 +12,7 @@ from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.ui import inputs, parts, state, uncertainty
-from robomill.units import format_si, format_value, from_si
+from robomill.units import format_many, format_si, format_value, from_si
 from robomill.viz.engagement import shade
 from robomill.viz.paths import components_figure
 from robomill.viz.picking import add_picks, add_point
@@ -90,7 +90,7 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     if i < 0:
         parts.note("Nothing of this cut can be reached.")
         return
-    point = ", ".join(format_si(float(v), unit, 2).rpartition(" ")[0] for v in result.path.p[i])
+    point = format_many(result.path.p[i], unit, 2, with_unit=False)
     words = [
         f"<b>Line {result.path.block[i]}</b>",
         f"at ({point}) {unit} in {{W}}",
@@ -104,7 +104,7 @@ def _range(spread: AlloySpread | None, i: int, unit: str) -> str:
     if spread is None or len(spread.titles) < 2:
         return ""
     low, high = float(spread.deviation[:, i].min()), float(spread.deviation[:, i].max())
-    return f" ({format_si(low, unit).rpartition(' ')[0]} to {format_si(high, unit).rpartition(' ')[0]} by alloy row)"
+    return f" ({format_many((low, high), unit, between=' to ', with_unit=False)} by alloy row)"
 
 
 def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool, height: int = 330) -> None:

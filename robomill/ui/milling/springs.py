@@ -294,4 +294,4 @@ def result_unit() -> str:
 
 
 def _number(value: float, unit: str) -> str:
-    return format_si(value, unit, 4, sign=True).rpartition(" ")[0] if np.isfinite(value) else "–"
+    return format_si(value, unit, 4, sign=True, with_unit=False, missing="–")

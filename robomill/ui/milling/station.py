@@ -17,7 +17,7 @@ from robomill.ui import cache, inputs, parts, state
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import at_feed, station_m
 from robomill.ui.toolpath.program_view import program_lines
-from robomill.units import format_si, from_si
+from robomill.units import format_si, format_significant, format_times, format_value, from_si
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.engagement import Dial, dial_figure
 from robomill.viz.paths import shares_figure
@@ -56,7 +56,7 @@ def source_lines(source: PathSource) -> list[str]:
         return list(program_lines(source.text))
     if isinstance(source, LinesSource):
         ends = zip(from_si(source.start, "mm"), from_si(source.end, "mm"), from_si(source.v_f, "mm/min"), strict=True)
-        return [f"({_point(a)}) → ({_point(b)})  {v:.0f} mm/min" for a, b, v in ends]
+        return [f"({_point(a)}) → ({_point(b)})  {format_value(v, 'mm/min')}" for a, b, v in ends]
     assert isinstance(source, SketchSource)
     return [
         f"{e.shape}, {len(e.points)} points, {format_si(e.depth, 'mm', 2)} deep, {format_si(e.v_f, 'mm/min', 0)}"
@@ -65,7 +65,7 @@ def source_lines(source: PathSource) -> list[str]:
 
 
 def _point(p: FloatArray) -> str:
-    return ", ".join(f"{v:g}" for v in np.round(p, 3))
+    return ", ".join(format_significant(v) for v in np.round(p, 3))
 
 
 def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None:
@@ -78,7 +78,7 @@ def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None
         arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86),
         "linked-arm",
         alt="The arm at the station with force and displacement.",
-        caption=f"Blue: force on the tool. Orange: displacement, shown × {int(float(f'{drawn:.2g}')):,}.",
+        caption=f"Blue: force on the tool. Orange: displacement, shown {format_times(drawn)}.",
     )
 
 

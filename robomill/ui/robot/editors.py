@@ -14,7 +14,7 @@ from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, parts, state, tables
 from robomill.ui.editors import table_editor
 from robomill.ui.robot.pose import PoseNumbers
-from robomill.units import from_si, unit_label
+from robomill.units import format_number, format_percent, format_si, unit_label
 from robomill.viz.theme import joint_colours
 
 SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
@@ -147,11 +147,11 @@ def _said(robot: Robot, block: str) -> None:
 def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
     """C at the pose in um/N, and how it changed."""
     st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    parts.matrix([[_signed(v) for v in row] for row in from_si(now.C, "um/N")], ["X", "Y", "Z"])
+    parts.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in now.C], ["X", "Y", "Z"])
     parts.note("Row: where the tip goes. Column: where you push.")
     if old is not None:
         st.markdown("**Before the last change**")
-        parts.matrix([[_signed(v) for v in row] for row in from_si(old.C, "um/N")], ["X", "Y", "Z"])
+        parts.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in old.C], ["X", "Y", "Z"])
 
 
 def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:
@@ -163,22 +163,17 @@ def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:
     rows = "".join(
         f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
         f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
-        f'<td class="n">{100 * value / total:.0f} %</td></tr>'
+        f'<td class="n">{format_percent(value / total)}</td></tr>'
         for number, value, colour in zip(robot.joint_numbers, C_yy, joint_colours(7, dark))
     )
     st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
-
-
-def _signed(value: float) -> str:
-    text = f"{value:.3f}"
-    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
 
 
 def direction_words(C: FloatArray) -> str:
     """The softest direction of C as a unit vector in words."""
     vector = np.linalg.eigh(C)[1][:, -1]
     vector = vector * np.sign(vector[np.argmax(np.abs(vector))])
-    return "along (" + ", ".join(_signed(round(float(v), 2))[:-1] for v in vector) + ") in {M}"
+    return "along (" + ", ".join(format_number(v, 2) for v in vector) + ") in {M}"
 
 
 def det_words(now: PoseNumbers) -> str:

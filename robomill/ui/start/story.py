@@ -15,7 +15,7 @@ from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import cache, parts, render, state
-from robomill.units import format_si, from_si
+from robomill.units import format_percent, format_si, format_times, from_si
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
@@ -54,7 +54,7 @@ def cause(result: SimulationResult, unit: str) -> str:
     share = result.delta_joint[i] @ along / (np.linalg.norm(result.delta[i]) or 1.0)
     main = [j for j in order if share[j] > 0.08][:3]
     numbers = result.setup.robot.joint_numbers
-    blame = " and ".join(f"joint {numbers[j]} ({100 * share[j]:.0f} %)" for j in main)
+    blame = " and ".join(f"joint {numbers[j]} ({format_percent(share[j])})" for j in main)
     force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
     digits = 4 if unit == "in" else 3
     moved = ", ".join(
@@ -102,7 +102,7 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         )
         parts.figure(figure, "start-surface", alt=alt)
     parts.note(
-        f"The groove as milled, displacement shown × {view.exaggeration:g}. Colours end at the tolerance, "
+        f"The groove as milled, displacement shown {format_times(view.exaggeration, 6)}. Colours end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
     )
 

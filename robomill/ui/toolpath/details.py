@@ -18,7 +18,7 @@ from robomill.ui import parts
 from robomill.ui.toolpath.program_view import LEVELS, program_lines, select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
-from robomill.units import format_si, format_value, from_si, unit_label
+from robomill.units import format_count, format_many, format_si, unit_label
 
 DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
 
@@ -31,11 +31,6 @@ def duration(seconds: float) -> str:
         return format_si(seconds, "s", 1)
     minutes = round(seconds / 60)
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
-
-
-def counted(count: int, word: str) -> str:
-    """``1 cut``, ``12 cuts``."""
-    return f"{count:,} {word}{'' if count == 1 else 's'}"
 
 
 def worst_first(findings: Sequence[Finding]) -> list[Finding]:
@@ -65,8 +60,8 @@ def move_words(path: Toolpath) -> str:
     """``27 moves, 5 arcs``: every move of the program, an arc as one; without arcs where they are not known."""
     counts = path.counts
     if counts is None:
-        return counted(len(path) - 1, "move")
-    return f"{counted(sum(counts), 'move')}, {counted(counts[2], 'arc') if counts[2] else 'no arcs'}"
+        return format_count(len(path) - 1, "move")
+    return f"{format_count(sum(counts), 'move')}, {format_count(counts[2], 'arc') if counts[2] else 'no arcs'}"
 
 
 def findings_list(findings: Sequence[Finding]) -> None:
@@ -139,13 +134,12 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
 
 
 def _plain(value: float, unit: str) -> str:
-    return format_si(float(value), unit, 2 if unit == "mm" else 4).partition(" ")[0]
+    return format_si(value, unit, 2 if unit == "mm" else 4, with_unit=False)
 
 
 def _range(values: tuple[float, float], unit: str) -> str:
     low, high = values
-    text = format_si(high, unit)
-    return text if np.isclose(low, high) else f"{format_value(from_si(low, unit), unit).partition(' ')[0]} … {text}"
+    return format_si(high, unit) if np.isclose(low, high) else format_many(values, unit, between=" … ")
 
 
 def line_words(setup: SimulationSetup, reach: PathReach | None, result: SimulationResult | None, unit: str) -> str:
@@ -165,7 +159,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     if len(i) == 0:
         return words[0] + ". It moves nothing."
     at_feed = i[path.cutting[i]]
-    moves = f"{counted(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
+    moves = f"{format_count(len(i), 'move')}, {format_si(float(path.step_length[i].sum()), unit, 2)}"
     if len(at_feed):
         feeds = (float(path.v_f[at_feed].min()), float(path.v_f[at_feed].max()))
         moves += f" at {_range(feeds, 'mm/min')} ({_range(feeds, 'mm/s')})"

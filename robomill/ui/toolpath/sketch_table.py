@@ -11,7 +11,7 @@ import pandas as pd
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import SHAPES, Element, Sketch
-from robomill.units import from_si, to_si, unit_label
+from robomill.units import from_si, parse_number, to_si, unit_label
 
 COLUMNS = ("line", "shape", "points", "depth", "feed")
 MAX_SHOWN_POINTS = 60
@@ -100,7 +100,7 @@ def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
                 f"Row {row}: {pair.strip()!r:.40} is not a point; type x, y with a point as decimal mark, "
                 "and a semicolon between points."
             )
-        found.append([float(n.replace("−", "-")) for n in numbers])
+        found.append([parse_number(n) for n in numbers])
     if old is not None and points_text(old, unit) == text:
         return old.points
     return to_si(np.array(found), unit)

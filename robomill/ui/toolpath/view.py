@@ -14,13 +14,22 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource, PathSource
 from robomill.ui import cache, parts, state
-from robomill.ui.toolpath.details import counted, duration, finding_words, move_words, worst_first, written_in
+from robomill.ui.toolpath.details import duration, finding_words, move_words, worst_first, written_in
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.sources import kind_of
 from robomill.ui.toolpath.summary import missed_blocks, path_summary
-from robomill.units import format_si, from_si, unit_label
-from robomill.viz.path_picture import BUDGET, PathPicture, decimate, short
+from robomill.units import (
+    format_count,
+    format_many,
+    format_percent,
+    format_short_count,
+    format_si,
+    format_value,
+    from_si,
+    unit_label,
+)
+from robomill.viz.path_picture import BUDGET, PathPicture, decimate
 
 AUTO_SAMPLES = 60_000
 ASKED = "toolpath.asked"
@@ -43,7 +52,7 @@ def simulated(setup: SimulationSetup) -> SimulationResult | None:
     if samples(setup) <= AUTO_SAMPLES and not setup.engagement:
         return cache.result(setup)
     if st.session_state.get(ASKED) == setup.digest():
-        with st.spinner(f"Simulating about {short(samples(setup))} points …", show_time=True):
+        with st.spinner(f"Simulating about {format_short_count(samples(setup))} points …", show_time=True):
             return cache.result(setup)
     return None
 
@@ -51,7 +60,7 @@ def simulated(setup: SimulationSetup) -> SimulationResult | None:
 def ask_button(setup: SimulationSetup) -> None:
     """The button that simulates a long path."""
     count = samples(setup)
-    words = "the engagement is found step by step" if setup.engagement else f"about {short(count)} points"
+    words = "the engagement is found step by step" if setup.engagement else f"about {format_short_count(count)} points"
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         if st.button("Simulate", icon=":material/play_arrow:", type="primary", key="toolpath.simulate"):
             st.session_state[ASKED] = setup.digest()
@@ -71,10 +80,8 @@ def headline(
         parts.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
-    size = " × ".join(
-        format_si(float(v), unit, 1 if unit == "mm" else 2).partition(" ")[0] for v in summary.high - summary.low
-    )
-    lead = f"{counted(summary.blocks, NOUNS[noun])} within {size} {unit_label(unit)}."
+    size = format_many(summary.high - summary.low, unit, 1 if unit == "mm" else 2, " × ")
+    lead = f"{format_count(summary.blocks, NOUNS[noun])} within {size}."
     if isinstance(source, GCodeSource):
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
     parts.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
@@ -118,7 +125,9 @@ def tiles(
         named = ", ".join(f"{b:,}" for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
         words = f"out of reach at {PLACES[noun]} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
-        found.append(parts.Tile("Reach", f"{np.floor(share * 100):.0f} %", words, tone="out" if blocks else "ok"))
+        found.append(
+            parts.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
+        )
     found.append(_deviation_tile(result, unit, noun))
     if noun != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
@@ -141,7 +150,7 @@ def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> pa
     return parts.Tile(
         "Max deviation",
         format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
-        f"{PLACES[noun]} {result.worst_block:,} · {100 * result.verdict.share:.0f} % of the tolerance",
+        f"{PLACES[noun]} {result.worst_block:,} · {format_percent(result.verdict.share)} of the tolerance",
         tone=tone,
         kind="computed",
     )
