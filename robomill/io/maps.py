@@ -47,14 +47,8 @@ def map_columns(fields: Sequence[Field]) -> dict[str, FloatArray]:
     points = fields[0].grid.points().reshape(-1, 3)
     columns = {f"{axis}_mm": from_si(points[:, i], "mm") for i, axis in enumerate("XYZ")}
     for field in fields:
-        columns[column_name(field)] = from_si(field.values.ravel(), field.quantity.unit)
+        columns[field.quantity.column] = from_si(field.values.ravel(), field.quantity.unit)
     return columns
-
-
-def column_name(field: Field) -> str:
-    """Name and unit of a quantity's column, e.g. ``C_yy_um/N``."""
-    unit = "percent" if field.quantity.unit == "%" else field.quantity.unit
-    return field.quantity.name if unit == "1" else f"{field.quantity.name}_{unit}"
 
 
 def map_csv(fields: Sequence[Field]) -> str:

@@ -1,167 +1,241 @@
-"""The quantities of a map by name: unit, formula, and one sentence of meaning."""
+"""The quantities of a map: each declared once, with name, title, unit, colours, formula, meaning and its law.
+
+Fields, files, command line, pages, colour scales and hover texts find what they show by asking here: a new quantity is
+one more ``Quantity`` in one of the lists below.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
+from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
-from robomill.kinematics.dexterity import determinant_unit, square_rows
+from robomill.kinematics import dexterity
 from robomill.robot.model import Robot
+from robomill.units import unit_label
+
+if TYPE_CHECKING:
+    from robomill.workspace.fields import ComplianceField
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+Colours = Literal["sequential", "diverging", "joints", "reach"]
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a map shows; ``unit`` is a key of ``UNITS``, ``joint`` (0-based) and ``component`` where they apply."""
+    """What a map shows, where to read it and how to find it.
+
+    ``unit`` is a key of ``UNITS``; ``law`` gives the values (nx, ny, nz) of a solved grid in SI, NaN where not reached.
+    ``colours``: "sequential" for sizes, "diverging" for signed values (symmetric about zero), "joints" for numbers of
+    joints, "reach" for yes and no. ``rests_on``: "geometry" alone, or on the joints' "compliance", too.
+    """
 
     name: str
     title: str
     unit: str
     formula: str
     meaning: str
-    component: str = ""
-    joint: int = -1
+    law: Callable[[ComplianceField], FloatArray]
+    colours: Colours = "sequential"
+    rests_on: Literal["geometry", "compliance"] = "geometry"
+
+    @property
+    def label(self) -> str:
+        """Title and unit, as an axis or a colour bar says it."""
+        unit = unit_label(self.unit)
+        return f"{self.title}, {unit}" if unit else self.title
+
+    @property
+    def column(self) -> str:
+        """The header of its column in a file, e.g. ``C_yy_um/N``."""
+        unit = "percent" if self.unit == "%" else self.unit
+        return self.name if unit == "1" else f"{self.name}_{unit}"
 
 
-def quantity_names(robot: Robot) -> list[str]:
-    """Every name ``compute_field`` takes for this robot."""
-    names = ["reach", "det_J", "manipulability", "inverse_condition", "smallest_singular_value", "limit_distance"]
-    names += [f"C_{c}" for c in COMPONENTS] + ["C_soft", "C_stiff", "dominant"]
-    names += [f"dominant_C_{c}" for c in COMPONENTS]
-    for c in COMPONENTS:
-        names += [f"C_{c}_{j}" for j in range(1, robot.n + 1)]
-        names += [f"share_C_{c}_{j}" for j in range(1, robot.n + 1)]
-    return names
+def quantities(robot: Robot) -> dict[str, Quantity]:
+    """Every quantity that has a meaning for ``robot``, by name, in the order in which they are listed."""
+    return {what.name: what for family in _families(robot) for what in family}
 
 
 def quantity(robot: Robot, name: str) -> Quantity:
-    """The quantity called ``name``; joints count from 1 over the free joints. Raises WorkspaceError."""
-    key = name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy")
-    plain = _plain(robot)
-    if key in plain:
-        return plain[key]
-    parts = key.split("_")
-    share, dominant = parts[0] == "share", parts[0] == "dominant"
-    if share or dominant:
-        parts = parts[1:]
-    if len(parts) >= 2 and parts[0] == "C" and parts[1] in COMPONENTS:
-        c = parts[1]
-        if dominant and len(parts) == 2:
-            formula = f"argmax_i |C_i,{c}|"
-            return Quantity(key, f"joint that gives most in C_{c}", "1", formula, "Where to stiffen first.", c)
-        if len(parts) == 2 and not share:
-            return _component(key, c)
-        if len(parts) == 3 and parts[2].isdigit() and 1 <= int(parts[2]) <= robot.n and not dominant:
-            return _of_joint(robot, key, c, int(parts[2]) - 1, share)
-    raise WorkspaceError(
-        f"Quantity {name!r}: expected reach, det_J, manipulability, inverse_condition, smallest_singular_value, "
-        f"limit_distance, C_xx ... C_yz, C_soft, C_stiff, dominant, dominant_C_xx, C_xx_1 ... C_yz_{robot.n} "
-        "or share_C_xx_1 ..."
+    """The quantity called ``name`` (C_zy is C_yz); joints count from 1 over the free joints. Raises WorkspaceError."""
+    known = quantities(robot).get(name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy"))
+    if known is None:
+        names = [f[0].name if len(f) == 1 else f"{f[0].name} ... {f[-1].name}" for f in _families(robot)]
+        raise WorkspaceError(f"Quantity {name!r}: expected {', '.join(names[:-1])} or {names[-1]}.")
+    return known
+
+
+def _families(robot: Robot) -> list[list[Quantity]]:
+    """Quantities that differ by component or joint only go together: a refusal names the first and the last."""
+    return [
+        *([what] for what in _of_the_geometry(robot)),
+        [_component(c) for c in COMPONENTS],
+        *([what] for what in _DIRECTIONS),
+        [_dominant(c) for c in COMPONENTS],
+        [_joint(robot, c, j) for c in COMPONENTS for j in range(robot.n)],
+        [_share(robot, c, j) for c in COMPONENTS for j in range(robot.n)],
+    ]
+
+
+def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
+    """Quantities that no compliance enters."""
+    named, unit = ", ".join(dexterity.square_rows(robot)), dexterity.determinant_unit(robot)
+    yield Quantity(
+        "reach",
+        "reach WS",
+        "1",
+        "WS = 1 where θ exists within the limits  (eq. 10)",
+        "Where the tool can be brought at this tilt.",
+        lambda field: field.reached.astype(np.float64),
+        colours="reach",
+    )
+    yield Quantity(
+        "det_J",
+        "det(J)",
+        unit,
+        f"det of the rows {named}",
+        "Zero is a singularity: a direction in which the tool cannot be moved.",
+        lambda field: field.det_J,
+        colours="diverging",
+    )
+    yield Quantity(
+        "manipulability",
+        "manipulability",
+        unit,
+        f"√det(J Jᵀ), rows {named}",
+        "Yoshikawa's measure: the size of what unit joint speeds can do.",
+        lambda field: np.abs(field.det_J),
+    )
+    yield Quantity(
+        "inverse_condition",
+        "inverse condition",
+        "1",
+        f"σ_min / σ_max, rows {named}",
+        "1 is equally able in every direction, 0 is singular.",
+        lambda field: field.where_reached(field.singular_values[:, -1] / field.singular_values[:, 0]),
+    )
+    yield Quantity(
+        "smallest_singular_value",
+        "smallest singular value",
+        "1",
+        f"σ_min(J), rows {named}",
+        "How fast the tool moves in its worst direction at unit joint speed.",
+        lambda field: field.where_reached(field.singular_values[:, -1]),
+    )
+    yield Quantity(
+        "limit_distance",
+        "distance to joint limits",
+        "%",
+        "min_i (distance to the nearer limit) / (half range)",
+        "100 % is mid-range in every joint, 0 is at a limit.",
+        lambda field: field.where_reached(dexterity.limit_distance(field.robot, field.theta[field.reached])),
     )
 
 
-def _component(key: str, c: str) -> Quantity:
-    kind = "direct-compliance" if c[0] == c[1] else "cross-compliance"
+_DIRECTIONS = (
+    Quantity(
+        "C_soft",
+        "softest direction",
+        "um/N",
+        "largest eigenvalue of C",
+        "How far 1 N moves the tip in the direction in which it gives most.",
+        lambda field: field.where_reached(field.principal[:, -1]),
+        rests_on="compliance",
+    ),
+    Quantity(
+        "C_stiff",
+        "stiffest direction",
+        "um/N",
+        "smallest eigenvalue of C",
+        "How far 1 N moves the tip in the direction in which it gives least.",
+        lambda field: field.where_reached(field.principal[:, 0]),
+        rests_on="compliance",
+    ),
+    Quantity(
+        "dominant",
+        "joint that gives most",
+        "1",
+        "argmax_i trace C_i",
+        "The joint with the largest part of C_xx + C_yy + C_zz.",
+        lambda field: _largest(field, field.shares[..., :3].sum(axis=-1)),
+        colours="joints",
+        rests_on="compliance",
+    ),
+)
+
+
+def _component(c: str) -> Quantity:
+    k = COMPONENTS.index(c)
     return Quantity(
-        key,
-        f"{kind} C_{c}",
+        f"C_{c}",
+        f"{'direct' if c[0] == c[1] else 'cross'}-compliance C_{c}",
         "um/N",
         f"C_{c} = Σ_i C_θi J_i,{c[0]} J_i,{c[1]}  (eqs. 13, 14)",
         f"How far the tip moves in {c[0].upper()} under 1 N in {c[1].upper()}.",
-        c,
+        lambda field: field.total[..., k],
+        colours=_signed_or_not(c),
+        rests_on="compliance",
     )
 
 
-def _of_joint(robot: Robot, key: str, c: str, joint: int, share: bool) -> Quantity:
-    number = robot.joint_numbers[joint]
-    if share:
-        return Quantity(
-            key,
-            f"share of joint {number} in C_{c}",
-            "%",
-            f"C_{number},{c} / Σ_i |C_i,{c}|",
-            f"The part of C_{c} that would vanish if joint {number} were rigid.",
-            c,
-            joint,
-        )
+def _dominant(c: str) -> Quantity:
+    k = COMPONENTS.index(c)
     return Quantity(
-        key,
+        f"dominant_C_{c}",
+        f"joint that gives most in C_{c}",
+        "1",
+        f"argmax_i |C_i,{c}|",
+        "Where to stiffen first.",
+        lambda field: _largest(field, np.abs(field.shares[..., k])),
+        colours="joints",
+        rests_on="compliance",
+    )
+
+
+def _joint(robot: Robot, c: str, joint: int) -> Quantity:
+    k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
+    return Quantity(
+        f"C_{c}_{joint + 1}",
         f"joint {number} in C_{c}",
         "um/N",
         f"C_{number},{c} = C_θ{number} J_{c[0]} J_{c[1]}  (eq. 14)",
         f"What joint {number} alone adds to C_{c}.",
-        c,
-        joint,
+        lambda field: field.shares[..., joint, k],
+        colours=_signed_or_not(c),
+        rests_on="compliance",
     )
 
 
-def _plain(robot: Robot) -> dict[str, Quantity]:
-    rows = ", ".join(square_rows(robot))
-    unit = determinant_unit(robot)
-    entries = (
-        Quantity(
-            "reach",
-            "reach WS",
-            "1",
-            "WS = 1 where θ exists within the limits  (eq. 10)",
-            "Where the tool can be brought at this tilt.",
-        ),
-        Quantity(
-            "det_J",
-            "det(J)",
-            unit,
-            f"det of the rows {rows}",
-            "Zero is a singularity: a direction in which the tool cannot be moved.",
-        ),
-        Quantity(
-            "manipulability",
-            "manipulability",
-            unit,
-            f"√det(J Jᵀ), rows {rows}",
-            "Yoshikawa's measure: the size of what unit joint speeds can do.",
-        ),
-        Quantity(
-            "inverse_condition",
-            "inverse condition",
-            "1",
-            f"σ_min / σ_max, rows {rows}",
-            "1 is equally able in every direction, 0 is singular.",
-        ),
-        Quantity(
-            "smallest_singular_value",
-            "smallest singular value",
-            "1",
-            f"σ_min(J), rows {rows}",
-            "How fast the tool moves in its worst direction at unit joint speed.",
-        ),
-        Quantity(
-            "limit_distance",
-            "distance to joint limits",
-            "%",
-            "min_i (distance to the nearer limit) / (half range)",
-            "100 % is mid-range in every joint, 0 is at a limit.",
-        ),
-        Quantity(
-            "C_soft",
-            "softest direction",
-            "um/N",
-            "largest eigenvalue of C",
-            "How far 1 N moves the tip in the direction in which it gives most.",
-        ),
-        Quantity(
-            "C_stiff",
-            "stiffest direction",
-            "um/N",
-            "smallest eigenvalue of C",
-            "How far 1 N moves the tip in the direction in which it gives least.",
-        ),
-        Quantity(
-            "dominant",
-            "joint that gives most",
-            "1",
-            "argmax_i trace C_i",
-            "The joint with the largest part of C_xx + C_yy + C_zz.",
-        ),
+def _share(robot: Robot, c: str, joint: int) -> Quantity:
+    k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
+
+    def law(field: ComplianceField) -> FloatArray:
+        whole = np.abs(field.shares[..., k]).sum(axis=-1)
+        nothing = np.where(field.reached, 0.0, np.nan)
+        return np.divide(field.shares[..., joint, k], whole, out=nothing, where=whole > 0)
+
+    return Quantity(
+        f"share_C_{c}_{joint + 1}",
+        f"share of joint {number} in C_{c}",
+        "%",
+        f"C_{number},{c} / Σ_i |C_i,{c}|",
+        f"The part of C_{c} that would vanish if joint {number} were rigid.",
+        law,
+        colours=_signed_or_not(c),
+        rests_on="compliance",
     )
-    return {entry.name: entry for entry in entries}
+
+
+def _signed_or_not(c: str) -> Colours:
+    return "sequential" if c[0] == c[1] else "diverging"
+
+
+def _largest(field: ComplianceField, size: FloatArray) -> FloatArray:
+    """Number (as in the robot's table) of the joint with the largest ``size`` (nx, ny, nz, n)."""
+    numbers = np.array(field.robot.joint_numbers, dtype=np.float64)
+    return field.where_reached(numbers[np.argmax(size[field.reached], axis=-1)])

@@ -24,7 +24,6 @@ LONG = {
     "plan_figure",
     "solve",
     "evidence_figure",
-    "_plain",
     "plan_picture",
     "profile_figure",
     "search_block",
@@ -56,7 +55,7 @@ DEAD = {
     *("residual_angle", "with_convention", "with_blocked", "error_bound", "delta_rest", "plunge"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "floor_ideal"),
     *("open_left", "open_right", "groove_section", "feed_length", "compensated", "says", "DIFFERENCES", "snap"),
-    *("compliance_std", "plan_figure", "plan_view", "reset", "compute_field", "quantity_names", "machining_box"),
+    *("compliance_std", "plan_figure", "plan_view", "reset", "machining_box"),
 }
 
 
