@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.units import format_number
+from robomill.units import UNITS, format_number
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
+from robomill.workspace.quantities import Colours, Quantity
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
 LEFT, RIGHT = 62, 84  # px for tick labels and colour bar, fixed: measuring them would draw everything twice
@@ -31,14 +32,28 @@ class Scale:
     title: str
     low: float
     high: float
-    kind: Literal["diverging", "sequential", "joints", "reach"] = "sequential"
+    kind: Colours = "sequential"
     joints: tuple[int, ...] = ()
     digits: int = 3
+
+    @classmethod
+    def of(cls, what: Quantity, values: FloatArray, joints: tuple[int, ...]) -> Scale:
+        """The scale of a quantity from its values in display units: centred on zero where both signs occur."""
+        seen = values[np.isfinite(values)]
+        low, high = (float(seen.min()), float(seen.max())) if len(seen) else (0.0, 1.0)
+        one_sign = what.colours == "diverging" and not low < 0 < high
+        return cls(what.label, low, high, "sequential" if one_sign else what.colours, joints, UNITS[what.unit].digits)
+
+    def shade(self, values: FloatArray) -> FloatArray:
+        """What is coloured: the values; of joints the place of each number among ``joints``, since numbers may skip."""
+        if self.kind != "joints":
+            return values
+        return np.where(np.isfinite(values), np.searchsorted(self.joints, np.nan_to_num(values)), np.nan)
 
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """One panel: values (nu, nv) in display units, NaN where not reached; ``scale`` is one of the sheet's."""
+    """One panel: values (nu, nv) in display units or numbers of joints, NaN where not reached; ``scale``: its name."""
 
     title: str
     values: FloatArray
@@ -163,7 +178,7 @@ def _traces(sheet: MapSheet, panel: Map, index: int, used: list[str], dark: bool
             "type": "heatmap",
             "x": sheet.u,
             "y": sheet.v,
-            "z": np.ascontiguousarray(np.asarray(panel.values, dtype=np.float32).T),
+            "z": np.ascontiguousarray(sheet.scales[panel.scale].shade(panel.values).astype(np.float32).T),
             "coloraxis": f"coloraxis{_number(used.index(panel.scale))}",
             "hoverinfo": "skip",
             "name": panel.title,
@@ -213,7 +228,7 @@ def hover_text(value: float, unit: str, scale: Scale) -> str:
     if not math.isfinite(value):
         return "not reached"
     if scale.kind == "joints":
-        return f"joint {scale.joints[int(value)]}"
+        return f"joint {int(value)}"
     if scale.kind == "reach":
         return "reached" if value > 0.5 else "not reached"
     return f"{format_number(value, scale.digits)} {unit}".rstrip()

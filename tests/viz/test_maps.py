@@ -6,13 +6,16 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+import robomill as rm
 from robomill.arrays import FloatArray
+from robomill.units import UNITS
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_mesh, ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
 from robomill.viz.maps import Map, MapSheet, Scale, hover_text, picked_point, sheet_figure, symmetric_limit
 from robomill.viz.shares import LinePanel, gain_bars, line_panels, share_bars
 from robomill.viz.voxels import outer_faces, voxel_trace, widen, wire_box
+from robomill.workspace.quantities import quantity
 
 U, V = np.linspace(-600, 600, 13), np.linspace(-1600, -1000, 7)
 
@@ -91,8 +94,56 @@ def test_a_pick_snaps_to_the_grid() -> None:
 def test_hover_words() -> None:
     assert hover_text(float("nan"), "µm/N", Scale("", 0, 1)) == "not reached"
     assert hover_text(-1.0244, "µm/N", Scale("", 0, 1)) == "−1.024 µm/N"
-    assert hover_text(1.0, "", Scale("", 0, 1, "joints", joints=(1, 3))) == "joint 3"
+    assert hover_text(3.0, "", Scale("", 0, 1, "joints", joints=(1, 3))) == "joint 3"
     assert hover_text(1.0, "", Scale("", 0, 1, "reach")) == "reached"
+
+
+@pytest.mark.parametrize("name", ["det_J", "C_yy", "C_xy", "reach", "dominant", "limit_distance"])
+def test_the_scale_of_a_quantity_holds_its_values(name: str) -> None:
+    what = quantity(rm.load_robot("slavkovic_5r"), name)
+    for shown in (np.array([[-2.0, 5.0], [np.nan, 1.0]]), np.array([[2.0, 5.0], [np.nan, 1.0]])):
+        scale = Scale.of(what, shown, (1, 3))
+        assert (scale.low, scale.high) == (np.nanmin(shown), np.nanmax(shown))
+        assert scale.title == what.label
+        assert scale.digits == UNITS[what.unit].digits
+        signed = name in ("det_J", "C_xy")
+        expected = {"reach": "reach", "dominant": "joints"}.get(
+            name, "diverging" if signed and shown[0, 0] < 0 else "sequential"
+        )
+        assert scale.kind == expected
+        sheet = MapSheet([[Map("q", shown)]], np.arange(2.0), np.arange(2.0), "X", "Y", {"main": scale})
+        shades = sheet_figure(sheet, dark=False, panel_height=90, revision="q").layout.coloraxis
+        if expected == "diverging":
+            assert -shades.cmin == shades.cmax == 5.0  # white is zero
+        elif expected == "sequential":
+            assert (shades.cmin, shades.cmax) == (scale.low, scale.high)
+    nowhere = Scale.of(what, np.full((2, 2), np.nan), (1, 3))
+    assert (nowhere.low, nowhere.high) == (0.0, 1.0)
+
+
+def test_a_joint_has_its_own_colour_and_number_where_numbers_skip() -> None:
+    numbers = np.array([[1.0, 3.0], [np.nan, 4.0]])
+    scale = Scale("", 0, 1, "joints", joints=(1, 3, 4))
+    fig = sheet_figure(
+        MapSheet([[Map("who", numbers)]], np.arange(2.0), np.arange(2.0), "X", "Y", {"main": scale}),
+        dark=False,
+        panel_height=90,
+        revision="who",
+    )
+    heat, points = fig.data
+    steps = fig.layout.coloraxis.colorscale
+    span = fig.layout.coloraxis.cmax - fig.layout.coloraxis.cmin
+
+    def colour(place: float) -> str:
+        share = (place - fig.layout.coloraxis.cmin) / span
+        return next(c for (a, c), (b, _) in zip(steps[::2], steps[1::2], strict=True) if a <= share <= b)
+
+    shown = {numbers[i, j]: colour(heat.z[j][i]) for i, j in ((0, 0), (0, 1), (1, 1))}
+    assert len(set(shown.values())) == 3
+    ticks = dict(zip(fig.layout.coloraxis.colorbar.tickvals, fig.layout.coloraxis.colorbar.ticktext, strict=True))
+    assert {ticks[int(heat.z[j][i])] for i, j in ((0, 0), (0, 1), (1, 1))} == {"joint 1", "joint 3", "joint 4"}
+    assert np.isnan(heat.z[0][1])
+    assert list(points.text) == ["joint 1", "joint 3", "not reached", "joint 4"]
 
 
 def test_symmetric_limit_of_what_is_nowhere_reached() -> None:

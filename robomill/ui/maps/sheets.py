@@ -241,13 +241,9 @@ def _mean(values: FloatArray) -> str:
 
 def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
     now = maps_fields.stiffer(known, factors(view, robot))
-    position = {number: i for i, number in enumerate(robot.joint_numbers)}
 
     def panel(title: str, name: str) -> Map:
-        values = slab(now.values(name), normal)
-        return Map(
-            title, np.vectorize(lambda v: position.get(int(v), np.nan) if v == v else np.nan)(values).astype(float)
-        )
+        return Map(title, slab(now.values(name), normal))
 
     rows: list[list[Map | None]] = [
         [

@@ -58,9 +58,7 @@ def maps(robot: Robot) -> MapView:
         return kept  # type: ignore[no-any-return]
     fresh = MapView(identity(robot), "paper" if robot.n == 5 and holds_paper_box(robot) else "largest")
     if kept is not None:
-        fresh = dataclasses.replace(
-            fresh, picture=kept.picture, quantity=_kept_quantity(kept.quantity), sheet=kept.sheet
-        )
+        fresh = dataclasses.replace(fresh, picture=kept.picture, quantity=kept.quantity, sheet=kept.sheet)
     st.session_state[KEY] = fresh
     return fresh
 
@@ -75,7 +73,3 @@ def factors(view: MapView, robot: Robot) -> FloatArray:
     if view.factors is None or len(view.factors) != robot.n:
         return np.ones(robot.n)
     return np.array(view.factors)
-
-
-def _kept_quantity(name: str) -> str:
-    return name if not name.startswith(("C_", "share", "dominant")) else "det_J"

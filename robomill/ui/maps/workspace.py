@@ -20,7 +20,6 @@ from robomill.ui.maps import table as maps_table
 from robomill.ui.maps.state import MapView, maps, see
 from robomill.units import (
     NOT_REACHED,
-    UNITS,
     format_many,
     format_number,
     format_percent,
@@ -36,12 +35,10 @@ from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
-from robomill.workspace.quantities import Quantity, quantity
+from robomill.workspace.quantities import Quantity, quantities, quantity
 from robomill.workspace.reach import Box, against_paper
 
-QUANTITIES = ("reach", "det_J", "manipulability", "inverse_condition", "smallest_singular_value", "limit_distance")
 PICTURES = {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}
-SIGNED = ("det_J",)
 
 
 def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[parts.Tile]:
@@ -116,7 +113,7 @@ def _why(known: ComplianceField) -> str:
 
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
-    names = {name: quantity(robot, name).title for name in QUANTITIES}
+    names = {what.name: what.title for what in quantities(robot).values() if what.rests_on == "geometry"}
     inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: see(quantity=q), horizontal=False)
     what = quantity(robot, view.quantity)
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
@@ -249,20 +246,9 @@ def plane_columns(robot: Robot, view: MapView, grid: Grid, what: Quantity) -> di
 
 
 def scale_of(robot: Robot, view: MapView, box: Box, what: Quantity) -> Scale:
-    """The scale of a quantity over the whole region: signed ones about zero, sizes from least to largest."""
-    if what.name == "reach":
-        return Scale("reach", 0, 1, "reach")
+    """The scale of a quantity over the whole region."""
     known = maps_fields.field(robot, maps_fields.solid(robot, box, _overview(robot)), view.A, view.B)
-    values = from_si(known.values(what.name), what.unit)
-    values = values[np.isfinite(values)]
-    title = f"{what.title}, {unit_label(what.unit)}" if unit_label(what.unit) else what.title
-    digits = UNITS[what.unit].digits
-    if len(values) == 0:
-        return Scale(title, 0.0, 1.0, digits=digits)
-    low, high = float(values.min()), float(values.max())
-    if what.name in SIGNED and low < 0 < high:
-        return Scale(title, low, high, "diverging", digits=digits)
-    return Scale(title, low, high, digits=digits)
+    return Scale.of(what, from_si(known.values(what.name), what.unit), robot.joint_numbers)
 
 
 def _overview(robot: Robot) -> int:
@@ -276,7 +262,7 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     if not known.reached.any():
         parts.note(sentence(robot, known))
         return
-    values = None if what.name == "reach" else from_si(known.values(what.name), what.unit)
+    values = None if what.colours == "reach" else from_si(known.values(what.name), what.unit)
     mask = known.reached
     caption = "Everything in reach at this tilt."
     if values is not None:
@@ -312,7 +298,7 @@ def _solid_figure(
     p = palette(dark)
     theta = _standing(robot, view, box)
     fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=dark, height=560, revision="workspace-solid")
-    signed = values is not None and what.name in SIGNED and bool(np.nanmin(values) < 0 < np.nanmax(values))
+    signed = values is not None and what.colours == "diverging" and bool(np.nanmin(values) < 0 < np.nanmax(values))
     limits = None
     if values is not None:
         top = float(np.nanmax(np.abs(values)))
@@ -326,7 +312,7 @@ def _solid_figure(
                 values=values,
                 limits=limits,
                 signed=signed,
-                title=f"{what.title}, {unit_label(what.unit)}".rstrip(", "),
+                title=what.label,
                 opacity=0.25 if values is None else 1.0,
             )
         )
