@@ -123,7 +123,8 @@ def _numba_type(hint: Any) -> Any:
         return types.Array(getattr(types, axes.dtype), axes.dims, "C", readonly=not axes.written)
     if get_origin(hint) is tuple:
         return types.Tuple([_numba_type(item) for item in get_args(hint)])
-    return types.NamedTuple([_numba_type(item) for item in get_type_hints(hint, include_extras=True).values()], hint)
+    fields = [_numba_type(item) for item in get_type_hints(hint, include_extras=True).values()]
+    return types.BaseTuple.from_types(fields, hint)  # fields of one type make another kind of tuple
 
 
 # ---- where machine code is kept ------------------------------------------------------------------------------------

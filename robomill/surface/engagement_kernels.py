@@ -1,75 +1,78 @@
-"""The compiled twin of ``engagement.py``: one step at a time through the heights."""
+"""How much of the cutter is in the material on one step, and the march of a path through the stock, compiled."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from numba import njit
+from robomill.compiled import Out2, kernel, part
+from robomill.surface.cells_kernels import Heights, Hidden, cut_centres, cut_tilted
+from robomill.surface.envelope_kernels import FLAT, Shape, move_between, profile, radius_at
+from robomill.surface.tilt_kernels import UPRIGHT, TiltedMoves
 
-from robomill.surface.kernels import (
-    CHAMFER,
-    FLAT,
-    inverse_direction,
-    move_of,
-    profile,
-    row_interval,
-    swept_height,
-)
-from robomill.surface.tilted_kernels import tilted_interval
-
-
-@njit(cache=True, nogil=True)
-def radius_at(shape, height):  # type: ignore[no-untyped-def]
-    """Radius of the cutter ``height`` > 0 above its tip."""
-    kind, R, r0, rc, slope = shape
-    if kind == FLAT:
-        return R
-    if kind == CHAMFER:
-        return min(R, r0 + height / slope)
-    h = min(height, rc)
-    return r0 + math.sqrt(max(0.0, h * (2.0 * rc - h)))
+ANGLES = 180  # sectors of the half turn ahead of the tool
+ALONG_AXIS = 0.98  # a step that goes this much along the tool axis (cosine) has no arc of engagement
+LOOK = 0.75  # cells: how far ahead of the rim, and inside its sides, material is looked up
+NEAR_TOP = 0.98  # of the depth in the material: where a rounded or pointed cutter's radius is taken
+TOUCH = 1e-12  # m: material this high above the cutter's edge is rounding
 
 
-@njit(cache=True, nogil=True)
-def depth_ahead(frame, ahead, aside, grid, z, bottom):  # type: ignore[no-untyped-def]
-    """Material above a point of the tip plane, along the tool axis; frame = middle, e_x, e_y, rise of the axis."""
-    mx, my, mz, xx, xy, xz, yx, yy, yz, rise = frame
-    x0, y0, dx, dy = grid
-    i = math.floor((mx + ahead * xx + aside * yx - x0) / dx + 0.5)
-    j = math.floor((my + ahead * xy + aside * yy - y0) / dy + 0.5)
-    if i < 0 or j < 0 or i >= z.shape[0] or j >= z.shape[1]:
+class Heading(NamedTuple):
+    """A step seen from the tool: its middle, unit vectors along the feed (x) and to its left (y) in the tool's tip
+    plane, and the part of the tool axis along z_W; all in {W}, m."""
+
+    mx: float
+    my: float
+    mz: float
+    xx: float
+    xy: float
+    xz: float
+    yx: float
+    yy: float
+    yz: float
+    rise: float
+
+
+@part
+def depth_ahead(heading: Heading, ahead: float, aside: float, tile: Heights, bottom: float) -> float:
+    """Material above a point of the tip plane, along the tool axis, m; 0 outside the stock."""
+    x = heading.mx + ahead * heading.xx + aside * heading.yx
+    y = heading.my + ahead * heading.xy + aside * heading.yy
+    z = heading.mz + ahead * heading.xz + aside * heading.yz
+    i, j = math.floor((x - tile.x0) / tile.dx + 0.5), math.floor((y - tile.y0) / tile.dy + 0.5)
+    if i < 0 or j < 0 or i >= tile.z.shape[0] or j >= tile.z.shape[1] or tile.z[i, j] <= bottom:
         return 0.0
-    height = z[i, j]
-    if height <= bottom:
-        return 0.0
-    return max(height - max(mz + ahead * xz + aside * yz, bottom), 0.0) / rise
+    return max(tile.z[i, j] - max(z, bottom), 0.0) / heading.rise
 
 
-@njit(cache=True, nogil=True)
-def step_engagement(shape, frame, look, angles, grid, z, bottom):  # type: ignore[no-untyped-def]
-    """(phi_st, phi_ex, a_p, a_e) of one step."""
-    step = math.pi / angles
-    r = shape[1]
-    if shape[0] != FLAT:
-        depth = 0.0
-        for radius in (shape[1], 0.5 * shape[1], 0.0):
-            for n in range(angles):
-                phi = (n + 0.5) * step
-                ahead, aside = radius * math.sin(phi) + look, radius * math.cos(phi)
-                depth = max(depth, depth_ahead(frame, ahead, aside, grid, z, bottom))
-        if depth <= 0.0:
-            return 0.0, 0.0, 0.0, 0.0
-        r = radius_at(shape, 0.98 * depth)
-    least = profile(shape, r) + 1e-12
-    lateral = r - look if r > look else 0.0
+@part
+def cutting_radius(shape: Shape, heading: Heading, look: float, tile: Heights, bottom: float) -> float:
+    """Radius at which the cutter meets the material: near the top of the deepest material ahead; 0 in air, m."""
+    if shape.kind == FLAT:
+        return shape.R
+    depth = 0.0
+    for ring in range(3):
+        for n in range(ANGLES):
+            phi, r = (n + 0.5) * math.pi / ANGLES, 0.5 * ring * shape.R
+            depth = max(depth, depth_ahead(heading, r * math.sin(phi) + look, r * math.cos(phi), tile, bottom))
+    return radius_at(shape, NEAR_TOP * depth) if depth > 0.0 else 0.0
+
+
+@part
+def arc_of(shape: Shape, heading: Heading, tile: Heights, bottom: float) -> tuple[float, float, float, float]:
+    """(phi_st, phi_ex, a_p, a_e) of one step; see ``engagement.Engagement``."""
+    look = LOOK * max(tile.dx, tile.dy)
+    r = cutting_radius(shape, heading, look, tile, bottom)
+    if r == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    least, lateral, step = profile(shape, r) + TOUCH, max(r - look, 0.0), math.pi / ANGLES
     first, last, total, width = -1, -1, 0.0, 0.0
-    for n in range(angles):
+    for n in range(ANGLES):
         aside = lateral * math.cos((n + 0.5) * step)
         inner = max(abs(aside) - look, 0.0)
-        depth = depth_ahead(frame, math.sqrt(max(r * r - inner * inner, 0.0)) + look, aside, grid, z, bottom)
+        depth = depth_ahead(heading, math.sqrt(r * r - inner * inner) + look, aside, tile, bottom)
         if depth > least:
-            if first < 0:
-                first = n
+            first = n if first < 0 else first
             last = n
             total += depth
             width += r * (math.cos(n * step) - math.cos((n + 1) * step))
@@ -78,81 +81,24 @@ def step_engagement(shape, frame, look, angles, grid, z, bottom):  # type: ignor
     return first * step, (last + 1) * step, total / (last + 1 - first), width
 
 
-@njit(cache=True, nogil=True)
-def cut_centres(shape, move, grid, z, bottom):  # type: ignore[no-untyped-def]
-    """Cut one move of an upright cutter into the heights at cell centres."""
-    x0, y0, dx, dy = grid
-    ax, ay, az, ux, uy, length, m = move
-    R = shape[1]
-    level = m == 0.0 and shape[0] == FLAT
-    floor = max(az, bottom)
-    inverse = inverse_direction(move)
-    first = max(0, math.ceil((ax + min(0.0, length * ux) - R - x0) / dx))
-    last = min(z.shape[0] - 1, math.floor((ax + max(0.0, length * ux) + R - x0) / dx))
-    for i in range(first, last + 1):
-        x = x0 + i * dx
-        low, high = row_interval(move, inverse, R, x)
-        if low > high:
-            continue
-        for j in range(max(0, math.ceil((low - y0) / dy)), min(z.shape[1] - 1, math.floor((high - y0) / dy)) + 1):
-            if z[i, j] > floor:
-                height = floor if level else max(bottom, swept_height(shape, move, x, y0 + j * dy))
-                z[i, j] = min(z[i, j], height)
-
-
-@njit(cache=True, nogil=True)
-def cut_centres_tilted(shape, a, b, k, grid, z):  # type: ignore[no-untyped-def]
-    """Cut one move of a tilted cutter into the heights at cell centres."""
-    x0, y0, dx, dy = grid
-    sine = math.hypot(k[0], k[1])
-    e1x, e1y = -k[1] / sine, k[0] / sine
-    e2x, e2y = -k[2] * e1y, k[2] * e1x
-    move = move_of(
-        a[0] * e1x + a[1] * e1y,
-        a[0] * e2x + a[1] * e2y + a[2] * sine,
-        a[0] * k[0] + a[1] * k[1] + a[2] * k[2],
-        b[0] * e1x + b[1] * e1y,
-        b[0] * e2x + b[1] * e2y + b[2] * sine,
-        b[0] * k[0] + b[1] * k[1] + b[2] * k[2],
-    )
-    R = shape[1]
-    up = max(0.0, z.max() - min(a[2], b[2]) + R * sine) / k[2]
-    x_low, x_high = min(a[0], b[0]) + min(0.0, up * k[0]) - R, max(a[0], b[0]) + max(0.0, up * k[0]) + R
-    y_low, y_high = min(a[1], b[1]) + min(0.0, up * k[1]) - R, max(a[1], b[1]) + max(0.0, up * k[1]) + R
-    for i in range(max(0, math.ceil((x_low - x0) / dx)), min(z.shape[0] - 1, math.floor((x_high - x0) / dx)) + 1):
-        x = x0 + i * dx
-        for j in range(max(0, math.ceil((y_low - y0) / dy)), min(z.shape[1] - 1, math.floor((y_high - y0) / dy)) + 1):
-            y = y0 + j * dy
-            X, Y0, h0 = x * e1x + y * e1y, x * e2x + y * e2y, x * k[0] + y * k[1]
-            low, high = tilted_interval(shape, move, X, Y0, h0, (sine, k[2]), z[i, j])
-            if low < high and high >= z[i, j]:
-                z[i, j] = low
-
-
-@njit(cache=True, nogil=True)
-def engage_moves(shape, p, axes, used, grid, z, bottom, angles, result, start, stop):  # type: ignore[no-untyped-def]
-    """Engagement of steps start..stop into result (m, 5), cutting each into z."""
-    look = 0.75 * max(grid[2], grid[3])
-    for n in range(max(start, 1), stop):
-        if not used[n]:
-            continue
-        a, b = p[n - 1], p[n]
-        kx, ky, kz = axes[n - 1, 0] + axes[n, 0], axes[n - 1, 1] + axes[n, 1], axes[n - 1, 2] + axes[n, 2]
-        norm = math.sqrt(kx * kx + ky * ky + kz * kz)
-        kx, ky, kz = kx / norm, ky / norm, kz / norm
-        fx, fy, fz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+@kernel
+def engage_moves(shape: Shape, moves: TiltedMoves, tile: Heights, hidden: Hidden, bottom: float, result: Out2) -> None:
+    """Engagement (phi_st, phi_ex, a_p, a_e, plunge) of moves into result (n, 5), cutting each into the heights."""
+    for n in range(len(moves.ends)):
+        ax, ay, az, bx, by, bz = moves.ends[n]
+        kx, ky, kz = moves.axes[n]
+        fx, fy, fz = bx - ax, by - ay, bz - az
         length = math.sqrt(fx * fx + fy * fy + fz * fz)
         along = fx * kx + fy * ky + fz * kz
-        if length == 0.0 or abs(along) >= 0.98 * length:
-            result[n, 4] = 1.0 if length > 0.0 else 0.0
-        else:
-            fx, fy, fz = fx - along * kx, fy - along * ky, fz - along * kz
-            norm = math.sqrt(fx * fx + fy * fy + fz * fz)
-            fx, fy, fz = fx / norm, fy / norm, fz / norm
-            frame = (
-                0.5 * (a[0] + b[0]),
-                0.5 * (a[1] + b[1]),
-                0.5 * (a[2] + b[2]),
+        if length > 0.0 and abs(along) >= ALONG_AXIS * length:
+            result[n, 4] = 1.0
+        elif length > 0.0:
+            across = math.sqrt(length * length - along * along)
+            fx, fy, fz = (fx - along * kx) / across, (fy - along * ky) / across, (fz - along * kz) / across
+            heading = Heading(
+                0.5 * (ax + bx),
+                0.5 * (ay + by),
+                0.5 * (az + bz),
                 fx,
                 fy,
                 fz,
@@ -161,10 +107,8 @@ def engage_moves(shape, p, axes, used, grid, z, bottom, angles, result, start, s
                 kx * fy - ky * fx,
                 kz,
             )
-            phi_st, phi_ex, a_p, a_e = step_engagement(shape, frame, look, angles, grid, z, bottom)
-            result[n, 0], result[n, 1], result[n, 2], result[n, 3] = phi_st, phi_ex, a_p, a_e
-        if math.hypot(kx, ky) > 1e-9:
-            cut_centres_tilted(shape, a, b, (kx, ky, kz), grid, z)
+            result[n, 0], result[n, 1], result[n, 2], result[n, 3] = arc_of(shape, heading, tile, bottom)
+        if math.hypot(kx, ky) > UPRIGHT:
+            cut_tilted(shape, moves.ends[n], moves.axes[n], moves.boxes[n], tile, hidden)
         else:
-            move = move_of(a[0], a[1], a[2], b[0], b[1], b[2])
-            cut_centres(shape, move, grid, z, bottom)
+            cut_centres(shape, move_between(ax, ay, az, bx, by, bz), tile)

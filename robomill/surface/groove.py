@@ -16,8 +16,8 @@ from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.raster import skin_on_line
-from robomill.surface.stock import Stock
-from robomill.surface.swept import Station, SweptPath, station_at, stock_span, swept_path
+from robomill.surface.stock import Stock, stock_span
+from robomill.surface.swept import Station, SweptPath, station_at, swept_path
 from robomill.surface.trace import trace_groove
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -95,11 +96,32 @@ class Stock:
         return tuple(found)
 
 
-def stock_grid(stock: Stock, cell: float, budget: int = 50_000_000) -> tuple[int, int, float, float]:
-    """Cells of a height map over ``stock``: nx, ny and their sizes dx, dy (m), none above ``cell``.
+class Cells(NamedTuple):
+    """Cells that fill the plan of a stock exactly: how many, the centre of cell [0, 0] and the size of one, m."""
 
-    The cells fill the block exactly. Raises SurfaceError for a cell size that is not positive, or that needs more
-    than ``budget`` cells, naming the size that fits.
+    nx: int
+    ny: int
+    x0: float
+    y0: float
+    dx: float
+    dy: float
+
+    @property
+    def x(self) -> FloatArray:
+        """(nx,) m: centres along X."""
+        return frozen(self.x0 + np.arange(self.nx) * self.dx)
+
+    @property
+    def y(self) -> FloatArray:
+        """(ny,) m: centres along Y."""
+        return frozen(self.y0 + np.arange(self.ny) * self.dy)
+
+
+def stock_grid(stock: Stock, cell: float, budget: int = 50_000_000) -> Cells:
+    """Cells of a height map over ``stock``, none larger than ``cell`` (m).
+
+    Raises SurfaceError for a cell size that is not positive, or that needs more than ``budget`` cells, naming the
+    size that fits.
     """
     if not (np.isfinite(cell) and cell > 0):
         raise SurfaceError(f"Cell size: found {cell}; expected a length above 0, e.g. 0.1 mm.")
@@ -111,7 +133,8 @@ def stock_grid(stock: Stock, cell: float, budget: int = 50_000_000) -> tuple[int
             f"Cell size: {format_si(cell, 'mm', 4)} needs {nx * ny / 1e6:.4g} million cells for this stock; at most"
             f" {budget / 1e6:.4g} million fit, so use {format_si(fits, 'mm', 4)} or more."
         )
-    return nx, ny, length / nx, width / ny
+    dx, dy = length / nx, width / ny
+    return Cells(nx, ny, float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
 
 
 def fitting_cell(length: float, width: float, budget: int) -> float:
@@ -120,3 +143,17 @@ def fitting_cell(length: float, width: float, budget: int) -> float:
     while np.ceil(length / cell - 1e-6) * np.ceil(width / cell - 1e-6) > budget:
         cell = max(cell * 1.001, cell + 1e-7)
     return float(np.ceil(cell * 1e7 - 1e-3) / 1e7)
+
+
+def stock_span(stock: Stock, centre: FloatArray, normal: FloatArray) -> tuple[float, float]:
+    """Where the line centre + w normal lies over the stock: (low, high) m, low > high if nowhere."""
+    low, high = -np.inf, np.inf
+    for axis in range(2):
+        a, b = stock.lower[axis] - centre[axis], stock.upper[axis] - centre[axis]
+        if abs(normal[axis]) < 1e-12:
+            if a > 0 or b < 0:
+                return 1.0, -1.0
+            continue
+        a, b = sorted((a / normal[axis], b / normal[axis]))
+        low, high = max(low, a), min(high, b)
+    return float(low), float(high)

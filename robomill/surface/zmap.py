@@ -8,18 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, as_floats, digest, frozen
+from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
-from robomill.surface.compiler import Engine, kernels
-from robomill.surface.envelope import cutter_shape
+from robomill.surface.passes import at_one_axis, feed_passes, leaning
 from robomill.surface.raster import stock_heights
-from robomill.surface.removal import Cancel, EdgeCells, Grid, Progress, cut_upright, joined, numpy_seconds
+from robomill.surface.removal import Cancel, EdgeCells, Progress, Watch, cut_tilted, cut_upright
 from robomill.surface.stock import AXES, Stock, stock_grid
-from robomill.surface.tilted import cut_tilted, split_turning, tilted_moves, tool_axes
 from robomill.units import format_si
-
-UPRIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +101,6 @@ def cut(
     *,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    engine: Engine = "auto",
     must_touch: bool = True,
 ) -> ZMap:
     """The stock after the feed moves of a path have been cut.
@@ -115,25 +110,22 @@ def cut(
     ``progress`` is called with 0..1, ``cancel`` asked whether to stop. Raises SurfaceError for a cell size that
     does not fit, a tool axis too close to level, a cancelled cut, and (``must_touch``) a path that misses the stock.
     """
-    nx, ny, dx, dy = stock_grid(stock, cell)
-    grid = Grid(float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
-    ends, axes, skipped = feed_moves(p, k, cutting)
-    ends, axes = joined(ends, axes)
-    shape = cutter_shape(cutter)
-    upright = np.abs(axes[:, [0, 1, 3, 4]]).max(axis=1, initial=0.0) <= UPRIGHT
-    module = kernels(engine, numpy_seconds(ends, shape.R, grid, not upright.all()))
-    x, y = frozen(grid.x0 + np.arange(nx) * dx), frozen(grid.y0 + np.arange(ny) * dy)
+    cells, watch = stock_grid(stock, cell), Watch(progress, cancel)
+    moves, skipped = feed_passes(p, k, cutting)
+    if len(moves.ends) + skipped == 0:
+        raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
+    ends, axes = at_one_axis(moves, cutter.radius, cell)
+    leans = leaning(axes)
+    x, y = cells.x, cells.y
     z_stock = stock_heights(stock, x, y)
-    z = np.empty((nx, ny))
+    z = np.empty((cells.nx, cells.ny))
     z[...] = z_stock
-    edge = cut_upright(z, grid, shape, np.ascontiguousarray(ends[upright]), module, progress, cancel)
+    edge = cut_upright(z, cells, cutter, ends[~leans], watch)
     overhang = 0
-    if not upright.all():
-        before = z.copy()
-        pieces = split_turning(shape.R, ends[~upright], axes[~upright], cell)
-        tilted = tilted_moves(shape, *pieces, float(np.max(z_stock)))
-        overhang = int(cut_tilted(z, grid, shape, tilted, module, progress, cancel).sum())
-        kept = z.reshape(-1)[edge.index] == before.reshape(-1)[edge.index]
+    if leans.any():
+        before = z.reshape(-1)[edge.index]
+        overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans]), watch).sum())
+        kept = z.reshape(-1)[edge.index] == before
         edge = EdgeCells(edge.index[kept], edge.mean[kept])
     bottom = float(stock.lower[2])
     below = bool((z < bottom).any())
@@ -145,22 +137,6 @@ def cut(
     if must_touch and result.removed_volume <= 0.0:
         raise SurfaceError(_misses(stock, ends))
     return result
-
-
-def feed_moves(p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike | None) -> tuple[FloatArray, FloatArray, int]:
-    """Feed moves of a path: ends (n, 6) m, tool axes there (n, 6), and how many were left out for ends not finite."""
-    points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
-    m = len(points)
-    axes = tool_axes(k, m)
-    used = np.ones(m, dtype=bool) if cutting is None else np.array(cutting, dtype=bool)
-    if used.shape != (m,):
-        raise SurfaceError(f"Cut: found {used.shape} cutting flags for {m} points; expected one each.")
-    if m < 2 or not used[1:].any():
-        raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
-    n = np.flatnonzero(used[1:]) + 1
-    ends = np.hstack([points[n - 1], points[n]])
-    known = np.isfinite(ends).all(axis=1)
-    return ends[known], np.hstack([axes[n - 1], axes[n]])[known], int((~known).sum())
 
 
 def _misses(stock: Stock, ends: FloatArray) -> str:

@@ -9,7 +9,6 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.compiler import warm_up
 from robomill.surface.engagement import engage
 from robomill.surface.groove import groove_sections
 from robomill.surface.stock import Stock
@@ -74,53 +73,49 @@ def peer_manifold(p, R=0.004):
 
 
 def test_hundred_connected_segments(capsys):
-    warm_up(wait=True)
     p = connected()
     lines = [shapely.LineString(p[i : i + 2, :2]).buffer(0.004, quad_segs=4096) for i in range(100)]
     exact = shapely.union_all(lines).area * 0.002
-    mine = best_of(lambda: cut(STOCK, 1e-4, FLAT, p, engine="compiled"), 9)
-    numpy_path = best_of(lambda: cut(STOCK, 1e-4, FLAT, p, engine="numpy"), 2)
+    mine = best_of(lambda: cut(STOCK, 1e-4, FLAT, p), 9)
     boxes = best_of(lambda: peer_boxes(p), 2)
     solids = best_of(lambda: peer_manifold(p), 1)
     error = cut(STOCK, 1e-4, FLAT, p).removed_volume / exact - 1
     with capsys.disabled():
         print(f"\n200 x 100 mm at 0.1 mm, 100 segments of 50 mm: {mine * 1e3:.1f} ms, volume {error:+.1e}")
-        print(f"  without compiler {numpy_path * 1e3:.0f} ms; NumPy boxes {boxes * 1e3:.0f} ms,", end=" ")
+        print(f"  NumPy boxes {boxes * 1e3:.0f} ms,", end=" ")
         print(f"volume {peer_boxes(p) / exact - 1:+.1e}; manifold3d {solids * 1e3:.0f} ms (a general solid modeller)")
     assert abs(error) < 1e-5
-    assert mine < 0.06
+    assert mine < 0.02
     assert mine < boxes
 
 
 def test_growth(capsys):
-    warm_up(wait=True)
     p = connected()
     with capsys.disabled():
         print()
         for cell in (4e-4, 2e-4, 1e-4, 5e-5):
-            spent = best_of(lambda cell=cell: cut(STOCK, cell, FLAT, p, engine="compiled"), 3)
+            spent = best_of(lambda cell=cell: cut(STOCK, cell, FLAT, p), 3)
             cells = round(0.02 / cell**2)
             print(f"  cells {cells / 1e6:6.2f} M: {spent * 1e3:8.1f} ms")
         for n in (1000, 4000, 16000, 64000):
             walk = wander(n)
-            spent = best_of(lambda walk=walk: cut(STOCK, 1e-4, FLAT, walk, engine="compiled"), 2)
+            spent = best_of(lambda walk=walk: cut(STOCK, 1e-4, FLAT, walk), 2)
             print(f"  segments of 1 mm {n:6d}: {spent * 1e3:8.1f} ms, {spent / n * 1e6:.1f} us each")
         for diameter in (0.002, 0.004, 0.008, 0.016):
             tool = Cutter("flat", diameter)
-            spent = best_of(lambda tool=tool: cut(STOCK, 1e-4, tool, wander(4000), engine="compiled"), 2)
+            spent = best_of(lambda tool=tool: cut(STOCK, 1e-4, tool, wander(4000)), 2)
             print(f"  cutter {diameter * 1e3:4.0f} mm, 4000 segments: {spent * 1e3:8.1f} ms")
         for kind, extra in (("ball", {}), ("bull", {"corner_radius": 0.001}), ("chamfer", {"tip_angle": 1.5})):
             tool = Cutter(kind, 0.008, **extra)
             ramp = wander(4000) - np.outer(np.sin(np.arange(4000) / 300), [0, 0, 1e-3])
-            spent = best_of(lambda tool=tool, ramp=ramp: cut(STOCK, 1e-4, tool, ramp, engine="compiled"), 1)
+            spent = best_of(lambda tool=tool, ramp=ramp: cut(STOCK, 1e-4, tool, ramp), 1)
             print(f"  {kind} 8 mm ramping, 4000 segments: {spent * 1e3:8.1f} ms")
 
 
 def test_a_million_segments(capsys):
-    warm_up(wait=True)
     p, seen = wander(1_000_000), []
     start = time.perf_counter()
-    cut(STOCK, 1e-4, FLAT, p, engine="compiled", progress=seen.append)
+    cut(STOCK, 1e-4, FLAT, p, progress=seen.append)
     spent = time.perf_counter() - start
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     with capsys.disabled():
@@ -131,17 +126,15 @@ def test_a_million_segments(capsys):
 
 
 def test_paper_slot_sections_and_engagement(capsys):
-    warm_up(wait=True)
     x = np.linspace(-0.05, 0.05, 101)
     p = np.column_stack([x, 0 * x, 0 * x])
     stock = Stock((-0.06, -0.02, -0.01), (0.06, 0.02, 0.002))
     moved = p + np.array([0, 0.2295e-3, -0.1024e-3])
     stations = np.linspace(0.005, 0.095, 19)
     sections = best_of(lambda: groove_sections(stock, FLAT, p, moved, x > -0.05, None, stations), 3)
-    both = best_of(lambda: [cut(stock, 1e-4, FLAT, q, engine="compiled") for q in (p, moved)], 3)
-    plain = best_of(lambda: [cut(stock, 1e-4, FLAT, q, engine="numpy") for q in (p, moved)], 2)
-    arcs = [best_of(lambda e=e: engage(stock, 1e-4, FLAT, p, engine=e), 2) for e in ("compiled", "numpy")]
+    both = best_of(lambda: [cut(stock, 1e-4, FLAT, q) for q in (p, moved)], 3)
+    arcs = best_of(lambda: engage(stock, 1e-4, FLAT, p), 2)
     with capsys.disabled():
-        print(f"\nPaper's slot: both surfaces {both * 1e3:.0f} ms ({plain * 1e3:.0f} without compiler),", end=" ")
-        print(f"19 sections {sections * 1e3:.0f} ms, engagement {arcs[0] * 1e3:.1f} ms ({arcs[1] * 1e3:.0f})")
+        print(f"\nPaper's slot: both surfaces {both * 1e3:.0f} ms,", end=" ")
+        print(f"19 sections {sections * 1e3:.0f} ms, engagement {arcs * 1e3:.1f} ms")
     assert sections < 1.0

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.engagement import ANGLES, engage
+from robomill.surface.engagement import engage
+from robomill.surface.engagement_kernels import ANGLES
 from robomill.surface.stock import Stock
 
 R = 0.004
@@ -17,7 +18,7 @@ def test_side_cut(cell):
     """Material on the right of y = a_e - R only: phi_st = arccos((a_e - R) / R), phi_ex = 180 degrees."""
     for a_e in (0.0013, 0.0021, 0.0037, 0.0052, 0.0066):
         stock = Stock((-0.03, -0.03, -0.01), (0.03, a_e - R, 0.0))
-        found = engage(stock, cell, Cutter("flat", 2 * R), PATH, engine="numpy")
+        found = engage(stock, cell, Cutter("flat", 2 * R), PATH)
         exact = np.arccos((a_e - R) / R)
         allowed = 1.5 * cell / (R * np.sin(exact)) + np.pi / ANGLES
         assert abs(found.phi_st[40] - exact) < allowed

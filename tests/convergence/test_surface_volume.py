@@ -47,7 +47,7 @@ def volume_error(cutter, p, exact, cell, places=((0.0, 0.0), (0.31, 0.17), (0.53
     for u, v in places:
         shift = cell * np.array([u, v, 0.0])
         stock = Stock(np.array([0.0, 0.0, -0.012]) - shift, np.array([0.04, 0.032, 0.0]) - shift)
-        errors.append(cut(stock, cell, cutter, p, engine="compiled").removed_volume / exact - 1)
+        errors.append(cut(stock, cell, cutter, p).removed_volume / exact - 1)
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
@@ -99,7 +99,7 @@ def test_wall_position_in_the_map_is_better_than_first_order():
     p = np.array([0.02, 0.016, -DEPTH]) + np.array([[-0.05], [0.05]]) * feed
     for cell in CELLS:
         stock = Stock((0.0, 0.0, -0.012), (0.04, 0.032, 0.0))
-        surface = cut(stock, cell, CUTTERS["flat"], p, engine="compiled")
+        surface = cut(stock, cell, CUTTERS["flat"], p)
         rows = slice(len(surface.x) // 2 - 2, len(surface.x) // 2 + 2)
         across = -surface.mean[rows].sum(axis=1) * surface.dy / DEPTH * np.cos(angle)
         errors.append(np.abs(across - 0.008).max())

@@ -17,9 +17,7 @@ STOCK = Stock((0, 0, -0.01), (0.03, 0.02, 0))
 
 
 def part(cell=5e-4):
-    return cut(
-        STOCK, cell, Cutter("ball", 0.008), np.array([[0.005, 0.01, -0.002], [0.03, 0.012, -0.003]]), engine="numpy"
-    )
+    return cut(STOCK, cell, Cutter("ball", 0.008), np.array([[0.005, 0.01, -0.002], [0.03, 0.012, -0.003]]))
 
 
 def test_mesh_is_a_closed_solid_of_the_right_volume():
@@ -63,11 +61,11 @@ def test_stock_from_stl_has_its_heights():
     stock, findings = read_stl_stock(stl(box))
     assert findings == ()
     np.testing.assert_allclose(stock.size, [0.03, 0.02, 0.01], atol=1e-9)
-    surface = cut(stock, 5e-4, Cutter("flat", 0.008), np.array([[-0.03, 0, 0.003], [0.03, 0, 0.003]]), engine="numpy")
+    surface = cut(stock, 5e-4, Cutter("flat", 0.008), np.array([[-0.03, 0, 0.003], [0.03, 0, 0.003]]))
     assert surface.removed_volume == pytest.approx(0.03 * 0.008 * 0.002, rel=1e-6)
     ball = trimesh.creation.icosphere(subdivisions=4, radius=15.0)
     stock, _ = read_stl_stock(stl(ball))
-    surface = cut(stock, 2e-4, Cutter("flat", 0.008), np.array([[-0.03, 0, 0.014], [0.03, 0, 0.014]]), engine="numpy")
+    surface = cut(stock, 2e-4, Cutter("flat", 0.008), np.array([[-0.03, 0, 0.014], [0.03, 0, 0.014]]))
     h = 1e-3
     assert surface.z_stock.max() == pytest.approx(0.015, rel=1e-3)
     assert surface.removed_volume < np.pi * h * h * (0.045 - h) / 3

@@ -18,7 +18,7 @@ SHIFT = np.array([0, 0.2295e-3, -0.1024e-3])
 
 
 def surfaces(cell=1e-4, shift=SHIFT):
-    return tuple(cut(STOCK, cell, FLAT, p, engine="numpy") for p in (P, P + shift))
+    return tuple(cut(STOCK, cell, FLAT, p) for p in (P, P + shift))
 
 
 def test_volumes_of_a_shifted_slot():

@@ -1,7 +1,5 @@
 """Engagement against geometry: air, entry, slot, half immersion, earlier passes, exit."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -28,8 +26,8 @@ def degrees(found, x, p, at):
     return np.degrees(found.phi_st[n]), np.degrees(found.phi_ex[n]), found.a_p[n], found.a_e[n]
 
 
-def run(p, stock=STOCK, engine="numpy", cutter=FLAT, k=None, cutting=None):
-    return engage(stock, CELL, cutter, p, k, cutting, engine=engine)
+def run(p, stock=STOCK, cutter=FLAT, k=None, cutting=None):
+    return engage(stock, CELL, cutter, p, k, cutting)
 
 
 def test_air_entry_slot_and_exit():
@@ -118,23 +116,6 @@ def test_ball_engages_at_its_effective_radius():
     assert np.degrees([found.phi_st[n], found.phi_ex[n]]) == pytest.approx([0.0, 180.0])
     assert found.a_p[n] == pytest.approx(0.001, rel=1e-6)
     assert found.a_e[n] == pytest.approx(2 * np.sqrt(2 * R * 1e-3 - 1e-6), rel=0.02)
-
-
-@pytest.mark.parametrize("kind", ["flat", "ball", "tilted"])
-def test_compiled_equals_numpy(kind):
-    rng = np.random.default_rng(4)
-    corners = np.column_stack(
-        [rng.uniform(-0.005, 0.045, 8), rng.uniform(-0.022, 0.022, 8), rng.uniform(-3e-3, -1e-3, 8)]
-    )
-    p = np.vstack([line(a, b, 1.5e-3) for a, b in pairwise(corners)])
-    cutter = Cutter("ball", 2 * R) if kind == "ball" else FLAT
-    k = np.array([0.0, np.sin(0.1), np.cos(0.1)]) if kind == "tilted" else None
-    p = p[:40] if kind == "tilted" else p
-    stock = Stock(STOCK.lower, STOCK.upper)
-    a, b = (engage(stock, 2.5e-4, cutter, p, k, engine=engine) for engine in ("numpy", "compiled"))
-    for name in ("phi_st", "phi_ex", "a_p", "a_e"):
-        np.testing.assert_allclose(getattr(a, name), getattr(b, name), atol=1e-9, err_msg=name)
-    assert a.a_p.max() > 0
 
 
 def test_unreached_steps_do_not_engage():

@@ -2,10 +2,19 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface import envelope
-from robomill.surface.envelope import cutter_shape
+from robomill.surface.envelope_kernels import (
+    BALL,
+    FLAT,
+    cutter_shape,
+    move_between,
+    profile,
+    radius_at,
+    row_interval,
+    swept_height,
+)
 
 CUTTERS = {
     "flat": Cutter("flat", 0.008),
@@ -30,14 +39,24 @@ def brute_force(cutter, a, b, x, y, n=20001):
     return (tip[:, 2:] + cutter.profile(r)).min(axis=0)
 
 
+def heights(shape, move, x, y):
+    return np.array([swept_height(shape, move, *point) for point in zip(x, y, strict=True)])
+
+
+def depth_in_track(a, b, R, x, y):
+    """How far inside the track of a move points are: R less their distance to its line in plan."""
+    line = shapely.LineString([a[:2], b[:2]]) if np.any(a[:2] != b[:2]) else shapely.Point(a[:2])
+    return R - shapely.distance(line, shapely.points(x, y))
+
+
 @pytest.mark.parametrize("cutter", CUTTERS)
 @pytest.mark.parametrize("move", MOVES)
 def test_envelope_is_the_lowest_stamp(cutter, move):
     a, b = (np.array(end) for end in MOVES[move])
-    shape, moved = cutter_shape(CUTTERS[cutter]), envelope.move_of(a, b)
+    shape, moved = cutter_shape(CUTTERS[cutter]), move_between(*a, *b)
     rng = np.random.default_rng(3)
     x, y = rng.uniform(-0.005, 0.026, 300), rng.uniform(-0.013, 0.015, 300)
-    z, d = envelope.swept_height(shape, moved, x, y)
+    z, d = heights(shape, moved, x, y), depth_in_track(a, b, CUTTERS[cutter].radius, x, y)
     inside = d > 2e-5  # on the rim a stamp may miss what the sweep reaches
     expected = brute_force(CUTTERS[cutter], a, b, x, y)
     assert inside.sum() > 10
@@ -53,23 +72,8 @@ def test_direction_of_travel_does_not_matter(cutter):
     shape = cutter_shape(CUTTERS[cutter])
     a, b = np.array([0.0, 0.0, 0.001]), np.array([0.01, 0.004, 0.003])
     x, y = np.linspace(-0.003, 0.012, 50), np.linspace(-0.002, 0.005, 50)
-    forth, back = (envelope.swept_height(shape, envelope.move_of(*ends), x, y) for ends in ((a, b), (b, a)))
+    forth, back = (heights(shape, move_between(*p, *q), x, y) for p, q in ((a, b), (b, a)))
     np.testing.assert_array_equal(forth, back)
-
-
-def test_many_moves_at_once_equal_one_by_one():
-    rng = np.random.default_rng(5)
-    ends = np.vstack([rng.uniform(-0.01, 0.01, (30, 6)), np.zeros((1, 6))])
-    ends[:5, 5] = ends[:5, 2]
-    x, y = rng.uniform(-0.01, 0.01, 40), rng.uniform(-0.01, 0.01, 40)
-    for cutter in CUTTERS.values():
-        shape = cutter_shape(cutter)
-        z, d = envelope.swept_height(shape, envelope.moves_of(ends), x, y)
-        for n, end in enumerate(ends):
-            z_n, d_n = envelope.swept_height(shape, envelope.move_of(end[:3], end[3:]), x, y)
-            inside = d_n >= 0
-            np.testing.assert_allclose(d[n], d_n, atol=1e-15)
-            np.testing.assert_allclose(z[n][inside], z_n[inside], atol=1e-14)
 
 
 def test_row_interval_is_the_capsule():
@@ -78,8 +82,8 @@ def test_row_interval_is_the_capsule():
         a, b = rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3)
         if rng.random() < 0.3:
             b[rng.integers(2)] = a[rng.integers(2)] * 0 + a[0] if rng.random() < 0.5 else a[1]
-        move, R, x = envelope.move_of(a, b), rng.uniform(0.1, 0.8), rng.uniform(-1.5, 1.5)
-        low, high = envelope.row_interval(move, R, np.array(x))
+        move, R, x = move_between(*a, *b), rng.uniform(0.1, 0.8), rng.uniform(-1.5, 1.5)
+        low, high = row_interval(move, R, x)
         y = np.linspace(-3, 3, 2001)
         span = b[:2] - a[:2]
         t = np.clip(((x - a[0]) * span[0] + (y - a[1]) * span[1]) / (span @ span), 0, 1)
@@ -87,17 +91,20 @@ def test_row_interval_is_the_capsule():
         np.testing.assert_array_equal((y >= low) & (y <= high), inside)
 
 
-def test_covered_share_is_an_area():
-    rng = np.random.default_rng(11)
-    u, v = (np.arange(1000) + 0.5) / 1000 - 0.5, (np.arange(1000) + 0.5) / 1000 - 0.5
-    for _ in range(30):
-        dx, dy, angle, d = rng.uniform(0.5, 2), rng.uniform(0.5, 2), rng.uniform(0, 7), rng.uniform(-1, 1)
-        n = np.cos(angle), np.sin(angle)
-        expected = (u[:, None] * dx * n[0] + v[None, :] * dy * n[1] <= d).mean()
-        share = envelope.covered_share(*(np.array(q) for q in (d, *n)), dx, dy)
-        assert share == pytest.approx(expected, abs=2e-3)
-
-
 def test_full_corner_is_a_ball_and_no_corner_is_flat():
-    assert cutter_shape(Cutter("bull", 0.008, corner_radius=0.004)).kind == envelope.BALL
-    assert cutter_shape(CUTTERS["flat"]).kind == envelope.FLAT
+    assert cutter_shape(Cutter("bull", 0.008, corner_radius=0.004)).kind == BALL
+    assert cutter_shape(CUTTERS["flat"]).kind == FLAT
+
+
+@pytest.mark.parametrize("kind", CUTTERS)
+def test_profile_is_the_cutters_and_radius_at_its_inverse(kind):
+    cutter = CUTTERS[kind]
+    shape = cutter_shape(cutter)
+    r = np.linspace(0.0, cutter.radius, 41)
+    np.testing.assert_allclose([profile(shape, q) for q in r], cutter.profile(r), atol=1e-15)
+    for height in (1e-5, 4e-4, 1.4e-3, 2.9e-3, 5e-3):
+        found = radius_at(shape, height)
+        reached = r[cutter.profile(r) <= height].max()
+        assert reached <= found + 1e-12 <= reached + r[1] + 1e-12
+        if found < cutter.radius:
+            assert float(cutter.profile(found)) == pytest.approx(height, abs=1e-12)

@@ -1,4 +1,4 @@
-"""Properties that hold for any path: material only goes, order and mirror do not matter, both engines agree."""
+"""Properties that hold for any path: material only goes, order and mirror do not matter."""
 
 from itertools import pairwise
 
@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.removal import joined
+from robomill.surface.passes import Passes, joined
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
 
@@ -29,8 +29,8 @@ few = settings(max_examples=25, deadline=None)
 @few
 @given(paths, st.sampled_from(CUTTERS))
 def test_more_cutting_never_adds_material(p, cutter):
-    less = cut(STOCK, CELL, cutter, p[:2], engine="numpy", must_touch=False)
-    more = cut(STOCK, CELL, cutter, p, engine="numpy", must_touch=False)
+    less = cut(STOCK, CELL, cutter, p[:2], must_touch=False)
+    more = cut(STOCK, CELL, cutter, p, must_touch=False)
     assert (more.z <= less.z + 1e-15).all()
     assert more.removed_volume >= less.removed_volume - 1e-13
     assert 0.0 <= more.removed_volume <= np.prod(STOCK.size)
@@ -38,17 +38,9 @@ def test_more_cutting_never_adds_material(p, cutter):
 
 @few
 @given(paths, st.sampled_from(CUTTERS))
-def test_both_engines_agree(p, cutter):
-    a, b = (cut(STOCK, CELL, cutter, p, engine=engine, must_touch=False) for engine in ("numpy", "compiled"))
-    np.testing.assert_allclose(a.z, b.z, atol=1e-10)
-    assert abs(a.removed_volume - b.removed_volume) < 1e-14
-
-
-@few
-@given(paths, st.sampled_from(CUTTERS))
 def test_a_mirrored_path_cuts_a_mirrored_part(p, cutter):
-    there = cut(STOCK, CELL, cutter, p, engine="numpy", must_touch=False)
-    back = cut(STOCK, CELL, cutter, p * [1, -1, 1], engine="numpy", must_touch=False)
+    there = cut(STOCK, CELL, cutter, p, must_touch=False)
+    back = cut(STOCK, CELL, cutter, p * [1, -1, 1], must_touch=False)
     np.testing.assert_allclose(back.z, there.z[:, ::-1], atol=1e-9)
 
 
@@ -58,10 +50,10 @@ def test_joined_moves_are_the_undivided_path(p, pieces):
     t = np.arange(pieces) / pieces
     divided = np.vstack([*(a + t[:, None] * (b - a) for a, b in pairwise(p)), p[-1:]])
     ends = np.hstack([divided[:-1], divided[1:]])
-    whole, _ = joined(ends, np.tile([0.0, 0.0, 1.0], (len(ends), 2)))
+    whole, _ = joined(Passes(ends, np.tile([0.0, 0.0, 1.0], (len(ends), 2))))
     assert len(whole) <= len(p) - 1
     np.testing.assert_array_equal(whole[0, :3], p[0])
     np.testing.assert_array_equal(whole[-1, 3:], p[-1])
     turning = np.tile([0.0, 0.0, 1.0], (len(ends), 2))
     turning[:, 3] = np.arange(len(ends)) * 1e-3
-    assert len(joined(ends, turning)[0]) == len(ends)
+    assert len(joined(Passes(ends, turning)).ends) == len(ends)

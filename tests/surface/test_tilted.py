@@ -43,7 +43,7 @@ def test_heights_against_a_cloud_of_cutter_points(kind, angles):
     """Points of the body in small steps: at each cell the lowest body point agrees to the step's size."""
     cutter, k = CUTTERS[kind], axis(*angles)
     p = np.array([[0.012, -0.004, -0.002], [0.025, 0.003, -0.0035]])
-    surface = cut(STOCK, 5e-4, cutter, p, k, engine="numpy")
+    surface = cut(STOCK, 5e-4, cutter, p, k)
     body = solid(cutter, p, k).to_mesh()
     vertices, faces = np.asarray(body.vert_properties)[:, :3], np.asarray(body.tri_verts)
     low, high = crossing(vertices[faces], surface.x, surface.y)
@@ -78,20 +78,10 @@ def crossing(triangles, x, y):
     return low, high
 
 
-@pytest.mark.parametrize("kind", CUTTERS)
-def test_compiled_equals_numpy(kind):
-    rng = np.random.default_rng(2)
-    p = np.column_stack([rng.uniform(0, 0.04, 5), rng.uniform(-0.02, 0.02, 5), rng.uniform(-0.004, -0.001, 5)])
-    k = np.array([axis(0.1 * n, 0.2 - 0.1 * n) for n in range(5)])
-    a, b = (cut(STOCK, 1e-3, CUTTERS[kind], p, k, engine=engine) for engine in ("numpy", "compiled"))
-    np.testing.assert_allclose(a.z, b.z, atol=1e-11)
-    assert a.overhang == b.overhang
-
-
 def test_a_slight_tilt_is_the_upright_cut_in_the_limit():
     p = np.array([[0.01, 0.0, -0.002], [0.03, 0.005, -0.002]])
-    upright = cut(STOCK, 5e-4, CUTTERS["ball"], p, engine="numpy")
-    slight = cut(STOCK, 5e-4, CUTTERS["ball"], p, axis(1e-7, 0.0), engine="numpy")
+    upright = cut(STOCK, 5e-4, CUTTERS["ball"], p)
+    slight = cut(STOCK, 5e-4, CUTTERS["ball"], p, axis(1e-7, 0.0))
     np.testing.assert_allclose(slight.z, upright.z, atol=1e-8)
 
 
@@ -99,7 +89,7 @@ def test_ball_centre_decides_where_a_tilted_ball_cuts():
     """Below its centre a ball nose cuts the same wherever its axis leans, if its centre runs the same way."""
     centre = np.array([[0.01, 0.0, 0.002], [0.03, 0.005, 0.002]])
     heights = [
-        cut(STOCK, 5e-4, CUTTERS["ball"], centre - 0.004 * axis(*angles), axis(*angles), engine="numpy").z
+        cut(STOCK, 5e-4, CUTTERS["ball"], centre - 0.004 * axis(*angles), axis(*angles)).z
         for angles in ((0.0, 0.0), (0.2, 0.0), (0.1, -0.3))
     ]
     for other in heights[1:]:
@@ -108,7 +98,7 @@ def test_ball_centre_decides_where_a_tilted_ball_cuts():
 
 def test_undercut_is_reported():
     p = np.array([[0.0, 0.0, -0.006], [0.04, 0.0, -0.006]])
-    surface = cut(STOCK, 5e-4, CUTTERS["flat"], p, axis(0.4, 0.0), engine="numpy")
+    surface = cut(STOCK, 5e-4, CUTTERS["flat"], p, axis(0.4, 0.0))
     assert surface.overhang > 50
     assert "undercut" in surface.notes()[0]
     # seen from above the overhanging wall stays: nothing lower than the top beyond the lip
@@ -126,6 +116,6 @@ def test_a_turning_axis_converges_with_its_pieces():
     t = np.linspace(0, 1, 200)[:, None]
     fine_k = k[0] + t * (k[1] - k[0])
     fine_k /= np.linalg.norm(fine_k, axis=1, keepdims=True)
-    coarse = cut(STOCK, 5e-4, CUTTERS["ball"], p, k, engine="compiled")
-    fine = cut(STOCK, 5e-4, CUTTERS["ball"], p[0] + t * (p[1] - p[0]), fine_k, engine="compiled")
+    coarse = cut(STOCK, 5e-4, CUTTERS["ball"], p, k)
+    fine = cut(STOCK, 5e-4, CUTTERS["ball"], p[0] + t * (p[1] - p[0]), fine_k)
     assert np.abs(coarse.z - fine.z).max() < 0.3 * 5e-4
