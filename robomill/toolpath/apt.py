@@ -15,8 +15,8 @@ import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.findings import Findings
-from robomill.toolpath.gcode.source import Source, read_source
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.text import Source, read_source
 from robomill.units import to_si
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?$")

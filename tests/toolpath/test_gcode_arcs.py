@@ -11,6 +11,7 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret, read_gcode
 from robomill.toolpath.gcode.arcs import chord_counts
+from robomill.toolpath.gcode.chords import to_toolpath
 
 PLANES = {
     17: ("X", "Y", "Z", "I", "J", 0, 1, 2),
@@ -42,7 +43,7 @@ def test_every_point_lies_on_the_arc(plane: int, code: str, form: str, sweep: fl
     program = interpret(text)
     assert program.sweep[1] == pytest.approx(sign * sweep, abs=1e-6)
     assert program.length[1] == pytest.approx(math.hypot(radius * sweep, climb) * 1e-3, rel=1e-6)
-    path = program.toolpath(1e-6)
+    path = to_toolpath(program, 1e-6)
     p = path.p[2:] * 1e3
     angle = np.unwrap(np.arctan2(p[:, second] - centre[1], p[:, first] - centre[0]))
     assert np.hypot(p[:, first] - centre[0], p[:, second] - centre[1]) == pytest.approx(radius, abs=1e-6)
@@ -77,7 +78,7 @@ def test_chord_error_is_kept_and_is_of_second_order() -> None:
     program = interpret("G21 F100\nG3 I50\nM2\n")
     errors, steps = [], []
     for chord_error in (1e-4, 1e-5, 1e-6):
-        p = program.toolpath(chord_error).p - np.array([0.05, 0, 0])
+        p = to_toolpath(program, chord_error).p - np.array([0.05, 0, 0])
         middle = np.linalg.norm((p[1:] + p[:-1]) / 2, axis=1)
         errors.append(0.05 - middle.min())
         steps.append(len(p))

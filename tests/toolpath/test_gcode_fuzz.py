@@ -12,6 +12,7 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.apt import is_apt, read_apt
 from robomill.toolpath.gcode import Tool, interpret
+from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.support import SUPPORT
 
 DATA = Path(__file__).parent / "data"
@@ -83,7 +84,7 @@ def run(count: int, seed: int) -> tuple[int, float]:
             program = interpret(data, dialect=r.choice(["auto", "auto", "fanuc", "sinumerik", "grbl"]), tools=TOOLS)
             accepted += 1
             if len(program) and r.random() < 0.3:
-                program.toolpath(1e-3)
+                to_toolpath(program, 1e-3)
         except GCodeError:
             pass
         slowest = max(slowest, time.perf_counter() - began)
@@ -95,8 +96,8 @@ def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
     base = "robomill.toolpath.gcode."
     for name, value in (
         ("interpreter.MAX_STEPS", 3000),
-        ("recorder.MAX_MOVES", 20_000),
-        ("recorder._FLUSH", 512),
+        ("program.MAX_MOVES", 20_000),
+        ("program.FLUSH", 512),
         ("arcs.MAX_POINTS", 200_000),
         ("cycles.MAX_PECKS", 500),
         ("threads.MAX_PASSES", 300),

@@ -11,7 +11,8 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, read_tool_table, write_moves_jsonl
-from robomill.toolpath.gcode.source import MAX_BYTES, as_plain_bytes
+from robomill.toolpath.gcode.chords import to_toolpath
+from robomill.toolpath.text import MAX_BYTES, as_plain_bytes
 
 PROGRAM = "G21 G90\nG0 X1\nG1 Y2 F60\nM2\n"
 
@@ -203,7 +204,7 @@ def test_a_partial_reading_keeps_the_moves_before_the_refusal() -> None:
     assert not program.ok
     assert gcode_report(program)["ok"] is False
     assert (program.findings[0].level, program.findings[0].line) == ("error", 4)
-    assert len(program.toolpath()) == 3
+    assert len(to_toolpath(program)) == 3
 
 
 def test_words_of_other_controls_that_move_nothing_are_noted() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.modal import (
+from robomill.toolpath.gcode.motion import implied_motion, is_arc
+from robomill.toolpath.gcode.words import (
     COMPENSATION,
     CONTROL,
     CYCLES,
@@ -18,12 +19,11 @@ from robomill.toolpath.gcode.modal import (
     SPINDLE_MODE,
     TOOL,
     USER,
+    Block,
     g_name,
 )
-from robomill.toolpath.gcode.words import Block
 
 _AXES = "xyzabcuvw"
-_ARCS = frozenset({20, 30})
 _COMPENSATION_ON = frozenset({410, 411, 420, 421})
 
 
@@ -55,12 +55,9 @@ def choose_motion(machine: Machine, block: Block) -> None:
     if motion >= 0:
         block.motion = motion
     elif not covets and block.g.get(LENGTH) != 431:
-        if axes or polar:
-            if machine.motion in (-1, 800):
-                raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
-            block.motion = machine.motion
-        elif machine.motion in _ARCS and any(letter in words for letter in "ijk"):
-            block.motion = machine.motion
+        if (axes or polar) and machine.motion in (-1, 800):
+            raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
+        block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))
     if non_modal == 530 and (block.g.get(DISTANCE) == 910 or (DISTANCE not in block.g and not machine.absolute)):
         raise block.refuse("G53 needs absolute coordinates; use G90 first.")
     for letter in "uvw":
@@ -76,7 +73,7 @@ def check_words(block: Block) -> list[tuple[str, str]]:
     if non_modal == 40:
         if "p" not in words:
             raise block.refuse("G4 needs P, its dwell in seconds.")
-        if motion in _ARCS:
+        if is_arc(motion):
             raise block.refuse("G4 and an arc on one line both use P; put them on two lines.")
     if non_modal == 530 and motion not in (0, 10):
         raise block.refuse("G53 needs G0 or G1.")
@@ -84,7 +81,7 @@ def check_words(block: Block) -> list[tuple[str, str]]:
         for letter in "abc":
             if letter in words:
                 raise block.refuse(f"{g_name(motion)} takes no {letter.upper()}; turn the axis on a line before.")
-    if motion in _ARCS and "p" in words and (abs(words["p"] - round(words["p"])) > 1e-3 or round(words["p"]) < 1):
+    if is_arc(motion) and "p" in words and (abs(words["p"] - round(words["p"])) > 1e-3 or round(words["p"]) < 1):
         raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; expected a whole number of turns, 1 or more.")
     if motion in (330, 331):
         if "k" not in words:
@@ -100,7 +97,7 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
     motion, g, m = block.motion, block.g, block.m
     non_modal, compensation = g.get(NON_MODAL, -1), g.get(COMPENSATION, -1)
     data = non_modal == 100
-    arc, spline, thread = motion in _ARCS, motion in (50, 51), motion == 760
+    arc, spline, thread = is_arc(motion), motion in (50, 51), motion == 760
     cycle = motion in CYCLES
     io, user, orient = m.get(IO, -1), USER in m, m.get(SPINDLE) == 19
     return [

@@ -1,23 +1,23 @@
-"""Canonical moves as the straight pieces of a Toolpath: the one place where arcs become chords."""
+"""Canonical moves as the straight pieces of a Toolpath."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
+from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.path import Toolpath
 
-if TYPE_CHECKING:
-    from robomill.toolpath.gcode.program import Program
-
+MAX_TILT_STEP = math.radians(2.0)
 _BLOCK = 500_000
 
 
-def to_toolpath(program: Program, chord_error: float) -> Toolpath:
+def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
     """The moves as points of {W}: arcs as chords within ``chord_error`` (m), turning axes in steps of 2 degrees.
 
     Raises GCodeError if nothing moves or more than ``arcs.MAX_POINTS`` points would be needed.
@@ -28,26 +28,26 @@ def to_toolpath(program: Program, chord_error: float) -> Toolpath:
     counts = _pieces(program, np.flatnonzero(is_arc), chord_error)
     counts[is_tap] = 2
     first = np.cumsum(counts) - counts + 1
-    total = int(counts.sum()) + 1
-    p = np.empty((total, 3))
+    p = np.empty((int(counts.sum()) + 1, 3))
     p[0] = program.start[0]
     single = counts == 1
     p[first[single]] = program.end[single]
     p[first[is_tap]], p[first[is_tap] + 1] = program.end[is_tap], program.start[is_tap]
     for rows in _blocks(np.flatnonzero(~single & ~is_tap), counts):
-        owner, step = _steps(counts[rows])
-        where = first[rows][owner] + step
-        fraction = ((step + 1) / counts[rows][owner])[:, None]
+        owner, step = arcs.steps(counts[rows])
+        fraction = (step / counts[rows][owner])[:, None]
         points = program.start[rows][owner] + fraction * (program.end[rows] - program.start[rows])[owner]
         turning = is_arc[rows]
         if turning.any():
-            points[turning[owner]] = arcs.chord_points(*program.geometry(rows[turning]), counts=counts[rows[turning]])
+            points[turning[owner]] = program.arcs_of(rows[turning]).chords(counts[rows[turning]])
         points[np.cumsum(counts[rows]) - 1] = program.end[rows]
-        p[where] = points
+        p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
+            points
+        )
     cuts = program.is_kind("feed") | is_arc | is_tap
     return Toolpath(
         p=p,
-        k=_axes(program, counts, first),
+        k=_axes(program, counts),
         v_f=_spread(np.where(cuts, program.v_f, 0.0), counts, 0.0),
         cutting=_spread(cuts, counts, False),
         block=_spread(program.line, counts, program.line[0]),
@@ -59,13 +59,13 @@ def to_toolpath(program: Program, chord_error: float) -> Toolpath:
     )
 
 
-def _pieces(program: Program, i: IntArray, chord_error: float) -> IntArray:
-    """Straight pieces of each move."""
+def _pieces(program: Program, rows: IntArray, chord_error: float) -> IntArray:
+    """Straight pieces of each move; ``rows`` are the arcs."""
     counts = np.ones(len(program), dtype=np.int64)
-    _, sweep, r0, r1 = arcs.sweeps(*program.geometry(i))
-    counts[i] = arcs.chord_counts(sweep, np.maximum(r0, r1), chord_error)
+    turns = program.arcs_of(rows)
+    counts[rows] = arcs.chord_counts(turns.sweep, turns.radius, chord_error)
     if program.rotary.any() or program.rotary0.any():
-        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / arcs.MAX_TILT_STEP - 1e-4)
+        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / MAX_TILT_STEP - 1e-4)
         if tilt.sum() > arcs.MAX_POINTS:
             raise GCodeError(f"Program: the turning axes would need more than {arcs.MAX_POINTS} points.")
         counts = np.maximum(counts, tilt.astype(np.int64))
@@ -82,12 +82,6 @@ def _blocks(rows: IntArray, counts: IntArray) -> list[IntArray]:
     return np.split(rows, np.flatnonzero(np.diff(block)) + 1)
 
 
-def _steps(counts: IntArray) -> tuple[IntArray, IntArray]:
-    """For every piece its move and its number in the move, from 0."""
-    owner = np.repeat(np.arange(len(counts)), counts)
-    return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
-
-
 def _spread(values: Any, counts: IntArray, first: Any) -> Any:
     """A value of each move for each of its points, with ``first`` in front for the start (one value if all agree)."""
     if values[0] == first and (values == first).all():
@@ -98,12 +92,11 @@ def _spread(values: Any, counts: IntArray, first: Any) -> Any:
     return out
 
 
-def _axes(program: Program, counts: IntArray, first: IntArray) -> FloatArray:
+def _axes(program: Program, counts: IntArray) -> FloatArray:
     if not (program.rotary.any() or program.rotary0.any()):
         return np.array([0.0, 0.0, 1.0])
-    owner, step = _steps(counts)
-    fraction = ((step + 1) / counts[owner])[:, None]
-    angles = program.rotary0[owner] + fraction * (program.rotary - program.rotary0)[owner]
+    owner, step = arcs.steps(counts)
+    angles = program.rotary0[owner] + (step / counts[owner])[:, None] * (program.rotary - program.rotary0)[owner]
     return np.concatenate([tool_axis(program.rotary0[:1]), tool_axis(angles)])
 
 

@@ -12,9 +12,9 @@ import math
 from dataclasses import dataclass
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.arcs import AXES
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import arc_centre, arc_length, arc_turn, find_turn, inverse_time_feed
+from robomill.toolpath.gcode.motion import arc_length, axes, feed_speed, inverse_time, swept, turns_of
+from robomill.toolpath.gcode.moves import centre_of_arc, plain_words
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.words import Block
 
@@ -48,7 +48,7 @@ class Compensation:
         self.radius = radius
         self.orientation = orientation
         self.plane = plane
-        self.axes = AXES[plane]
+        self.axes = axes(plane)
         self.programmed: tuple[float, float, float] | None = None
         self.held: list[Held] = []
         self.corner: tuple[float, float] | None = None
@@ -89,7 +89,7 @@ class Compensation:
                 rapid,
                 end,
                 (full[3], full[4], full[5]),
-                0.0 if rapid else machine.feed_speed,
+                0.0 if rapid else feed_speed(machine),
                 **more,  # type: ignore[arg-type]
             )
         )
@@ -107,8 +107,7 @@ class Compensation:
                 centre = [0.0, 0.0, 0.0]
                 centre[self.axes[0]], centre[self.axes[1]] = move.centre[0] + shift_u, move.centre[1] + shift_v
                 centre[self.axes[2]] = move.end[2]
-                point = (centre[0], centre[1], centre[2])
-                machine.go_arc(move.line, end, self.plane, point, move.turn, move.v_f)
+                machine.go_arc(move.line, end, self.plane, centre, move.turn, move.v_f)
             else:
                 machine.go(TRAVERSE if move.rapid else FEED, move.line, end, move.v_f)
         self.held = []
@@ -133,7 +132,7 @@ class Compensation:
                 if abs(before - after) > 10.0 * OVERSHOOT[machine.unit]:
                     raise self._gouge(block, "the arc before it")
                 if move.sweep and corner is not None:
-                    sweep = find_turn(corner[0], corner[1], move.centre, move.turn, u, v)
+                    sweep = swept(corner, (u, v), move.centre, move.turn, 0.0)
                     if abs(sweep) > abs(move.sweep) + OVERSHOOT[machine.unit]:
                         raise self._gouge(block, "the arc before it")
             elif corner is not None:
@@ -269,14 +268,14 @@ class Compensation:
     def arc(self, machine: Machine, block: Block, full: list[float]) -> None:
         """G2 or G3 to the programmed point ``full``."""
         u, v, w = (full[axis] for axis in self.axes)
-        turn = arc_turn(block)
+        turn = turns_of(plain_words(block), block.motion)
         if self.programmed is None:
             self._enter_arc(machine, block, full, (u, v, w), turn)
             return
-        pu, pv, pw = self.programmed
+        pu, pv, _ = self.programmed
         cu, cv, cw = self.current(machine)
-        centre = arc_centre(machine, block, pu, pv, u, v)
-        self._inverse_time(machine, block, (pu, pv, pw), (u, v, w), centre, turn)
+        centre = centre_of_arc(machine, block, (pu, pv), (u, v))
+        inverse_time(machine, plain_words(block), arc_length(machine, full, (pu, pv), centre, turn))
         radius = math.hypot(centre[0] - u, centre[1] - v)
         inside = self._inside(turn)
         if inside and radius <= self.radius:
@@ -290,7 +289,7 @@ class Compensation:
         away = (centre[0] - u, centre[1] - v) if inside else (u - centre[0], v - centre[1])
         gamma = math.atan2(away[1], away[0])
         end = (u + self.radius * math.cos(gamma), v + self.radius * math.sin(gamma))
-        sweep = find_turn(pu, pv, centre, turn, u, v)
+        sweep = swept((pu, pv), (u, v), centre, turn, 0.0)
         if beta < -CORNER or beta > math.pi + CORNER or (abs(beta - math.pi) < CORNER and not inside):
             if self.held and self.held[0].turn:
                 mid = self._arc_to_arc(block, centre, radius, turn)
@@ -308,18 +307,6 @@ class Compensation:
         self._hold(machine, block, (*end, w), full, centre=centre, turn=turn, sweep=sweep)
         self._stand(machine, *end, full, (u, v))
 
-    def _inverse_time(
-        self,
-        machine: Machine,
-        block: Block,
-        start: tuple[float, float, float],
-        end: tuple[float, float, float],
-        centre: tuple[float, float],
-        turn: int,
-    ) -> None:
-        length = arc_length(list(start), list(end), centre, turn, 0, 1, 2)
-        inverse_time_feed(machine, block, length)
-
     @staticmethod
     def _too_small(block: Block) -> GCodeError:
         return block.refuse("the arc is not larger than the cutter; the cutter does not fit inside.")
@@ -335,11 +322,11 @@ class Compensation:
                 "away."
             )
         size = abs(block.words["r"]) if "r" in block.words else None
-        centre = arc_centre(machine, block, cu, cv, u, v)
+        centre = centre_of_arc(machine, block, (cu, cv), (u, v))
         inside = self._inside(turn)
         if inside and (math.hypot(centre[0] - cu, centre[1] - cv) if size is None else size) <= self.radius:
             raise self._too_small(block)
-        self._inverse_time(machine, block, (cu, cv, cw), end, centre, turn)
+        inverse_time(machine, plain_words(block), arc_length(machine, full, (cu, cv), centre, turn))
         away = (centre[0] - u, centre[1] - v) if inside else (u - centre[0], v - centre[1])
         gamma = math.atan2(away[1], away[0])
         eu, ev = u + self.radius * math.cos(gamma), v + self.radius * math.sin(gamma)
@@ -352,7 +339,7 @@ class Compensation:
         if self.orientation not in (0, 9):
             self._hold(machine, block, (cu, cv, cw), full)
             self.corner = (cu, cv)
-        sweep = find_turn(cu, cv, centre, turn, eu, ev)
+        sweep = swept((cu, cv), (eu, ev), centre, turn, 0.0)
         self._hold(machine, block, (eu, ev, w), full, centre=centre, turn=turn, sweep=sweep)
         self._stand(machine, eu, ev, full, (u, v))
 

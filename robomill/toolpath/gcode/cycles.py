@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from robomill.toolpath.gcode.arcs import AXES
+import math
+
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import polar, polar_step
+from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.moves import polar, polar_step
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.words import Block
 
@@ -25,7 +27,7 @@ class _Hole:
     def __init__(self, machine: Machine, line: int) -> None:
         self.machine = machine
         self.line = line
-        self.axes = AXES[machine.plane]
+        self.axes = axes(machine.plane)
 
     def go(self, kind: int, a: float, b: float, c: float) -> None:
         end = list(self.machine.p)
@@ -48,7 +50,7 @@ def cycle(machine: Machine, block: Block) -> None:
     same = machine.motion == block.motion
     name = f"G{block.motion // 10}"
     _check(machine, block, name, same)
-    first, second, third = AXES[machine.plane]
+    first, second, third = axes(machine.plane)
     for letter, key in (("r", "r"), ("xyz"[third], "bottom"), ("p", "p"), ("q", "q")):
         if letter in words:
             kept[key] = words[letter]
@@ -56,7 +58,7 @@ def cycle(machine: Machine, block: Block) -> None:
         if letter in words:
             kept[letter] = words[letter]
     current = machine.p[third]
-    if machine.initial_level is None:
+    if math.isnan(machine.initial_level):
         machine.initial_level = current
     level = machine.initial_level
     clearance, bottom = kept["r"], kept["bottom"]
@@ -96,9 +98,7 @@ def _check(machine: Machine, block: Block, name: str, same: bool) -> None:
         raise block.refuse(f"{name} cannot be used in inverse time mode (G93); use G94 first.")
     if machine.compensation is not None:
         raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
-    if machine.plane not in AXES:
-        raise block.refuse(f"{name} needs a plane G17, G18 or G19.")
-    axis = "XYZ"[AXES[machine.plane][2]]
+    axis = "XYZ"[axes(machine.plane)[2]]
     if "r" not in words and not (same and "r" in kept):
         raise block.refuse(f"{name} needs R, its clearance plane.")
     if axis.lower() not in words and not (same and "bottom" in kept):
@@ -137,7 +137,7 @@ def _next_place(
 ) -> tuple[float, float]:
     if place is not None:
         return place
-    first, second, _ = AXES[machine.plane]
+    first, second, _ = axes(machine.plane)
     a += block.words.get("xyz"[first], 0.0)
     b += block.words.get("xyz"[second], 0.0)
     return polar_step(block, a, b) if "@" in block.words or "^" in block.words else (a, b)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.modal import g_name
-from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.gcode.words import Block, g_name
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from robomill.toolpath.gcode import cycles, motion, offsets, splines, threads
+from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.modal import (
+from robomill.toolpath.gcode.motion import set_rates
+from robomill.toolpath.gcode.tools import Tool
+from robomill.toolpath.gcode.words import (
     ARC_DISTANCE,
     COMPENSATION,
     CONTROL,
@@ -29,10 +32,9 @@ from robomill.toolpath.gcode.modal import (
     TOOL,
     UNITS,
     USER,
+    Block,
     g_name,
 )
-from robomill.toolpath.gcode.tools import Tool
-from robomill.toolpath.gcode.words import Block
 
 _DIRECTIONS = {3: 1, 4: -1, 5: 0, 19: 0}
 _CLOSED = "with cutter compensation on; use G40 first."
@@ -49,14 +51,12 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
         machine.feed_mode = g[FEED_MODE]
         if machine.feed_mode != 930:
             machine.feed = 0.0
-    if "f" in words and machine.feed_mode != 930:
-        machine.feed = words["f"]
-        if UNITS in g and g[UNITS] != machine.unit_code:
-            machine.findings.add(
-                "suspicious", block.line, f"F and {g_name(g[UNITS])} on one line: F counts in the units before it"
-            )
-    if "s" in words:
-        machine.speed = words["s"]
+    if "f" in words or "s" in words:
+        set_rates(machine, moves.plain_words(block))
+    if "f" in words and machine.feed_mode != 930 and g.get(UNITS, machine.unit_code) != machine.unit_code:
+        machine.findings.add(
+            "suspicious", block.line, f"F and {g_name(g[UNITS])} on one line: F counts in the units before it"
+        )
     if "t" in words:
         offsets.known_tool(machine, block, round(words["t"]))
         machine.selected = round(words["t"])
@@ -126,7 +126,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
         number = machine.selected
         machine.spindle = 0
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
-    machine.recorder.tool = number
+    machine.in_spindle = number
 
 
 def _execute_g(machine: Machine, block: Block) -> None:
@@ -181,9 +181,9 @@ def _non_modal(machine: Machine, block: Block, code: int) -> None:
     elif code == 100:
         offsets.set_data(machine, block)
     elif code in (280, 300):
-        motion.home(machine, block, code)
+        moves.home(machine, block, code)
     elif code in (281, 301):
-        motion.save_home(machine, block, code)
+        moves.save_home(machine, block, code)
     elif code in (520, 920, 921, 922, 923):
         offsets.axis_offsets(machine, block, code)
 
@@ -191,11 +191,11 @@ def _non_modal(machine: Machine, block: Block, code: int) -> None:
 def _move(machine: Machine, block: Block) -> None:
     code = block.motion
     if code not in CYCLES:
-        machine.initial_level = None
-    if code in (0, 10, 330, 331):
-        motion.straight(machine, block)
-    elif code in (20, 30):
-        motion.arc(machine, block)
+        machine.initial_level = math.nan
+    if code in (0, 10, 20, 30):
+        moves.move(machine, block)
+    elif code in (330, 331):
+        moves.in_step(machine, block)
     elif code == 800:
         machine.motion = 800
     elif code in CYCLES:
@@ -217,7 +217,7 @@ def _probe(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{g_name(block.motion)} needs a feed rate; give an F word above 0 first.")
     if machine.feed_mode == 950:
         raise block.refuse(f"{g_name(block.motion)} cannot be used in feed per revolution (G95).")
-    end = motion.find_end(machine, block)
+    end = moves.find_end(machine, block)
     if block.motion in (382, 384) and end == machine.p:
         raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
     machine.probe_to(block.line, end)

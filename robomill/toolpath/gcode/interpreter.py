@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import check
@@ -12,12 +11,12 @@ from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File, OWords
+from robomill.toolpath.gcode.stretches import MAX_LINE, run_plain
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
 """Lines that may be executed beyond the length of the program: loops and subroutines."""
 
-MAX_LINE = 100_000
 _CHECK_EVERY = 2048
 
 Progress = Callable[[float], None]
@@ -36,17 +35,15 @@ class Interpreter(OWords):
         self.budget = len(file.lines) + MAX_STEPS
         self.percent = False
 
-    def run(self, fast: Any = None) -> None:
-        """Execute until the program ends. ``fast`` may take over stretches of plain lines."""
+    def run(self) -> None:
+        """Execute until the program ends, plain lines in stretches."""
         self._skip_percent()
         while not self.ended:
             if self.pc >= len(self.file.lines):
                 self._end_of_file()
                 return
-            if fast is not None and self.file is self.main and len(self.frames) == 1:
-                fast.run(self)
-                if self.pc >= len(self.file.lines):
-                    continue
+            if self.machine.is_plain and self._run_plain():
+                continue
             index = self.pc
             self.pc = index + 1
             self.step(index)
@@ -94,11 +91,15 @@ class Interpreter(OWords):
         if execute(machine, block, self.frames[-1].saved):
             self.ended = True
 
-    def advance(self, lines: int) -> None:
-        """Count ``lines`` that were executed elsewhere and go on behind them."""
-        self.pc += lines
-        self.steps += lines
-        self._tick(max(self.pc - 1, 0))
+    def _run_plain(self) -> bool:
+        """Make plain lines into moves; False if the next line is not one, or wants the reader's word."""
+        words = self.file.lines.plain(self.pc)
+        done = run_plain(self.machine, words, self.pc + 1) if len(words) else 0
+        before = self.steps
+        self.pc, self.steps = self.pc + done, self.steps + done
+        if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
+            self._tick(self.pc - 1)
+        return done > 0
 
     # --- budgets, ends, comments
     def _tick(self, index: int) -> None:

@@ -1,7 +1,7 @@
 """The machine that the program talks to: modes, offsets and the current point, in the units of the program.
 
 Lengths here are in program units (mm or inch, whatever G20/G21 says) and angles in degrees, as LinuxCNC keeps
-them; ``Machine.point`` is the one place where they become m in the machine frame.
+them; the rules of ``motion`` make them m and rad in the machine frame.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.gcode.motion import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
-from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE
-from robomill.toolpath.gcode.recorder import Point, Recorder
+from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.tools import Tool, ToolTable
 from robomill.units import from_si, to_si
 
@@ -37,10 +37,13 @@ XYZABC = "xyzabc"
 
 
 class Machine:
-    """State that lines change. ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system.
+    """State that lines change; the fields that the rules of ``motion`` use are those of its ``STATE``.
 
-    ``sent`` is the end of the last straight move that was recorded. After a tool change or an input the machine is
-    asked where it stands and answers with that, as LinuxCNC's preview does.
+    ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system; ``at`` and ``turned`` are the tip
+    (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are
+    those of the last refusal, ``initial_level`` is where a row of cycles began (NaN outside of one). ``sent`` is the
+    end of the last straight move that was recorded: after a tool change or an input the machine is asked where it
+    stands and answers with that, as LinuxCNC's preview does.
     """
 
     def __init__(self, tools: ToolTable | None) -> None:
@@ -48,10 +51,10 @@ class Machine:
         self.findings = Findings()
         self.recorder = Recorder()
         self.tools = None if tools is None else dict(tools)
-        self.unit, self.unit_code, self.units_said = "mm", 210, ""
+        self.unit_code, self.units_said = 210, ""
         self.factor = to_si(1.0, "mm")
-        self.p = [0.0] * 6
-        self.sent = [0.0] * 6
+        self.p, self.sent = [0.0] * 6, [0.0] * 6
+        self.at, self.turned = [0.0] * 3, [0.0] * 3
         self.g5x, self.g92 = [0.0] * 6, [0.0] * 6
         self.rotation = 0.0
         self.system = 1
@@ -59,12 +62,13 @@ class Machine:
         self.motion, self.plane, self.absolute, self.arc_absolute = 800, 17, True, False
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
-        self.tool, self.selected = _NO_TOOL, 0
+        self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
         self.mist = self.flood = False
         self.cycle: dict[str, float] = {}
-        self.initial_level: float | None = None
+        self.initial_level = math.nan
         self.compensation: Any = None
         self.arc_not_allowed = False
+        self.figures = [0.0] * 3
         self.spline: list[tuple[float, float, float]] = []
         self.spline_order = 3
         self.line = 0
@@ -72,12 +76,21 @@ class Machine:
         self.dwells, self.dwell_time = 0, 0.0
         self.messages: list[tuple[int, str]] = []
 
-    # --- units and frames
+    # --- units
+    @property
+    def unit(self) -> str:
+        """The unit of lengths, "mm" or "in"."""
+        return UNITS[self.unit_code]
+
+    @property
+    def is_plain(self) -> bool:
+        """True while the rules of ``motion`` alone say what G0 to G3 do."""
+        return self.compensation is None and not self.diameter_mode and self.motion in (0, 10, 20, 30)
+
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
-        unit = UNITS[code]
-        self.units_said = unit
-        if unit == self.unit:
+        unit = self.units_said = UNITS[code]
+        if code == self.unit_code:
             return
         ratio = to_si(1.0, self.unit) / to_si(1.0, unit)
         for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset):
@@ -85,7 +98,7 @@ class Machine:
         self.feed *= ratio
         if self.compensation is not None:
             self.compensation.scale(ratio)
-        self.unit, self.unit_code, self.factor = unit, code, to_si(1.0, unit)
+        self.unit_code, self.factor = code, to_si(1.0, unit)
 
     def to_user(self, length: float) -> float:
         """A length of the program in mm, the unit of stored parameters."""
@@ -95,52 +108,21 @@ class Machine:
         """A stored parameter (mm) in program units."""
         return from_si(to_si(length, "mm"), self.unit)
 
-    def point(self, x: float, y: float, z: float) -> Point:
-        """A point of the current coordinate system in the machine frame, m."""
-        x, y, z = x + self.g92[0], y + self.g92[1], z + self.g92[2]
-        if self.rotation:
-            x, y = rotate(x, y, self.rotation)
-        g5x, factor = self.g5x, self.factor
-        return (x + g5x[0]) * factor, (y + g5x[1]) * factor, (z + g5x[2]) * factor
-
-    def angles(self, a: float, b: float, c: float) -> Point:
-        """Rotary axes in the machine frame, rad."""
-        g5x, g92 = self.g5x, self.g92
-        return (
-            math.radians(a + g92[3] + g5x[3]),
-            math.radians(b + g92[4] + g5x[4]),
-            math.radians(c + g92[5] + g5x[5]),
-        )
-
     # --- moves
-    @property
-    def spindle_speed(self) -> float:
-        """Revolutions per second that are commanded; 0 at constant surface speed, which is not modelled."""
-        return self.speed / 60.0 if self.spindle_mode == 970 else 0.0
-
-    @property
-    def feed_speed(self) -> float:
-        """The feed rate in m/s (per revolution: at the commanded spindle speed)."""
-        per_second = self.spindle_speed if self.feed_mode == 950 else 1.0 / 60.0
-        return self.feed * self.factor * per_second
-
     def go(self, kind: int, line: int, end: list[float], v_f: float | None = None) -> None:
         """Record a straight move to ``end`` (6,) and, except for taps, stand there."""
-        recorder = self.recorder
-        self.sent = list(end)
-        speed = self.feed_speed if v_f is None and kind != TRAVERSE else v_f or 0.0
-        recorder.n_s = self.spindle_speed if self.spindle else 0.0
+        row, at, turned = Move(line), list(self.at), list(self.turned)
+        write_straight(self, kind, end, feed_speed(self) if v_f is None and kind != TRAVERSE else v_f or 0.0, row)
         if kind == TAP:
-            at, turned = recorder.at, recorder.turned
-            recorder.move(line, kind, self.point(*end[:3]), turned, speed)
-            recorder.at = at
-            return
-        recorder.move(line, kind, self.point(end[0], end[1], end[2]), self.angles(end[3], end[4], end[5]), speed)
+            self.at, self.turned, row.rotary = at, turned, turned
+        self.recorder.add(row)
 
-    def go_arc(self, line: int, end: list[float], plane: int, centre: Point, turn: int, v_f: float) -> None:
+    def go_arc(self, line: int, end: list[float], plane: int, centre: list[float], turn: int, v_f: float) -> None:
         """Record an arc in ``plane`` about ``centre`` (x, y, z in the current system)."""
-        self.recorder.n_s = self.spindle_speed if self.spindle else 0.0
-        self.recorder.arc(line, self.point(*end[:3]), self.angles(*end[3:]), plane, self.point(*centre), turn, v_f)
+        row = Move(line)
+        row.plane = plane
+        write_arc(self, end, centre, turn, v_f, row)
+        self.recorder.add(row)
 
     def traverse(self, line: int, end: list[float]) -> None:
         """Record a rapid to ``end`` (6,)."""
@@ -202,12 +184,6 @@ class Machine:
         if index == 5400:
             return float(tool.number)
         return from_si(tool.diameter, "mm") if index == 5410 else float(tool.orientation if index == 5413 else 0)
-
-
-def rotate(x: float, y: float, degrees: float) -> tuple[float, float]:
-    """(x, y) turned about the origin."""
-    t = math.radians(degrees)
-    return x * math.cos(t) - y * math.sin(t), x * math.sin(t) + y * math.cos(t)
 
 
 def _system_code(machine: Machine) -> int:

@@ -1,278 +1,392 @@
-"""Straight moves, arcs and returns home: from the words of a line to recorded moves."""
+"""The rules of motion: feeds, end points, arcs and frames of G0, G1, G2 and G3, each stated here and nowhere else.
+
+Every function is plain Python on an object with attributes. The interpreter hands in the ``Machine`` and lists; for
+long stretches of plain lines ``run`` is compiled (see ``stretches``) and gets a record of ``STATE``, rows of words
+and rows of ``MOVE`` instead. So nothing here may use more of Python than numba knows.
+
+``m`` is the machine: lengths in program units (mm or inch), angles in degrees. ``w`` are the words of a line by the
+indices G to P, NaN where a word is not given. G codes are ten times their number (G1 -> 10). ``row`` is the move
+that is written: m, rad, m/s in the machine frame. Functions that can refuse return a code, 0 for "can be done";
+``moves.SENTENCES`` says what each code means, with the figures that are left in ``m.figures``.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+# One function serves lists, arrays, objects and records: no annotation would say more than the names.
 
 from __future__ import annotations
 
 import math
 
-from robomill.toolpath.gcode.arcs import AXES
-from robomill.toolpath.gcode.machine import XYZABC, Machine, rotate
-from robomill.toolpath.gcode.modal import NON_MODAL
-from robomill.toolpath.gcode.program import FEED, TAP
-from robomill.toolpath.gcode.words import Block
-from robomill.units import format_si
+import numpy as np
 
-SPIRAL_TOLERANCE = {"mm": 0.02 * math.sqrt(2.0), "in": 0.002 * math.sqrt(2.0)}
-"""The radii to start and end of an arc given by its centre may differ by this much (program units), or by"""
+from robomill.units import from_si
+
+LETTERS = "gxyzabcijkrfsp"
+"""The words of a plain line, in the order of their indices."""
+G, X, I, J, K, R, F, S, P = (LETTERS.index(letter) for letter in "gxijkrfsp")  # noqa: E741
+
+RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE = 0, 10, 20, 30
+INCH, INVERSE_TIME, PER_TURN, CONSTANT_SPEED = 200, 930, 950, 970
+TRAVERSE, FEED, ARC, TAP, PROBE = 0, 1, 2, 3, 4
+"""Kinds of moves."""
+
+STATE = np.dtype(
+    [
+        ("p", "f8", 6),
+        ("sent", "f8", 6),
+        ("g5x", "f8", 6),
+        ("g92", "f8", 6),
+        ("at", "f8", 3),
+        ("turned", "f8", 3),
+        ("figures", "f8", 3),
+        ("rotation", "f8"),
+        ("factor", "f8"),
+        ("feed", "f8"),
+        ("speed", "f8"),
+        ("initial_level", "f8"),
+        ("unit_code", "i8"),
+        ("motion", "i8"),
+        ("plane", "i8"),
+        ("feed_mode", "i8"),
+        ("spindle", "i8"),
+        ("spindle_mode", "i8"),
+        ("in_spindle", "i8"),
+        ("absolute", "?"),
+        ("arc_absolute", "?"),
+        ("arc_not_allowed", "?"),
+    ]
+)
+"""What of the machine the rules of motion read and change; attributes of ``Machine``, where they are explained."""
+
+MOVE = np.dtype(
+    [
+        ("line", "i4"),
+        ("kind", "i1"),
+        ("start", "f8", 3),
+        ("end", "f8", 3),
+        ("rotary0", "f8", 3),
+        ("rotary", "f8", 3),
+        ("plane", "i1"),
+        ("centre", "f8", 3),
+        ("turns", "i4"),
+        ("clockwise", "?"),
+        ("sweep", "f8"),
+        ("v_f", "f8"),
+        ("n_s", "f8"),
+        ("tool", "i4"),
+    ]
+)
+"""A move; the columns are explained in ``Program``."""
+
+SPIRAL_MM, SPIRAL_INCH = 0.02 * math.sqrt(2.0), 0.002 * math.sqrt(2.0)
+"""The radii to start and end of an arc given by its centre may differ by this much, or by"""
 SPIRAL_SHARE = 1e-3
 """this share of the larger radius, whichever is more, but never by more than 100 times the first figure."""
-RADIUS_TOLERANCE = {"mm": 0.00005 * 25.4, "in": 0.00005}
-"""A radius below this is none; half a chord may exceed a given radius by this much. In program units."""
+RADIUS_INCH = 0.00005
+RADIUS_MM = RADIUS_INCH * 25.4
+"""A radius below this is none; half a chord may exceed a given radius by this much."""
+FULL_TURN = 1e-8
+"""rad: an arc that would sweep less than this is a full turn, as an arc back to its start is."""
+
+_MINUTE = from_si(1.0, "1/min")
+_TURN = 2.0 * math.pi
+
+(
+    NO_FEED_ON_LINE,
+    NO_FEED,
+    NO_SPEED,
+    ARC_AFTER_G40,
+    ARC_IN_NO_PLANE,
+    ARC_WITHOUT_FORM,
+    ARC_WITH_TWO_FORMS,
+    ARC_ACROSS_PLANE,
+    ARC_CENTRE_INCOMPLETE,
+    RADIUS_WITHOUT_END,
+    ARC_ON_ITS_CENTRE,
+    ARC_OFF_ITS_CIRCLE,
+    RADIUS_TO_START,
+    RADIUS_TOO_SMALL,
+) = range(1, 15)
+"""Why a move is refused."""
 
 
-def find_end(machine: Machine, block: Block) -> list[float]:
-    """Where the line leads: (x, y, z, a, b, c) in the current coordinate system."""
-    words = block.words
-    base = machine.p
-    if machine.compensation is not None and machine.compensation.programmed is not None:
-        base = machine.compensation.programmed_point(machine)
-    is_polar = "@" in words or "^" in words
-    if block.g.get(NON_MODAL) == 530:
-        if is_polar:
-            raise block.refuse("polar coordinates cannot be used with G53.")
-        return _machine_end(machine, words)
-    end = list(base)
-    if machine.absolute:
-        for axis, letter in enumerate(XYZABC):
-            if letter in words:
-                end[axis] = words[letter]
-        if is_polar:
-            end[0], end[1] = polar(block, end[0], end[1])
-        return end
-    for axis, letter in enumerate(XYZABC):
-        if letter in words:
-            end[axis] += words[letter]
-    if is_polar:
-        end[0], end[1] = polar_step(block, end[0], end[1])
-    return end
+# --- what a line without a motion word does, feed and speed
+def implied_motion(m, axes: bool, centre: bool) -> int:
+    """The motion of a line that names none: the one in force, if there are words for it; -1 for none."""
+    if axes or (centre and is_arc(m.motion)):
+        return m.motion
+    return -1
 
 
-def _machine_end(machine: Machine, words: dict[str, float]) -> list[float]:
-    x, y = rotate(machine.p[0] + machine.g92[0], machine.p[1] + machine.g92[1], machine.rotation)
-    offset = machine.length_offset
-    x = words["x"] - machine.g5x[0] - offset[0] if "x" in words else x
-    y = words["y"] - machine.g5x[1] - offset[1] if "y" in words else y
-    x, y = rotate(x, y, -machine.rotation)
-    end = [x - machine.g92[0], y - machine.g92[1], *machine.p[2:]]
-    for axis, letter in enumerate("zabc", 2):
-        if letter in words:
-            end[axis] = words[letter] - machine.g5x[axis] - machine.g92[axis] - (offset[2] if axis == 2 else 0.0)
-    return end
+def is_arc(motion: int) -> bool:
+    """True for G2 and G3."""
+    return motion in (CLOCKWISE, COUNTERCLOCKWISE)
 
 
-def polar(block: Block, x: float, y: float) -> tuple[float, float]:
-    """Absolute polar words ``@`` radius and ``^`` angle; what is not given stays."""
-    words = block.words
-    if "^" not in words and x == 0 and y == 0:
-        raise block.refuse("@ at the origin needs an angle ^.")
-    radius = words.get("@", math.hypot(x, y))
-    angle = math.radians(words["^"]) if "^" in words else math.atan2(y, x)
-    return radius * math.cos(angle), radius * math.sin(angle)
+def set_rates(m, w) -> None:
+    """F and S take effect before anything moves. In inverse time F belongs to its line alone."""
+    if m.feed_mode != INVERSE_TIME and not math.isnan(w[F]):
+        m.feed = w[F]
+    if not math.isnan(w[S]):
+        m.speed = w[S]
 
 
-def polar_step(block: Block, x: float, y: float) -> tuple[float, float]:
-    """Incremental polar words: ``@`` adds to the radius, ``^`` to the angle."""
-    if x == 0 and y == 0:
-        raise block.refuse("incremental polar coordinates have no direction at the origin; move away first.")
-    radius = math.hypot(x, y) + block.words.get("@", 0.0)
-    angle = math.atan2(y, x) + math.radians(block.words.get("^", 0.0))
-    return radius * math.cos(angle), radius * math.sin(angle)
+def spindle_speed(m) -> float:
+    """Commanded turns per second; 0 at constant surface speed, which is not modelled."""
+    return m.speed / _MINUTE if m.spindle_mode == CONSTANT_SPEED else 0.0
 
 
-def check_feed(machine: Machine, block: Block, what: str) -> None:
-    """Refuse a feed move without a feed rate."""
-    if machine.feed_mode == 930:
-        if "f" not in block.words:
-            raise block.refuse(f"{what} in inverse time mode (G93) needs an F word on its line.")
-    elif machine.feed == 0.0:
-        raise block.refuse(f"{what} needs a feed rate; give an F word above 0 first.")
-    elif machine.feed_mode == 950 and machine.speed == 0.0:
-        raise block.refuse(f"{what} in feed per revolution (G95) needs a spindle speed; give an S word first.")
+def feed_speed(m) -> float:
+    """Feed rate, m/s (per turn: at the commanded spindle speed)."""
+    per_second = spindle_speed(m) if m.feed_mode == PER_TURN else 1.0 / _MINUTE
+    return m.feed * m.factor * per_second
 
 
-def inverse_time_feed(machine: Machine, block: Block, length: float) -> None:
-    """In G93 the F word is the inverse of the minutes that the move takes."""
-    if machine.feed_mode == 930:
-        machine.feed = max(0.1, length * block.words["f"])
+def check_feed(m, w) -> int:
+    """A move at feed needs a feed rate: on its line (G93), or in force, per turn with a spindle speed."""
+    if m.feed_mode == INVERSE_TIME:
+        return NO_FEED_ON_LINE if math.isnan(w[F]) else 0
+    if m.feed == 0.0:
+        return NO_FEED
+    return NO_SPEED if m.feed_mode == PER_TURN and m.speed == 0.0 else 0
 
 
-def straight(machine: Machine, block: Block) -> None:
-    """G0, G1, G33 and G33.1."""
-    motion = block.motion
-    machine.arc_not_allowed = False
-    if motion == 10:
-        check_feed(machine, block, "G1")
-    machine.motion = motion
-    end = find_end(machine, block)
-    if motion == 10 and machine.feed_mode == 930:
-        change = [e - s for e, s in zip(end, machine.p)]
-        moved = change[:3] if any(abs(c) > 1e-7 for c in change[:3]) else change[3:]
-        inverse_time_feed(machine, block, math.sqrt(sum(c * c for c in moved)))
-    compensation = machine.compensation
-    if compensation is not None and compensation.radius > 0:
-        if block.g.get(NON_MODAL) == 530:
-            raise block.refuse("G53 cannot be used with cutter compensation on; use G40 first.")
-        if motion > 10:
-            raise block.refuse("G33 cannot be used with cutter compensation on; use G40 first.")
-        compensation.straight(machine, block, end)
-        return
-    if motion in (330, 331):
-        if machine.spindle == 0:
-            raise block.refuse("G33 needs a turning spindle; start it with M3 or M4.")
-        pitch_speed = abs(block.words["k"]) * machine.factor * machine.spindle_speed
-        machine.go(TAP if motion == 331 else FEED, block.line, end, pitch_speed)
-        if motion == 330:
-            machine.p = end
-        return
-    if motion == 10:
-        machine.feed_to(block.line, end)
-    else:
-        machine.traverse(block.line, end)
-    machine.p = end
+def inverse_time(m, w, length: float) -> None:
+    """In G93 the F word is the inverse of the minutes that a move of ``length`` takes."""
+    if m.feed_mode == INVERSE_TIME:
+        m.feed = max(0.1, length * w[F])
 
 
-def arc(machine: Machine, block: Block) -> None:
-    """G2 and G3, by centre or by radius."""
-    if machine.arc_not_allowed:
-        raise block.refuse("the move after G40 must be straight, not an arc.")
-    name = f"G{block.motion // 10}"
-    if machine.plane not in AXES:
-        raise block.refuse(f"{name} needs a plane G17, G18 or G19.")
-    if machine.rotation and machine.plane != 17:
-        raise block.refuse(f"{name} in G{machine.plane} with a rotated coordinate system (G10 R) is in no plane.")
-    has_centre = any(letter in block.words for letter in "ijk")
-    if not has_centre and "r" not in block.words:
-        raise block.refuse(f"{name} needs its centre (I, J, K) or its radius (R).")
-    if has_centre and "r" in block.words:
-        raise block.refuse(f"{name} has both a centre (I, J, K) and a radius (R); give one of them.")
-    check_feed(machine, block, name)
-    _check_arc_words(machine, block, name, has_centre)
-    end = find_end(machine, block)
-    machine.motion = block.motion
-    compensation = machine.compensation
-    if compensation is not None and compensation.radius > 0 and machine.plane != 19:
-        compensation.arc(machine, block, end)
-        return
-    first, second, third = AXES[machine.plane]
-    centre = arc_centre(machine, block, machine.p[first], machine.p[second], end[first], end[second])
-    turn = arc_turn(block)
-    length = arc_length(machine.p, end, centre, turn, first, second, third)
-    inverse_time_feed(machine, block, length)
-    centre_point = list(machine.p[:3])
-    centre_point[first], centre_point[second] = centre
-    machine.go_arc(
-        block.line, end, machine.plane, (centre_point[0], centre_point[1], centre_point[2]), turn, machine.feed_speed
-    )
-    machine.p = end
+# --- points and frames
+def axes(plane):
+    """First, second and third axis of G17 (x, y, z), G18 (z, x, y) or G19 (y, z, x), or of an array of planes.
 
-
-def _check_arc_words(machine: Machine, block: Block, name: str, has_centre: bool) -> None:
-    first, second, third = AXES[machine.plane]
-    allowed, across = ("ijk"[first], "ijk"[second]), "ijk"[third]
-    if has_centre:
-        if across in block.words:
-            raise block.refuse(f"{name} has {across.upper()}, which is not in the plane G{machine.plane}.")
-        if machine.arc_absolute:
-            for letter in allowed:
-                if letter not in block.words:
-                    raise block.refuse(f"{name} with absolute centre (G90.1) needs {letter.upper()}.")
-    elif not any(letter in block.words for letter in ("xyz"[first], "xyz"[second], "@", "^")):
-        axes = f"{'XYZ'[min(first, second)]} or {'XYZ'[max(first, second)]}"
-        raise block.refuse(f"{name} with R needs an end point in its plane ({axes}); R cannot say a full circle.")
-
-
-def arc_turn(block: Block) -> int:
-    """Signed number of started turns."""
-    turns = round(block.words.get("p", 1.0))
-    return -turns if block.motion == 20 else turns
-
-
-def arc_length(
-    p: list[float], end: list[float], centre: tuple[float, float], turn: int, first: int, second: int, third: int
-) -> float:
-    """Length as the reference reckons it for inverse time feeds: with the radius at the start."""
-    radius = math.hypot(p[first] - centre[0], p[second] - centre[1])
-    theta = find_turn(p[first], p[second], centre, turn, end[first], end[second])
-    return math.hypot(radius * theta, end[third] - p[third])
-
-
-def find_turn(x1: float, y1: float, centre: tuple[float, float], turn: int, x2: float, y2: float) -> float:
-    """Signed angle (rad) swept about ``centre`` from point 1 to point 2."""
-    alpha = math.atan2(y1 - centre[1], x1 - centre[0])
-    beta = math.atan2(y2 - centre[1], x2 - centre[0])
-    if turn > 0:
-        return (beta + 2.0 * math.pi if beta <= alpha else beta) - alpha + (turn - 1) * 2.0 * math.pi
-    return beta - (alpha + 2.0 * math.pi if alpha <= beta else alpha) + (turn + 1) * 2.0 * math.pi
-
-
-def arc_centre(
-    machine: Machine, block: Block, x: float, y: float, end_x: float, end_y: float, compensated: bool = False
-) -> tuple[float, float]:
-    """Centre in the plane of an arc from (x, y) to (end_x, end_y), all in program units of the current system.
-
-    Raises GCodeError naming both radii (mm) if they differ too much.
+    A positive turn leads from the first to the second, a helix climbs along the third.
     """
-    if "r" in block.words:
-        return _centre_from_radius(machine, block, x, y, end_x, end_y)
-    first, second, _ = AXES[machine.plane]
-    i, j = block.words.get("ijk"[first], 0.0), block.words.get("ijk"[second], 0.0)
-    centre = (i, j) if machine.arc_absolute else (x + i, y + j)
-    r_start, r_end = math.hypot(centre[0] - x, centre[1] - y), math.hypot(centre[0] - end_x, centre[1] - end_y)
-    name = f"G{block.motion // 10}"
-    if min(r_start, r_end) < RADIUS_TOLERANCE[machine.unit]:
-        raise block.refuse(f"{name} has a radius of 0; start or end lies on its centre.")
-    tolerance = SPIRAL_TOLERANCE[machine.unit]
+    third = 19 - plane
+    return (third + 1) % 3, (third + 2) % 3, third
+
+
+def end_point(m, w, base, end) -> None:
+    """``end`` (6,): where the axis words lead from ``base``, in the current coordinate system."""
+    for axis in range(6):
+        word = w[X + axis]
+        if math.isnan(word):
+            end[axis] = base[axis]
+        else:
+            end[axis] = word if m.absolute else base[axis] + word
+
+
+def rotate(x: float, y: float, degrees: float):
+    """(x, y) turned about the origin."""
+    t = math.radians(degrees)
+    return x * math.cos(t) - y * math.sin(t), x * math.sin(t) + y * math.cos(t)
+
+
+def to_frame(m, x: float, y: float, z: float, out) -> None:
+    """``out`` (3,): a point of the current coordinate system in the machine frame, m."""
+    x, y, z = x + m.g92[0], y + m.g92[1], z + m.g92[2]
+    if m.rotation != 0.0:
+        x, y = rotate(x, y, m.rotation)
+    out[0], out[1], out[2] = (x + m.g5x[0]) * m.factor, (y + m.g5x[1]) * m.factor, (z + m.g5x[2]) * m.factor
+
+
+# --- straight moves
+def straight_length(p, end) -> float:
+    """The length that a feed counts along: of x, y, z, or of the turning axes where only they move."""
+    length = math.sqrt((end[0] - p[0]) ** 2 + (end[1] - p[1]) ** 2 + (end[2] - p[2]) ** 2)
+    if abs(end[0] - p[0]) > 1e-7 or abs(end[1] - p[1]) > 1e-7 or abs(end[2] - p[2]) > 1e-7:
+        return length
+    return math.sqrt((end[3] - p[3]) ** 2 + (end[4] - p[4]) ** 2 + (end[5] - p[5]) ** 2)
+
+
+def write_move(m, kind: int, end, v_f: float, row) -> None:
+    """Write a move of the tip to ``end`` (6,) of the current coordinate system; the next one starts there."""
+    row.kind = kind
+    row.v_f = v_f
+    row.n_s = spindle_speed(m) if m.spindle != 0 else 0.0
+    row.tool = m.in_spindle
+    for axis in range(3):
+        row.start[axis], row.rotary0[axis] = m.at[axis], m.turned[axis]
+        row.rotary[axis] = math.radians(end[3 + axis] + m.g92[3 + axis] + m.g5x[3 + axis])
+    to_frame(m, end[0], end[1], end[2], row.end)
+    for axis in range(3):
+        m.at[axis], m.turned[axis] = row.end[axis], row.rotary[axis]
+
+
+def write_straight(m, kind: int, end, v_f: float, row) -> None:
+    """Write a straight move; its end is what the machine was last sent to."""
+    write_move(m, kind, end, v_f, row)
+    for axis in range(6):
+        m.sent[axis] = end[axis]
+
+
+# --- arcs
+def check_arc(m, w, has_end: bool) -> int:
+    """What an arc needs on its line. ``has_end``: an end point in the plane is given."""
+    first, second, third = axes(m.plane)
+    has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
+    has_radius = not math.isnan(w[R])
+    if m.arc_not_allowed:
+        return ARC_AFTER_G40
+    if m.rotation != 0.0 and m.plane != 17:
+        return ARC_IN_NO_PLANE
+    if not has_centre and not has_radius:
+        return ARC_WITHOUT_FORM
+    if has_centre and has_radius:
+        return ARC_WITH_TWO_FORMS
+    refusal = check_feed(m, w)
+    if refusal != 0:
+        return refusal
+    if not has_centre:
+        return 0 if has_end else RADIUS_WITHOUT_END
+    if not math.isnan(w[I + third]):
+        return ARC_ACROSS_PLANE
+    if m.arc_absolute and (math.isnan(w[I + first]) or math.isnan(w[I + second])):
+        return ARC_CENTRE_INCOMPLETE
+    return 0
+
+
+def turns_of(w, motion: int) -> int:
+    """Started turns of an arc (P, else 1), negative for clockwise."""
+    turns = 1 if math.isnan(w[P]) else round(w[P])
+    return -turns if motion == CLOCKWISE else turns
+
+
+def swept(start, end, centre, turn: int, least: float) -> float:
+    """Signed angle (rad) from ``start`` to ``end`` about ``centre`` (each (u, v)) in ``turn`` started turns.
+
+    A part of a turn that is not more than ``least`` (rad), or within it of a turn, is a full turn.
+    """
+    part = math.atan2(end[1] - centre[1], end[0] - centre[0]) - math.atan2(start[1] - centre[1], start[0] - centre[0])
+    if turn < 0:
+        part = -part
+    if part <= 0.0:
+        part += _TURN
+    if part <= least or _TURN - part < least:
+        part = _TURN
+    part += (abs(turn) - 1) * _TURN
+    return part if turn > 0 else -part
+
+
+def arc_centre(m, w, motion: int, start, end):
+    """(refusal, u, v): the centre of an arc from ``start`` to ``end``, each (u, v) in the plane, by I J K or by R."""
+    if not math.isnan(w[R]):
+        return _centre_by_radius(m, w[R], motion, start, end)
+    first, second, _ = axes(m.plane)
+    u = 0.0 if math.isnan(w[I + first]) else w[I + first]
+    v = 0.0 if math.isnan(w[I + second]) else w[I + second]
+    if not m.arc_absolute:
+        u, v = start[0] + u, start[1] + v
+    r_start, r_end = math.hypot(u - start[0], v - start[1]), math.hypot(u - end[0], v - end[1])
+    if min(r_start, r_end) < (RADIUS_INCH if m.unit_code == INCH else RADIUS_MM):
+        return ARC_ON_ITS_CENTRE, u, v
+    tolerance = SPIRAL_INCH if m.unit_code == INCH else SPIRAL_MM
     allowed = min(max(tolerance, SPIRAL_SHARE * max(r_start, r_end)), 100.0 * tolerance)
-    if abs(r_start - r_end) > allowed:
-        radii = [format_si(r * machine.factor, "mm", 4) for r in (r_start, r_end)]
-        raise block.refuse(
-            f"{name} does not end on its circle: the radius is {radii[0]} at the start and {radii[1]} at the end; "
-            f"they may differ by {format_si(allowed * machine.factor, 'mm', 4)}."
-        )
-    return centre
+    m.figures[0], m.figures[1], m.figures[2] = r_start, r_end, allowed
+    return (ARC_OFF_ITS_CIRCLE if abs(r_start - r_end) > allowed else 0), u, v
 
 
-def _centre_from_radius(
-    machine: Machine, block: Block, x: float, y: float, end_x: float, end_y: float
-) -> tuple[float, float]:
-    radius = block.words["r"]
-    name = f"G{block.motion // 10}"
-    if end_x == x and end_y == y:
-        raise block.refuse(f"{name} with R ends where it starts; a full circle needs I, J or K.")
-    size = abs(radius)
-    half = 0.5 * math.hypot(end_x - x, end_y - y)
-    if half - size > RADIUS_TOLERANCE[machine.unit] or size == 0.0:
-        shown = format_si(size * machine.factor, "mm", 4), format_si(half * machine.factor, "mm", 4)
-        raise block.refuse(f"{name} cannot reach its end: R is {shown[0]}, half the distance is {shown[1]}.")
+def _centre_by_radius(m, radius: float, motion: int, start, end):
+    """R above 0 is the arc of at most half a turn, below 0 the other one about the mirrored centre."""
+    if end[0] == start[0] and end[1] == start[1]:
+        return RADIUS_TO_START, 0.0, 0.0
+    size, half = abs(radius), 0.5 * math.hypot(end[0] - start[0], end[1] - start[1])
+    m.figures[0], m.figures[1] = size, half
+    if half - size > (RADIUS_INCH if m.unit_code == INCH else RADIUS_MM) or size == 0.0:
+        return RADIUS_TOO_SMALL, 0.0, 0.0
     if half / size > 1.0 - 1e-12:
         half = size
-    side = -1.0 if (block.motion == 20) == (radius > 0) else 1.0
-    theta = math.atan2(end_y - y, end_x - x) + side * math.pi / 2.0
-    offset = size * math.cos(math.asin(half / size))
-    return (end_x + x) / 2.0 + offset * math.cos(theta), (end_y + y) / 2.0 + offset * math.sin(theta)
+    side = -1.0 if (motion == CLOCKWISE) == (radius > 0.0) else 1.0
+    towards = math.atan2(end[1] - start[1], end[0] - start[0]) + side * math.pi / 2.0
+    away = size * math.cos(math.asin(half / size))
+    return 0, (end[0] + start[0]) / 2.0 + away * math.cos(towards), (end[1] + start[1]) / 2.0 + away * math.sin(towards)
 
 
-def home(machine: Machine, block: Block, code: int) -> None:
-    """G28 and G30: by way of the point on the line to the stored point, which is 5161... or 5181... (mm)."""
-    if machine.compensation is not None:
-        raise block.refuse(f"G{code // 10} cannot be used with cutter compensation on; use G40 first.")
-    end = find_end(machine, block)
-    machine.traverse(block.line, end)
-    stored = 5161 if code == 280 else 5181
-    values = machine.store.numbered[stored : stored + 6]
-    target = [machine.from_user(v) for v in values[:3]] + values[3:]
-    words = dict(zip(XYZABC, target))
-    target = _machine_end(machine, words)
-    chosen = [letter in block.words for letter in XYZABC]
-    final = [t if c or not any(chosen) else e for t, e, c in zip(target, end, chosen)]
-    machine.traverse(block.line, final)
-    machine.p = final
+def arc_length(m, end, start, centre, turn: int) -> float:
+    """Length that an inverse time counts: with the radius at the start. ``start`` and ``centre`` are (u, v)."""
+    first, second, third = axes(m.plane)
+    angle = swept(start, (end[first], end[second]), centre, turn, 0.0)
+    radius = math.hypot(start[0] - centre[0], start[1] - centre[1])
+    return math.hypot(radius * angle, end[third] - m.p[third])
 
 
-def save_home(machine: Machine, block: Block, code: int) -> None:
-    """G28.1 and G30.1: store the current point."""
-    if machine.compensation is not None:
-        raise block.refuse("a reference point cannot be stored with cutter compensation on; use G40 first.")
-    stored = 5161 if code == 281 else 5181
-    total = [machine.p[i] + machine.g5x[i] + machine.g92[i] for i in range(6)]
-    lengths = [machine.to_user(total[i] + machine.length_offset[i]) for i in range(3)]
-    machine.store.numbered[stored : stored + 6] = [*lengths, *total[3:]]
+def write_arc(m, end, middle, turn: int, v_f: float, row) -> None:
+    """Write an arc in ``row.plane`` to ``end`` (6,) about ``middle`` (3,), both in the current coordinate system."""
+    write_move(m, ARC, end, v_f, row)
+    to_frame(m, middle[0], middle[1], middle[2], row.centre)
+    first, second, _ = axes(row.plane)
+    row.turns = abs(turn)
+    row.clockwise = turn < 0
+    row.sweep = swept(
+        (row.start[first], row.start[second]),
+        (row.end[first], row.end[second]),
+        (row.centre[first], row.centre[second]),
+        turn,
+        FULL_TURN,
+    )
+
+
+# --- a line
+def check_move(m, w, motion: int, polar: bool) -> int:
+    """Whether the words of a line allow G0, G1, G2 or G3. ``polar``: its end is given in polar words."""
+    if is_arc(motion):
+        first, second, _ = axes(m.plane)
+        return check_arc(m, w, polar or not (math.isnan(w[X + first]) and math.isnan(w[X + second])))
+    return check_feed(m, w) if motion == LINE else 0
+
+
+def make_move(m, w, motion: int, end, row) -> int:
+    """G0, G1, G2 or G3 to ``end`` (6,), written into ``row``. Where it is refused nothing has changed."""
+    if is_arc(motion):
+        first, second, third = axes(m.plane)
+        start = (m.p[first], m.p[second])
+        refusal, u, v = arc_centre(m, w, motion, start, (end[first], end[second]))
+        if refusal != 0:
+            return refusal
+        turn = turns_of(w, motion)
+        inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
+        middle = [0.0, 0.0, 0.0]
+        middle[first], middle[second], middle[third] = u, v, m.p[third]
+        row.plane = m.plane
+        write_arc(m, end, middle, turn, feed_speed(m), row)
+    elif motion == LINE:
+        inverse_time(m, w, straight_length(m.p, end))
+        write_straight(m, FEED, end, feed_speed(m), row)
+    else:
+        write_straight(m, TRAVERSE, end, 0.0, row)
+    m.arc_not_allowed = False
+    m.initial_level = math.nan
+    m.motion = motion
+    for axis in range(6):
+        m.p[axis] = end[axis]
+    return 0
+
+
+def run(m, words, first_line: int, rows):
+    """(lines, moves): plain lines made into moves, up to the first that is refused or means more than these rules.
+
+    That line has changed nothing that doing it again would not; the interpreter reads it and says what is wrong.
+    """
+    end = [0.0] * 6
+    moves = 0
+    for i in range(len(words)):
+        w = words[i]
+        has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
+        has_axes = False
+        for axis in range(6):
+            has_axes = has_axes or not math.isnan(w[X + axis])
+        motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[G]) else int(w[G])
+        arc = is_arc(motion)
+        if not arc and (has_centre or not math.isnan(w[R]) or motion not in (-1, RAPID, LINE)):
+            return i, moves
+        set_rates(m, w)
+        if motion >= 0:
+            if check_move(m, w, motion, False) != 0:
+                return i, moves
+            end_point(m, w, m.p, end)
+            if make_move(m, w, motion, end, rows[moves]) != 0:
+                return i, moves
+            rows[moves].line = first_line + i
+            moves += 1
+    return len(words), moves

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from robomill.toolpath.gcode.compensation import Compensation
-from robomill.toolpath.gcode.machine import XYZABC, Machine, rotate
-from robomill.toolpath.gcode.modal import COMPENSATION, g_name
+from robomill.toolpath.gcode.machine import XYZABC, Machine
+from robomill.toolpath.gcode.motion import rotate
 from robomill.toolpath.gcode.tools import Tool
-from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.gcode.words import COMPENSATION, Block, g_name
 from robomill.units import from_si, to_si
 
 SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from robomill.toolpath.gcode.execute import restore_modes
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.parameters import ARGUMENTS
+from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.gcode.words import Block
 
 MAX_CALLS = 10
@@ -27,7 +27,7 @@ class File:
     """Lines of a program or subroutine file, and its O words."""
 
     name: str
-    lines: Sequence[str]
+    lines: Lines
     folder: Path | None = None
     structure: flow.Structure | None = None
 
@@ -271,7 +271,7 @@ class OWords:
         path = folder / f"{label}.ngc" if folder is not None and plain else None
         if path is None or not path.is_file() or path.stat().st_size > MAX_FILE:
             raise reader.refuse(f"O{label} is called, but there is no O{label} sub; define it in the program.")
-        lines = path.read_bytes().decode("utf-8", "replace").split("\n")
+        lines = Lines(path.read_bytes())
         self.machine.findings.add("info", reader.line, f"O{label} is read from {path.name} beside the program")
         self.others[label] = File(path.name, lines, folder)
         return self.others[label]

@@ -1,7 +1,8 @@
-"""What an interpreter makes of a program: canonical moves in the machine frame, as arrays."""
+"""What an interpreter makes of a program: canonical moves in the machine frame, recorded one by one, kept as arrays."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -9,29 +10,19 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.errors import GCodeError
 from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.gcode.motion import ARC, FEED, MOVE, PROBE, TAP, TRAVERSE
 
-TRAVERSE, FEED, ARC, TAP, PROBE = 0, 1, 2, 3, 4
+__all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder"]
+
 KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
+MAX_MOVES = 6_000_000
+FLUSH = 16_384
 
-_WIDTHS = {
-    "line": 1,
-    "kind": 1,
-    "start": 3,
-    "end": 3,
-    "rotary0": 3,
-    "rotary": 3,
-    "plane": 1,
-    "centre": 3,
-    "turns": 1,
-    "clockwise": 1,
-    "v_f": 1,
-    "n_s": 1,
-    "tool": 1,
-}
+_COLUMNS: tuple[str, ...] = MOVE.names or ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +38,7 @@ class Program:
     centre    (m, 3) m       arc centre, at the start's height; 0 otherwise
     turns     (m,) int       started turns of an arc (1: up to a full circle); 0 otherwise
     clockwise (m,) bool      sense of an arc seen from the positive third axis
+    sweep     (m,) rad       signed sweep of arcs (clockwise negative), 0 for straight moves
     v_f       (m,) m/s       feed rate, 0 for traverses
     n_s       (m,) 1/s       spindle speed, 0 where stopped
     tool      (m,) int       tool number in the spindle
@@ -62,6 +54,7 @@ class Program:
     centre: FloatArray
     turns: IntArray
     clockwise: BoolArray
+    sweep: FloatArray
     v_f: FloatArray
     n_s: FloatArray
     tool: IntArray
@@ -72,16 +65,6 @@ class Program:
     dwell_time: float = 0.0
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     messages: tuple[tuple[int, str], ...] = field(default=(), compare=False)
-
-    def __post_init__(self) -> None:
-        m = len(self.line)
-        for name, width in _WIDTHS.items():
-            shape = (m, width) if width > 1 else (m,)
-            array = np.broadcast_to(np.asarray(getattr(self, name)), shape)
-            if array.flags.writeable:
-                array = array.copy()
-                array.flags.writeable = False
-            object.__setattr__(self, name, array)
 
     def __len__(self) -> int:
         return len(self.line)
@@ -95,37 +78,18 @@ class Program:
         """(m,) True for moves of a kind in ``KINDS``."""
         return np.asarray(self.kind == KINDS.index(name))
 
-    def geometry(self, rows: IntArray) -> tuple[Any, ...]:
-        """start, end, centre, plane, turns, clockwise of some moves, as the functions of ``arcs`` take them."""
-        return (
-            self.start[rows],
-            self.end[rows],
-            self.centre[rows],
-            self.plane[rows].astype(np.int64),
-            self.turns[rows],
-            self.clockwise[rows],
+    def arcs_of(self, rows: IntArray) -> arcs.Arcs:
+        """Some moves that are arcs."""
+        return arcs.Arcs(
+            self.start[rows], self.end[rows], self.centre[rows], self.plane[rows].astype(np.int64), self.sweep[rows]
         )
-
-    @cached_property
-    def _arc_rows(self) -> IntArray:
-        return np.flatnonzero(self.kind == ARC)
-
-    @cached_property
-    def sweep(self) -> FloatArray:
-        """(m,) rad: signed sweep of arcs (clockwise negative), 0 for straight moves."""
-        i = self._arc_rows
-        sweep = np.zeros(len(self))
-        sweep[i] = arcs.sweeps(*self.geometry(i))[1]
-        return frozen(sweep)
 
     @cached_property
     def length(self) -> FloatArray:
         """(m,) m: true length of each move, arcs by their arc length, taps there and back."""
         length = np.linalg.norm(self.end - self.start, axis=1)
-        i = self._arc_rows
-        _, sweep, r0, r1 = arcs.sweeps(*self.geometry(i))
-        climb = arcs.in_plane(self.plane[i].astype(np.int64), self.end[i] - self.start[i])[2]
-        length[i] = arcs.arc_lengths(sweep, r0, r1, climb)
+        rows = np.flatnonzero(self.kind == ARC)
+        length[rows] = self.arcs_of(rows).length
         length[self.kind == TAP] *= 2.0
         return frozen(length)
 
@@ -135,18 +99,81 @@ class Program:
         at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
-        lower, upper = arcs.arc_extents(*self.geometry(self._arc_rows))
+        lower, upper = self.arcs_of(np.flatnonzero(self.kind == ARC)).extents
         points = [self.start[at_feed], self.end[at_feed], lower, upper]
         return (
             np.min([q.min(axis=0) for q in points if len(q)], axis=0),
             np.max([q.max(axis=0) for q in points if len(q)], axis=0),
         )
 
-    def toolpath(self, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
-        """The moves as straight pieces in {W}, arcs as chords within ``chord_error`` (m); see ``chords``.
 
-        Raises GCodeError if nothing moves.
-        """
-        from robomill.toolpath.gcode.chords import to_toolpath
+class Move:
+    """A move that the rules of ``motion`` write, as a row of ``MOVE`` in plain Python."""
 
-        return to_toolpath(self, chord_error)
+    __slots__ = _COLUMNS
+
+    def __init__(self, line: int = 0) -> None:
+        self.line = line
+        self.kind = self.plane = self.turns = self.tool = 0
+        self.clockwise = False
+        self.sweep = self.v_f = self.n_s = 0.0
+        self.start, self.end, self.centre = [0.0] * 3, [0.0] * 3, [0.0] * 3
+        self.rotary0, self.rotary = [0.0] * 3, [0.0] * 3
+
+
+class Recorder:
+    """Collects moves, one by one or as rows of ``MOVE``."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._moves: list[Move] = []
+        self._chunks: list[tuple[int, dict[str, np.ndarray]]] = []
+
+    def add(self, move: Move) -> None:
+        """A move. Raises GCodeError if there are too many."""
+        self._moves.append(move)
+        if len(self._moves) >= FLUSH:
+            self._flush()
+
+    def extend(self, moves: Sequence[Move] | np.ndarray) -> None:
+        """Many moves. Raises GCodeError if there are too many."""
+        if not isinstance(moves, np.ndarray):
+            for move in moves:
+                self.add(move)
+        elif len(moves):
+            self._flush()
+            self._keep(moves)
+
+    def _flush(self) -> None:
+        if self._moves:
+            rows = [tuple(getattr(move, name) for name in _COLUMNS) for move in self._moves]
+            self._moves = []
+            self._keep(np.array(rows, MOVE))
+
+    def _keep(self, rows: np.ndarray) -> None:
+        """Columns of ``rows``; those that are 0 throughout are left out."""
+        self._chunks.append((len(rows), {n: np.ascontiguousarray(rows[n]) for n in _COLUMNS if rows[n].any()}))
+        self.count += len(rows)
+        if self.count > MAX_MOVES:
+            line = int(rows["line"][-1])
+            raise GCodeError(f"Line {line}: the program makes more than {MAX_MOVES} moves; split it.", line=line)
+
+    def columns(self) -> dict[str, Any]:
+        """All moves as read-only arrays by column name; what is 0 throughout takes no room."""
+        self._flush()
+        out: dict[str, Any] = {}
+        for name in _COLUMNS:
+            dtype = MOVE[name]
+            shape = (self.count, *dtype.shape)
+            if not any(name in columns for _, columns in self._chunks):
+                out[name] = np.broadcast_to(np.zeros(1, dtype.base), shape)
+                continue
+            whole, row = np.zeros(shape, dtype.base), 0
+            for n, columns in self._chunks:
+                part = columns.pop(name, None)
+                if part is not None:
+                    whole[row : row + n] = part
+                row += n
+            whole.flags.writeable = False
+            out[name] = whole
+        return out

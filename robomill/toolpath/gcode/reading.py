@@ -9,15 +9,16 @@ import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
-from robomill.toolpath.gcode.fastpath import MIN_LINES, FastPath
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import ARC, FEED, Program
-from robomill.toolpath.gcode.source import Source, read_source, split_lines
+from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.gcode.tools import ToolTable, read_tool_table
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.text import Source, read_source
 from robomill.units import format_si, to_si
 
 LIKELY = (0.008, 3.0)
@@ -38,7 +39,7 @@ def read_gcode(
     Raises GCodeError naming the line that is refused, or if nothing moves.
     """
     program = interpret(path_or_text, dialect=dialect, tools=tools, progress=progress, cancel=cancel)
-    return program.toolpath(chord_error)
+    return to_toolpath(program, chord_error)
 
 
 def interpret(
@@ -48,18 +49,16 @@ def interpret(
     tools: ToolTable | str | Path | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    fast: bool = True,
     partial: bool = False,
 ) -> Program:
-    """Canonical moves of a program: a path, the text itself, or its bytes (see ``source.read_source``).
+    """Canonical moves of a program: a path, the text itself, or its bytes (see ``read_source``).
 
     ``tools`` is a tool table or its file; without one every tool is accepted, of unknown size. ``progress`` is
-    called with the share that is done, ``cancel`` asked whether to stop. ``fast`` lets plain stretches of long
-    programs be read as arrays; the result is the same. Raises GCodeError naming the line that is refused; with
-    ``partial`` the moves before it are returned instead, and the refusal is an error among the findings.
+    called with the share that is done, ``cancel`` asked whether to stop. Raises GCodeError naming the line that is
+    refused; with ``partial`` the moves before it are returned instead, and the refusal is an error among the findings.
     """
     data, name = read_source(source)
-    lines = split_lines(data)
+    lines = Lines(data)
     if isinstance(tools, str | Path):
         tools = read_tool_table(tools)
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
@@ -68,7 +67,7 @@ def interpret(
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     interpreter = Interpreter(machine, File(name, lines, folder), chosen, progress, cancel)
     try:
-        interpreter.run(FastPath(data, len(lines)) if fast and len(lines) >= MIN_LINES else None)
+        interpreter.run()
     except GCodeError as exc:
         if not partial:
             raise
@@ -103,8 +102,10 @@ def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
     at_feed = (columns["kind"] == FEED) | (columns["kind"] == ARC)
     if not at_feed.any():
         return
-    ends, starts = columns["end"][at_feed], columns["start"][at_feed]
-    upper, lower = np.maximum(ends.max(axis=0), starts.max(axis=0)), np.minimum(ends.min(axis=0), starts.min(axis=0))
+    chosen = at_feed[:, None]
+    both = (columns["start"], columns["end"])
+    upper = np.max([np.max(q, axis=0, where=chosen, initial=-np.inf) for q in both], axis=0)
+    lower = np.min([np.min(q, axis=0, where=chosen, initial=np.inf) for q in both], axis=0)
     size = float((upper - lower).max())
     inch = to_si(1.0, "in") / to_si(1.0, "mm")
     shown = format_si(size, "mm", 1)

@@ -7,10 +7,9 @@ import math
 from pathlib import Path
 from typing import Any
 
+from robomill.toolpath.gcode.motion import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
 from robomill.units import from_si
-
-_IN_PLANE = {17: (0, 1), 18: (2, 0), 19: (1, 2)}
 
 
 def gcode_report(program: Program) -> dict[str, Any]:
@@ -67,7 +66,7 @@ def write_moves_jsonl(program: Program, path: str | Path) -> None:
                 plane = int(program.plane[i])
                 row |= {
                     "plane": PLANES[plane],
-                    "centre": _mm(program.centre[i][list(_IN_PLANE[plane])]),
+                    "centre": _mm(program.centre[i][list(axes(plane)[:2])]),
                     "turns": int(program.turns[i]),
                     "clockwise": bool(program.clockwise[i]),
                     "sweep_deg": math.degrees(float(sweep[i])),

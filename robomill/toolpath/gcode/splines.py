@@ -6,7 +6,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import check_feed, find_end
+from robomill.toolpath.gcode.moves import find_end, need_feed
 from robomill.toolpath.gcode.words import Block
 
 PIECES = 15
@@ -20,7 +20,7 @@ def spline(machine: Machine, block: Block) -> None:
     name = f"G5.{block.motion % 10}" if block.motion % 10 else "G5"
     if machine.compensation is not None:
         raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
-    check_feed(machine, block, name)
+    need_feed(machine, block, name)
     if machine.plane != 17:
         raise block.refuse(f"{name} works in the plane G17 only.")
     if block.motion == 52:

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import find_end
+from robomill.toolpath.gcode.motion import spindle_speed
+from robomill.toolpath.gcode.moves import find_end
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.words import Block
 
@@ -75,7 +76,7 @@ def thread(machine: Machine, block: Block) -> None:
     backward = end[2] > machine.p[2]
     slope = math.tan(math.radians(words.get("q", 0.0))) * (-1.0 if backward else 1.0)
     taper = max(words.get("e", 0.0), 0.0)
-    pitch = words["p"] * machine.factor * machine.spindle_speed
+    pitch = words["p"] * machine.factor * spindle_speed(machine)
     flags = round(words.get("l", 0.0))
     shape = _Thread(
         machine,

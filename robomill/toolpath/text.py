@@ -4,21 +4,13 @@ from __future__ import annotations
 
 import codecs
 import os
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from robomill.errors import GCodeError
-
-LAZY_BYTES = 1_000_000
-"""Programs larger than this are not split into strings at once."""
 
 Source = str | bytes | bytearray | Path
 SUFFIXES = frozenset({".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"})
 MAX_BYTES = 200_000_000
-MAX_LINE = 1_000_000
 
 
 def read_source(source: Source) -> tuple[bytes, str]:
@@ -37,31 +29,6 @@ def read_source(source: Source) -> tuple[bytes, str]:
     if _is_path(source):
         return _read_file(Path(source)), os.path.basename(source)
     return as_plain_bytes(source.encode("utf-8", "surrogateescape")), "program"
-
-
-class Lines(Sequence[str]):
-    """The lines of a large program, each made a string when it is asked for."""
-
-    def __init__(self, data: bytes) -> None:
-        self._data = data
-        self._ends = np.append(np.flatnonzero(np.frombuffer(data, np.uint8) == 10), len(data))
-
-    def __len__(self) -> int:
-        return len(self._ends)
-
-    def __getitem__(self, index: Any) -> Any:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        if not -len(self) <= index < len(self):
-            raise IndexError(index)
-        index %= len(self)
-        begin = int(self._ends[index - 1]) + 1 if index else 0
-        return self._data[begin : int(self._ends[index])].decode("utf-8", "replace")
-
-
-def split_lines(data: bytes) -> Sequence[str]:
-    """The lines of a program, without their ends."""
-    return Lines(data) if len(data) > LAZY_BYTES else data.decode("utf-8", "replace").split("\n")
 
 
 def _is_path(text: str) -> bool:
