@@ -32,10 +32,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from robomill.arrays import BoolArray, FloatArray, IntArray
 
 PACKAGE = Path(__file__).parent
 PATTERNS = ("*/**/kernels.py", "*/**/*_kernels.py")
+RULES = "*/**/*_rules.py"  # plain Python that kernels compile too
 WORDS = "Preparing the kernels, once, about 20 s"
 COMPLETE = "complete"
 PLACE = "ROBOMILL_CACHE"
@@ -51,9 +54,12 @@ _announced: list[Callable[[str], Any]] = []
 
 
 class Axes(NamedTuple):
-    """An array a kernel takes: C-ordered, ``dims`` axes of ``dtype``; read only unless it is there to be written."""
+    """An array a kernel takes: C-ordered, ``dims`` axes of ``dtype``; read only unless it is there to be written.
 
-    dtype: str
+    ``dtype`` is the name of a number's type, or a record's.
+    """
+
+    dtype: str | np.dtype[Any]
     dims: int
     written: bool = False
 
@@ -113,14 +119,15 @@ def _signature(function: Callable[..., Any]) -> Any:
 
 
 def _numba_type(hint: Any) -> Any:
-    from numba import types
+    from numba import from_dtype, types
 
     plain = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.void}
     if hint in plain:
         return plain[hint]
     if get_origin(hint) is Annotated:
         axes = get_args(hint)[1]
-        return types.Array(getattr(types, axes.dtype), axes.dims, "C", readonly=not axes.written)
+        element = getattr(types, axes.dtype) if isinstance(axes.dtype, str) else from_dtype(axes.dtype)
+        return types.Array(element, axes.dims, "C", readonly=not axes.written)
     if get_origin(hint) is tuple:
         return types.Tuple([_numba_type(item) for item in get_args(hint)])
     fields = [_numba_type(item) for item in get_type_hints(hint, include_extras=True).values()]
@@ -165,7 +172,7 @@ def _key() -> str:
     """A digest of every source that kernels are made from: the compiler by itself looks only at a function's own file,
     and would keep running old code of the functions it calls."""
     state = hashlib.sha256(f"{sys.implementation.cache_tag} {version('numba')} {_processor()}".encode())
-    for source in [Path(__file__), *_sources()]:
+    for source in [Path(__file__), *_sources(), *sorted(PACKAGE.glob(RULES))]:
         state.update(source.name.encode() + source.read_bytes())
     return state.hexdigest()[:16]
 

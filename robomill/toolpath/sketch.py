@@ -230,19 +230,12 @@ def _centre(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
 
 
 def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise: bool) -> FloatArray:
-    from robomill.toolpath.gcode import arcs  # the one place where arcs become chords; loads the reader with it
+    from robomill.toolpath.gcode import arcs, motion_rules  # the one place where arcs become chords
 
     def lifted(point: FloatArray) -> FloatArray:
         return np.array([[point[0], point[1], 0.0]])
 
-    geometry = (
-        lifted(start),
-        lifted(end),
-        lifted(centre),
-        np.array([17]),
-        np.array([1]),
-        np.array([clockwise]),
-    )
-    _, sweep, radius, _ = arcs.sweeps(*geometry)
-    counts = arcs.chord_counts(sweep, radius, arcs.CHORD_ERROR)
-    return np.vstack([lifted(start), arcs.chord_points(*geometry, counts=counts)])[:, :2]
+    sweep = motion_rules.swept(start, end, centre, -1 if clockwise else 1, motion_rules.FULL_TURN)
+    arc = arcs.Arcs(lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([sweep]))
+    counts = arcs.chord_counts(arc.sweep, arc.radius, arcs.CHORD_ERROR)
+    return np.vstack([lifted(start), arc.chords(counts)])[:, :2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from contextlib import ExitStack
 from unittest.mock import patch
 
 import numpy as np
@@ -65,21 +66,32 @@ special = st.sampled_from(
 program = st.lists(st.one_of(plain_line(), plain_line(), plain_line(), special), min_size=1, max_size=30)
 
 
-def outcome(text: str, fast: bool) -> list:
-    try:
-        result = interpret(text.encode(), fast=fast)
-    except GCodeError as exc:
-        return [str(exc)]
+STRETCHES = "robomill.toolpath.gcode.stretches."
+READERS = {
+    "reader": {"Lines.plain": lambda lines, index: []},
+    "plain": {"LONG": 10**9, "LOADED_LONG": 10**9},
+    "compiled": {"LONG": 0, "LOADED_LONG": 0, "WORTHWHILE": 1, "CHUNK": 5},
+}
+
+
+def outcome(text: str, how: str) -> list:
+    with ExitStack() as stack:
+        for name, value in READERS[how].items():
+            stack.enter_context(patch(STRETCHES + name, value))
+        try:
+            result = interpret(text.encode())
+        except GCodeError as exc:
+            return [str(exc)]
     return [getattr(result, f.name) for f in dataclasses.fields(result)]
 
 
 @settings(max_examples=150, deadline=None)
 @given(program)
-def test_stretches_read_as_arrays_are_what_the_interpreter_makes(lines: list[str]) -> None:
+def test_plain_stretches_are_what_line_by_line_makes_of_them(lines: list[str]) -> None:
     text = "G21 F100\n" + "\n".join(lines) + "\n"
     for _ in range(len(lines)):  # leave out the lines that are refused, to get far
         try:
-            interpret(text.encode(), fast=False)
+            interpret(text.encode())
             break
         except GCodeError as exc:
             kept = text.split("\n")
@@ -87,13 +99,10 @@ def test_stretches_read_as_arrays_are_what_the_interpreter_makes(lines: list[str
                 break
             del kept[exc.line - 1]
             text = "\n".join(kept)
-    base = "robomill.toolpath.gcode."
-    with patch(base + "reading.MIN_LINES", 0), patch(base + "fastpath.MIN_RUN", 1), patch(base + "fastpath.CHUNK", 5):
-        fast = outcome(text, True)
-    slow = outcome(text, False)
-    assert len(fast) == len(slow)
-    for a, b in zip(fast, slow):
-        assert np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
+    one_by_one = outcome(text, "reader")
+    for how, tolerance in (("plain", 0.0), ("compiled", 1e-14)):
+        for a, b in zip(outcome(text, how), one_by_one, strict=True):
+            assert np.allclose(a, b, rtol=tolerance, atol=tolerance) if isinstance(a, np.ndarray) else a == b
 
 
 def test_a_bad_line_far_down_is_refused_on_its_line() -> None:

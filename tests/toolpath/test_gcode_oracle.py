@@ -15,7 +15,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import gcode_report, interpret, read_gcode
-from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES
 
 FOLDER = os.environ.get("ROBOMILL_GCODE_ORACLE", "")

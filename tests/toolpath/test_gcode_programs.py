@@ -14,7 +14,7 @@ import pytest
 
 from robomill.io.gcode_out import write_gcode
 from robomill.toolpath.gcode import Tool, interpret, read_gcode
-from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import KINDS, PLANES
 
 FILES = sorted((Path(__file__).parent / "data" / "programs").glob("*.ngc"))

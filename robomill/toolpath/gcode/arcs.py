@@ -14,7 +14,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.motion_rules import axes
 
 CHORD_ERROR = 1e-6
 """m: no chord lies farther than this from its arc, unless the caller asks for another figure."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import implied_motion, is_arc
+from robomill.toolpath.gcode.motion_rules import implied_motion, is_arc
 from robomill.toolpath.gcode.words import (
     COMPENSATION,
     CONTROL,
@@ -24,6 +24,8 @@ from robomill.toolpath.gcode.words import (
 )
 
 _AXES = "xyzabcuvw"
+_SPECIAL = frozenset("dehijklpqr")
+"""Words that only some codes use, as ``_uses`` says."""
 _COMPENSATION_ON = frozenset({410, 411, 420, 421})
 
 
@@ -90,6 +92,8 @@ def check_words(block: Block) -> list[tuple[str, str]]:
             raise block.refuse(f"{g_name(motion)} takes no F; K says the distance per turn.")
     if block.g.get(SPINDLE_MODE) == 960 and "s" not in words:
         raise block.refuse("G96 needs S, the surface speed.")
+    if words.keys().isdisjoint(_SPECIAL):
+        return []
     return [(letter, use) for letter, used, use in _uses(block) if letter in words and not used]
 
 

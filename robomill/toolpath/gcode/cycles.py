@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.moves import polar, polar_step
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.words import Block

@@ -7,7 +7,7 @@ from typing import Any
 
 from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion import set_rates
+from robomill.toolpath.gcode.motion_rules import set_rates
 from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import (
     ARC_DISTANCE,

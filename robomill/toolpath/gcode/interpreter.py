@@ -9,9 +9,10 @@ from robomill.toolpath.gcode import check
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File, OWords
-from robomill.toolpath.gcode.stretches import MAX_LINE, run_plain
+from robomill.toolpath.gcode.stretches import run_plain
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000

@@ -1,7 +1,7 @@
 """The machine that the program talks to: modes, offsets and the current point, in the units of the program.
 
 Lengths here are in program units (mm or inch, whatever G20/G21 says) and angles in degrees, as LinuxCNC keeps
-them; the rules of ``motion`` make them m and rad in the machine frame.
+them; the rules of ``motion_rules`` make them m and rad in the machine frame.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.findings import Findings
-from robomill.toolpath.gcode.motion import feed_speed, rotate, write_arc, write_straight
+from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.tools import Tool, ToolTable
@@ -37,7 +37,7 @@ XYZABC = "xyzabc"
 
 
 class Machine:
-    """State that lines change; the fields that the rules of ``motion`` use are those of its ``STATE``.
+    """State that lines change; the fields that the rules of ``motion_rules`` use are those of its ``STATE``.
 
     ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system; ``at`` and ``turned`` are the tip
     (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are
@@ -84,7 +84,7 @@ class Machine:
 
     @property
     def is_plain(self) -> bool:
-        """True while the rules of ``motion`` alone say what G0 to G3 do."""
+        """True while the rules of ``motion_rules`` alone say what G0 to G3 do."""
         return self.compensation is None and not self.diameter_mode and self.motion in (0, 10, 20, 30)
 
     def set_units(self, code: int) -> None:

@@ -1,41 +1,41 @@
-"""The moves of a line: its words handed to the rules of ``motion``, their refusals in words, and returns home."""
+"""The moves of a line: its words handed to the rules of ``motion_rules``, their refusals in words, and returns home."""
 
 from __future__ import annotations
 
 import math
 
-from robomill.toolpath.gcode import motion
+from robomill.toolpath.gcode import motion_rules as rules
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.motion import LETTERS
+from robomill.toolpath.gcode.motion_rules import LETTERS
 from robomill.toolpath.gcode.program import FEED, TAP, Move
 from robomill.toolpath.gcode.words import NON_MODAL, Block, g_name
 from robomill.units import format_si
 
 SENTENCES = {
-    motion.NO_FEED_ON_LINE: "{name} in inverse time mode (G93) needs an F word on its line.",
-    motion.NO_FEED: "{name} needs a feed rate; give an F word above 0 first.",
-    motion.NO_SPEED: "{name} in feed per revolution (G95) needs a spindle speed; give an S word first.",
-    motion.ARC_AFTER_G40: "the move after G40 must be straight, not an arc.",
-    motion.ARC_IN_NO_PLANE: "{name} in G{plane} with a rotated coordinate system (G10 R) is in no plane.",
-    motion.ARC_WITHOUT_FORM: "{name} needs its centre (I, J, K) or its radius (R).",
-    motion.ARC_WITH_TWO_FORMS: "{name} has both a centre (I, J, K) and a radius (R); give one of them.",
-    motion.ARC_ACROSS_PLANE: "{name} has {across}, which is not in the plane G{plane}.",
-    motion.ARC_CENTRE_INCOMPLETE: "{name} with absolute centre (G90.1) needs {missing}.",
-    motion.RADIUS_WITHOUT_END: "{name} with R needs an end point in its plane ({ends}); R cannot say a full circle.",
-    motion.ARC_ON_ITS_CENTRE: "{name} has a radius of 0; start or end lies on its centre.",
-    motion.ARC_OFF_ITS_CIRCLE: "{name} does not end on its circle: the radius is {figures[0]} at the start and "
+    rules.NO_FEED_ON_LINE: "{name} in inverse time mode (G93) needs an F word on its line.",
+    rules.NO_FEED: "{name} needs a feed rate; give an F word above 0 first.",
+    rules.NO_SPEED: "{name} in feed per revolution (G95) needs a spindle speed; give an S word first.",
+    rules.ARC_AFTER_G40: "the move after G40 must be straight, not an arc.",
+    rules.ARC_IN_NO_PLANE: "{name} in G{plane} with a rotated coordinate system (G10 R) is in no plane.",
+    rules.ARC_WITHOUT_FORM: "{name} needs its centre (I, J, K) or its radius (R).",
+    rules.ARC_WITH_TWO_FORMS: "{name} has both a centre (I, J, K) and a radius (R); give one of them.",
+    rules.ARC_ACROSS_PLANE: "{name} has {across}, which is not in the plane G{plane}.",
+    rules.ARC_CENTRE_INCOMPLETE: "{name} with absolute centre (G90.1) needs {missing}.",
+    rules.RADIUS_WITHOUT_END: "{name} with R needs an end point in its plane ({ends}); R cannot say a full circle.",
+    rules.ARC_ON_ITS_CENTRE: "{name} has a radius of 0; start or end lies on its centre.",
+    rules.ARC_OFF_ITS_CIRCLE: "{name} does not end on its circle: the radius is {figures[0]} at the start and "
     "{figures[1]} at the end; they may differ by {figures[2]}.",
-    motion.RADIUS_TO_START: "{name} with R ends where it starts; a full circle needs I, J or K.",
-    motion.RADIUS_TOO_SMALL: "{name} cannot reach its end: R is {figures[0]}, half the distance is {figures[1]}.",
+    rules.RADIUS_TO_START: "{name} with R ends where it starts; a full circle needs I, J or K.",
+    rules.RADIUS_TOO_SMALL: "{name} cannot reach its end: R is {figures[0]}, half the distance is {figures[1]}.",
 }
-"""What is said for a code of ``motion``."""
+"""What is said for a code of ``motion_rules``."""
 
 
 def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
-    """Raise the refusal that a code of ``motion`` stands for; 0 is none. ``name``: of the motion, if not its G."""
+    """Raise the refusal that a code of ``motion_rules`` stands for; 0 is none. ``name`` is the motion's, else its G."""
     if code == 0:
         return
-    first, second, third = motion.axes(machine.plane)
+    first, second, third = rules.axes(machine.plane)
     raise block.refuse(
         SENTENCES[code].format(
             name=name or g_name(block.motion),
@@ -49,13 +49,13 @@ def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
 
 
 def plain_words(block: Block) -> list[float]:
-    """The words of a line as the rules of ``motion`` take them: by the indices G to P, NaN where not given."""
+    """The words of a line as the rules of ``motion_rules`` take them: by the indices G to P, NaN where not given."""
     return [block.words.get(letter, math.nan) for letter in LETTERS]
 
 
 def need_feed(machine: Machine, block: Block, name: str) -> None:
     """Refuse a move at feed without a feed rate."""
-    demand(machine, block, motion.check_feed(machine, plain_words(block)), name)
+    demand(machine, block, rules.check_feed(machine, plain_words(block)), name)
 
 
 def _is_polar(block: Block) -> bool:
@@ -72,7 +72,7 @@ def find_end(machine: Machine, block: Block, words: list[float] | None = None) -
     if machine.compensation is not None and machine.compensation.programmed is not None:
         base = machine.compensation.programmed_point(machine)
     end = [0.0] * 6
-    motion.end_point(machine, words or plain_words(block), base, end)
+    rules.end_point(machine, words or plain_words(block), base, end)
     if _is_polar(block):
         end[0], end[1] = (polar if machine.absolute else polar_step)(block, end[0], end[1])
     return end
@@ -80,11 +80,11 @@ def find_end(machine: Machine, block: Block, words: list[float] | None = None) -
 
 def _machine_end(machine: Machine, words: dict[str, float]) -> list[float]:
     """Where words of G53 lead: they count in machine coordinates."""
-    x, y = motion.rotate(machine.p[0] + machine.g92[0], machine.p[1] + machine.g92[1], machine.rotation)
+    x, y = rules.rotate(machine.p[0] + machine.g92[0], machine.p[1] + machine.g92[1], machine.rotation)
     offset = machine.length_offset
     x = words["x"] - machine.g5x[0] - offset[0] if "x" in words else x
     y = words["y"] - machine.g5x[1] - offset[1] if "y" in words else y
-    x, y = motion.rotate(x, y, -machine.rotation)
+    x, y = rules.rotate(x, y, -machine.rotation)
     end = [x - machine.g92[0], y - machine.g92[1], *machine.p[2:]]
     for axis, letter in enumerate("zabc", 2):
         if letter in words:
@@ -114,23 +114,23 @@ def polar_step(block: Block, x: float, y: float) -> tuple[float, float]:
 def move(machine: Machine, block: Block) -> None:
     """G0, G1, G2 and G3."""
     words = plain_words(block)
-    demand(machine, block, motion.check_move(machine, words, block.motion, _is_polar(block)))
+    demand(machine, block, rules.check_move(machine, words, block.motion, _is_polar(block)))
     end = find_end(machine, block, words)
     compensation = machine.compensation
-    is_arc = motion.is_arc(block.motion)
+    is_arc = rules.is_arc(block.motion)
     if compensation is not None and compensation.radius > 0 and not (is_arc and machine.plane == 19):
         machine.arc_not_allowed, machine.motion = False, block.motion
         if is_arc:
             compensation.arc(machine, block, end)
             return
-        if block.motion == motion.LINE:
-            motion.inverse_time(machine, words, motion.straight_length(machine.p, end))
+        if block.motion == rules.LINE:
+            rules.inverse_time(machine, words, rules.straight_length(machine.p, end))
         if block.g.get(NON_MODAL) == 530:
             raise block.refuse("G53 cannot be used with cutter compensation on; use G40 first.")
         compensation.straight(machine, block, end)
         return
     row = Move(block.line)
-    demand(machine, block, motion.make_move(machine, words, block.motion, end, row))
+    demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
     machine.recorder.add(row)
 
 
@@ -138,7 +138,7 @@ def centre_of_arc(
     machine: Machine, block: Block, start: tuple[float, float], end: tuple[float, float]
 ) -> tuple[float, float]:
     """Centre (u, v) in the plane of the arc of a line. Raises GCodeError naming both radii if they differ too much."""
-    code, u, v = motion.arc_centre(machine, plain_words(block), block.motion, start, end)
+    code, u, v = rules.arc_centre(machine, plain_words(block), block.motion, start, end)
     demand(machine, block, code)
     return u, v
 
@@ -154,7 +154,7 @@ def in_step(machine: Machine, block: Block) -> None:
         raise block.refuse("G33 cannot be used with cutter compensation on; use G40 first.")
     if machine.spindle == 0:
         raise block.refuse("G33 needs a turning spindle; start it with M3 or M4.")
-    pitch_speed = abs(block.words["k"]) * machine.factor * motion.spindle_speed(machine)
+    pitch_speed = abs(block.words["k"]) * machine.factor * rules.spindle_speed(machine)
     machine.go(TAP if block.motion == 331 else FEED, block.line, end, pitch_speed)
     if block.motion == 330:
         machine.p = end

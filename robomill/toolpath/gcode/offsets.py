@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.motion import rotate
+from robomill.toolpath.gcode.motion_rules import rotate
 from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import COMPENSATION, Block, g_name
 from robomill.units import from_si, to_si

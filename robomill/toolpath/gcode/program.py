@@ -13,7 +13,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.errors import GCodeError
 from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.gcode.motion import ARC, FEED, MOVE, PROBE, TAP, TRAVERSE
+from robomill.toolpath.gcode.motion_rules import ARC, FEED, MOVE, PROBE, TAP, TRAVERSE
 
 __all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder"]
 
@@ -108,7 +108,7 @@ class Program:
 
 
 class Move:
-    """A move that the rules of ``motion`` write, as a row of ``MOVE`` in plain Python."""
+    """A move that the rules of ``motion_rules`` write, as a row of ``MOVE`` in plain Python."""
 
     __slots__ = _COLUMNS
 
@@ -127,7 +127,7 @@ class Recorder:
     def __init__(self) -> None:
         self.count = 0
         self._moves: list[Move] = []
-        self._chunks: list[tuple[int, dict[str, np.ndarray]]] = []
+        self._columns: dict[str, np.ndarray] = {}
 
     def add(self, move: Move) -> None:
         """A move. Raises GCodeError if there are too many."""
@@ -151,29 +151,34 @@ class Recorder:
             self._keep(np.array(rows, MOVE))
 
     def _keep(self, rows: np.ndarray) -> None:
-        """Columns of ``rows``; those that are 0 throughout are left out."""
-        self._chunks.append((len(rows), {n: np.ascontiguousarray(rows[n]) for n in _COLUMNS if rows[n].any()}))
-        self.count += len(rows)
-        if self.count > MAX_MOVES:
+        """Copy ``rows`` into the columns; one that is 0 throughout takes no room."""
+        after = self.count + len(rows)
+        if after > MAX_MOVES:
             line = int(rows["line"][-1])
             raise GCodeError(f"Line {line}: the program makes more than {MAX_MOVES} moves; split it.", line=line)
+        for name in _COLUMNS:
+            if name in self._columns or rows[name].any():
+                self._with_room(name, after)[self.count : after] = rows[name]
+        self.count = after
+
+    def _with_room(self, name: str, count: int) -> np.ndarray:
+        """A column with room for at least ``count`` moves; what is not written yet costs no memory."""
+        column = self._columns.get(name)
+        if column is None or len(column) < count:
+            grown = np.zeros((2 * count, *MOVE[name].shape), MOVE[name].base)
+            if column is not None:
+                grown[: self.count] = column[: self.count]
+            self._columns[name] = column = grown
+        return column
 
     def columns(self) -> dict[str, Any]:
-        """All moves as read-only arrays by column name; what is 0 throughout takes no room."""
+        """All moves as read-only arrays by column name."""
         self._flush()
         out: dict[str, Any] = {}
         for name in _COLUMNS:
-            dtype = MOVE[name]
-            shape = (self.count, *dtype.shape)
-            if not any(name in columns for _, columns in self._chunks):
-                out[name] = np.broadcast_to(np.zeros(1, dtype.base), shape)
-                continue
-            whole, row = np.zeros(shape, dtype.base), 0
-            for n, columns in self._chunks:
-                part = columns.pop(name, None)
-                if part is not None:
-                    whole[row : row + n] = part
-                row += n
-            whole.flags.writeable = False
-            out[name] = whole
+            if name in self._columns:
+                out[name] = self._columns[name][: self.count]
+                out[name].flags.writeable = False
+            else:
+                out[name] = np.broadcast_to(np.zeros(1, MOVE[name].base), (self.count, *MOVE[name].shape))
         return out

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from robomill.toolpath.gcode.motion import axes
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
 from robomill.units import from_si
 

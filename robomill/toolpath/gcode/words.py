@@ -73,7 +73,7 @@ _NOT_NEGATIVE = {"f": "A feed rate", "s": "A spindle speed", "t": "A tool number
 class Block:
     """What a line says. ``words`` maps letters (``@`` polar radius, ``^`` polar angle) to values.
 
-    ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion`` is the G code of the
+    ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion_rules`` is the G code of the
     motion that the line makes, -1 for none.
     """
 
