@@ -55,29 +55,32 @@ def changed(i, row):
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        (changed(4, "0.004,-56,abc,-20"), "row 6, column F_feed_normal_N: expected a number, found 'abc'"),
-        (changed(4, "0.004,nan,104,-20"), "row 6, column F_feed_N: expected a finite number, found nan"),
-        (changed(4, "0.004,1e999,104,-20"), "row 6, column F_feed_N: expected a finite number, found 1e999"),
+        (changed(4, "0.004,-56,abc,-20"), "row 6, column F_feed_normal_N: found 'abc', expected a number"),
+        (changed(4, "0.004,nan,104,-20"), "row 6, column F_feed_N: found 'nan', expected a finite number"),
+        (changed(4, "0.004,1e999,104,-20"), "row 6, column F_feed_N: found '1e999', expected a finite number"),
         (changed(4, "0.004,-56,,-20"), "row 6, column F_feed_normal_N: the cell is empty"),
-        (changed(4, "0.004,-56"), "row 6, column F_feed_normal_N: the cell is empty"),
+        (changed(4, "0.004,-56"), "row 6, column F_feed_normal_N: found 2 cells, expected 4"),
         (changed(4, "0.003,-56,104,-20"), "row 6, column t_s: 0.003 repeats the value before it (0.003)"),
         (changed(4, "0.001,-56,104,-20"), "row 6, column t_s: 0.001 is smaller than the value before it (0.003)"),
         (text(ROWS[:6] + [r.replace("0.0", "0.1") for r in ROWS[6:]]), "row 8, column t_s: a gap from 0.005 to 0.106"),
-        (text(["0.0,1,2,3"] * 2), "found 2 rows of numbers; expected a line of column names and at least 4 rows"),
-        ("\n", "found 0 rows of numbers"),
+        (text(["0.0,1,2,3"] * 2), "found 2 rows of numbers; expected at least 4"),
+        ("\n", "the file is empty; give a header (t_s,F_feed_N"),
         (b"\x89PNG\r\n\x1a\n\0\0", "not a text file"),
         (b"a\0b\n", "not a text file"),
-        (text(head="time,F_feed_N,F_feed_normal_N,F_axial_N"), "one column of t_s, time_s, s_mm, s_m, found time"),
+        (
+            text(head="time,F_feed_N,F_feed_normal_N,F_axial_N"),
+            "row 1, column 'time': the unit is missing; write one of time_s",
+        ),
         (text(head="t_s,s_mm,F_feed_normal_N,F_axial_N"), "expected one column of t_s"),
         (text(head="t_s,Fx,Fy,Fz"), "expected columns of either F_feed_N"),
         (text(head="t_s,F_x_N,F_feed_normal_N,F_axial_N"), "expected columns of either F_feed_N"),
-        (text(head="t_s,F_feed_N,F_feed_N,F_axial_N"), "the column 'f_feed_n' is there twice"),
+        (text(head="t_s,F_feed_N,F_feed_N,F_axial_N"), "row 1: F_feed_N and F_feed_N are the same quantity twice"),
         (
             text([f"{0.001 * i},{110432 + i}" for i in range(9)], "t_s,F_feed_normal_N"),
-            "column F_feed_normal_N, all rows: the mean size is 1.104e+05 N, expected 1 to 20000 N; is it in mN?",
+            "column F_feed_normal_N: the mean size of all rows is 1.104e+05 N, expected 1 to 20000 N; is it in mN?",
         ),
-        (text([f"{0.001 * i},{0.11}" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0.11 N"),
-        (text([f"{0.001 * i},0" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size is 0 N"),
+        (text([f"{0.001 * i},{0.11}" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size of all rows is 0.11 N"),
+        (text([f"{0.001 * i},0" for i in range(9)], "t_s,F_feed_normal_N"), "the mean size of all rows is 0 N"),
     ],
 )
 def test_refusals_name_row_and_column(given, sentence):
@@ -94,5 +97,7 @@ def test_sizes_can_be_vouched_for():
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(CuttingError, match=r"none.csv: the file cannot be read \(FileNotFoundError\)"):
+    with pytest.raises(
+        CuttingError, match=r"none.csv: cannot be opened \(No such file or directory\); expected a CSV table"
+    ):
         read_forces(tmp_path / "none.csv")

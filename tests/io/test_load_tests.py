@@ -123,7 +123,7 @@ def test_measured_compliances_are_three_tests_a_row():
         (HEADER + ROW + ROW_2.replace("0.02", "nan"), r"Row 3, column dy_mm: found 'nan'"),
         (HEADER + ROW.replace("0.5", ""), r"Row 2, column dy_mm: the cell is empty"),
         (HEADER + ROW.replace("0.5", "inf"), r"Row 2, column dy_mm: found 'inf'"),
-        (HEADER + ROW + "1,2,3\n", "Row 3: found 3 cells, expected 11"),
+        (HEADER + ROW + "1,2,3\n", "Row 3, column theta4_deg: found 3 cells, expected 11"),
         (HEADER + ROW.replace("250", "0"), "Row 2: the force is zero"),
         (HEADER.replace(",dy_mm", "") + ROW.replace("0.5,", ""), "column dy_mm is missing beside dx_mm"),
         (f"{JOINTS},Fx_N,Fy_N,Fz_N\n0,0,0,0,0,1,0,0\n", "displacement columns are missing"),

@@ -23,13 +23,13 @@ def test_units_order_comments_and_separators(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "no rows"),
-        ("station,offset\n1,2\n2,3\n", "no column station_mm"),
-        ("station_mm,offset_mm\n1,2\n", "at least two"),
-        ("station_mm,offset_mm\n1,2\n2,\n", "line 3: expected a number, found an empty cell"),
-        ("station_mm,offset_mm\n1,2\n2,wide\n", "line 3: expected a number, found 'wide'"),
-        ("station_mm,offset_mm\n1,2\n2,nan\n", "line 3"),
-        ("station_mm,offset_mm\n1,2\n2,1\n1,3\n", "line 4: the station 1.000 mm is there twice"),
+        ("", "the file is empty"),
+        ("station,offset\n1,2\n2,3\n", "column 'station': the unit is missing; write one of station_mm"),
+        ("station_mm,offset_mm\n1,2\n", "found 1 row of numbers; expected at least 2"),
+        ("station_mm,offset_mm\n1,2\n2,\n", "Row 3, column offset_mm: the cell is empty, expected a number"),
+        ("station_mm,offset_mm\n1,2\n2,wide\n", "Row 3, column offset_mm: found 'wide', expected a number"),
+        ("station_mm,offset_mm\n1,2\n2,nan\n", "Row 3, column offset_mm: found 'nan'"),
+        ("station_mm,offset_mm\n1,2\n2,1\n1,3\n", "Row 4, column station_mm: the station 1.000 mm is there twice"),
     ],
 )
 def test_refusals(text, message):

@@ -201,8 +201,14 @@ GOOD = FORCE_HEAD + "".join(f"{0.002 * k:.3f},{100 + (k % 2):d}\n" for k in rang
 
 
 BAD_FORCES = [
-    (FORCE_HEAD + "0,1\n0.1,two\n0.2,3\n0.3,4\n0.4,5\n", "row 3, column F_feed_normal_N: expected a number"),
-    (FORCE_HEAD + "0,1\n0.1,nan\n0.2,3\n0.3,4\n0.4,5\n", "row 3, column F_feed_normal_N: expected a finite"),
+    (
+        FORCE_HEAD + "0,1\n0.1,two\n0.2,3\n0.3,4\n0.4,5\n",
+        "row 3, column F_feed_normal_N: found 'two', expected a number",
+    ),
+    (
+        FORCE_HEAD + "0,1\n0.1,nan\n0.2,3\n0.3,4\n0.4,5\n",
+        "row 3, column F_feed_normal_N: found 'nan', expected a finite",
+    ),
     (FORCE_HEAD + "0,1\n0.2,2\n0.1,3\n0.3,4\n0.4,5\n", "row 4, column t_s"),
     (FORCE_HEAD + "0,1\n0.1,2\n0.1,3\n0.3,4\n0.4,5\n", "row 4, column t_s"),
     (FORCE_HEAD + "".join(f"{k},{100}\n" for k in [0, 1, 2, 3, 4, 5, 30, 31, 32]), "a gap from 5 to 30"),
@@ -300,7 +306,7 @@ def test_a_measured_profile_lies_over_the_prediction(app: AppTest) -> None:
     assert "it gives 78 % of what was measured" in text
     give(app, "profile:file", "cmm.csv", b"station_mm,offset_mm\n10,0.29\nfifty,0.30\n")
     assert not app.exception
-    assert "line 3: expected a number" in errors(app)[0]
+    assert "cmm.csv, row 3, column station_mm" in errors(app)[0]
     assert "cmm.csv" in words(app), "the good profile stays"
 
 

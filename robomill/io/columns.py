@@ -1,0 +1,237 @@
+"""Columns of numbers from CSV files and pasted cells: one reader for load tests, force records, profiles and maps.
+
+The first line that is neither empty nor a remark (``#``) names the columns with their units: ``Fx_N``, ``Fx [N]`` or
+``Fx (N)``. Tabs, semicolons or commas separate; with the first two, decimal commas are understood. Rows are numbered as
+an editor or spreadsheet shows them: the first line of the file is row 1.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.errors import RobomillError
+from robomill.io.texts import read_text
+from robomill.units import to_si
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a table may hold: quantities by lower-case name, each with the units (of ``units.UNITS``) it may come in.
+
+    ``aliases`` maps other names of a quantity to the one of ``units``.
+    """
+
+    subject: str
+    error: type[RobomillError]
+    units: Mapping[str, Sequence[str]]
+    example: str
+    fewest: int = 1
+    aliases: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that is known: its place, what it holds, its unit, and its name as written."""
+
+    at: int
+    quantity: str
+    unit: str
+    written: str
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The known columns: ``values`` (m,) in SI by quantity, ``row`` (m,) the number of each row.
+
+    ``passed_over`` are the columns that are not known, ``remarks`` the text of the lines that start with ``#``.
+    """
+
+    values: Mapping[str, FloatArray]
+    known: Mapping[str, Column]
+    row: IntArray
+    passed_over: tuple[str, ...]
+    remarks: str
+    place: Place
+
+    def __contains__(self, quantity: str) -> bool:
+        return quantity in self.values
+
+    def written(self, quantity: str) -> str:
+        """The quantity's name as the header spells it."""
+        return self.known[quantity].written
+
+    def refuse(self, k: int, quantity: str, message: str) -> RobomillError:
+        """A refusal of the cell of ``quantity`` in line ``k``, counted from 0."""
+        return self.place.refuse(message, int(self.row[k]), self.written(quantity))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Which file, and its header's row: what every refusal starts with."""
+
+    name: str
+    head: int
+    error: type[RobomillError]
+
+    def refuse(self, message: str, row: int = 0, column: str = "") -> RobomillError:
+        """A refusal of a row (the header's, unless another is given) and, if named, a column."""
+        at = f"row {row or self.head}" + (f", column {column}" if column else "")
+        where = f"{self.name}, {at}" if self.name else at[0].upper() + at[1:]
+        return self.error(f"{where}: {message}", where=at)
+
+
+def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> tuple[Columns, str]:
+    """The columns of a CSV file, its text or its bytes, and the file's name ("" for a text that has none).
+
+    Raises the layout's error with file, row and column.
+    """
+    text, name = read_text(given, layout.error, "a CSV table", name)
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    remarks = "\n".join(line.strip().lstrip("# ") for line in lines if line.lstrip().startswith("#"))
+    kept = [(k, line) for k, line in enumerate(lines, 1) if line.strip(" \t,;") and not line.lstrip().startswith("#")]
+    subject = name or layout.subject
+    if not kept:
+        raise layout.error(f"{subject}: the file is empty; give a header ({layout.example}) and the numbers below it.")
+    (head, header), body = kept[0], kept[1:]
+    place = Place(name, head, layout.error)
+    mark = next((mark for mark in "\t;" if mark in header), ",")
+    names = [cell.strip() for cell in _cells(header, mark)]
+    known, passed_over = _known(names, layout, place)
+    if len(body) < layout.fewest:
+        found = (
+            f"{len(body)} row{'s' * (len(body) > 1)} of numbers"
+            if body
+            else f"only a header (row {head}) and nothing below it"
+        )
+        raise layout.error(f"{subject}: found {found}; expected at least {layout.fewest}.")
+    row = np.array([k for k, _ in body])
+    values = _numbers(_Body([line for _, line in body], row, names, mark, place), list(known.values()))
+    in_si = {column.quantity: to_si(values[:, i], column.unit) for i, column in enumerate(known.values())}
+    return Columns(in_si, known, row, passed_over, remarks, place), name
+
+
+# ---- the header ----------------------------------------------------------------------------------------------------
+def spelled(unit: str) -> str:
+    """A unit as a column's name ends: "N m" as Nm, "um/N" as um_N."""
+    return "" if unit == "1" else unit.replace(" ", "").replace("/", "_")
+
+
+def _known(names: list[str], layout: Layout, place: Place) -> tuple[dict[str, Column], tuple[str, ...]]:
+    """Known columns by quantity, and the names of those passed over."""
+    if all(_number(name.replace(",", ".")) is not None for name in names):
+        raise place.refuse(f"found numbers, expected a header that names columns and units ({layout.example}).")
+    known: dict[str, Column] = {}
+    odd: list[tuple[str, str, RobomillError]] = []
+    passed_over = []
+    for at, written in enumerate(names):
+        stem, suffix = _stem_and_unit(written, layout)
+        if not stem:
+            passed_over += [written] if written else []
+            continue
+        quantity = layout.aliases.get(stem, stem)
+        units = {spelled(unit): unit for unit in layout.units[quantity]}
+        unit = units.get(suffix) or {short.lower(): unit for short, unit in units.items()}.get(suffix.lower())
+        if unit is None:
+            what = f"unit {suffix!r} is not known" if suffix else "the unit is missing"
+            good = ", ".join("_".join(filter(None, (written[: len(stem)], short))) for short in units)
+            odd.append((quantity, written, place.refuse(f"{what}; write one of {good}.", 0, repr(written))))
+        elif quantity in known:
+            raise place.refuse(f"{known[quantity].written} and {written} are the same quantity twice; keep one.")
+        else:
+            known[quantity] = Column(at, quantity, unit, written)
+    for quantity, written, refusal in odd:
+        if quantity not in known:
+            raise refusal
+        passed_over.append(written)
+    if not known:
+        raise place.refuse(f"no column is known; expected a header such as {layout.example}.")
+    return known, tuple(passed_over)
+
+
+def _stem_and_unit(written: str, layout: Layout) -> tuple[str, str]:
+    """The longest name that is known and the unit behind it; two empty texts where none is."""
+    plain = written.replace("µ", "u").replace("μ", "u").replace("°", "deg")
+    bracketed = re.fullmatch(r"(.*?)[\s_]*[\[(](.*)[\])]", plain)
+    if bracketed:
+        stem, unit = bracketed[1].strip().lower(), spelled(bracketed[2].strip())
+        return (stem, unit) if stem in layout.units or stem in layout.aliases else ("", "")
+    words = plain.split("_")
+    for n in range(len(words), 0, -1):
+        stem = "_".join(words[:n]).lower()
+        if stem in layout.units or stem in layout.aliases:
+            return stem, "_".join(words[n:])
+    return "", ""
+
+
+# ---- the cells -----------------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class _Body:
+    """The lines below the header, their numbers in the file, and the header that they follow."""
+
+    lines: list[str]
+    row: IntArray
+    names: list[str]
+    mark: str
+    place: Place
+
+
+def _numbers(body: _Body, wanted: list[Column]) -> FloatArray:
+    """(m, wanted) finite numbers. The quick reader first; only where it fails is each cell looked at."""
+    for k, line in enumerate(body.lines):
+        if '"' in line or line.count(body.mark) != len(body.names) - 1:
+            _check_width(body, k)
+    lines = [line.replace(",", ".") for line in body.lines] if body.mark != "," else body.lines
+    places = [column.at for column in wanted]
+    try:
+        values = np.loadtxt(lines, delimiter=body.mark, usecols=places, ndmin=2, comments=None, quotechar='"')
+    except ValueError:
+        values = np.array([[math.nan]])
+    if np.isfinite(values).all():
+        return values
+    rows = [_cells(line, body.mark) for line in lines]
+    return np.array([[_cell(body, k, column, cells[column.at]) for column in wanted] for k, cells in enumerate(rows)])
+
+
+def _check_width(body: _Body, k: int) -> None:
+    """As many cells as the header has names; empty ones behind them do not count."""
+    cells = _cells(body.lines[k], body.mark)
+    counted = f"found {len(cells)} cells, expected {len(body.names)} as in the header"
+    if len(cells) < len(body.names):
+        raise body.place.refuse(f"{counted}.", int(body.row[k]), body.names[len(cells)])
+    if any(cell.strip() for cell in cells[len(body.names) :]):
+        cure = "; with decimal commas, separate the columns by semicolons" if body.mark == "," else ""
+        raise body.place.refuse(f"{counted}{cure}.", int(body.row[k]))
+
+
+def _cells(line: str, mark: str) -> list[str]:
+    return line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark), [""])
+
+
+def _cell(body: _Body, k: int, column: Column, text: str) -> float:
+    found = text.strip()
+    number = _number(found)
+    if number is not None and math.isfinite(number):
+        return number
+    if not found:
+        message = "the cell is empty, expected a number; measure it again or delete the row"
+    elif number is None:
+        message = f"found {found!r:.40}, expected a number; enter a plain one such as 0.125"
+    else:
+        message = f"found {found!r:.40}, expected a finite number; measure it again or delete the row"
+    raise body.place.refuse(f"{message}.", int(body.row[k]), column.written)
+
+
+def _number(text: str) -> float | None:
+    """The number that a cell holds, not finite perhaps; None for anything else."""
+    try:
+        return None if "_" in text else float(text)
+    except ValueError:
+        return None
