@@ -152,7 +152,8 @@ def _known(names: list[str], layout: Layout, place: Place) -> tuple[dict[str, Co
             raise refusal
         passed_over.append(written)
     if not known:
-        raise place.refuse(f"no column is known; expected a header such as {layout.example}.")
+        found = ", ".join(passed_over)
+        raise place.refuse(f"no column is known among {found:.80}; expected a header such as {layout.example}.")
     return known, tuple(passed_over)
 
 

@@ -214,7 +214,7 @@ BAD_FORCES = [
     (FORCE_HEAD + "".join(f"{k},{100}\n" for k in [0, 1, 2, 3, 4, 5, 30, 31, 32]), "a gap from 5 to 30"),
     (GOOD.replace(",10", ",0.10"), "is it in kN"),
     (FORCE_HEAD + "".join(f"{0.002 * k:.3f},100\n" for k in range(50)), "the path cuts from"),
-    ("x,y\n1,2\n1,2\n1,2\n1,2\n1,2\n", "expected one column of t_s"),
+    ("x,y\n1,2\n1,2\n1,2\n1,2\n1,2\n", "row 1: no column is known among x, y; expected a header such as t_s"),
 ]
 
 
