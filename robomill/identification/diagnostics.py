@@ -38,7 +38,7 @@ def twins(system: System) -> dict[int, int]:
     A = triangle(system.A, system.b)[:, :-1]  # same lengths and angles between columns, a handful of rows
     norms = np.linalg.norm(A, axis=0)
     for k, parameter in enumerate(system.parameters):
-        if parameter.joint is not None or parameter.signed or norms[k] == 0:
+        if parameter.kind in ("joint", "entry") or norms[k] == 0:
             continue
         for j in range(k):
             if j in found or norms[j] == 0:
@@ -133,32 +133,33 @@ def half_share(fit: Fit, k: int) -> float:
 def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict[str, str]) -> list[Finding]:
     """What the fit itself has to say: bounds, springs that are one, condition, noise against what was stated."""
     found = []
+    joints = {parameter.label for parameter in system.parameters if parameter.kind == "joint"}
     for label in active:
         text = f"{label.capitalize()} is held at zero: the tests ask for a negative compliance, which no spring has."
-        found.append(Finding("warning" if label.startswith("joint") else "info", 0, text))
+        found.append(Finding("warning" if label in joints else "info", 0, text, code="held-at-zero"))
     for label, other in lumped.items():
         text = f"{label.capitalize()} turns about the same line as {other} at these poses: one spring, counted there."
-        found.append(Finding("info", 0, text))
+        found.append(Finding("info", 0, text, code="lumped"))
     if len(fit.null):
         labels = tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k])
         what = f"tell {_listed(labels)} apart" if len(labels) > 1 else f"make {labels[0]} yield, so it stays unknown"
         text = f"These poses do not {what}; predictions near the measured poses still hold."
-        found.append(Finding("warning", 0, text))
+        found.append(Finding("warning", 0, text, code="not-seen"))
     elif fit.condition[1] > CONDITION_WARNING:
         text = (
             f"Condition number {fit.condition[1]:.0f} after scaling: small errors of measurement are much magnified; "
             "add poses that differ more."
         )
-        found.append(Finding("warning", 0, text))
+        found.append(Finding("warning", 0, text, code="condition"))
     if fit.dof == 0 and not system.stated:
         text = "As many unknowns as measured numbers: nothing is left to judge the noise by, so there are no intervals."
-        found.append(Finding("warning", 0, text))
+        found.append(Finding("warning", 0, text, code="no-residuals"))
     if system.stated and fit.dof > 0 and fit.sigma > 2.0:
         text = (
             f"The residuals are {fit.sigma:.1f} times the stated noise: the model does not explain all that was "
             "measured; compare it with bending or a tool spring."
         )
-        found.append(Finding("warning", 0, text))
+        found.append(Finding("warning", 0, text, code="above-stated-noise"))
     return found
 
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
-from robomill.identification.crossvalidation import FOLDS, cross_validate, headline, relative_by_pose
+from robomill.identification.crossvalidation import cross_validate, headline, relative_by_pose
 from robomill.identification.least_squares import Fit, RobustFit, robust_fit
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model
@@ -34,7 +35,6 @@ def identify(
     bending_joints: Iterable[int] = BENDING_JOINTS,
     robust: bool = False,
     exclude: Iterable[int] = (),
-    folds: int = FOLDS,
 ) -> IdentificationResult:
     """Joint compliances (and those of extra springs) from load tests, with how sure they are.
 
@@ -48,31 +48,37 @@ def identify(
     if isinstance(tests, LoadTests):
         tests = tests.with_joints(robot)
     choice = Model(model, tuple(bending_joints))
-    system = build_system(robot, tests, choice)
+    fitted = _fitted(build_system(robot, tests, choice), robust)
+    return replace(
+        _result(robot, tests, choice, fitted),
+        cv_relative_error=headline(cross_validate(fitted.system, fitted.weights)),
+        excluded=left_out,
+    )
+
+
+class _Fitted(NamedTuple):
+    """Equations, their fit, the robust weights (None: all one), and the springs that are counted with another."""
+
+    system: System
+    fit: Fit
+    weights: FloatArray | None
+    lumped: dict[str, str]
+
+
+def _fitted(system: System, robust: bool) -> _Fitted:
     twins = diagnostics.twins(system)
     system = _lump(system, twins)
-    gross = robust_fit(system.A / system.noise[:, None], system.b / system.noise) if robust else None
-    weights = None if gross is None else gross.weights
-    fit = _fit(system, weights, list(twins))
-    if gross is not None:
-        fit = _robust_covariance(fit, _fit(system, None, list(twins)), gross)
     lumped = {system.parameters[k].label: system.parameters[j].label for k, j in twins.items()}
-    return _result(robot, tests, choice, system, fit, weights, lumped, folds, left_out)
+    if not robust:
+        return _Fitted(system, _fit(system, None, list(twins)), None, lumped)
+    gross = robust_fit(system.A / system.noise[:, None], system.b / system.noise)
+    fit, plain = (_fit(system, weights, list(twins)) for weights in (gross.weights, None))
+    return _Fitted(system, _robust_covariance(fit, plain, gross), gross.weights, lumped)
 
 
-def _result(
-    robot: Robot,
-    tests: LoadTests | JointTests,
-    choice: Model,
-    system: System,
-    fit: Fit,
-    weights: FloatArray | None,
-    lumped: dict[str, str],
-    folds: int,
-    left_out: tuple[int, ...],
-) -> IdentificationResult:
+def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: _Fitted) -> IdentificationResult:
+    system, fit, weights, lumped = fitted
     share = diagnostics.shares(system, fit.x)
-    cv = cross_validate(system, weights, folds)
     residual = _residuals(system, fit.x, len(tests), 1 if isinstance(tests, JointTests) else 3)
     negative = (fit.x == 0.0) & (fit.free * np.linalg.norm(system.A, axis=0) < -1e-9 * np.linalg.norm(system.b))
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
@@ -93,9 +99,7 @@ def _result(
         noise=fit.sigma * float(np.median(system.noise[system.linear])) if fit.dof > 0 or system.stated else np.nan,
         equations=len(system.b),
         dof=fit.dof,
-        cv_by_pose=frozen(cv),
         in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b, weights)),
-        cv_relative_error=headline(cv),
         row=tests.row,
         share=frozen(share),
         outliers=diagnostics.outliers(system, tests.row),
@@ -104,9 +108,7 @@ def _result(
         explanations=tuple(diagnostics.sentence(fit, system.parameters, share, k) for k in range(len(fit.x))),
         lumped=lumped,
         findings=(*tests.findings, *suspicions(tests, robot), *found),
-        excluded=left_out,
         robust=weights is not None,
-        rotations=not bool(system.linear.all()),
     )
 
 

@@ -271,11 +271,11 @@ def _solved_finding(robot: Robot) -> Finding:
             "Poses as X, Y, Z, A, B leave the turn about the tool axis open: it was taken as near home as the limits "
             "allow; give joints if the robot stood otherwise, since its compliance depends on it."
         )
-        return Finding("warning", 0, text)
+        return Finding("warning", 0, text, code="turn-about-the-tool")
     text = (
         "Joints were solved from X, Y, Z, A, B with shoulder and elbow as at home; give joints if they stood otherwise."
     )
-    return Finding("info", 0, text)
+    return Finding("info", 0, text, code="joints-solved")
 
 
 def _mm(p: FloatArray) -> str:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -24,19 +25,61 @@ from robomill.identification.load_test import LoadTests
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
 
-MODELS = ("joints", "joints+bending", "joints+tool", "joints+bending+tool", "constant")
+Kind = Literal["joint", "bending", "tool", "entry"]
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 _XYZ = "xyz"
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """One fitted compliance: its label, its unit, whether it may be negative, and the joint it belongs to."""
+class Family:
+    """What a model is called, and the kinds of springs it has."""
 
-    label: str
-    unit: str
-    joint: int | None = None  # 1-based, for the springs that are the joints themselves
-    signed: bool = False
+    title: str
+    kinds: frozenset[Kind]
+
+
+MODELS: dict[str, Family] = {
+    "joints": Family("Joint springs", frozenset({"joint"})),
+    "joints+bending": Family("Joints and bending links", frozenset({"joint", "bending"})),
+    "joints+tool": Family("Joints and tool", frozenset({"joint", "tool"})),
+    "joints+bending+tool": Family("Joints, bending and tool", frozenset({"joint", "bending", "tool"})),
+    "constant": Family("One constant matrix", frozenset({"entry"})),
+}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One fitted compliance: a joint, the bending of joint ``at`` about ``axis``, the tool, or an entry of a matrix.
+
+    at: the robot's number of the joint (1-based), 0 where there is none; slides: that joint shifts rather than turns;
+    axis: "x" or "y" of the joint's frame, "across" or "along" the tool, or an entry such as "xy".
+    """
+
+    kind: Kind
+    at: int = 0
+    axis: str = ""
+    slides: bool = False
+
+    @property
+    def joint(self) -> int | None:
+        """The joint whose own compliance this is, else None."""
+        return self.at if self.kind == "joint" else None
+
+    @property
+    def signed(self) -> bool:
+        """Whether it may be negative: an entry off the diagonal."""
+        return self.kind == "entry" and self.axis[0] != self.axis[1]
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is a turn under a moment, rad/(N m), rather than a shift under a force, m/N."""
+        return self.kind == "bending" or (self.kind == "joint" and not self.slides)
+
+    @property
+    def label(self) -> str:
+        """Its name in tables and sentences; no two parameters of a model share it."""
+        names = {"joint": f"joint {self.at}", "bending": f"bending {self.axis} at joint {self.at}"}
+        return names.get(self.kind, f"C_{self.axis}" if self.kind == "entry" else f"tool {self.axis}")
 
 
 @dataclass(frozen=True)
@@ -51,33 +94,26 @@ class Model:
             raise LoadTestError(f"Model {self.name!r}: expected one of {', '.join(MODELS)}.")
 
     @property
-    def has_joints(self) -> bool:
-        """Whether its first parameters are the joints' compliances."""
-        return self.name != "constant"
+    def title(self) -> str:
+        """What people call it."""
+        return MODELS[self.name].title
 
-    @property
-    def bends(self) -> bool:
-        return "bending" in self.name
-
-    @property
-    def has_tool(self) -> bool:
-        return "tool" in self.name
+    def has(self, kind: Kind) -> bool:
+        """Whether springs of that kind are in it."""
+        return kind in MODELS[self.name].kinds
 
     def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
         """What is fitted, in the order of the regressor's columns."""
-        if not self.has_joints:
-            return tuple(Parameter(f"C_{_XYZ[i]}{_XYZ[j]}", "m/N", None, i != j) for i, j in _SYMMETRIC)
+        if self.has("entry"):
+            return tuple(Parameter("entry", axis=_XYZ[i] + _XYZ[j]) for i, j in _SYMMETRIC)
         slides = robot.chain.prismatic
-        listed = [
-            Parameter(f"joint {number}", "m/N" if slides[i] else "rad/(N m)", number)
-            for i, number in enumerate(robot.joint_numbers)
-        ]
-        if self.bends:
+        listed = [Parameter("joint", number, slides=bool(slides[i])) for i, number in enumerate(robot.joint_numbers)]
+        if self.has("bending"):
             for joint in self._bending(robot):
                 number = robot.joint_numbers[joint]
-                listed += [Parameter(f"bending {u} at joint {number}", "rad/(N m)") for u in "xy"]
-        if self.has_tool:
-            listed += [Parameter("tool across", "m/N"), Parameter("tool along", "m/N")]
+                listed += [Parameter("bending", number, axis) for axis in "xy"]
+        if self.has("tool"):
+            listed += [Parameter("tool", axis=axis) for axis in ("across", "along")]
         return tuple(listed)
 
     def _bending(self, robot: Robot) -> tuple[int, ...]:
@@ -101,11 +137,11 @@ class Model:
         shafts = [
             (frames[..., i, :3, 3], frames[..., i, :3, 2], bool(robot.chain.prismatic[i])) for i in range(robot.n)
         ]
-        if self.bends:
+        if self.has("bending"):
             for joint in self._bending(robot):
                 frame = frames[..., joint, :3, :]
                 shafts += [(frame[..., 3], frame[..., 0], False), (frame[..., 3], frame[..., 1], False)]
-        if self.has_tool:
+        if self.has("tool"):
             shafts += [(p, frames[..., -1, :3, k], True) for k in range(3)]
         a = np.zeros((*p.shape[:-1], 6, len(shafts)))
         for s, (origin, axis, slides) in enumerate(shafts):
@@ -116,7 +152,7 @@ class Model:
 
     def _collect(self, each: FloatArray) -> FloatArray:
         """Spring by spring -> parameter by parameter: the two springs across the tool share a compliance."""
-        if not self.has_tool:
+        if not self.has("tool"):
             return each
         return np.concatenate([each[..., :-3], each[..., -3:-1].sum(-1, keepdims=True), each[..., -1:]], axis=-1)
 
@@ -124,7 +160,7 @@ class Model:
         """(m, 6, p): displacement and rotation of the measuring point per unit of each parameter."""
         if tests.theta is None:
             raise LoadTestError("Load tests: the poses are given in the world; call with_joints(robot) first.")
-        if not self.has_joints:
+        if self.has("entry"):
             D = np.full((len(tests), 6, len(_SYMMETRIC)), np.nan)
             D[:, :3] = _constant(tests.wrench[:, :3])
             return D
@@ -137,7 +173,7 @@ class Model:
     def tip_regressor(self, robot: Robot, theta: FloatArray, F: FloatArray) -> FloatArray:
         """(..., 3, p) D with delta = D @ parameters, for a force F (..., 3) N in {M} at the tool tip."""
         theta, F = np.asarray(theta, dtype=np.float64), np.asarray(F, dtype=np.float64)
-        if not self.has_joints:
+        if self.has("entry"):
             return np.broadcast_to(_constant(F), (*np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3, 6))
         a = self.columns(robot, theta)[..., :3, :]
         load = np.einsum("...cs,...c->...s", a, F)

@@ -19,6 +19,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
+from robomill.identification.synthesis import three_directions
 from robomill.identification.system import build_system
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
@@ -103,12 +104,10 @@ def box_candidates(
     load: float = 250.0,
     poses: int = 300,
     seed: int = 1,
-    directions: FloatArray | None = None,
 ) -> Candidates:
     """Poses spread over a box in {M} (corners in m) with the tool tilted by up to ``tilt`` rad, within the limits.
 
-    directions (q, 3): unit forces tried at each pose (+X, +Y, +Z unless given). Raises LoadTestError where nothing in
-    the box is reached.
+    Each is loaded by ``load`` N along +X, +Y and +Z. Raises LoadTestError where nothing in the box is reached.
     """
     span = np.array([tilt, tilt])
     low = np.concatenate([np.asarray(lower, dtype=np.float64), -span])
@@ -120,9 +119,15 @@ def box_candidates(
     theta = solved.theta[solved.reached]
     if len(theta) == 0:
         raise LoadTestError("Plan: no pose in the box is reached within the joint limits; move the box or tilt less.")
-    axes = np.eye(3) if directions is None else np.asarray(directions, dtype=np.float64)
-    F = np.tile(load * axes, (len(theta), 1))
-    return Candidates(np.repeat(theta, len(axes), axis=0), F)
+    return Candidates(*three_directions(theta, load))
+
+
+class _Aim(NamedTuple):
+    """What a plan is for: in words, and the weight (p, p) of the covariance it makes small (None: the determinant)."""
+
+    words: str
+    weight: FloatArray | None
+    path: bool = False
 
 
 def next_best(
@@ -133,36 +138,52 @@ def next_best(
     *,
     count: int = 3,
     goal: str | int | PathLoad = "all",
-    noise: float | None = None,
 ) -> Plan:
     """The ``count`` candidates to measure next for a goal: "all", a joint number, or a PathLoad.
 
-    noise: standard deviation of a reading (m); as estimated from the residuals unless given.
+    A reading is taken to be as noisy as the residuals say. Raises LoadTestError where there are none to judge by.
     """
-    sigma = result.noise if noise is None else noise
-    if not (np.isfinite(sigma) and sigma > 0):
+    if not (np.isfinite(result.noise) and result.noise > 0):
         raise LoadTestError("Plan: the noise is not known (no residuals to judge by); state it in mm.")
+    aim = _aim(robot, result, goal)
     system = build_system(robot, tests.without(result.excluded), result.choice)
     D = result.choice.tip_regressor(robot, candidates.theta, candidates.F)
     scale = np.sqrt((system.A**2).sum(axis=0) + (D**2).mean(axis=(0, 1)))  # above zero wherever either sees anything
     scale[scale == 0] = max(float(scale.max()), 1e-300)
-    relative = system.noise / np.median(system.noise)
-    A = system.A / scale / (sigma * relative)[:, None]
+    A = system.A / scale / (result.noise * system.noise / np.median(system.noise))[:, None]
     M = A.T @ A
-    prior = PRIOR * float(np.trace(M)) * np.eye(len(M))
-    P = np.linalg.inv(M + prior)
-    blocks = D / scale / sigma
+    before = P = np.linalg.inv(M + PRIOR * float(np.trace(M)) * np.eye(len(M)))
     live = np.array([parameter.label not in result.lumped for parameter in system.parameters])
-    blocks = blocks * live
-    weight, words = _goal(robot, result, goal, scale)
-    before = P
+    blocks = D / scale / result.noise * live
+    weight = None if aim.weight is None else aim.weight / np.outer(scale, scale)
     picked: list[int] = []
     for _ in range(count):
         best = _best(P, blocks, weight, picked)
         picked.append(best)
         W = blocks[best] @ P
         P = P - W.T @ np.linalg.solve(np.eye(3) + W @ blocks[best].T, W)
-    return _plan(robot, result, candidates, picked, (before, P), scale, goal, words)
+    path = [float(np.sqrt(np.trace(weight @ Q))) if aim.path and weight is not None else np.nan for Q in (before, P)]
+    errors = [np.sqrt(np.diag(Q)) / scale for Q in (before, P)]
+    errors[0][~np.isfinite(result.parameter_stderr)] = np.inf
+    half = [_quantile(result.dof + 3 * added) * error for added, error in zip((0, count), errors, strict=True)]
+    theta = candidates.theta[picked]
+    return Plan(
+        theta=frozen(theta),
+        x_M=frozen(world_from_pose(tool_pose(robot, theta))),
+        F=frozen(candidates.F[picked]),
+        labels=result.labels,
+        before=frozen(errors[0]),
+        after=frozen(errors[1]),
+        half_before=frozen(half[0]),
+        half_after=frozen(half[1]),
+        goal=aim.words,
+        path_before=path[0],
+        path_after=path[1],
+    )
+
+
+def _quantile(dof: int) -> float:
+    return float(stdtrit(dof, 0.975)) if dof > 0 else np.inf
 
 
 def _best(P: FloatArray, blocks: FloatArray, weight: FloatArray | None, picked: list[int]) -> int:
@@ -177,63 +198,18 @@ def _best(P: FloatArray, blocks: FloatArray, weight: FloatArray | None, picked: 
     return int(np.argmax(gain))
 
 
-def _goal(
-    robot: Robot, result: IdentificationResult, goal: str | int | PathLoad, scale: FloatArray
-) -> tuple[FloatArray | None, str]:
+def _aim(robot: Robot, result: IdentificationResult, goal: str | int | PathLoad) -> _Aim:
     if isinstance(goal, PathLoad):
-        D = _path_regressor(robot, result, goal) / scale
-        return np.einsum("mci,mcj->ij", D, D) / len(D), "this path's deviation"
-    if isinstance(goal, int):
-        found = [k for k, parameter in enumerate(result.labels) if parameter.joint == goal]
-        if not found:
-            raise LoadTestError(f"Plan: joint {goal} is not among the fitted joints.")
-        weight = np.zeros((len(scale), len(scale)))
-        weight[found[0], found[0]] = 1.0
-        return weight, f"joint {goal}"
-    if goal != "all":
+        D = result.choice.tip_regressor(robot, goal.theta, goal.F)
+        D = D[np.isfinite(D).all(axis=(-1, -2))]
+        if len(D) == 0:
+            raise LoadTestError("Plan: no point of the path is reached.")
+        return _Aim("this path's deviation", np.einsum("mci,mcj->ij", D, D) / len(D), path=True)
+    if goal == "all":
+        return _Aim("all compliances", None)
+    chosen = np.array([parameter.joint == goal for parameter in result.labels])
+    if not isinstance(goal, int):
         raise LoadTestError(f"Plan: goal {goal!r}; expected 'all', a joint number or a path.")
-    return None, "all compliances"
-
-
-def _path_regressor(robot: Robot, result: IdentificationResult, path: PathLoad) -> FloatArray:
-    """(m, 3, p) at the points of the path that are reached."""
-    D = result.choice.tip_regressor(robot, path.theta, path.F)
-    usable = np.isfinite(D).all(axis=(-1, -2))
-    if not usable.any():
-        raise LoadTestError("Plan: no point of the path is reached.")
-    return D[usable]
-
-
-def _plan(
-    robot: Robot,
-    result: IdentificationResult,
-    candidates: Candidates,
-    picked: list[int],
-    covariances: tuple[FloatArray, FloatArray],
-    scale: FloatArray,
-    goal: str | int | PathLoad,
-    words: str,
-) -> Plan:
-    errors = [np.sqrt(np.diag(P)) / scale for P in covariances]
-    unknown = ~np.isfinite(result.parameter_stderr)
-    errors[0] = np.where(unknown, np.inf, errors[0])
-    dofs = (result.dof, result.dof + 3 * len(picked))
-    t = [float(stdtrit(dof, 0.975)) if dof > 0 else np.inf for dof in dofs]
-    path = [float("nan")] * 2
-    if isinstance(goal, PathLoad):
-        D = _path_regressor(robot, result, goal) / scale
-        path = [float(np.sqrt(np.einsum("mci,ij,mcj->", D, P, D) / len(D))) for P in covariances]
-    theta = candidates.theta[picked]
-    return Plan(
-        theta=frozen(theta),
-        x_M=frozen(world_from_pose(tool_pose(robot, theta))),
-        F=frozen(candidates.F[picked]),
-        labels=result.labels,
-        before=frozen(errors[0]),
-        after=frozen(errors[1]),
-        half_before=frozen(t[0] * errors[0]),
-        half_after=frozen(t[1] * errors[1]),
-        goal=words,
-        path_before=path[0],
-        path_after=path[1],
-    )
+    if not chosen.any():
+        raise LoadTestError(f"Plan: joint {goal} is not among the fitted joints.")
+    return _Aim(f"joint {goal}", np.diag(chosen.astype(np.float64)))

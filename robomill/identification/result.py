@@ -13,7 +13,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.models import Model, Parameter
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_si, from_si
+from robomill.units import from_si
 
 
 class Condition(NamedTuple):
@@ -51,8 +51,8 @@ class IdentificationResult:
     residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints);
     explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise:
     standard deviation of one measured number, m (rad), as the residuals say; cv_relative_error: mean over poses of
-    |predicted - measured| / |measured|, each pose predicted without itself: the headline; cv_by_pose and
-    in_sample_by_pose (poses,), of which the latter flatters.
+    |predicted - measured| / |measured|, each pose predicted without itself: the headline; in_sample_by_pose
+    (poses,) with every pose in the fit, which flatters.
     outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
     exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
     """
@@ -72,11 +72,10 @@ class IdentificationResult:
     noise: float
     equations: int
     dof: int
-    cv_by_pose: FloatArray
     in_sample_by_pose: FloatArray
-    cv_relative_error: float
     row: IntArray
     share: FloatArray
+    cv_relative_error: float = float("nan")
     outliers: tuple[Outlier, ...] = ()
     unseen_joints: tuple[UnseenJoint, ...] = ()
     active_bounds: tuple[str, ...] = ()
@@ -85,7 +84,6 @@ class IdentificationResult:
     findings: tuple[Finding, ...] = ()
     excluded: tuple[int, ...] = ()
     robust: bool = False
-    rotations: bool = False
 
     @property
     def model(self) -> str:
@@ -95,7 +93,7 @@ class IdentificationResult:
     @property
     def has_joints(self) -> bool:
         """Whether the model has the joints' compliances at all."""
-        return self.choice.has_joints
+        return self.choice.has("joint")
 
     @property
     def C_theta(self) -> FloatArray:
@@ -115,11 +113,6 @@ class IdentificationResult:
         return np.full((self.n, 2), np.nan) if not self.has_joints else self.parameter_ci95[: self.n]
 
     @property
-    def C_theta_covariance(self) -> FloatArray:
-        """(n, n) covariance of C_theta."""
-        return np.full((self.n, self.n), np.nan) if not self.has_joints else self.covariance[: self.n, : self.n]
-
-    @property
     def weakest_joint(self) -> int:
         """The joint (1-based) with the widest interval for its size."""
         if not self.has_joints:
@@ -130,14 +123,14 @@ class IdentificationResult:
 
     def springs(self, robot: Robot) -> tuple[Spring, ...]:
         """The bending and tool springs found, for ``extra_contributions``; empty for the joints alone."""
-        values = {p.label: float(self.parameters[k]) for k, p in enumerate(self.labels)}
         source = Provenance("measured", f"identified from {len(self.row)} load tests, model {self.model}")
+        values = {(p.kind, p.at, p.axis): float(self.parameters[k]) for k, p in enumerate(self.labels)}
         found: list[Spring] = []
         for index, number in enumerate(robot.joint_numbers, 1):
-            pair = [values.get(f"bending {u} at joint {number}", 0.0) for u in "xy"]
-            if any(pair):
-                found.append(JointBending(index, pair[0], pair[1], provenance=source))
-        across, along = values.get("tool across", 0.0), values.get("tool along", 0.0)
+            x, y = (values.get(("bending", number, axis), 0.0) for axis in "xy")
+            if x or y:
+                found.append(JointBending(index, x, y, provenance=source))
+        across, along = (values.get(("tool", 0, axis), 0.0) for axis in ("across", "along"))
         if across or along:
             found.append(SpindleSpring(across, along, provenance=source))
         return tuple(found)
@@ -188,44 +181,3 @@ def _plain(value: object) -> object:
     if array.ndim:
         return [_plain(part) for part in array]
     return float(array) if np.isfinite(array) else None
-
-
-def parameter_rows(result: IdentificationResult) -> list[dict[str, object]]:
-    """One row a parameter, as text in display units: label, value, standard error, interval, share, remark."""
-    rows: list[dict[str, object]] = []
-    weak = {unseen.joint: unseen.sentence for unseen in result.unseen_joints}
-    for k, parameter in enumerate(result.labels):
-        unit = "1e-7 rad/(N m)" if parameter.unit.startswith("rad") else "um/N"
-        known = bool(np.isfinite(result.parameter_stderr[k]))
-        low, high = result.parameter_ci95[k]
-        remark = weak.get(parameter.joint, "") if parameter.joint else ""
-        if parameter.label in result.lumped:
-            remark = f"moves exactly as {result.lumped[parameter.label]} at these poses and is counted with it"
-        elif parameter.label in result.active_bounds:
-            remark = remark or "held at zero: the tests ask for no such spring"
-        rows.append(
-            {
-                "parameter": parameter.label,
-                "value": format_si(result.parameters[k], unit) if known else "not seen",
-                "stderr": format_si(result.parameter_stderr[k], unit) if known else "–",
-                "ci95": f"{format_si(low, unit)} to {format_si(high, unit)}" if known else "–",
-                "share": format_si(result.share[k], "%"),
-                "remark": remark,
-            }
-        )
-    return rows
-
-
-def residual_rows(result: IdentificationResult) -> list[dict[str, object]]:
-    """One row a test: its row in the file, residuals in m (rad for single joints), share of the measured, flagged."""
-    names = ("dx", "dy", "dz") if result.residual.shape[1] == 3 else ("angle",)
-    flagged = {outlier.row for outlier in result.outliers}
-    return [
-        {
-            "row": int(result.row[k]),
-            **{name: float(result.residual[k, i]) for i, name in enumerate(names)},
-            "share": float(result.residual_share[k]),
-            "outlier": int(result.row[k]) in flagged,
-        }
-        for k in range(len(result.row))
-    ]

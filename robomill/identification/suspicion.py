@@ -44,14 +44,14 @@ def _signs(tests: LoadTests) -> list[Finding]:
             )
     if flipped:
         what = "the sign of the displacements" if len(flipped) == 3 else f"the sign of d{_AXES[flipped[0]]}"
-        return [Finding("suspicious", 0, f"{'; '.join(found)}: is {what} or of the forces turned round?")]
+        return [Finding("suspicious", 0, f"{'; '.join(found)}: is {what} or of the forces turned round?", code="sign")]
     work = np.nansum(F * moved, axis=1)
     loaded = np.isfinite(moved).all(axis=1) & (size > 0)
     share = float((work[loaded] < 0).mean()) if loaded.any() else 0.0
     if share > 0.5:
         many = f"{100 * share:.0f} % of the tests"
         text = f"The tool moves against its force in {many}: is the sign of the displacements turned?"
-        return [Finding("suspicious", 0, text)]
+        return [Finding("suspicious", 0, text, code="sign")]
     return []
 
 
@@ -63,7 +63,14 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
         return []
     given = float(np.median(np.sqrt(np.nansum(moved[loaded] ** 2, axis=1)) / size[loaded]))
     if given == 0.0:
-        return [Finding("suspicious", 0, "Most displacements are zero: was the gauge read, and to enough digits?")]
+        return [
+            Finding(
+                "suspicious",
+                0,
+                "Most displacements are zero: was the gauge read, and to enough digits?",
+                code="no-displacement",
+            )
+        ]
     expected = _expected(tests, robot)
     if expected is not None and not 1 / 100 < given / expected < 100:
         times, word = (given / expected, "larger") if given > expected else (expected / given, "smaller")
@@ -74,7 +81,7 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
     else:
         return []
     text = f"The displacements are about {times:.3g} times {word} {against}: is their unit, or the forces', right?"
-    return [Finding("suspicious", 0, text)]
+    return [Finding("suspicious", 0, text, code="unit")]
 
 
 def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
@@ -102,7 +109,7 @@ def _repeats(tests: LoadTests) -> list[Finding]:
         f"Row {tests.row[again]} repeats row {tests.row[first]} to the last digit{others}; both are used: "
         "delete the copy unless it was measured twice."
     )
-    return [Finding("warning", int(tests.row[again]), text, copies)]
+    return [Finding("warning", int(tests.row[again]), text, copies, code="repeat")]
 
 
 def _first_repeat(table: FloatArray) -> tuple[int | None, int | None]:
@@ -128,9 +135,9 @@ def _joint_suspicions(tests: JointTests) -> tuple[Finding, ...]:
         text = (
             f"The angle runs against the torque in {int(against.sum())} of {len(tests)} tests: is a sign turned round?"
         )
-        found.append(Finding("suspicious", 0, text))
+        found.append(Finding("suspicious", 0, text, code="sign"))
     typical = float(np.median(np.abs(tests.angle / tests.torque)))
     if not PLAUSIBLE_JOINT[0] < typical < PLAUSIBLE_JOINT[1]:
         text = f"A typical joint gives {typical:.2g} rad/(N m), far from the 1e-7 to 1e-5 of robots: is the unit right?"
-        found.append(Finding("suspicious", 0, text))
+        found.append(Finding("suspicious", 0, text, code="unit"))
     return tuple(found)

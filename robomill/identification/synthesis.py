@@ -18,7 +18,7 @@ def true_parameters(robot: Robot, model: Model, extra: Mapping[str, float] | Non
     parameters = model.parameters(robot)
     labels = [parameter.label for parameter in parameters]
     values = np.zeros(len(labels))
-    if model.has_joints:
+    if model.has("joint"):
         values[: robot.n] = robot.C_theta
     for label, value in (extra or {}).items():
         if label not in labels:

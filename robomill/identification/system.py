@@ -114,7 +114,7 @@ def _refuse_too_few(system: System, poses: int, model: Model, tests: int) -> Non
             f"Load tests: {equations} measured numbers for {unknowns} unknown compliances (model {model.name!r}); "
             "measure at more poses or in more directions, or choose a smaller model."
         )
-    if poses == 1 and model.has_joints:
+    if poses == 1 and model.has("joint"):
         raise LoadTestError(
             f"Load tests: all {tests} tests are at one pose, and one pose can neither tell the joints apart nor check "
             "the fit; measure at three or more poses that differ in reach and in tool tilt."

@@ -49,13 +49,12 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    *("joint_torques", "arc_of_cut", "cv_by_pose", "rotations", "C_theta_covariance", "parameter_rows"),
-    *("residual_rows", "three_directions", "magnitude", "identified_deflection", "monte_carlo"),
+    *("joint_torques", "arc_of_cut"),
     *("write_mesh", "NOTE", "smallest_singular_value", "condition_number", "all_branches", "FLAGS", "P_S", "P_W"),
     *("residual_angle", "with_convention", "with_blocked", "error_bound", "delta_rest", "plunge"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "floor_ideal"),
     *("open_left", "open_right", "groove_section", "feed_length", "compensated", "says", "DIFFERENCES", "snap"),
-    *("compliance_std", "plan_figure", "plan_view", "reset", "machining_box"),
+    *("plan_figure", "plan_view", "reset", "machining_box"),
 }
 
 

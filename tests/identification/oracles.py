@@ -24,10 +24,12 @@ def monte_carlo(robot, theta, F, known, draws, seed):
     push = np.zeros((draws, 3)) if known.F is None else normal(rng, known.F, draws)
     lengths = np.zeros(2 * robot.rows) if known.lengths is None else known.lengths
     drawn = np.empty((draws, *np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3))
+    J_v = geometric_jacobian(robot, theta)[..., :3, :]
     for k in range(draws):
-        change = lengths * rng.standard_normal(2 * robot.rows)
-        arm = robot.replace(a=robot.a + change[: robot.rows], d=robot.d + change[robot.rows :])
-        J_v = geometric_jacobian(arm if lengths.any() else robot, theta)[..., :3, :]
+        if lengths.any():
+            change = lengths * rng.standard_normal(2 * robot.rows)
+            arm = robot.replace(a=robot.a + change[: robot.rows], d=robot.d + change[robot.rows :])
+            J_v = geometric_jacobian(arm, theta)[..., :3, :]
         torque = np.einsum("...ij,...i->...j", J_v, F + push[k])
         drawn[k] = np.einsum("...ij,...j->...i", J_v, C_theta[k] * torque)
     return drawn

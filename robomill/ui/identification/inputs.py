@@ -10,7 +10,7 @@ import streamlit as st
 from robomill.errors import LoadTestError, RobomillError
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import MODELS
+from robomill.identification.models import MODELS, Model
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import load_test_template
 from robomill.io.load_tests import read_findings
@@ -127,7 +127,7 @@ def model_choice(kept: Bench, robot: Robot) -> None:
     inputs.choice(
         "What gives", "ident:model", {m: MODEL_TITLES[m] for m in MODELS}, kept.model, take_model, horizontal=False
     )
-    if "bending" in kept.model:
+    if Model(kept.model).has("bending"):
         key = "ident:bending"
         inputs.seed(key, [j for j in kept.bending if j in robot.joint_numbers])
         st.multiselect(

@@ -41,7 +41,7 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
     with left, st.container(border=True, height="stretch"):
         st.markdown("**Which are confused with which**")
         if np.isfinite(result.correlation).any():
-            names = [words.pretty(p.label).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
+            names = [words.pretty(p).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
             parts.figure(
                 correlation_figure(names, result.correlation, dark=dark),
                 "ident-correlation",

@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.identification.comparison import in_sample
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import Parameter
+from robomill.identification.models import MODELS, Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui.parts import Tile
@@ -17,20 +17,14 @@ from robomill.ui.tables import PRISMATIC_UNITS, is_stiffness
 from robomill.units import format_percent, format_si, format_value, from_si, unit_label
 from robomill.viz.identification import Intervals
 
-MODEL_TITLES = {
-    "joints": "Joint springs",
-    "joints+bending": "Joints and bending links",
-    "joints+tool": "Joints and tool",
-    "joints+bending+tool": "Joints, bending and tool",
-    "constant": "One constant matrix",
-}
+MODEL_TITLES = {name: family.title for name, family in MODELS.items()}
 IDENTIFIED_SET = "identified"
 SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
 
 
 def unit_of(parameter: Parameter, joint_unit: str) -> str:
     """The unit a parameter is shown in: the screen's for joints and bending, um/N for what shifts."""
-    if parameter.unit.startswith("rad"):
+    if parameter.turns:
         return joint_unit
     return PRISMATIC_UNITS[joint_unit] if parameter.joint else "um/N"
 
@@ -84,7 +78,7 @@ def _drawing(
     joints = [p.joint - 1 for p in labels if p.joint is not None]
     references = {title: shown(C[joints], unit) for title, C in reference_sets(robot)} if joints else {}
     return Intervals(
-        labels=tuple(pretty(p.label) for p in labels),
+        labels=tuple(pretty(p) for p in labels),
         value=value,
         low=ends[:, 0],
         high=ends[:, 1],
@@ -105,9 +99,9 @@ def reference_sets(robot: Robot) -> list[tuple[str, FloatArray]]:
     ]
 
 
-def pretty(label: str) -> str:
-    """A parameter's label as a figure writes it: "Joint 4", "C" with its index set low."""
-    return f"C<sub>{label[2:]}</sub>" if label.startswith("C_") else label.capitalize()
+def pretty(parameter: Parameter) -> str:
+    """A parameter's name as a figure writes it: "Joint 4", "C" with its index set low."""
+    return f"C<sub>{parameter.axis}</sub>" if parameter.kind == "entry" else parameter.label.capitalize()
 
 
 def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: str) -> dict[str, Any]:
