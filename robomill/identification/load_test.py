@@ -39,6 +39,7 @@ class LoadTests:
     force_point, measuring_point    (m, 3) m, offsets from the tool tip, in {T}
     noise         (m,) m            standard deviation of one measured displacement, NaN: not stated
     row           (m,) int          the row of the file each test came from (1 = first line)
+    synthetic     made by calculation: no measurement of a real robot
     """
 
     wrench: FloatArray
@@ -51,6 +52,7 @@ class LoadTests:
     row: IntArray = None  # type: ignore[assignment]
     findings: tuple[Finding, ...] = ()
     source: str = ""
+    synthetic: bool = False
     protocol: str = "displacements"
 
     def __post_init__(self) -> None:
@@ -172,6 +174,7 @@ class JointTests:
     row: IntArray = None  # type: ignore[assignment]
     findings: tuple[Finding, ...] = ()
     source: str = ""
+    synthetic: bool = False
     protocol: str = "one joint at a time"
 
     def __post_init__(self) -> None:

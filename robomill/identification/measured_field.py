@@ -7,7 +7,7 @@ measured point, the answer is NaN. The map holds for the tool orientation it was
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -40,6 +40,7 @@ class MeasuredField:
     AB: FloatArray = None  # type: ignore[assignment]
     reach: float = 0.0
     source: str = ""
+    synthetic: bool = False
 
     def __post_init__(self) -> None:
         p = as_floats(self.p, "measured points", (None, 3), error=LoadTestError)
@@ -75,7 +76,7 @@ class MeasuredField:
                 )
             C[k] = np.linalg.lstsq(F, moved, rcond=None)[0].T
             where[k] = x_M[here[0]]
-        return cls(where[:, :3], C, where[:, 3:], reach, tests.source)
+        return cls(where[:, :3], C, where[:, 3:], reach, tests.source, tests.synthetic)
 
     # ---- between the points ----------------------------------------------------------------------------------------
     def compliance(self, p: ArrayLike) -> FloatArray:
@@ -102,7 +103,7 @@ class MeasuredField:
 
     def symmetric(self) -> MeasuredField:
         """The same map with (C + C^T) / 2: an elastic arm is symmetric, the rest is error of measurement."""
-        return MeasuredField(self.p, 0.5 * (self.C + np.swapaxes(self.C, -1, -2)), self.AB, self.reach, self.source)
+        return replace(self, C=0.5 * (self.C + np.swapaxes(self.C, -1, -2)))
 
     def modelled(self, robot: Robot) -> FloatArray:
         """C (k, 3, 3) m/N of the robot's joint model at the measured poses, for maps side by side and their difference

@@ -65,4 +65,4 @@ def simulated_tests(
     moved = moved + noise * rng.standard_normal(moved.shape)
     if resolution > 0.0:
         moved = np.round(moved / resolution) * resolution
-    return LoadTests(F, moved, theta=theta, source="synthetic")
+    return LoadTests(F, moved, theta=theta, source="synthetic", synthetic=True)

@@ -77,7 +77,8 @@ def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> Loa
         for column in table.passed_over
     )
     source = f"{name or 'pasted cells'}\n{table.remarks}".strip()
-    return replace(tests, source=source, findings=ignored + tests.findings + _pose_suspicions(table))
+    made = "synthetic" in table.remarks.lower()
+    return replace(tests, source=source, synthetic=made, findings=ignored + tests.findings + _pose_suspicions(table))
 
 
 def read_findings(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:

@@ -151,7 +151,7 @@ def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, fo
         parts.error(refusal)
     if tests is None:
         return
-    parts.note(summary(tests) + (" " + parts.badge("computed", "synthetic") if "ynthetic" in tests.source else ""))
+    parts.note(summary(tests) + (" " + parts.badge("computed", "synthetic") if tests.synthetic else ""))
     loud = [f for f in found if f.level in ("error", "suspicious", "warning")]
     for finding in loud[:4]:
         st.warning(finding.message, icon=":material/visibility:" if finding.level == "suspicious" else None)

@@ -147,7 +147,7 @@ def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit
 
 def kind_of(field: MeasuredField) -> str:
     """Provenance of the map: measured, unless its file says that it is synthetic."""
-    return "computed" if "ynthetic" in field.source else "measured"
+    return "computed" if field.synthetic else "measured"
 
 
 def along_cut(field: MeasuredField, cut: SimulationResult) -> FloatArray:
