@@ -5,10 +5,11 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
+from robomill.simulation.stations import nearest_judged
 from robomill.ui.start import story
 from robomill.units import format_si, format_times
 from robomill.viz.arm import arm_figure, displacement_scale
-from robomill.viz.views import arm_scene, sample_at
+from robomill.viz.views import arm_scene
 
 HEIGHT = 430
 
@@ -25,7 +26,7 @@ ui.tiles(ui.verdict_tiles(result, unit))
 
 left, right = ui.split([1, 1.18], "pictures")
 with left, st.container(border=True, height="stretch"):
-    index = sample_at(result, project.view.station * float(result.path.s[-1]))
+    index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
     if index >= 0:
         scene = arm_scene(result, index)
         drawn = displacement_scale(result.delta[index], scene.frames)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
+from robomill.simulation.stations import nearest_judged
 from robomill.toolpath.source import GCodeSource, SketchSource
 from robomill.ui.toolpath import details
 from robomill.ui.toolpath import view as shown
@@ -17,7 +18,7 @@ from robomill.ui.toolpath.sketch_pad import sketch_pad
 from robomill.ui.toolpath.sources import kind_of, kind_switch
 from robomill.viz.arm import arm_figure
 from robomill.viz.toolpath import plan_picture, turnable_picture
-from robomill.viz.views import arm_scene, sample_at
+from robomill.viz.views import arm_scene
 
 project = ui.begin("Toolpath")
 setup, dark, unit = project.setup, ui.dark(), project.view.length
@@ -79,7 +80,7 @@ with right:
                 alt="The path in space, to be turned.",
             )
         elif result is not None:
-            index = result.worst if result.worst >= 0 else sample_at(result, 0.0)
+            index = result.worst if result.worst >= 0 else nearest_judged(result, 0.0)
             ui.figure(
                 arm_figure(arm_scene(result, index), dark=dark, height=HEIGHT, revision="path-arm", zoom=0.85),
                 key,

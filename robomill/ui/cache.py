@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
+from robomill.simulation.enlarged import Enlarged, enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
-from robomill.viz.views import Exaggerated, exaggerated
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -32,14 +32,14 @@ def groove(setup: SimulationSetup, station: float) -> GrooveSection:
     return result(setup).groove(station)
 
 
-def pictured(setup: SimulationSetup, times: float) -> Exaggerated:
+def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     """The surfaces for pictures with the displacement ``times`` times enlarged, from the cache."""
     return _pictured((setup.digest(), times), result(setup))
 
 
 @st.cache_resource(max_entries=16, show_spinner=False)
-def _pictured(key: tuple[str, float], _result: SimulationResult) -> Exaggerated:
-    return exaggerated(_result, key[1])
+def _pictured(key: tuple[str, float], _result: SimulationResult) -> Enlarged:
+    return enlarged(_result, key[1])
 
 
 def kept_figure(name: str, key: Sequence[Any], make: Callable[[], go.Figure]) -> go.Figure:

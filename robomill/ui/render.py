@@ -5,7 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill.errors import RenderError
-from robomill.viz.scene import SurfacePicture
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.worker import RenderWorker
 
 

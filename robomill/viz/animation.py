@@ -12,11 +12,11 @@ from typing import Any, Literal
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
-from robomill.viz.posed import Solid, posed
-from robomill.viz.scene import SurfacePicture
-from robomill.viz.views import Exaggerated, so_far, tip_drawn
+from robomill.viz.picture import Solid, SurfacePicture
+from robomill.viz.posed import posed
 
 Kind = Literal["gif", "mp4"]
 MIME = {"gif": "image/gif", "mp4": "video/mp4"}
@@ -106,7 +106,7 @@ def film_samples(result: SimulationResult, frames: int) -> IntArray:
     return cutting[np.minimum(place, len(cutting) - 1)]
 
 
-def film_frame(result: SimulationResult, shown: Exaggerated, key: str, index: int, solids: bool = True) -> FilmFrame:
+def film_frame(result: SimulationResult, shown: Enlarged, key: str, index: int, solids: bool = True) -> FilmFrame:
     """The part as cut up to sample ``index``, the displacement enlarged as in ``shown``."""
     now = so_far(result, shown, index)
     tip = tip_drawn(result, shown, index)

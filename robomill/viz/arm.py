@@ -44,12 +44,12 @@ def arm_figure(
     ``zoom`` below 1 suits a narrow column.
     """
     p = palette(dark)
-    reach = _reach(scene.frames)
+    reach = solids.yardstick(scene.frames)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     if scene.ghost is not None:
-        fig.add_traces(_arm_traces(scene.ghost, reach, scene.cutter_radius, dark, ghost=True))
+        fig.add_traces(_arm_traces(scene.ghost, scene.cutter_radius, dark, ghost=True))
     fig.add_traces(_pedestal(scene, reach, dark))
-    fig.add_traces(_arm_traces(scene.frames, reach, scene.cutter_radius, dark))
+    fig.add_traces(_arm_traces(scene.frames, scene.cutter_radius, dark))
     fig.add_traces(solids.frame(np.eye(4), "M", 0.16 * reach, dark))
     fig.add_traces(_part_traces(scene, reach, dark))
     tip = scene.frames[-1][:3, 3]
@@ -57,8 +57,7 @@ def arm_figure(
     if scene.force is not None:
         vector = _sized(scene.force, 0.20 * reach)
         fig.add_traces(solids.arrow(tip - vector, vector * 0.96, p.accent, "force", "", width))
-        start = tip - 1.12 * vector
-        fig.add_trace(_word(start, scene.force_label, p.accent))
+        fig.add_trace(solids.word(tip - 1.12 * vector, scene.force_label, rgba(p.accent, 1.0)))
     if scene.displacement is not None:
         vector = _sized(scene.displacement, 0.17 * reach)
         fig.add_traces(solids.arrow(tip, vector, p.warm, "displacement", scene.displacement_label, width))
@@ -69,7 +68,7 @@ def arm_figure(
 def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
     """How many times larger than true ``arm_figure`` draws the displacement (for its caption)."""
     size = float(np.linalg.norm(displacement))
-    return 0.17 * _reach(frames) / size if size > 0 else 1.0
+    return 0.17 * solids.yardstick(frames) / size if size > 0 else 1.0
 
 
 def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
@@ -105,31 +104,12 @@ def _bounds(fig: go.Figure, reach: float) -> FloatArray:
     return np.stack([np.floor(low / step - 0.2), np.ceil(high / step + 0.2)]) * step
 
 
-def _reach(frames: FloatArray) -> float:
-    """Sum of the link lengths, the yardstick for tube radii and arrows."""
-    steps = np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1)
-    return max(float(steps.sum()), 1e-3)
-
-
-def _arm_traces(frames: FloatArray, reach: float, cutter_radius: float, dark: bool, ghost: bool = False) -> list[Any]:
-    p = palette(dark)
-    n = len(frames) - 1
-    thick = 0.034 * reach
-    links, joints = [], []
-    for i in range(n):
-        radius = thick * (1.0 - 0.45 * i / max(n - 1, 1))
-        start, end = frames[i][:3, 3], frames[i + 1][:3, 3]
-        if i == n - 1:
-            end = end + 0.09 * reach * _tool_axis(frames)
-        axis = frames[i][:3, 2]
-        joints.append(solids.tube(start - 1.5 * radius * axis, start + 1.5 * radius * axis, 1.32 * radius))
-        corner = start + axis * float((end - start) @ axis)
-        for a, b in ((start, corner), (corner, end)):
-            if np.linalg.norm(b - a) > 0.2 * radius:
-                links.append(solids.tube(a, b, 0.92 * radius, 0.78 * radius))
+def _arm_traces(frames: FloatArray, cutter_radius: float, dark: bool, ghost: bool = False) -> list[Any]:
+    p, reach = palette(dark), solids.yardstick(frames)
+    links, joints = solids.limbs(frames)
     if ghost:
         return [solids.trace([*links, *joints], p.muted, "before", opacity=0.18)]
-    tip, k = frames[-1][:3, 3], _tool_axis(frames)
+    tip, k = frames[-1][:3, 3], frames[-1][:3, 2]
     spindle = [solids.tube(tip + 0.035 * reach * k, tip + 0.13 * reach * k, 0.016 * reach, 0.024 * reach)]
     cutter = [solids.tube(tip, tip + 0.04 * reach * k, max(cutter_radius, 0.004 * reach))]
     return [
@@ -137,31 +117,22 @@ def _arm_traces(frames: FloatArray, reach: float, cutter_radius: float, dark: bo
         solids.trace(joints, p.joint, "joints"),
         solids.trace(spindle, p.joint, "spindle"),
         solids.trace(cutter, p.warm, "cutter"),
-        *([] if ghost else _joint_hover(frames, p.text)),
+        _joint_hover(frames, p.text),
     ]
 
 
-def _joint_hover(frames: FloatArray, colour: str) -> list[Any]:
-    origins = frames[:-1, :3, 3]
-    names = [f"joint {i + 1}" for i in range(len(origins))]
-    tip = frames[-1][:3, 3]
-    points = np.vstack([origins, tip])
-    return [
-        go.Scatter3d(
-            x=points[:, 0],
-            y=points[:, 1],
-            z=points[:, 2],
-            mode="markers",
-            showlegend=False,
-            marker={"size": 9, "opacity": 0.0, "color": colour},
-            text=[*names, "tool tip {T}"],
-            hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
-        )
-    ]
-
-
-def _tool_axis(frames: FloatArray) -> FloatArray:
-    return np.asarray(frames[-1][:3, 2])
+def _joint_hover(frames: FloatArray, colour: str) -> go.Scatter3d:
+    x, y, z = frames[:, :3, 3].T
+    return go.Scatter3d(
+        x=x,
+        y=y,
+        z=z,
+        mode="markers",
+        showlegend=False,
+        marker={"size": 9, "opacity": 0.0, "color": colour},
+        text=[*(f"joint {i + 1}" for i in range(len(frames) - 1)), "tool tip {T}"],
+        hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
+    )
 
 
 def _pedestal(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
@@ -222,16 +193,3 @@ def _bench(lower: FloatArray, upper: FloatArray, T_MW: FloatArray, reach: float,
 def _sized(vector: FloatArray, length: float) -> FloatArray:
     size = float(np.linalg.norm(vector))
     return np.asarray(vector, dtype=float) * (length / size if size > 0 else 0.0)
-
-
-def _word(at: FloatArray, text: str, colour: str) -> go.Scatter3d:
-    return go.Scatter3d(
-        x=[at[0]],
-        y=[at[1]],
-        z=[at[2]],
-        mode="text",
-        text=[text],
-        textfont={"color": rgba(colour, 1.0), "size": 13},
-        hoverinfo="skip",
-        showlegend=False,
-    )

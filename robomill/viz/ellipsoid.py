@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import soft_direction
@@ -67,14 +66,5 @@ def ellipsoid_traces(
             p.caution,
             "soft direction",
         ),
-        go.Scatter3d(
-            x=[end[0]],
-            y=[end[1]],
-            z=[end[2]],
-            mode="text",
-            text=[word],
-            hoverinfo="skip",
-            textfont={"color": p.caution, "size": 13},
-            showlegend=False,
-        ),
+        solids.word(end, word, p.caution),
     ]

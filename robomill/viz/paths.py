@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.viz.theme import (
-    SEQUENTIAL,
     axis,
     axis_colours,
-    colour_bar,
     figure,
     joint_colours,
     palette,
@@ -164,92 +162,6 @@ def _without_the_small(shares: FloatArray, names: Sequence[str]) -> tuple[FloatA
     small = [name.removeprefix("joint ") for name, big in zip(names, large, strict=True) if not big]
     label = f"joints {', '.join(small)} (under 1 %)"
     return np.hstack([shares[:, large], rest]), [*(names[int(j)] for j in kept), label], [*kept.tolist(), -1]
-
-
-def plan_figure(
-    points: FloatArray,
-    cutting: BoolArray,
-    reached: BoolArray,
-    value: FloatArray,
-    title: str,
-    unit: str,
-    block: IntArray,
-    *,
-    dark: bool,
-    limit: float | None = None,
-    length_unit: str = "mm",
-    height: int = 420,
-    stock: tuple[FloatArray, FloatArray] | None = None,
-    revision: str = "plan",
-) -> go.Figure:
-    """The path from above in {W}, in mm or in: rapids dotted, cuts coloured by ``value``, what is out of reach grey."""
-    p = palette(dark)
-    i = thin(len(points))
-    x, y = points[i, 0], points[i, 1]
-    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 34, "b": 8})
-    if stock is not None:
-        (x0, y0), (x1, y1) = stock[0][:2], stock[1][:2]
-        fig.add_scatter(
-            x=[x0, x1, x1, x0, x0],
-            y=[y0, y0, y1, y1, y0],
-            mode="lines",
-            name="stock",
-            fill="toself",
-            fillcolor=rgba(p.metal, 0.28),
-            line={"color": p.line, "width": 1},
-            hoverinfo="skip",
-        )
-    rapid = ~cutting[i]
-    rapid_y = np.where(rapid | np.append(rapid[1:], False), y, np.nan)
-    fig.add_scatter(
-        x=x, y=rapid_y, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip"
-    )
-    fig.add_scatter(
-        x=x,
-        y=np.where(cutting[i] | np.append(cutting[i][1:], False), y, np.nan),
-        mode="lines",
-        name="cut",
-        line={"color": rgba(p.text, 0.25), "width": 5},
-        hoverinfo="skip",
-        showlegend=False,
-    )
-    good = cutting[i] & reached[i] & np.isfinite(value[i])
-    top = float(np.max(value[i][good])) if good.any() else 1.0
-    text = [f"line {b}" for b in block[i][good]]
-    fig.add_scatter(
-        x=x[good],
-        y=y[good],
-        mode="markers",
-        name=title,
-        text=text,
-        showlegend=False,
-        marker={
-            "size": 6,
-            "color": value[i][good],
-            "colorscale": SEQUENTIAL,
-            "cmin": 0,
-            "cmax": limit or top,
-            "colorbar": colour_bar(f"{title}, {unit}" if unit else title, dark=dark),
-        },
-        hovertemplate=f"%{{text}}<br>x %{{x:.2f}}, y %{{y:.2f}}<br>{title} %{{marker.color:.4f}} {unit}<extra></extra>",
-        customdata=block[i][good],
-    )
-    lost = cutting[i] & ~reached[i]
-    if lost.any():
-        fig.add_scatter(
-            x=x[lost],
-            y=y[lost],
-            mode="markers",
-            name=f"out of reach ({int((cutting & ~reached).sum())} points)",
-            marker={"size": 7, "symbol": "x-thin", "line": {"width": 1.6, "color": p.bad}},
-            text=[f"line {b}" for b in block[i][lost]],
-            hovertemplate="%{text}: out of reach<extra></extra>",
-        )
-    fig.update_layout(
-        xaxis=axis(f"x<sub>W</sub>, {length_unit}", dark=dark),
-        yaxis=axis(f"y<sub>W</sub>, {length_unit}", dark=dark, scaleanchor="x", scaleratio=1),
-    )
-    return fig
 
 
 def _mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:

@@ -1,59 +1,26 @@
 """The rendered machined surface: a solid block cut from a height map, coloured by its signed error.
 
-``SurfacePicture`` is everything a picture needs, as plain arrays in mm; ``draw`` turns it into PNG bytes and is called
-in the worker process only (``worker.py``). The pieces are in ``stage``, the camera in ``camera``.
+``draw`` turns a picture into PNG bytes and is called in the worker process only (``worker.py``). The camera stands by
+presets in parallel projection, fitted to the block and to what stands on it; the pieces are in ``stage``.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.viz import camera as cameras
 from robomill.viz import stage
-from robomill.viz.posed import Solid
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.theme import diverging, palette
 
-Camera = Literal["iso", "top", "front", "along"]
-CAMERAS: dict[str, str] = {"iso": "Angled", "along": "Along the cut", "top": "From above", "front": "From the front"}
-Layout = Literal["one", "pair"]
+# Share of the picture's height that the block may fill: the rest is for words.
+HIGH = 0.84
+UP = np.array([0.0, 0.0, 1.0])
 # Share of a picture's width that the colour bar takes.
 ROOM, ROOM_PAIR = 0.21, 0.30
-
-
-@dataclass(frozen=True, eq=False)
-class SurfacePicture:
-    """x (nx,), y (ny,) mm; z, ideal (nx, ny) mm heights, NaN where there is no material; error_um (nx, ny).
-
-    ``z`` is drawn (it may be exaggerated; then ``captions`` say by how much), ``error_um`` colours it between
-    +-``limit_um``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm, where a section plane is drawn or,
-    with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows ideal and machined side by side under
-    one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand beside them (tool, arm), ``headroom`` mm
-    above the block stays in the picture for them, with ``whole`` they are seen from end to end.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    z: FloatArray
-    ideal: FloatArray
-    error_um: FloatArray
-    limit_um: float
-    bottom: float
-    camera: Camera = "iso"
-    dark: bool = False
-    size: tuple[int, int] = (1280, 720)
-    direction: tuple[float, float] = (1.0, 0.0)
-    station: tuple[float, float, float] | None = None
-    ghost: bool = False
-    captions: tuple[str, ...] = field(default=())
-    layout: Layout = "one"
-    cutaway: bool = False
-    solids: tuple[Solid, ...] = ()
-    headroom: float = 0.0
-    whole: bool = False
 
 
 def load() -> None:
@@ -90,12 +57,12 @@ def image(picture: SurfacePicture) -> Any:
         plotter.subplot(0, 0)
         _fill(plotter, replace(picture, solids=(), ghost=False), colours, ideal=True)
         stage.words(plotter, picture, "Ideal")
-        cameras.look(plotter, picture, aspect=aspect, room=ROOM_PAIR, beside=False)
+        look(plotter, picture, aspect=aspect, room=ROOM_PAIR, beside=False)
         plotter.subplot(0, 1)
     _fill(plotter, picture, colours, ideal=False)
     stage.colour_bar(plotter, picture, colours, 0.74 if pair else 0.835)
     stage.words(plotter, replace(picture, captions=()) if pair else picture, "Machined" if pair else "")
-    cameras.look(plotter, picture, aspect=aspect, room=ROOM_PAIR if pair else ROOM)
+    look(plotter, picture, aspect=aspect, room=ROOM_PAIR if pair else ROOM)
     plotter.enable_anti_aliasing("ssaa")
     shot = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
@@ -116,3 +83,68 @@ def _fill(plotter: Any, picture: SurfacePicture, colours: Any, *, ideal: bool) -
     if picture.station is not None and not picture.cutaway:
         stage.section_plane(plotter, picture)
     stage.solids(plotter, picture)
+
+
+def look(plotter: Any, picture: SurfacePicture, *, aspect: float, room: float, beside: bool = True) -> None:
+    """Point the camera of the plotter's current renderer, whose width is ``aspect`` times its height.
+
+    ``room`` is the share of the width kept free, for a colour bar; with ``beside`` it lies on the right.
+    """
+    along = np.array([picture.direction[0], picture.direction[1], 0.0])
+    across = np.array([-along[1], along[0], 0.0])
+    low, high = bounds(picture)
+    wide = 1.0 - room
+    view = {
+        "iso": best_angle(high - low, along, across, aspect, wide),
+        "along": -1.0 * along + 0.32 * UP,
+        "top": UP,
+        "front": -across + 0.02 * UP,
+    }[picture.camera]
+    view_up = across if picture.camera == "top" else UP
+    centre = 0.5 * (low + high)
+    view = view / np.linalg.norm(view)
+    distance = 4.0 * float(np.linalg.norm(high - low))
+    right = np.cross(view_up, view)
+    right /= np.linalg.norm(right)
+    upward = np.cross(view, right)
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    half_w = float(np.abs((corners - centre) @ right).max())
+    half_h = float(np.abs((corners - centre) @ upward).max())
+    scale = max(half_h / HIGH, half_w / aspect / wide)
+    shift = (0.5 * room * scale * aspect if beside else 0.0) * right
+    if picture.captions:
+        scale *= 1.07
+        shift = shift - 0.07 * scale * upward  # the block moves up to make room for the words below it
+    plotter.camera_position = [centre + shift + distance * view, centre + shift, view_up]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = scale
+    plotter.camera.clipping_range = (0.05 * distance, 6.0 * distance)
+
+
+def bounds(picture: SurfacePicture) -> tuple[FloatArray, FloatArray]:
+    """Corners (3,), (3,) mm of what must be seen: the block with ``headroom`` above it, or ``whole`` all solids too."""
+    low = np.array([picture.x[0], picture.y[0], picture.bottom])
+    high = np.array([picture.x[-1], picture.y[-1], float(np.nanmax(picture.z)) + picture.headroom])
+    if picture.cutaway and picture.station is not None:
+        for i, along in enumerate(picture.direction):  # what is taken away needs no room
+            if abs(along) > 0.99:
+                (low if along > 0 else high)[i] = picture.station[i]
+    if picture.whole:
+        every = np.concatenate([np.asarray(solid.points) for solid in picture.solids])
+        low, high = np.minimum(low, every.min(axis=0)), np.maximum(high, every.max(axis=0))
+    return low, high
+
+
+def best_angle(size: FloatArray, along: FloatArray, across: FloatArray, aspect: float, wide: float) -> FloatArray:
+    """The angled view from the front left under which a block of ``size`` (3,) fills the picture best."""
+    views = []
+    for degrees in range(25, 70, 5):
+        turn = np.radians(degrees)
+        view = -np.cos(turn) * along - np.sin(turn) * across + 0.72 * UP
+        view /= np.linalg.norm(view)
+        right = np.cross(UP, view)
+        right /= np.linalg.norm(right)
+        upward = np.cross(view, right)
+        need = max(float(np.abs(upward) @ size) / HIGH, float(np.abs(right) @ size) / aspect / wide)
+        views.append((need, degrees, view))
+    return min(views, key=lambda v: (round(v[0], 6), v[1]))[2]

@@ -19,30 +19,54 @@ Mesh = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
 LIGHTING = {"ambient": 0.74, "diffuse": 0.55, "specular": 0.18, "roughness": 0.55, "fresnel": 0.08}
 
 
-def tube(start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | None = None, sides: int = 22) -> Mesh:
-    """A closed tube (a cone where the radii differ) between two points."""
-    a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    axis = b - a
-    length = float(np.linalg.norm(axis))
-    axis = axis / length if length > 1e-12 else np.array([0.0, 0.0, 1.0])
+def revolution(radius: FloatArray, height: FloatArray, base: FloatArray, axis: FloatArray, sides: int) -> Mesh:
+    """A closed solid of revolution from its outline, radius (q,) over height (q,) above ``base`` along ``axis``."""
     helper = np.array([0.0, 0.0, 1.0]) if abs(axis[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
     u = np.cross(axis, helper)
     u /= np.linalg.norm(u)
-    v = np.cross(axis, u)
-    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
-    ring = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v
-    points = np.vstack([a + radius * ring, b + (radius if end_radius is None else end_radius) * ring, a, b])
-    i = np.arange(sides)
-    j = (i + 1) % sides
-    faces = np.vstack(
-        [
-            np.stack([i, j, i + sides], axis=1),
-            np.stack([j, j + sides, i + sides], axis=1),
-            np.stack([j, i, np.full(sides, 2 * sides)], axis=1),
-            np.stack([i + sides, j + sides, np.full(sides, 2 * sides + 1)], axis=1),
-        ]
-    )
-    return points, faces.astype(float)
+    angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
+    ring = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * np.cross(axis, u)
+    points = base + radius[:, None, None] * ring + height[:, None, None] * axis
+    ends = base + height[[0, -1], None] * axis
+    q = len(radius)
+    number = np.arange(q * sides).reshape(q, sides)
+    beside = np.roll(number, -1, axis=1)
+    a, b, c, d = (side.ravel() for side in (number[:-1], beside[:-1], number[1:], beside[1:]))
+    faces = [np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)]
+    faces.append(np.stack([beside[0], number[0], np.full(sides, q * sides)], axis=1))
+    faces.append(np.stack([number[-1], beside[-1], np.full(sides, q * sides + 1)], axis=1))
+    return np.vstack([points.reshape(-1, 3), ends]), np.vstack(faces).astype(float)
+
+
+def tube(start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | None = None, sides: int = 22) -> Mesh:
+    """A closed tube (a cone where the radii differ) between two points."""
+    a, axis = np.asarray(start, dtype=float), np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
+    length = float(np.linalg.norm(axis))
+    axis = axis / length if length > 1e-12 else np.array([0.0, 0.0, 1.0])
+    radii = np.array([radius, radius if end_radius is None else end_radius])
+    return revolution(radii, np.array([0.0, length]), a, axis, sides)
+
+
+def yardstick(frames: FloatArray) -> float:
+    """Sum of the link lengths, m, of an arm with ``frames`` (n+1, 4, 4): the measure of tube radii and arrows."""
+    return max(float(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1).sum()), 1e-3)
+
+
+def limbs(frames: FloatArray) -> tuple[list[Mesh], list[Mesh]]:
+    """(links, joints) of an arm: a link first runs along its joint's axis, then across to the next joint."""
+    size, n = yardstick(frames), len(frames) - 1
+    links, joints = [], []
+    for i in range(n):
+        radius = 0.034 * size * (1.0 - 0.45 * i / max(n - 1, 1))
+        start, end, axis = frames[i][:3, 3], frames[i + 1][:3, 3], frames[i][:3, 2]
+        if i == n - 1:
+            end = end + 0.09 * size * frames[-1][:3, 2]
+        joints.append(tube(start - 1.5 * radius * axis, start + 1.5 * radius * axis, 1.32 * radius))
+        corner = start + axis * float((end - start) @ axis)
+        for a, b in ((start, corner), (corner, end)):
+            if np.linalg.norm(b - a) > 0.2 * radius:
+                links.append(tube(a, b, 0.92 * radius, 0.78 * radius))
+    return links, joints
 
 
 def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Mesh:
@@ -86,6 +110,14 @@ def trace(meshes: Sequence[Mesh], colour: str, name: str, **more: Any) -> go.Mes
     return go.Mesh3d(x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
 
 
+def word(at: FloatArray, text: str, colour: str, **more: Any) -> go.Scatter3d:
+    """A word in a scene."""
+    x, y, z = ([float(v)] for v in at)
+    font = {"color": colour, "size": 13}
+    quiet = {"hoverinfo": "skip", "showlegend": False}
+    return go.Scatter3d(x=x, y=y, z=z, mode="text", text=[text], textfont=font, **quiet, **more)
+
+
 def arrow(start: ArrayLike, vector: ArrayLike, colour: str, name: str, label: str, width: float) -> list[Any]:
     """A solid arrow from ``start`` along ``vector`` with a word at its head; nothing for a zero vector."""
     a, v = np.asarray(start, dtype=float), np.asarray(vector, dtype=float)
@@ -95,19 +127,7 @@ def arrow(start: ArrayLike, vector: ArrayLike, colour: str, name: str, label: st
     head = min(0.35 * length, 5.5 * width)
     neck = a + v * (1 - head / length)
     meshes = [tube(a, neck, width, sides=14), tube(neck, a + v, 2.4 * width, 0.0, sides=18)]
-    tip = a + v * (1 + 0.12)
-    word = go.Scatter3d(
-        x=[tip[0]],
-        y=[tip[1]],
-        z=[tip[2]],
-        mode="text",
-        text=[label],
-        textfont={"color": colour, "size": 13},
-        hoverinfo="skip",
-        showlegend=False,
-        name=name,
-    )
-    return [trace(meshes, colour, name), word]
+    return [trace(meshes, colour, name), word(a + 1.12 * v, label, colour, name=name)]
 
 
 def frame(
@@ -121,17 +141,4 @@ def frame(
         end = origin + size * T[:3, column]
         traces.append(trace([tube(origin, end, 0.035 * size, sides=10)], colours[axis], name))
     at = origin + size * T[:3, :3] @ np.asarray(label, dtype=float)
-    traces.append(
-        go.Scatter3d(
-            x=[at[0]],
-            y=[at[1]],
-            z=[at[2]],
-            mode="text",
-            text=[f"{{{name}}}"],
-            hoverinfo="skip",
-            showlegend=False,
-            textfont={"size": 13, "color": colours["z"]},
-            name=name,
-        )
-    )
-    return traces
+    return [*traces, word(at, f"{{{name}}}", colours["z"], name=name)]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.theme import palette
-
-if TYPE_CHECKING:
-    from robomill.viz.scene import SurfacePicture
 
 METAL = {False: "#C4CCD2", True: "#66747E"}
 FACE = {False: "#E7D9B8", True: "#8A7A52"}

@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.viz.solids import LIGHTING
+from robomill.viz.solids import LIGHTING, word
 from robomill.viz.theme import SEQUENTIAL, colour_bar, diverging, palette
 
 # The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
@@ -102,17 +102,7 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
             hoverinfo="name",
             showlegend=False,
         ),
-        go.Scatter3d(
-            x=[upper[0]],
-            y=[lower[1]],
-            z=[upper[2]],
-            mode="text",
-            text=[label],
-            textposition="top center",
-            textfont={"color": colour, "size": 13},
-            hoverinfo="skip",
-            showlegend=False,
-        ),
+        word(np.array([upper[0], lower[1], upper[2]]), label, colour, textposition="top center"),
     ]
 
 

@@ -10,15 +10,16 @@ import pytest
 
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.units import from_si
 from robomill.viz.arm import arm_figure, displacement_scale
-from robomill.viz.paths import MAX_POINTS, components_figure, plan_figure, shares_figure, thin
+from robomill.viz.paths import MAX_POINTS, components_figure, shares_figure, thin
 from robomill.viz.sections import section_figure
 from robomill.viz.surfaces import MAX_CELLS, surface_figure, thinned
 from robomill.viz.theme import diverging, joint_colours
-from robomill.viz.views import arm_scene, exaggerated, place, plan_view, section_drawing
+from robomill.viz.views import arm_scene, section_drawing
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def result() -> SimulationResult:
 
 def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
     s, delta = from_si(result.path.s, "mm"), from_si(result.delta, "mm")
-    shown = exaggerated(result, 10.0)
+    shown = enlarged(result, 10.0)
     mm = [from_si(v, "mm") for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
     groove = result.groove(0.5 * float(result.path.s[-1]))
     return {
@@ -43,8 +44,6 @@ def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
             "mm",
             dark=dark,
         ),
-        "plan": plan_figure(**plan_view(result, "deviation", "mm"), dark=dark),
-        "plan limits": plan_figure(**plan_view(result, "limits", "mm"), dark=dark),
         "section": section_figure(section_drawing(groove, "mm"), dark=dark),
         "surface": surface_figure(*mm, from_si(shown.error, "um"), 300.0, dark=dark),
     }
@@ -83,18 +82,6 @@ def test_joint_colours_are_distinct() -> None:
         assert len(set(joint_colours(7, dark))) == 7
 
 
-def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: SimulationResult) -> None:
-    once, ten = exaggerated(result, 1.0), exaggerated(result, 10.0)
-    j = int(np.argmin(np.abs(ten.drawn.y)))
-    i = len(ten.drawn.x) // 2
-    assert ten.drawn.z[i, j] - ten.ideal.z[i, j] == pytest.approx(
-        10 * (once.drawn.z[i, j] - once.ideal.z[i, j]), rel=1e-4
-    )
-    assert ten.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
-    assert once.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
-    assert np.isnan(ten.error[:, 0]).all(), "untouched material carries no error"
-
-
 def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
     scene = arm_scene(result, result.worst)
     assert scene.displacement is not None
@@ -109,13 +96,6 @@ def test_section_is_upright_at_the_measured_walls(result: SimulationResult) -> N
     walls = sorted(drawing.u[:-1][steep])
     assert walls == pytest.approx(sorted([drawing.wall_left, drawing.wall_right]))
     assert drawing.centre_offset == pytest.approx(0.2295, abs=5e-4)
-
-
-def test_place_is_on_the_path(result: SimulationResult) -> None:
-    for station in (0.0, 0.0333, 0.05, 0.1):
-        point, along = place(result, station)
-        np.testing.assert_allclose(point, [-0.05 + station, 0.0, -0.002], atol=1e-9)
-        np.testing.assert_allclose(along, [1.0, 0.0, 0.0], atol=1e-12)
 
 
 def test_large_runs_are_thinned_for_the_screen_only() -> None:

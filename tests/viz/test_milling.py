@@ -13,6 +13,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import RenderError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.spread import peak_force
@@ -25,7 +26,7 @@ from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figu
 from robomill.viz.picking import MAX_PICKS, add_picks
 from robomill.viz.posed import posed, tool_solids
 from robomill.viz.theme import figure
-from robomill.viz.views import exaggerated, so_far, surface_picture, tip_drawn
+from robomill.viz.views import surface_picture
 from robomill.viz.worker import RenderWorker
 
 
@@ -108,39 +109,6 @@ def test_what_can_be_clicked_is_thinned_and_finite() -> None:
     assert fig.layout.clickmode == "event+select"
 
 
-@pytest.mark.parametrize("times", [5.0, 50.0])
-def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(result: SimulationResult, times: float) -> None:
-    shown = exaggerated(result, times)
-    i = int(np.argmin(np.abs(shown.drawn.x)))
-    sample = result.sample_at(0.05)
-    aside, depth = float(np.linalg.norm(result.delta[sample, :2])), float(result.delta[sample, 2])
-    error = shown.error[i]
-    y = shown.drawn.y
-    left_over = (y < 0.001) & (y > -0.004) & (shown.drawn.z[i] >= -1e-9) & (shown.ideal.z[i] < -1e-3)
-    assert left_over.any()
-    assert error[left_over] == pytest.approx(aside, rel=0.02)
-    cut_off = (shown.ideal.z[i] >= -1e-9) & (shown.drawn.z[i] < -1e-3)
-    assert error[cut_off] == pytest.approx(-aside, rel=0.02)
-    both = (shown.ideal.z[i] < -1e-3) & (shown.drawn.z[i] < -1e-3)
-    if times < 20:
-        assert error[both] == pytest.approx(depth, rel=0.02)
-    assert np.isnan(error[np.isclose(shown.drawn.z[i], 0.0) & np.isclose(shown.ideal.z[i], 0.0)]).all()
-
-
-def test_the_cut_so_far_grows_to_the_whole(result: SimulationResult) -> None:
-    shown = exaggerated(result, 10.0)
-    removed = [so_far(result, shown, int(k)).drawn.removed_volume for k in film_samples(result, 4)]
-    assert np.all(np.diff(removed) > 0)
-    assert removed[-1] == shown.drawn.removed_volume
-    start = so_far(result, shown, 0)
-    assert np.isnan(start.error).all()
-    assert (start.drawn.z == shown.ideal.z_stock).all()
-    middle = so_far(result, shown, result.sample_at(0.05))
-    ahead = shown.drawn.x > 0.01
-    assert np.isnan(middle.error[ahead]).all()
-    np.testing.assert_allclose(tip_drawn(result, shown, result.sample_at(0.05))[1], 10 * 0.2773e-3, atol=5e-6)
-
-
 @pytest.mark.parametrize(
     "cutter",
     [
@@ -195,7 +163,7 @@ def worker() -> Any:
 def picture(result: SimulationResult, **changes: Any) -> Any:
     """A small picture of the slot at mid-cut."""
     values: dict[str, Any] = {"camera": "iso", "dark": False, "station": 0.05, "size": (480, 320), **changes}
-    return surface_picture(result, exaggerated(result, 10.0), **values)
+    return surface_picture(result, enlarged(result, 10.0), **values)
 
 
 def pixels(data: bytes) -> Any:
@@ -225,7 +193,7 @@ def test_every_kind_of_picture_is_drawn(worker: RenderWorker, result: Simulation
 def test_a_film_of_an_arc_in_the_worker(worker: RenderWorker, result: SimulationResult) -> None:
     text = "G21 G90 G17\nS12000 M3\nG0 X-12 Y0 Z5\nG1 Z-2 F600\nG2 X12 Y0 I12 J0 F1800\nG0 Z5\nM2\n"
     arc = simulate(result.setup.replace(source=GCodeSource(text), step=2e-3))
-    shown = exaggerated(arc, 10.0)
+    shown = enlarged(arc, 10.0)
     worker.render(FilmStart("arc", picture(arc, size=(320, 192), headroom=30.0)))
     samples = film_samples(arc, 4)
     for index in samples:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import RenderError
-from robomill.viz.scene import SurfacePicture
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.worker import RenderWorker
 
 ECHO = """

@@ -13,7 +13,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, parts, state
 from robomill.units import format_times, from_si
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
-from robomill.viz.scene import Camera
+from robomill.viz.picture import Camera
 from robomill.viz.views import surface_picture
 from robomill.viz.worker import RenderWorker
 

@@ -11,6 +11,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.milling import ForceSpread, ProcessForce
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
+from robomill.simulation.stations import force_components, largest_deviations
 from robomill.ui import parts, state
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_significant, from_si
@@ -51,7 +52,7 @@ def force_plot(
 def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatArray, FloatArray] | None:
     if spread is None or len(spread.titles) < 2:
         return None
-    rows = np.einsum("mij,rmi->rmj", result.R_MF, spread.F)
+    rows = force_components(result, spread)
     return linked.at_feed(result, rows.min(axis=0)), linked.at_feed(result, rows.max(axis=0))
 
 
@@ -140,8 +141,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         return
     unit = state.project().view.length
     materials = (force.material, *force.alternatives)
-    F = np.einsum("ij,ri->rj", result.R_MF[i], spread.F[:, i])
-    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
+    F, largest = force_components(result, spread)[:, i], largest_deviations(result, spread)
     body = ""
     for row, (material, known) in enumerate(zip(materials, spread.axial, strict=True)):
         shown = [format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row]]

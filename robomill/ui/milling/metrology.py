@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import IntArray
 from robomill.errors import RobomillError, SurfaceError
 from robomill.io.profiles import MeasuredProfile, read_profile
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
+from robomill.simulation.stations import is_straight, offset_band
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import inputs, parts, state
@@ -35,14 +36,6 @@ def _profile(digest: str, _result: SimulationResult) -> tuple[GrooveProfile, Int
 def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
     """The groove at its stations (fewer on a very long program) and the line of each, from the cache."""
     return _profile(result.setup.digest(), result)
-
-
-def straight(result: SimulationResult) -> bool:
-    """Whether every cut goes the same way, so that the groove is one straight line."""
-    step = np.diff(result.path.p, axis=0)[result.path.cutting[1:]]
-    length = np.linalg.norm(step, axis=1)
-    along = step[length > 0] / length[length > 0, None]
-    return bool(len(along) and np.abs(np.cross(along, along[0])).max() < 1e-6)
 
 
 def section_facts(groove: GrooveSection | None) -> None:
@@ -90,7 +83,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     found, block = profile(result)
     measured = st.session_state.get(MEASURED)
     fit = None
-    if straight(result) and np.isfinite(found.centre_offset).sum() >= 3:
+    if is_straight(result.path) and np.isfinite(found.centre_offset).sum() >= 3:
         fit = fit_groove(found)
     curves = ProfileCurves(
         from_si(found.station, unit),
@@ -127,15 +120,6 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     else:
         parts.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
     _overlay(found, measured, unit)
-
-
-def offset_band(result: SimulationResult, spread: AlloySpread, found: GrooveProfile) -> FloatArray:
-    """(2, q) m: lowest and highest centre offset over the alloy's rows at the profile's stations."""
-    i = np.array([result.sample_at(float(s)) for s in found.station])
-    normal = result.R_MF[i][:, :, 1]
-    moved = np.einsum("rqc,qc->rq", spread.delta[:, i] - result.delta[i], normal)
-    every = found.centre_offset + moved
-    return np.stack([every.min(axis=0), every.max(axis=0)])
 
 
 def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:

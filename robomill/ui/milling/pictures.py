@@ -10,14 +10,15 @@ import streamlit as st
 
 from robomill.io.meshes import FORMATS, mesh_bytes
 from robomill.report.tables import csv_text, deviation_columns
+from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, inputs, parts, render, state
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_times, from_si
+from robomill.viz.picture import CAMERAS, SurfacePicture
 from robomill.viz.posed import posed
-from robomill.viz.scene import CAMERAS, SurfacePicture
 from robomill.viz.surfaces import surface_figure
-from robomill.viz.views import Exaggerated, so_far, surface_picture, tip_drawn
+from robomill.viz.views import surface_picture
 
 HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
 EXTRAS = {
@@ -65,7 +66,7 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     )
 
 
-def turnable(result: SimulationResult, shown: Exaggerated, view: state.View, dark: bool, height: int) -> Any:
+def turnable(result: SimulationResult, shown: Enlarged, view: state.View, dark: bool, height: int) -> Any:
     """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
     unit, z = view.length, shown.drawn
     fig = surface_figure(

@@ -11,13 +11,13 @@ from robomill.arrays import FloatArray
 from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
+from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import inputs, parts, state, uncertainty
-from robomill.units import format_many, format_si, format_value, from_si
+from robomill.units import format_many, format_si, from_si
 from robomill.viz.engagement import shade
 from robomill.viz.paths import components_figure
 from robomill.viz.picking import add_picks, add_point
 from robomill.viz.theme import palette
-from robomill.viz.views import sample_at
 
 MAX_HOVERED = 100_000
 
@@ -38,7 +38,7 @@ def scrubber(result: SimulationResult) -> int:
     """The slider over the length cut, with steps from line to line; returns the sample it points at."""
     view, unit = state.project().view, state.project().view.length
     top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
-    i = sample_at(result, station_m(result))
+    i = nearest_judged(result, station_m(result))
     inputs.slider(
         f"Station: {unit} of cut",
         "view.station",
@@ -71,7 +71,7 @@ def scrubber(result: SimulationResult) -> int:
             disabled=result.worst < 0,
             help="Land on the largest deviation",
         )
-    return sample_at(result, station_m(result))
+    return nearest_judged(result, station_m(result))
 
 
 def cut_lines(result: SimulationResult) -> FloatArray:
@@ -177,9 +177,6 @@ def band_words(spread: AlloySpread | None, result: SimulationResult, unit: str) 
     """``"0.18 to 0.33 mm by alloy row"`` for the largest deviation, or nothing."""
     if spread is None or len(spread.titles) < 2 or not result.judged.any():
         return ""
-    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
-    ends = [
-        format_value(float(from_si(float(v), unit)), unit, 2 if unit == "mm" else 4)
-        for v in (largest.min(), largest.max())
-    ]
-    return f"{ends[0].rpartition(' ')[0]} to {ends[1]} by alloy row"
+    largest = largest_deviations(result, spread)
+    ends = format_many((largest.min(), largest.max()), unit, 2 if unit == "mm" else 4, " to ")
+    return f"{ends} by alloy row"

@@ -12,6 +12,7 @@ from robomill.arrays import FloatArray
 from robomill.report.tables import deviation_columns, section_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
+from robomill.simulation.stations import force_components
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.ui import cache, inputs, parts, state
 from robomill.ui.milling import springs as springs_panel
@@ -93,7 +94,7 @@ def dial(
     top = float(np.nanmax(np.where(result.judged, across, 0.0), initial=0.0))
     others = None
     if spread is not None and len(spread.titles) > 1:
-        others = np.einsum("ij,ri->rj", result.R_MF[i], spread.F[1:, i])
+        others = force_components(result, spread)[1:, i]
         top = max(top, float(np.hypot(others[:, 0], others[:, 1]).max()))
     worst_turn = None if peak is None else peak.at_peak[i]
     if worst_turn is not None:

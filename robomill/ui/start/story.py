@@ -173,7 +173,7 @@ def doors() -> None:
 
 def _aside(result: Any) -> float:
     """Sideways error at mid-cut, m."""
-    from robomill.viz.views import sample_at
+    from robomill.simulation.stations import nearest_judged
 
-    i = sample_at(result, 0.5 * float(result.path.s[-1]))
+    i = nearest_judged(result, 0.5 * float(result.path.s[-1]))
     return abs(float(result.delta[i, 1])) if i >= 0 else float("nan")

@@ -1,0 +1,76 @@
+"""The displacement enlarged for a picture, the error told truly, the cut as it stands at a sample."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.enlarged import PICTURE_CELLS, enlarged, so_far, tip_drawn
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+
+
+@pytest.fixture(scope="module")
+def result() -> SimulationResult:
+    return simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml"))
+
+
+def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: SimulationResult) -> None:
+    once, ten = enlarged(result, 1.0), enlarged(result, 10.0)
+    j = int(np.argmin(np.abs(ten.drawn.y)))
+    i = len(ten.drawn.x) // 2
+    assert ten.drawn.z[i, j] - ten.ideal.z[i, j] == pytest.approx(
+        10 * (once.drawn.z[i, j] - once.ideal.z[i, j]), rel=1e-4
+    )
+    assert ten.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
+    assert once.error[i, j] == pytest.approx(-1.024e-4, abs=1e-6)
+    assert np.isnan(ten.error[:, 0]).all(), "untouched material carries no error"
+
+
+@pytest.fixture(scope="module")
+def process() -> SimulationResult:
+    """The paper's slot from process data."""
+    return simulate(load_setup(samples_dir() / "paper_flute" / "setup_process.toml"))
+
+
+@pytest.mark.parametrize("times", [5.0, 50.0])
+def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(process: SimulationResult, times: float) -> None:
+    shown = enlarged(process, times)
+    i = int(np.argmin(np.abs(shown.drawn.x)))
+    sample = process.sample_at(0.05)
+    aside, depth = float(np.linalg.norm(process.delta[sample, :2])), float(process.delta[sample, 2])
+    error = shown.error[i]
+    y = shown.drawn.y
+    left_over = (y < 0.001) & (y > -0.004) & (shown.drawn.z[i] >= -1e-9) & (shown.ideal.z[i] < -1e-3)
+    assert left_over.any()
+    assert error[left_over] == pytest.approx(aside, rel=0.02)
+    cut_off = (shown.ideal.z[i] >= -1e-9) & (shown.drawn.z[i] < -1e-3)
+    assert error[cut_off] == pytest.approx(-aside, rel=0.02)
+    both = (shown.ideal.z[i] < -1e-3) & (shown.drawn.z[i] < -1e-3)
+    if times < 20:
+        assert error[both] == pytest.approx(depth, rel=0.02)
+    assert np.isnan(error[np.isclose(shown.drawn.z[i], 0.0) & np.isclose(shown.ideal.z[i], 0.0)]).all()
+
+
+def test_the_cut_so_far_grows_to_the_whole(process: SimulationResult) -> None:
+    shown = enlarged(process, 10.0)
+    removed = [
+        so_far(process, shown, int(k)).drawn.removed_volume for k in np.linspace(0, len(process.path) - 1, 5)[1:]
+    ]
+    assert np.all(np.diff(removed) > 0)
+    assert removed[-1] == shown.drawn.removed_volume
+    start = so_far(process, shown, 0)
+    assert np.isnan(start.error).all()
+    assert (start.drawn.z == shown.ideal.z_stock).all()
+    middle = so_far(process, shown, process.sample_at(0.05))
+    ahead = shown.drawn.x > 0.01
+    assert np.isnan(middle.error[ahead]).all()
+    np.testing.assert_allclose(tip_drawn(process, shown, process.sample_at(0.05))[1], 10 * 0.2773e-3, atol=5e-6)
+
+
+def test_a_picture_has_no_more_cells_than_a_screen_needs(result: SimulationResult) -> None:
+    shown = enlarged(result, 1.0)
+    assert shown.drawn.z.size <= 1.05 * PICTURE_CELLS
+    assert shown.drawn.cell >= result.setup.cell

@@ -1,0 +1,90 @@
+"""What holds at a station of the cut."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+from robomill.simulation.spread import AlloySpread
+from robomill.simulation.stations import (
+    force_components,
+    is_straight,
+    largest_deviations,
+    nearest_judged,
+    offset_band,
+    place_at,
+)
+from robomill.surface.metrology import groove_profile
+from robomill.toolpath.path import Toolpath
+
+
+@pytest.fixture(scope="module")
+def result() -> SimulationResult:
+    return simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml"))
+
+
+def test_place_is_on_the_path(result: SimulationResult) -> None:
+    for station in (0.0, 0.0333, 0.05, 0.1):
+        point, along = place_at(result.path, station)
+        np.testing.assert_allclose(point, [-0.05 + station, 0.0, -0.002], atol=1e-9)
+        np.testing.assert_allclose(along, [1.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_the_nearest_judged_sample(result: SimulationResult) -> None:
+    judged = [i for i in range(len(result.path)) if result.judged[i]]
+    for station in (0.0, 0.0333, 0.0334, 0.1, 1.0):
+        found = nearest_judged(result, station)
+        assert found in judged
+        assert abs(result.path.s[found] - station) == min(abs(result.path.s[i] - station) for i in judged)
+
+
+def test_where_nothing_is_judged_there_is_no_sample(result: SimulationResult) -> None:
+    far = simulate(dataclasses.replace(result.setup, T_MW=_moved(result, 50.0)))
+    assert not far.judged.any()
+    assert nearest_judged(far, 0.05) == -1
+
+
+def _moved(result: SimulationResult, metres: float) -> np.ndarray:
+    T = np.array(result.setup.T_MW)
+    T[0, 3] += metres
+    return T
+
+
+def test_a_groove_is_straight_while_every_cut_goes_one_way() -> None:
+    def path(*points: tuple[float, float]) -> Toolpath:
+        m = len(points)
+        p = np.array([(x, y, -0.001) for x, y in points])
+        k, zeros = np.tile([0.0, 0.0, 1.0], (m, 1)), np.zeros(m, dtype=int)
+        return Toolpath(p, k, np.full(m, 0.01), np.arange(m) > 0, np.arange(m), np.zeros(m), zeros)
+
+    assert is_straight(path((0, 0), (0.01, 0.01), (0.03, 0.03)))
+    assert not is_straight(path((0, 0), (0.01, 0.0), (0.01, 0.01)))
+    assert not is_straight(path((0, 0), (0.01, 0.0), (0.02, 1e-4)))
+    assert is_straight(path((0, 0), (0.01, 0.0), (0.01, 0.0), (0.02, 0.0)))
+
+
+def test_the_alloys_rows_by_sample_and_row(result: SimulationResult) -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    F = np.random.default_rng(3).normal(size=(3, len(result.path), 3)) * 40.0
+    delta = np.random.default_rng(4).normal(size=F.shape) * 1e-4
+    spread = AlloySpread(("a", "b", "c"), (True, True, False), F, delta)
+    feed, normal = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])  # the flute runs along X
+    R, found = setup.T_MW[:3, :3], force_components(result, spread)
+    for r in range(3):
+        for i in np.flatnonzero(result.path.cutting)[::17]:
+            assert found[r, i, :2] == pytest.approx([F[r, i] @ (R @ feed), F[r, i] @ (R @ normal)])
+    largest = largest_deviations(result, spread)
+    judged = np.flatnonzero(result.judged)
+    assert largest == pytest.approx([max(np.linalg.norm(delta[r, i]) for i in judged) for r in range(3)])
+    profile = groove_profile(result.grooves(np.array([0.03, 0.05, 0.08])))
+    low, high = offset_band(result, spread, profile)
+    for k, station in enumerate(profile.station):
+        i = int(np.argmin(np.where(result.path.cutting, np.abs(result.path.s - station), np.inf)))
+        every = [profile.centre_offset[k] + (delta[r, i] - result.delta[i]) @ (R @ normal) for r in range(3)]
+        assert (low[k], high[k]) == pytest.approx((min(every), max(every)))
