@@ -6,7 +6,6 @@ Exit codes: 0 success, 1 red verdict, 2 refused input (the sentence is on stderr
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import subprocess
 import sys
@@ -108,14 +107,13 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def say(arguments: Any, record: dict[str, Any], lines: Sequence[str]) -> None:
-    """The record as JSON, or its lines for a person."""
+def say(arguments: Any, record: dict[str, Any], lines: Sequence[str], code: int = 0) -> int:
+    """Print the record as JSON, or its lines for a person; returns the exit code."""
+    from robomill.io.results import json_text
     from robomill.report.records import jsonable
 
-    if arguments.json:
-        print(json.dumps(jsonable(record), indent=1, ensure_ascii=False, allow_nan=False))
-    else:
-        print("\n".join(lines))
+    print(json_text(jsonable(record)).rstrip("\n") if arguments.json else "\n".join(lines))
+    return code
 
 
 def start_app(words: Sequence[str] = ()) -> int:
@@ -134,33 +132,21 @@ def start_app(words: Sequence[str] = ()) -> int:
 
 def run_robots(arguments: Any) -> int:
     from robomill.io.robots import load_robot, robot_names
+    from robomill.report.plain import robot_lines
+    from robomill.report.records import robots_record
 
-    robots = [load_robot(name) for name in robot_names()]
-    record = {
-        "robots": [
-            {
-                "name": r.name,
-                "title": r.title,
-                "joints": r.n,
-                "compliance_sets": sorted(r.compliance_sets),
-                "compliance_set": r.compliance_set,
-            }
-            for r in robots
-        ]
-    }
-    say(arguments, record, [f"{r.name:18} {r.n} joints  {r.title}" for r in robots])
-    return 0
+    record = robots_record([load_robot(name) for name in robot_names()])
+    return say(arguments, record, robot_lines(record))
 
 
 def run_pose(arguments: Any) -> int:
-    from robomill.io.robots import load_robot
+    from robomill.compliance.at_pose import at_pose
     from robomill.report.plain import pose_lines
     from robomill.report.records import pose_record
 
-    robot = _with_set(load_robot(arguments.robot), arguments.compliance_set)
-    record = pose_record(robot, _theta(robot, arguments.theta_deg))
-    say(arguments, record, pose_lines(record))
-    return 0
+    robot = _robot(arguments)
+    record = pose_record(at_pose(robot, _theta(robot, arguments.theta_deg)))
+    return say(arguments, record, pose_lines(record))
 
 
 def run_ik(arguments: Any) -> int:
@@ -177,8 +163,7 @@ def run_ik(arguments: Any) -> int:
     values = np.array(_numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
     x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
     record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
-    say(arguments, record, ik_lines(record))
-    return 0
+    return say(arguments, record, ik_lines(record))
 
 
 def run_gcode(arguments: Any) -> int:
@@ -195,8 +180,7 @@ def run_gcode(arguments: Any) -> int:
         record = gcode_report(program)
         if arguments.moves:
             write_moves_jsonl(program, arguments.moves)
-    say(arguments, record, gcode_lines(record))
-    return 0
+    return say(arguments, record, gcode_lines(record))
 
 
 def _reads_as_apt(file: Path) -> bool:
@@ -211,14 +195,13 @@ def _reads_as_apt(file: Path) -> bool:
 
 def run_map(arguments: Any) -> int:
     from robomill.io.maps import write_map
-    from robomill.io.robots import load_robot
     from robomill.report.plain import map_lines
     from robomill.report.records import map_record
     from robomill.units import to_si
     from robomill.workspace.fields import compliance_field
     from robomill.workspace.grid import Grid
 
-    robot = _with_set(load_robot(arguments.robot), arguments.compliance_set)
+    robot = _robot(arguments)
     grid = Grid(*(_axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_field(robot, grid, A, B)
@@ -226,8 +209,7 @@ def run_map(arguments: Any) -> int:
     if arguments.out:
         write_map(arguments.out, fields)
     record = map_record(fields)
-    say(arguments, record, map_lines(record))
-    return 0
+    return say(arguments, record, map_lines(record))
 
 
 def _axis(text: str, option: str) -> Any:
@@ -255,8 +237,7 @@ def run_identify(arguments: Any) -> int:
     record = identification_report(result)
     record["explanations"] = list(result.explanations)
     record["findings"] = [finding_record(f) for f in (*read_findings(tests, robot), *result.findings)]
-    say(arguments, record, identification_lines(record))
-    return 0
+    return say(arguments, record, identification_lines(record))
 
 
 def run_simulate(arguments: Any) -> int:
@@ -274,7 +255,7 @@ def run_simulate(arguments: Any) -> int:
         setup = setup.replace(source=read_program(arguments.program))
     if arguments.tol is not None:
         setup = setup.replace(tolerance=to_si(arguments.tol, "mm"))
-    setup = setup.replace(robot=_with_set(setup.robot, arguments.compliance_set))
+    setup = setup.replace(robot=_with_set(setup.robot, arguments))
     result = simulate(setup)
     record = simulation_record(result)
     if arguments.out:
@@ -287,12 +268,18 @@ def run_simulate(arguments: Any) -> int:
             "machined.stl": mesh_bytes(result.machined, "stl"),
         }
         write_files(Path(arguments.out), files)
-    say(arguments, record, simulation_lines(record))
-    return 1 if result.verdict.red else 0
+    return say(arguments, record, simulation_lines(record), 1 if result.verdict.red else 0)
 
 
-def _with_set(robot: Any, name: str | None) -> Any:
-    return robot.with_compliance_set(name) if name else robot
+def _robot(arguments: Any) -> Any:
+    """The robot asked for, with the compliance set asked for."""
+    from robomill.io.robots import load_robot
+
+    return _with_set(load_robot(arguments.robot), arguments)
+
+
+def _with_set(robot: Any, arguments: Any) -> Any:
+    return robot.with_compliance_set(arguments.compliance_set) if arguments.compliance_set else robot
 
 
 def _theta(robot: Any, text: str) -> Any:

@@ -15,6 +15,10 @@ def matrix_lines(rows: Sequence[Sequence[float]], digits: int = 4, indent: str =
     return [indent + " ".join(f"{v:{digits + 6}.{digits}f}" for v in row) for row in rows]
 
 
+def robot_lines(record: dict[str, Any]) -> list[str]:
+    return [f"{robot['name']:18} {robot['joints']} joints  {robot['title']}" for robot in record["robots"]]
+
+
 def pose_lines(record: dict[str, Any]) -> list[str]:
     det = record["det_J"]
     lines = [f"{record['robot']}, compliance {record['compliance_set']}", "T_MT (m)", *matrix_lines(record["T_MT"])]

@@ -10,11 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
-from robomill.compliance.cartesian import joint_contributions
-from robomill.kinematics.dexterity import determinant
-from robomill.kinematics.forward import tool_pose
+from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
-from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
@@ -52,19 +49,34 @@ def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:
     return np.where(prismatic, from_si(theta, "mm"), from_si(theta, "deg"))
 
 
-def pose_record(robot: Robot, theta: FloatArray) -> dict[str, Any]:
+def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:
+    """A list of robots."""
+    return {
+        "robots": [
+            {
+                "name": robot.name,
+                "title": robot.title,
+                "joints": robot.n,
+                "compliance_sets": sorted(robot.compliance_sets),
+                "compliance_set": robot.compliance_set,
+            }
+            for robot in robots
+        ]
+    }
+
+
+def pose_record(pose: PoseReport) -> dict[str, Any]:
     """One configuration: pose, Jacobian, det(J), compliance and its joint shares. T_MT and J in SI."""
-    J = geometric_jacobian(robot, theta)
-    C_joint = joint_contributions(J[:3], robot.C_theta)
+    robot = pose.robot
     return {
         "robot": robot.name,
         "compliance_set": robot.compliance_set,
-        "theta_deg": shown_theta(robot, theta).tolist(),
-        "T_MT": tool_pose(robot, theta).tolist(),
-        "J": J.tolist(),
-        "det_J": float(determinant(robot, theta)) if robot.n == 5 else None,
-        "C_um_per_N": shown(C_joint.sum(axis=0), "um/N"),
-        "joint_share_um_per_N": shown(C_joint, "um/N"),
+        "theta_deg": shown_theta(robot, pose.theta).tolist(),
+        "T_MT": pose.T_MT.tolist(),
+        "J": pose.J.tolist(),
+        "det_J": pose.det_J if robot.n == 5 else None,
+        "C_um_per_N": shown(pose.C, "um/N"),
+        "joint_share_um_per_N": shown(pose.C_joint, "um/N"),
     }
 
 
