@@ -12,10 +12,12 @@ from robomill.errors import SurfaceError
 from robomill.surface.mesh import Mesh, kept_cells, to_mesh
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import ZMap
-from robomill.units import format_value, from_si, to_si
+from robomill.units import format_si, from_si, to_si
 
 FORMATS = ("stl", "ply", "glb", "vtp")
-NOTE = "robomill surface, millimetres"
+UNITS_OF_STL = ("mm", "in", "m")
+# A part outside these sizes was hardly meant, m: such a stock is questioned.
+SMALLEST, LARGEST = 2e-3, 5.0
 
 
 def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> bytes:
@@ -35,13 +37,6 @@ def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None
     solid = trimesh.Trimesh(from_si(mesh.vertices, "mm"), mesh.faces, process=False)
     data = solid.export(file_type=name)
     return data if isinstance(data, bytes) else str(data).encode()
-
-
-def write_mesh(path: str | Path, zmap: ZMap, *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> Path:
-    """Write the part to a file whose suffix names the format; returns the path."""
-    target = Path(path)
-    target.write_bytes(mesh_bytes(zmap, target.suffix, error=error, max_faces=max_faces))
-    return target
 
 
 def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> bytes:
@@ -70,7 +65,12 @@ def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = 
     import trimesh
 
     label = name or (Path(source).name if isinstance(source, str | Path) else "STL")
-    data = source if isinstance(source, bytes) else Path(source).read_bytes()
+    try:
+        data = source if isinstance(source, bytes) else Path(source).read_bytes()
+    except OSError as exc:
+        raise SurfaceError(f"{label}: cannot be opened ({exc.strerror}); expected a stock as STL.") from None
+    if unit not in UNITS_OF_STL:
+        raise SurfaceError(f"{label}: the unit is {unit!r}; expected one of {', '.join(UNITS_OF_STL)}.")
     if not data.strip():
         raise SurfaceError(f"{label}: the file is empty; export the stock again as STL.")
     try:
@@ -93,13 +93,13 @@ def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = 
 
 
 def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[str, ...]:
-    largest = float(np.max(extents))
-    if unit == "mm" and largest < 2.0:
+    largest = float(to_si(float(np.max(extents)), unit))
+    if unit == "mm" and largest < SMALLEST:
         return (
-            f"{label}: the part is only {format_value(largest, 'mm')} long if its numbers are millimetres; it looks"
+            f"{label}: the part is only {format_si(largest, 'mm')} long if its numbers are millimetres; it looks"
             " like metres, so choose metres if that is what was meant.",
         )
-    if from_si(to_si(largest, unit), "mm") > 5000.0:
-        size = format_value(float(from_si(to_si(largest, unit), "mm")), "mm", 0)
+    if largest > LARGEST:
+        size = format_si(largest, "mm", 0)
         return (f"{label}: the part is {size} long if its numbers are {unit}; check the unit of the file.",)
     return ()

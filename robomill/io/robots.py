@@ -8,6 +8,7 @@ from robomill.errors import RobotError
 from robomill.io.robot_reader import robot_from_toml
 from robomill.io.robot_writer import robot_to_toml
 from robomill.io.samples import samples_dir
+from robomill.io.texts import read_text
 from robomill.io.urdf import read_urdf
 from robomill.robot.model import Robot
 
@@ -37,8 +38,5 @@ def load_robot(name_or_path: str | Path) -> Robot:
             )
     if path.suffix.lower() in (".urdf", ".xml"):
         return read_urdf(path)
-    try:
-        content = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise RobotError(f"{path.name}: this is not a text file; a robot is a TOML file.", where=str(path)) from None
-    return robot_from_toml(content, path.name)
+    text, name = read_text(path, RobotError, "a robot as TOML")
+    return robot_from_toml(text, name)

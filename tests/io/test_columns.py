@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import robomill.io.columns as columns_module
 from robomill.errors import LoadTestError, SurfaceError
 from robomill.io.columns import Layout, read_columns, spelled
 
@@ -203,6 +204,13 @@ def test_a_quoted_cell_may_hold_the_separator() -> None:
 def test_units_are_found_in_either_case_but_kept_apart() -> None:
     columns, _ = read_columns("FX_n,M_NM,F_FEED_NORMAL_KN\n1,2,3\n1,2,3\n", LAYOUT)
     assert [columns.values[q][0] for q in ("fx", "m", "f_feed_normal")] == [1, 2, 3000]
+
+
+def test_a_sound_table_is_read_by_the_quick_reader_alone(monkeypatch) -> None:
+    monkeypatch.setattr(columns_module, "_cell", lambda *_: pytest.fail("each cell was looked at"))
+    for text in ("Fx_N,m_Nm\n1,2\n3,4\n", "Fx_N;m_Nm\n1,5;2\n3;4\n", '"Fx_N","who","m_Nm"\n"1","a, b",2\n"3",,4\n'):
+        columns, _ = read_columns(text, LAYOUT)
+        np.testing.assert_array_equal(columns.values["m"], [2, 4])
 
 
 def test_units_as_they_end_a_name() -> None:

@@ -1,14 +1,12 @@
 """Meshes out and back in: closed solids, right volume, refusals of broken stocks."""
 
-import io
-
 import numpy as np
 import pytest
 import trimesh
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
-from robomill.io.meshes import mesh_bytes, read_stl_stock, write_mesh
+from robomill.io.meshes import mesh_bytes, read_stl_stock
 from robomill.surface.mesh import to_mesh
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
@@ -36,7 +34,8 @@ def test_mesh_is_a_closed_solid_of_the_right_volume():
 @pytest.mark.parametrize("kind", ["stl", "ply", "glb"])
 def test_files_hold_the_part_in_millimetres(kind, tmp_path):
     zmap = part()
-    path = write_mesh(tmp_path / f"part.{kind}", zmap)
+    path = tmp_path / f"part.{kind}"
+    path.write_bytes(mesh_bytes(zmap, kind))
     back = trimesh.load(path, force="mesh")
     assert back.volume == pytest.approx(1e9 * (np.prod(STOCK.size) - zmap.removed_volume), rel=2e-3)
 
@@ -45,9 +44,21 @@ def test_vtp_carries_the_error_field(tmp_path):
     pyvista = pytest.importorskip("pyvista")
     zmap = part()
     error = np.full(zmap.z.shape, 1e-5)
-    path = write_mesh(tmp_path / "part.vtp", zmap, error=error)
+    error[0, 0] = 3e-5
+    path = tmp_path / "part.vtp"
+    path.write_bytes(mesh_bytes(zmap, ".VTP", error=error))
     back = pyvista.read(path)
-    assert np.nanmax(back.point_data["error_um"]) == pytest.approx(10.0)
+    shown = back.point_data["error_um"]
+    assert np.nanmax(shown) == pytest.approx(30.0)
+    assert np.nanmedian(shown) == pytest.approx(10.0)
+    first = np.nanargmax(shown)  # the corner of the first cell, in millimetres
+    np.testing.assert_allclose(back.points[first][:2], [STOCK.lower[0] * 1e3, STOCK.lower[1] * 1e3], atol=0.51)
+    assert np.isnan(shown).any(), "walls and floor have no error"
+    assert back.volume == pytest.approx(1e9 * (np.prod(STOCK.size) - zmap.removed_volume), rel=2e-3)
+    plain = tmp_path / "plain.vtp"
+    plain.write_bytes(mesh_bytes(zmap, "vtp", max_faces=600))
+    assert "error_um" not in pyvista.read(plain).point_data
+    assert pyvista.read(plain).n_cells < 1000
     with pytest.raises(SurfaceError, match="not known: use stl"):
         mesh_bytes(zmap, "obj")
 
@@ -88,4 +99,47 @@ def test_broken_stocks_are_refused_or_questioned():
     stock, findings = read_stl_stock(stl(trimesh.creation.box((0.03, 0.02, 0.01))), unit="m")
     assert findings == ()
     assert stock.size[0] == pytest.approx(0.03)
-    assert io.BytesIO(mesh_bytes(part())).read(5)
+    assert mesh_bytes(part()) == mesh_bytes(part(), "stl")
+
+
+def test_a_stock_that_is_no_file_or_in_no_unit_is_refused(tmp_path):
+    with pytest.raises(SurfaceError, match=r"^none.stl: cannot be opened \(No such file or directory\)"):
+        read_stl_stock(tmp_path / "none.stl")
+    with pytest.raises(SurfaceError, match=r"^STL: the unit is 'ft'; expected one of mm, in, m\.$"):
+        read_stl_stock(stl(trimesh.creation.box((30.0, 20.0, 10.0))), unit="ft")
+
+
+@pytest.mark.parametrize(
+    ("unit", "longest", "said"),
+    [
+        ("mm", 1.9, "only 1.900 mm long if its numbers are millimetres"),
+        ("mm", 2.1, ""),
+        ("in", 1.9, ""),
+        ("m", 1.9e-3, ""),
+        ("mm", 4900.0, ""),
+        ("mm", 5100.0, "is 5100 mm long if its numbers are mm; check the unit"),
+        ("in", 190.0, ""),
+        ("in", 200.0, "is 5080 mm long if its numbers are in; check the unit"),
+        ("m", 5.1, "is 5100 mm long if its numbers are m; check the unit"),
+    ],
+)
+def test_sizes_that_were_hardly_meant_are_said(unit, longest, said, tmp_path):
+    file = tmp_path / "stock.stl"
+    file.write_bytes(stl(trimesh.creation.box((longest, longest / 2, longest / 4))))
+    one = {"mm": 1e-3, "in": 25.4e-3, "m": 1.0}[unit]
+    stock, findings = read_stl_stock(file, unit=unit)
+    np.testing.assert_allclose(stock.size, np.array([1, 0.5, 0.25]) * longest * one, rtol=1e-6)
+    if said:
+        assert len(findings) == 1
+        assert findings[0].startswith("stock.stl: ")
+        assert said in findings[0]
+    else:
+        assert findings == ()
+
+
+def test_a_corner_that_is_no_number_is_refused():
+    mesh = trimesh.creation.box((30.0, 20.0, 10.0))
+    raw = bytearray(stl(mesh))
+    raw[84 + 12 : 84 + 16] = np.float32(np.inf).tobytes()
+    with pytest.raises(SurfaceError, match=r"not numbers|not watertight|cannot be read|can be read"):
+        read_stl_stock(bytes(raw))
