@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from hashlib import sha256
+from typing import Any
+
 import numpy as np
 import pytest
 
 from robomill.arrays import as_floats, digest, frozen
-from robomill.errors import RobotError
+from robomill.errors import RobomillError, RobotError
 
 
 def test_as_floats_says_what_was_found() -> None:
@@ -32,3 +36,120 @@ def test_digest_sees_one_changed_cell_in_a_million() -> None:
     assert digest(field) == digest(field.copy())
     assert digest({"a": 1, "b": [2.0]}) == digest({"b": [2.0], "a": 1})
     assert digest([1.0]) != digest([1])
+
+
+def test_as_floats_lets_leading_axes_free_and_any_length_where_none_is_asked() -> None:
+    assert as_floats([[1, 2], [3, 4]], "x", (2,)).shape == (2, 2)
+    assert as_floats(np.zeros((5, 4, 7, 2)), "x", (None, 2)).shape == (5, 4, 7, 2)
+    assert as_floats([1, 2, 3], "x", (None,)).dtype == np.float64
+    assert as_floats(3, "x", ()).shape == ()
+    assert np.isnan(as_floats([np.nan], "x", (1,), finite=False)).all()
+    for wrong in (3.0, [1.0, 2.0], np.zeros((2, 4))):
+        with pytest.raises(RobomillError, match=r"^x: expected shape \(\.\.\., 3\), found "):
+            as_floats(wrong, "x", (3,))
+    with pytest.raises(RobomillError, match=r"x: expected finite numbers"):
+        as_floats([np.inf], "x", (1,))
+
+
+def test_frozen_copies_once_and_keeps_what_is_frozen_already() -> None:
+    source = np.arange(6.0).reshape(2, 3)
+    kept = frozen(source)
+    source[0, 0] = 9.0
+    assert kept[0, 0] == 0.0
+    assert frozen(kept) is kept
+    assert frozen(kept, np.int64).dtype == np.int64
+    assert frozen(kept.T) is not kept
+    for copied in (frozen(kept.T), frozen(kept[:1]), frozen(np.asfortranarray(source))):
+        assert copied.flags.c_contiguous
+        assert not copied.flags.writeable
+        assert copied.base is None
+    # A view of somebody's array could still change under it.
+    view = source[:]
+    view.flags.writeable = False
+    held = frozen(view)
+    source[1, 1] = 77.0
+    assert held[1, 1] != 77.0
+    lent = np.asfortranarray(np.eye(3) + np.arange(3))
+    lent.flags.writeable = False
+    assert frozen(lent).flags.c_contiguous
+
+
+@dataclass(frozen=True)
+class One:
+    a: Any
+    b: Any = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class Other:
+    a: Any
+
+
+DIFFERENT = [
+    None,
+    True,
+    False,
+    0,
+    1,
+    2,
+    0.0,
+    1.0,
+    -0.0,
+    "",
+    "a",
+    "b",
+    b"",
+    b"a",
+    "1",
+    [],
+    [0],
+    [0, 0],
+    [[0], 0],
+    [0, [0]],
+    {},
+    {0: 1},
+    {1: 0},
+    {"a": 1},
+    {"a": {}},
+    One(1),
+    One(2),
+    Other(1),
+    [One(1)],
+    np.zeros(2),
+    np.zeros(3),
+    np.zeros((1, 2)),
+    np.zeros(2, np.int64),
+    np.zeros(2, np.float32),
+    np.array([0.0, 1.0]),
+]
+
+
+def test_different_values_have_different_digests() -> None:
+    assert len({digest(value) for value in DIFFERENT}) == len(DIFFERENT)
+    assert all(len(digest(value)) == 64 for value in DIFFERENT)
+
+
+def test_equal_values_have_equal_digests_however_they_are_held() -> None:
+    assert digest(One(1, b=5)) == digest(One(1, b=6)), "what does not count for equality does not count here"
+    assert digest((1, "a")) == digest([1, "a"])
+    assert digest(np.float64(0.1)) == digest(0.1)
+    assert digest(np.int32(7)) == digest(7)
+    assert digest(np.bool_(True)) == digest(True)
+    grid = np.arange(6.0).reshape(2, 3)
+    assert digest(np.asfortranarray(grid)) == digest(grid)
+    assert digest(grid.astype(">f8")) == digest(grid)
+
+
+def test_what_has_no_canonical_bytes_is_a_bug() -> None:
+    with pytest.raises(TypeError, match="no canonical bytes for set"):
+        digest({1, 2})
+    with pytest.raises(TypeError, match="no canonical bytes for type"):
+        digest(One)
+
+
+def test_the_digest_is_the_same_on_every_machine() -> None:
+    """SHA-256 of the canonical bytes, spelled out."""
+    assert digest([1, 0.5, "ab"]) == sha256(b"s3(i1f0x1.0000000000000p-1t2:ab)").hexdigest()
+    words = np.array([1.0]).tobytes()
+    assert digest(One(np.array([1.0]))) == sha256(b"dOne(a=a<f8(1,)" + words + b")").hexdigest()
+    assert digest({"a": None, "b": b"xy"}) == sha256(b"m(t1:ant1:by2:xy)").hexdigest()

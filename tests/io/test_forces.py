@@ -101,3 +101,43 @@ def test_missing_file(tmp_path):
         CuttingError, match=r"none.csv: cannot be opened \(No such file or directory\); expected a CSV table"
     ):
         read_forces(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize(("unit", "one"), [("N", 1.0), ("kN", 1e3)])
+def test_either_unit_of_force_and_of_the_axis(unit, one):
+    rows = [f"{i},{2 + i}" for i in range(5)]
+    record = read_forces(text(rows, f"time_min,F_axial_{unit}"))
+    np.testing.assert_allclose(record.x, 60.0 * np.arange(5))
+    np.testing.assert_allclose(record.F, np.outer(2 + np.arange(5), [0, 0, one]))
+
+
+def test_each_column_goes_to_its_axis():
+    for frame, names in (("path", ("feed", "feed_normal", "axial")), ("M", ("x", "y", "z"))):
+        for i, name in enumerate(names):
+            record = read_forces(text([f"{k},{5 + k}" for k in range(4)], f"s_m,F_{name}_N"))
+            assert (record.frame, record.axis) == (frame, "path")
+            np.testing.assert_array_equal(record.F, np.outer(5 + np.arange(4), np.eye(3)[i]))
+            absent = [other.replace("_", "-") for other in names if other != name]
+            assert [note.split(": ")[1] for note in record.notes] == [
+                f"no {word} force was recorded; it is taken as 0." for word in absent
+            ]
+
+
+@pytest.mark.parametrize(("last", "fine"), [(8.0, True), (8.1, False)])
+def test_a_step_over_five_times_the_usual_one_is_a_gap(last, fine):
+    given = text([f"{t},100" for t in (0, 1, 2, 3, last)], "t_s,F_x_N")
+    if fine:
+        assert len(read_forces(given).x) == 5
+    else:
+        with pytest.raises(CuttingError, match="Row 6, column t_s: a gap from 3 to 8.1 where rows are usually 1"):
+            read_forces(given)
+
+
+@pytest.mark.parametrize(("size", "unit"), [(0.99, "kN"), (1.0, ""), (20_000.0, ""), (20_001.0, "mN")])
+def test_mean_sizes_that_milling_has(size, unit):
+    given = text([f"{t},{(-1) ** t * size},0.01" for t in range(6)], "t_s,F_x_N,F_y_N")
+    if not unit:
+        assert read_forces(given).F[0, 0] == size
+    else:
+        with pytest.raises(CuttingError, match=f"column F_x_N: the mean size .*is it in {unit}"):
+            read_forces(given)

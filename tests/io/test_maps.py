@@ -5,7 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import WorkspaceError
-from robomill.io.maps import write_map
+from robomill.io.maps import map_columns, write_map
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid, box_grid
 
@@ -52,3 +52,40 @@ def test_refusals(field, tmp_path):
     uneven = compliance_field(field.robot, Grid(x=[0, 0.1, 0.3], y=[-1.3], z=[0]))
     with pytest.raises(WorkspaceError, match="evenly"):
         write_map(tmp_path / "map.vti", [uneven.field("C_yy")])
+
+
+def test_rows_run_x_slowest_z_fastest_with_ten_digits(field, tmp_path):
+    path = write_map(tmp_path / "MAP.CSV", [field.field("C_yy")])
+    rows = path.read_text(encoding="utf-8").splitlines()[1:]
+    expected = [
+        (x * 1e3, y * 1e3, z * 1e3, field.values("C_yy")[i, j, k] * 1e6)
+        for i, x in enumerate(field.grid.x)
+        for j, y in enumerate(field.grid.y)
+        for k, z in enumerate(field.grid.z)
+    ]
+    for row, numbers in zip(rows, expected, strict=True):
+        for cell, number in zip(row.split(","), numbers, strict=True):
+            assert cell == "NaN" if np.isnan(number) else abs(float(cell) - number) <= 1e-9 * max(abs(number), 1e-3)
+
+
+def test_a_column_without_a_unit_has_the_bare_name(field):
+    assert list(map_columns([field.field("reach")]))[-1] == "reach"
+
+
+def test_quantities_of_one_file_share_one_grid(field, tmp_path):
+    other = compliance_field(field.robot, Grid(x=[0], y=[-1.3], z=[0]))
+    with pytest.raises(WorkspaceError, match="must share one grid"):
+        write_map(tmp_path / "map.csv", [field.field("C_yy"), other.field("C_yy")])
+
+
+def test_an_image_may_be_flat_and_stands_where_the_grid_does(field, tmp_path):
+    pv = pytest.importorskip("pyvista")
+    flat = compliance_field(field.robot, Grid(x=[0.05, 0.1, 0.15], y=[-1.4, -1.2], z=[0.02]))
+    image = pv.read(write_map(tmp_path / "flat.vti", [flat.field("C_yy")]))
+    np.testing.assert_allclose(image.origin, [0.05, -1.4, 0.02])
+    np.testing.assert_allclose(image.spacing, [0.05, 0.2, 1.0])
+    odd = compliance_field(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 2e-9], z=[0]))
+    with pytest.raises(WorkspaceError, match=r"evenly spaced points, and axis y is not; write .csv or .parquet"):
+        write_map(tmp_path / "map.vti", [odd.field("C_yy")])
+    nearly = compliance_field(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 1e-10], z=[0]))
+    assert write_map(tmp_path / "map.vti", [nearly.field("C_yy")]).is_file()

@@ -39,3 +39,20 @@ def test_refusals(text, message):
 
 def test_a_wrong_unit_is_suspected():
     assert "check the unit" in read_profile("station_mm,offset_mm\n1,230\n2,231\n").findings[0]
+
+
+@pytest.mark.parametrize(("largest", "said"), [(20.0, False), (20.1, True), (-20.1, True)])
+def test_offsets_larger_than_twenty_millimetres_are_doubted(largest, said):
+    found = read_profile(f"s_m,dy_mm\n0.5,{largest}\n0.25,1\n", name="cmm.csv")
+    assert found.name == "cmm.csv"
+    np.testing.assert_allclose(found.offset, [1e-3, largest * 1e-3])
+    assert (found.findings != ()) == said
+    if said:
+        assert found.findings[0].startswith("cmm.csv: an offset of 20.1 mm is far more")
+
+
+def test_a_missing_column_is_named():
+    with pytest.raises(SurfaceError, match=r"cmm.csv, row 1: no column offset_mm found; .*station_mm,offset_mm"):
+        read_profile("station_mm,who\n1,2\n2,3\n", name="cmm.csv")
+    with pytest.raises(SurfaceError, match=r"no column station_mm found"):
+        read_profile("offset_mm\n1\n2\n")

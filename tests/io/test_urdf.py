@@ -5,7 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import RobotError
-from robomill.io.urdf import read_urdf
+from robomill.io.urdf import dh_from_axes, read_urdf
 
 
 def urdf_text(rng, n, parallel=False):
@@ -90,3 +90,92 @@ def test_not_xml(tmp_path):
     path.write_bytes(b"\x00\x01 not xml")
     with pytest.raises(RobotError, match="not a URDF"):
         read_urdf(path)
+
+
+def test_base_tip_and_name(tmp_path):
+    body = LINKS + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "d")
+    path = _write(tmp_path, body)
+    assert read_urdf(path).n == 3
+    assert read_urdf(path).name == "bad"
+    assert read_urdf(path, name="mine").title == "mine (from URDF)"
+    assert read_urdf(path, base="b", tip="d").n == 2
+    assert read_urdf(path, base="b").n == 2
+    assert read_urdf(path, tip="c").n == 2
+    with pytest.raises(RobotError, match=r"bad.urdf: has no link 'x'; its links are a, b, c, d"):
+        read_urdf(path, tip="x")
+    with pytest.raises(RobotError, match="has no link 'x'"):
+        read_urdf(path, base="x")
+    with pytest.raises(RobotError, match="no joints lead from link 'd' to link 'b'; one is missing"):
+        read_urdf(path, base="d", tip="b")
+    with pytest.raises(RobotError, match="a robot needs 2 to 7"):
+        read_urdf(path, base="b", tip="b")
+    with pytest.raises(RobotError, match=r"none.urdf: no such file"):
+        read_urdf(tmp_path / "none.urdf")
+
+
+def test_a_ring_of_joints_is_refused(tmp_path):
+    ring = LINKS + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "a") + _joint("4", "b", "d")
+    with pytest.raises(RobotError, match="the joints above link 'd' form a loop"):
+        read_urdf(_write(tmp_path, ring), tip="d")
+
+
+def test_a_branch_of_fixed_parts_is_no_branch(tmp_path):
+    links = LINKS + '<link name="camera"/><link name="lens"/>'
+    camera = _joint("4", "b", "camera", "fixed") + _joint("5", "camera", "lens", "fixed")
+    robot = read_urdf(
+        _write(tmp_path, links + camera + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "d"))
+    )
+    assert robot.n == 3
+    turned = (
+        links
+        + _joint("4", "b", "camera", "fixed")
+        + _joint("5", "camera", "lens")
+        + _joint("1", "a", "b")
+        + _joint("2", "b", "c")
+    )
+    with pytest.raises(RobotError, match="branches at link 'b' into 'camera', 'c'"):
+        read_urdf(_write(tmp_path, turned + _joint("3", "c", "d")))
+
+
+def test_limits_compliances_and_where_they_come_from(tmp_path):
+    body = LINKS + _joint("1", "a", "b", "continuous", "") + _joint("2", "b", "c", "prismatic") + _joint("3", "c", "d")
+    robot = read_urdf(_write(tmp_path, body))
+    np.testing.assert_allclose(robot.limits, [[-np.pi, np.pi], [-1, 1], [-1, 1]])
+    np.testing.assert_array_equal(robot.prismatic, [False, True, False])
+    np.testing.assert_array_equal(robot.C_theta, [1e-6] * 3)
+    assert robot.provenance["compliance"].kind == "assumed"
+    assert {robot.provenance[block].source for block in ("geometry", "limits", "base", "tool")} == {
+        "URDF file bad.urdf"
+    }
+
+
+@pytest.mark.parametrize(
+    ("joint", "words"),
+    [
+        (_joint("2", "b", "c").replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>'), "joint '2' has a zero axis"),
+        (_joint("2", "b", "c").replace("<axis", '<mimic joint="1"/><axis'), "joint '2' mimics another"),
+    ],
+)
+def test_joints_that_cannot_be_read(tmp_path, joint, words):
+    with pytest.raises(RobotError, match=words):
+        read_urdf(_write(tmp_path, LINKS + _joint("1", "a", "b") + joint + _joint("3", "c", "d")))
+
+
+def test_the_axis_is_made_a_unit_vector_and_is_x_where_none_is_given(tmp_path):
+    long = _joint("2", "b", "c").replace("0 0 1", "0 0 7")
+    bare = _joint("3", "c", "d").replace('<axis xyz="0 0 1"/>', "")
+    robot = read_urdf(_write(tmp_path, LINKS + _joint("1", "a", "b") + long + bare))
+    J = rm.geometric_jacobian(robot, [0.0, 0.0, 0.0])
+    np.testing.assert_allclose(J[3:], [[0, 0, 1], [0, 0, 0], [1, 1, 0]], atol=1e-12)
+
+
+def test_the_length_goes_from_axis_to_axis():
+    """Two parallel, two crossing and two skew axes: a, alpha and d as the modified table defines them."""
+    k = np.array([[0, 0, 1], [0, 0, 1], [0, 1, 0], [1, 0, 0]], dtype=float)
+    p = np.array([[0, 0, 0], [0.5, 0, 0.2], [0.5, 0, 0.7], [0.5, 0.3, 1.1]])
+    table = dh_from_axes(k, p, np.eye(4))
+    np.testing.assert_allclose(table["a"], [0, 0.5, 0, 0.4], atol=1e-12)
+    np.testing.assert_allclose(np.abs(table["alpha"]), [0, 0, np.pi / 2, np.pi / 2], atol=1e-12)
+    np.testing.assert_allclose(table["d"], [0, 0.7, 0.3, 0], atol=1e-12)
+    for T in (table["T_base"], table["T_tool"]):
+        np.testing.assert_allclose(T[:3, :3] @ T[:3, :3].T, np.eye(3), atol=1e-15)
