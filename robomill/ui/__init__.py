@@ -3,7 +3,7 @@
 How to write a page (at most 120 lines)::
 
     from robomill import ui
-    from robomill.viz.paths import components_figure          # pictures come from viz, numbers from report
+    from robomill.viz.deviation import components_figure      # pictures come from viz, numbers from report
 
     project = ui.begin("Milling")                             # page config, style, project, sidebar
     result = ui.attempt(ui.result, project.setup)             # cached by digest; a refusal is shown, then None

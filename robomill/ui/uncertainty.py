@@ -17,7 +17,7 @@ from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_hal
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_many, format_si, from_si
-from robomill.viz.bands import add_band
+from robomill.viz.along import add_band
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

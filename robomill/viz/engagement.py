@@ -1,211 +1,18 @@
-"""How the tool meets the part and what pushes back: the dial seen from the spindle, force and arc along the path."""
+"""What pushes back along the path, and how the tool meets the part there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
-from robomill.units import format_value
-from robomill.viz.paths import thin
-from robomill.viz.theme import axis, figure, palette, rgba
+from robomill.viz.along import Along
+from robomill.viz.theme import axis, palette, rgba
 
 COMPONENTS = ("feed", "feed-normal", "axial")
-_DASH = ("dot", "solid", "dash")
-
-
-@dataclass(frozen=True, eq=False)
-class Dial:
-    """One step of the path from above, the feed pointing up.
-
-    phi_st, phi_ex in degrees clockwise from the left of the feed; depth in ``unit``; force (3,) N (feed, feed-normal,
-    axial); scale N is the force whose arrow is as long as the cutter's radius; others (r, 3) N what the alloy's other
-    rows give; peak (3,) N or None at the worst instant of a turn.
-    """
-
-    phi_st: float
-    phi_ex: float
-    depth: float
-    unit: str
-    force: FloatArray
-    scale: float
-    hand: str = "right"
-    flutes: int = 2
-    engaged: bool = True
-    others: FloatArray | None = None
-    peak: FloatArray | None = None
-
-
-def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
-    """The cutter as a circle in its material, the arc that cuts, and the mean force as an arrow."""
-    p = palette(dark)
-    fig = figure(dark=dark, height=height, revision="dial", margin={"l": 4, "r": 4, "t": 6, "b": 4})
-    ring = np.linspace(0.0, 2.0 * np.pi, 121)
-    if dial.engaged and dial.phi_ex > dial.phi_st:
-        _material(fig, dial, dark)
-    fig.add_scatter(
-        x=np.cos(ring),
-        y=np.sin(ring),
-        mode="lines",
-        fill="toself",
-        fillcolor=rgba(p.panel, 0.96),
-        line={"color": p.joint, "width": 1.6},
-        hoverinfo="skip",
-    )
-    if dial.engaged and dial.phi_ex > dial.phi_st:
-        _arc(fig, dial, dark)
-    _teeth(fig, dial, p.muted)
-    _turning(fig, dial, p.muted)
-    _forces(fig, dial, dark)
-    fig.add_annotation(x=0, y=1.86, text="feed ↑", showarrow=False, font={"size": 12, "color": p.muted})
-    size = float(np.hypot(*dial.force[:2]))
-    words = f"{size:.0f} N across" if dial.engaged or size > 0 else "in air"
-    down = (
-        ""
-        if abs(dial.force[2]) < 0.05
-        else f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
-    )
-    fig.add_annotation(x=0, y=-1.72, text=words + down, showarrow=False, font={"size": 13, "color": p.text})
-    fig.update_layout(
-        showlegend=False,
-        hovermode="closest",
-        xaxis={"visible": False, "range": [-1.75, 1.75], "fixedrange": True, "constrain": "domain"},
-        yaxis={"visible": False, "range": [-1.95, 2.0], "scaleanchor": "x", "fixedrange": True},
-    )
-    return fig
-
-
-def _place(phi_deg: Any, radius: Any = 1.0) -> tuple[FloatArray, FloatArray]:
-    """Points on the dial: 0 deg is the left of the feed, 90 straight ahead (up)."""
-    phi = np.radians(phi_deg)
-    return -np.cos(phi) * radius, np.sin(phi) * radius
-
-
-def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
-    """What lies ahead of the cutting arc, hatched as cut metal."""
-    p = palette(dark)
-    phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
-    x, y = _place(phi)
-    top = 1.62
-    outline_x = np.concatenate([x, [x[-1]], [x[0]], [x[0]]])
-    outline_y = np.concatenate([y, [top], [top], [y[0]]])
-    fig.add_scatter(
-        x=outline_x,
-        y=outline_y,
-        mode="none",
-        fill="toself",
-        hoverinfo="skip",
-        fillcolor=rgba(p.metal, 0.4),
-        fillpattern={
-            "shape": "/",
-            "size": 8,
-            "solidity": 0.08,
-            "fgcolor": p.metal_edge,
-            "bgcolor": rgba(p.metal, 0.28),
-        },
-    )
-
-
-def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
-    p = palette(dark)
-    phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
-    x, y = _place(phi)
-    fig.add_scatter(
-        x=np.concatenate([[0.0], x, [0.0]]),
-        y=np.concatenate([[0.0], y, [0.0]]),
-        mode="none",
-        fill="toself",
-        fillcolor=rgba(p.warm, 0.16),
-        hoverinfo="skip",
-    )
-    arc = dial.phi_ex - dial.phi_st
-    fig.add_scatter(
-        x=x,
-        y=y,
-        mode="lines",
-        line={"color": p.warm, "width": 5},
-        name="arc of engagement",
-        hovertemplate=f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>"
-        f"depth {format_value(dial.depth, dial.unit)}<extra></extra>",
-    )
-    at = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
-    fig.add_annotation(
-        x=float(at[0]),
-        y=float(at[1]),
-        text=f"{arc:.0f}°",
-        showarrow=False,
-        bgcolor=rgba(p.background, 0.75),
-        font={"size": 13, "color": p.warm},
-        borderpad=2,
-    )
-
-
-def _teeth(fig: go.Figure, dial: Dial, colour: str) -> None:
-    turn = 1 if dial.hand == "right" else -1
-    for tooth in range(dial.flutes):
-        phi = 20.0 + turn * 360.0 * tooth / dial.flutes
-        x, y = zip(_place(phi, 0.72), _place(phi, 1.0), strict=True)
-        fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 2}, hoverinfo="skip")
-
-
-def _turning(fig: go.Figure, dial: Dial, colour: str) -> None:
-    """An arrow for the sense of turning: clockwise seen from the spindle for a right-hand cutter."""
-    turn = 1.0 if dial.hand == "right" else -1.0
-    phi = 250.0 + turn * np.linspace(-24, 24, 25)
-    x, y = _place(phi, 1.17)
-    fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
-    fig.add_annotation(
-        x=x[-1],
-        y=y[-1],
-        ax=x[-3],
-        ay=y[-3],
-        xref="x",
-        yref="y",
-        axref="x",
-        ayref="y",
-        text="",
-        showarrow=True,
-        arrowhead=2,
-        arrowwidth=1.4,
-        arrowcolor=colour,
-    )
-
-
-def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
-    p = palette(dark)
-    scale = dial.scale or 1.0
-    if dial.others is not None and len(dial.others):
-        fig.add_scatter(
-            x=-dial.others[:, 1] / scale,
-            y=dial.others[:, 0] / scale,
-            mode="markers",
-            name="the alloy's other rows",
-            marker={"size": 8, "color": rgba(p.accent, 0.35), "line": {"width": 1.2, "color": p.accent}},
-            hovertemplate="another row of the alloy<extra></extra>",
-        )
-    for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
-        if force is None or float(np.hypot(force[0], force[1])) < 1e-9:
-            continue
-        fig.add_annotation(
-            x=-force[1] / scale,
-            y=force[0] / scale,
-            ax=0,
-            ay=0,
-            xref="x",
-            yref="y",
-            axref="x",
-            ayref="y",
-            text="",
-            showarrow=True,
-            arrowhead=2,
-            arrowsize=1.0,
-            arrowwidth=width,
-            arrowcolor=colour,
-        )
-    fig.add_scatter(x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")
+DASHES = ("dot", "solid", "dash")
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,126 +30,43 @@ class ForceCurves:
     alloy: tuple[FloatArray, FloatArray] | None = None
 
 
-def force_figure(
-    curves: ForceCurves, *, dark: bool, height: int = 330, station: float | None = None, show_peak: bool = True
-) -> go.Figure:
+@dataclass(frozen=True, eq=False)
+class ArcCurves:
+    """Arc of engagement from phi_st to phi_ex (m,) degrees and depth (m,) in ``unit`` against the length cut s (m,)."""
+
+    s: FloatArray
+    phi_st: FloatArray
+    phi_ex: FloatArray
+    depth: FloatArray
+    unit: str
+
+
+def force_figure(curves: ForceCurves, *, dark: bool, height: int = 330, station: float | None = None) -> go.Figure:
     """Mean force by component, the alloy's band around it, the extremes of a revolution as thin lines."""
     p = palette(dark)
-    fig = figure(
-        dark=dark, height=height, revision="force", hovermode="x unified", margin={"l": 8, "r": 14, "t": 38, "b": 8}
-    )
-    i = thin(len(curves.s))
-    s = curves.s[i]
-    colours = (p.muted, p.accent, p.warm)
-    for c, (name, colour) in enumerate(zip(curves.names, colours, strict=True)):
+    plot = Along.begin(curves.s, curves.unit, "force", dark=dark, height=height)
+    for c, (name, colour) in enumerate(zip(curves.names, (p.muted, p.accent, p.warm), strict=True)):
         if curves.alloy is not None:
-            shade(fig, s, curves.alloy[0][i, c], curves.alloy[1][i, c], colour, "alloy's rows", c == 1)
-        if curves.peak is not None and show_peak:
-            for k, extreme in enumerate(curves.peak):
-                fig.add_scatter(
-                    x=s,
-                    y=extreme[i, c],
-                    mode="lines",
-                    name="peak of a turn",
-                    legendgroup="peak",
-                    showlegend=c == 1 and k == 0,
-                    line={"color": colour, "width": 1, "dash": "dot"},
-                    hoverinfo="skip",
-                )
-        fig.add_scatter(
-            x=s,
-            y=curves.mean[i, c],
-            mode="lines",
-            name=name,
-            line={"color": colour, "width": 2.4, "dash": _DASH[c]},
-            hovertemplate="%{y:+.1f} N",
-        )
-    fig.add_hline(y=0, line={"color": p.line, "width": 1})
-    mark_station(fig, station, dark)
-    fig.update_layout(
-        xaxis=axis(f"Length cut, {curves.unit}", dark=dark), yaxis=axis("Force on the tool, N", dark=dark)
-    )
-    return fig
+            plot.shade((curves.alloy[0][:, c], curves.alloy[1][:, c]), "alloy's rows", rgba(colour, 0.18), c == 1)
+        for k, extreme in enumerate(curves.peak or ()):
+            line = {"color": colour, "width": 1, "dash": "dot"}
+            first = c == 1 and k == 0
+            plot.curve(extreme[:, c], "peak of a turn", line, legendgroup="peak", showlegend=first)
+        plot.curve(curves.mean[:, c], name, {"color": colour, "width": 2.4, "dash": DASHES[c]}, "%{y:+.1f} N")
+    plot.zero()
+    return plot.done("Force on the tool, N", station)
 
 
-def engagement_figure(
-    s: FloatArray,
-    phi_st: FloatArray,
-    phi_ex: FloatArray,
-    depth: FloatArray,
-    unit: str,
-    *,
-    dark: bool,
-    height: int = 320,
-    station: float | None = None,
-) -> go.Figure:
-    """Arc of engagement (degrees, a band from start to end) and depth (in ``unit``) along the path."""
+def engagement_figure(curves: ArcCurves, *, dark: bool, height: int = 320, station: float | None = None) -> go.Figure:
+    """The arc as a band from its start to its end, its size, and the depth."""
     p = palette(dark)
-    fig = figure(
-        dark=dark, height=height, revision="engagement", hovermode="x unified", margin={"l": 8, "r": 8, "t": 38, "b": 8}
-    )
-    i = thin(len(s))
-    shade(fig, s[i], phi_st[i], phi_ex[i], p.warm, "arc of engagement", True)
-    fig.add_scatter(
-        x=s[i],
-        y=phi_ex[i] - phi_st[i],
-        mode="lines",
-        name="its size",
-        line={"color": p.warm, "width": 2},
-        hovertemplate="%{y:.0f}°",
-    )
-    fig.add_scatter(
-        x=s[i],
-        y=depth[i],
-        mode="lines",
-        name="depth",
-        yaxis="y2",
-        line={"color": p.accent, "width": 2, "dash": "dash"},
-        hovertemplate="%{y:.3f} " + unit,
-    )
-    mark_station(fig, station, dark)
-    top = float(np.nanmax(depth, initial=0.0)) or 1.0
-    fig.update_layout(
-        xaxis=axis(f"Length cut, {unit}", dark=dark),
-        yaxis=axis("Engagement angle, ° from the left", dark=dark, range=[0, 190], tickvals=[0, 45, 90, 135, 180]),
-        yaxis2=axis(
-            f"Depth, {unit}",
-            dark=dark,
-            overlaying="y",
-            side="right",
-            showgrid=False,
-            range=[0, 1.35 * top],
-            tickmode="auto",
-            nticks=5,
-        ),
-    )
-    return fig
-
-
-def shade(
-    fig: go.Figure, s: FloatArray, low: FloatArray, high: FloatArray, colour: str, name: str, legend: bool = True
-) -> None:
-    """The region between two curves; where either is NaN it stops."""
-    good = np.isfinite(low) & np.isfinite(high)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
-    for k, (a, b) in enumerate(zip(edges[::2], edges[1::2], strict=True)):
-        if not np.any(high[a:b] - low[a:b] > 1e-9):
-            continue
-        fig.add_scatter(
-            x=np.concatenate([s[a:b], s[a:b][::-1]]),
-            y=np.concatenate([high[a:b], low[a:b][::-1]]),
-            mode="lines",
-            fill="toself",
-            fillcolor=rgba(colour, 0.18),
-            line={"width": 0},
-            name=name,
-            legendgroup=name,
-            showlegend=legend and k == 0,
-            hoverinfo="skip",
-        )
-
-
-def mark_station(fig: go.Figure, station: float | None, dark: bool) -> None:
-    """A line where the station is."""
-    if station is not None:
-        fig.add_vline(x=station, line={"color": palette(dark).accent, "width": 1.6})
+    plot = Along.begin(curves.s, curves.unit, "engagement", dark=dark, height=height)
+    plot.shade((curves.phi_st, curves.phi_ex), "arc of engagement", rgba(p.warm, 0.18))
+    plot.curve(curves.phi_ex - curves.phi_st, "its size", {"color": p.warm, "width": 2}, "%{y:.0f}°")
+    line = {"color": p.accent, "width": 2, "dash": "dash"}
+    plot.curve(curves.depth, "depth", line, "%{y:.3f} " + curves.unit, yaxis="y2")
+    top = float(np.nanmax(curves.depth, initial=0.0)) or 1.0
+    depth = {"overlaying": "y", "side": "right", "showgrid": False, "tickmode": "auto", "nticks": 5}
+    plot.fig.update_layout(yaxis2=axis(f"Depth, {curves.unit}", dark=dark, range=[0, 1.35 * top], **depth))
+    ticks = [0, 45, 90, 135, 180]
+    return plot.done("Engagement angle, ° from the left", station, range=[0, 190], tickvals=ticks)

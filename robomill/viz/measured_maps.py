@@ -8,7 +8,6 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
-from robomill.viz.paths import thin
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, palette, rgba
 
 
@@ -62,27 +61,6 @@ def level_figure(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(x)),
         yaxis=axis(f"Y<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(y), domain=[0.0, 0.83]),
-    )
-    return fig
-
-
-def both_figure(
-    s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: str, *, dark: bool, height: int = 280
-) -> go.Figure:
-    """Size of the deviation along the path (m,) by the measured map and by the joint model, in ``unit``."""
-    p = palette(dark)
-    fig = figure(
-        dark=dark, height=height, revision="both", hovermode="x unified", margin={"l": 8, "r": 16, "t": 34, "b": 8}
-    )
-    i = thin(len(s))
-    for name, values, line in (
-        ("measured map", by_map, {"color": p.warm, "width": 2.4}),
-        ("joint model", by_joints, {"color": p.accent, "width": 2.2, "dash": "dash"}),
-    ):
-        fig.add_scatter(x=s[i], y=values[i], mode="lines", name=name, line=line, hovertemplate="%{y:.4f} " + unit)
-    fig.update_layout(
-        xaxis=axis(f"Length cut, {unit}", dark=dark),
-        yaxis=axis(f"Deviation, {unit}", dark=dark, rangemode="tozero"),
     )
     return fig
 

@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.viz.engagement import mark_station
+from robomill.viz.along import Along
 from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba
 
 
@@ -34,52 +34,18 @@ def profile_figure(
     curves: ProfileCurves, *, dark: bool, height: int = 320, station: float | None = None, block: IntArray | None = None
 ) -> go.Figure:
     """The profile with its tolerance, its band, its best line and what was measured."""
-    p = palette(dark)
-    unit = curves.unit
-    fig = figure(
-        dark=dark, height=height, revision="profile", hovermode="x unified", margin={"l": 8, "r": 16, "t": 38, "b": 8}
-    )
+    p, unit = palette(dark), curves.unit
+    plot = Along.begin(curves.station, unit, "profile", dark=dark, height=height)
     if curves.band is not None:
-        good = np.isfinite(curves.band).all(axis=0)
-        s = curves.station[good]
-        fig.add_scatter(
-            x=np.concatenate([s, s[::-1]]),
-            y=np.concatenate([curves.band[1][good], curves.band[0][good][::-1]]),
-            mode="lines",
-            fill="toself",
-            fillcolor=rgba(p.accent, 0.16),
-            line={"width": 0},
-            name="alloy's rows",
-            hoverinfo="skip",
-        )
-    fig.add_scatter(
-        x=curves.station,
-        y=curves.offset,
-        mode="lines",
-        name="centre offset",
-        line={"color": p.accent, "width": 2.4},
-        customdata=np.zeros(len(curves.station)) if block is None else block,
-        hovertemplate="%{y:+.4f} " + unit + (", line %{customdata}" if block is not None else ""),
-    )
-    fig.add_scatter(
-        x=curves.station,
-        y=curves.floor,
-        mode="lines",
-        name="floor",
-        hovertemplate="%{y:+.4f} " + unit,
-        line={"color": p.warm, "width": 2, "dash": "dash"},
-    )
+        plot.shade((curves.band[0], curves.band[1]), "alloy's rows", rgba(p.accent, 0.16))
+    lines = np.zeros(len(curves.station)) if block is None else block
+    hover = "%{y:+.4f} " + unit + (", line %{customdata}" if block is not None else "")
+    plot.curve(curves.offset, "centre offset", {"color": p.accent, "width": 2.4}, hover, customdata=lines)
+    plot.curve(curves.floor, "floor", {"color": p.warm, "width": 2, "dash": "dash"}, "%{y:+.4f} " + unit)
     if curves.fit is not None:
-        fig.add_scatter(
-            x=curves.station,
-            y=curves.fit,
-            mode="lines",
-            name="best line",
-            hoverinfo="skip",
-            line={"color": p.muted, "width": 1.2, "dash": "dot"},
-        )
+        plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
     if curves.measured is not None:
-        fig.add_scatter(
+        plot.fig.add_scatter(
             x=curves.measured[0],
             y=curves.measured[1],
             mode="markers",
@@ -88,16 +54,11 @@ def profile_figure(
             hovertemplate="measured %{y:+.4f} " + unit,
         )
     for side in (1, -1):
-        fig.add_hline(y=side * curves.tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
-    fig.add_hline(y=0, line={"color": p.line, "width": 1})
-    mark_station(fig, station, dark)
+        plot.level(side * curves.tolerance, p.bad)
+    plot.zero()
     known = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in (curves.offset, curves.floor)]
     reach = 1.15 * max(curves.tolerance, *known, 0.0 if curves.band is None else np.nanmax(np.abs(curves.band)))
-    fig.update_layout(
-        xaxis=axis(f"Length cut, {unit}", dark=dark),
-        yaxis=axis(f"Error of the groove, {unit}", dark=dark, range=[-reach, reach]),
-    )
-    return fig
+    return plot.done(f"Error of the groove, {unit}", station, range=[-reach, reach])
 
 
 def histogram_figure(

@@ -24,12 +24,10 @@ LONG = {
     "solve",
     "evidence_figure",
     "plan_picture",
-    "profile_figure",
     "search_block",
     "section_figure",
     "inverse_kinematics",
     "turnable_picture",
-    "components_figure",
 }
 # Modules that import each other inside functions, to be untied.
 CIRCLES = {frozenset({"robomill.ui.files", "robomill.ui.state"})}

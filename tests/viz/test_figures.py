@@ -14,8 +14,9 @@ from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.units import from_si
+from robomill.viz.along import MAX_POINTS, thin
 from robomill.viz.arm import arm_figure, displacement_scale
-from robomill.viz.paths import MAX_POINTS, components_figure, shares_figure, thin
+from robomill.viz.deviation import Components, Shares, components_figure, shares_figure
 from robomill.viz.sections import section_figure
 from robomill.viz.surfaces import MAX_CELLS, surface_figure, thinned
 from robomill.viz.theme import diverging, joint_colours
@@ -32,18 +33,12 @@ def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
     shown = enlarged(result, 10.0)
     mm = [from_si(v, "mm") for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
     groove = result.groove(0.5 * float(result.path.s[-1]))
+    names = [f"joint {i}" for i in range(1, 6)]
+    shares = Shares(s, from_si(result.delta_joint[:, :, 1], "mm"), names, delta[:, 1], "y", "mm")
     return {
         "arm": arm_figure(arm_scene(result, result.worst), dark=dark),
-        "components": components_figure(s, delta, result.path.block, 0.3, "mm", dark=dark, station=50.0),
-        "shares": shares_figure(
-            s,
-            from_si(result.delta_joint[:, :, 1], "mm"),
-            [f"joint {i}" for i in range(1, 6)],
-            delta[:, 1],
-            "y",
-            "mm",
-            dark=dark,
-        ),
+        "components": components_figure(Components(s, delta, result.path.block, 0.3, "mm"), dark=dark, station=50.0),
+        "shares": shares_figure(shares, dark=dark),
         "section": section_figure(section_drawing(groove, "mm"), dark=dark),
         "surface": surface_figure(*mm, from_si(shown.error, "um"), 300.0, dark=dark),
     }

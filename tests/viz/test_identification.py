@@ -7,7 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from robomill.viz.bands import add_band, band_figure
+from robomill.viz.along import add_band
+from robomill.viz.deviation import BandCurve, band_figure
 from robomill.viz.identification import (
     MAX_TESTS,
     Intervals,
@@ -115,7 +116,7 @@ def test_a_band_lies_around_its_curve_and_stops_where_nothing_is_known() -> None
     s = np.linspace(0, 10, 21)
     value, half = np.sin(s), np.full(21, 0.1)
     value[8:11] = np.nan
-    fig = band_figure(s, value, half, value - 0.2, "y", "mm", dark=False)
+    fig = band_figure(BandCurve(s, value, half, value - 0.2, "y", "mm"), dark=False)
     shades = [t for t in fig.data if t.fill == "toself"]
     assert len(shades) == 2
     n = len(shades[0].x) // 2

@@ -19,11 +19,12 @@ from robomill.simulation.run import simulate
 from robomill.simulation.spread import peak_force
 from robomill.toolpath.source import GCodeSource
 from robomill.units import from_si
+from robomill.viz.along import MAX_PICKS, add_picks
 from robomill.viz.animation import FilmEnd, FilmStart, encode, film_frame, film_samples
-from robomill.viz.engagement import Dial, ForceCurves, dial_figure, engagement_figure, force_figure
+from robomill.viz.dial import Dial, dial_figure
+from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
 from robomill.viz.evidence import Claim, evidence_figure
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
-from robomill.viz.picking import MAX_PICKS, add_picks
 from robomill.viz.posed import posed, tool_solids
 from robomill.viz.theme import figure
 from robomill.viz.views import surface_picture
@@ -60,7 +61,7 @@ def every(result: SimulationResult, dark: bool) -> dict[str, Any]:
     arc = [from_si(v, "deg") for v in (c.phi_st, c.phi_ex)]
     return {
         "force": force_figure(curves, dark=dark, station=50.0),
-        "engagement": engagement_figure(s, *arc, from_si(c.a_p, "mm"), "mm", dark=dark),
+        "engagement": engagement_figure(ArcCurves(s, *arc, from_si(c.a_p, "mm"), "mm"), dark=dark),
         "profile": profile_figure(profile, dark=dark, station=50.0),
         "histogram": histogram_figure(np.linspace(-300, 300, 11), np.full(10, 10.0), 300.0, "µm", dark=dark),
         "evidence": evidence_figure(CLAIMS, "mm", dark=dark),

@@ -18,7 +18,7 @@ from robomill.ui import cache, inputs, parts, state, uncertainty
 from robomill.ui.identification.bench import Bench
 from robomill.ui.identification.inputs import adopted, field, knowledge
 from robomill.units import format_si, from_si
-from robomill.viz.bands import band_figure
+from robomill.viz.deviation import BandCurve, band_figure
 
 
 def cut_of(robot: Robot) -> SimulationResult:
@@ -77,7 +77,7 @@ def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: st
     s, value, half, before = (from_si(v, unit) for v in _curves(found, now, known, axis))
     with st.container(border=True):
         parts.figure(
-            band_figure(s, value, half, before, axis, unit, dark=dark),
+            band_figure(BandCurve(s, value, half, before, axis, unit), dark=dark),
             "ident-band",
             name="deviation-band",
             table=lambda: band_columns(found, known),

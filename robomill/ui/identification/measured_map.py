@@ -17,7 +17,8 @@ from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
-from robomill.viz.measured_maps import both_figure, level_figure
+from robomill.viz.deviation import both_figure
+from robomill.viz.measured_maps import level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
 

@@ -15,7 +15,7 @@ from robomill.simulation.stations import force_components, largest_deviations
 from robomill.ui import parts, state
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_significant, from_si
-from robomill.viz.engagement import ForceCurves, engagement_figure, force_figure
+from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
 
 NAMES = ("feed", "feed-normal", "axial")
 
@@ -113,18 +113,10 @@ def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 
     arc = np.where(engaged, np.stack([c.phi_st, c.phi_ex], axis=1), np.nan)
     s = from_si(result.path.s, unit)
     depth = np.where(result.path.cutting, from_si(c.a_p, unit), np.nan)
+    curves = ArcCurves(s, from_si(arc[:, 0], "deg"), from_si(arc[:, 1], "deg"), depth, unit)
     source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
     parts.figure(
-        engagement_figure(
-            s,
-            from_si(arc[:, 0], "deg"),
-            from_si(arc[:, 1], "deg"),
-            depth,
-            unit,
-            dark=dark,
-            height=height,
-            station=float(s[i]) if i >= 0 else None,
-        ),
+        engagement_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
         "engagement",
         name="engagement",
         table=lambda: force_columns(result, None),

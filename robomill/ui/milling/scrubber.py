@@ -14,10 +14,9 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import inputs, parts, state, uncertainty
 from robomill.units import format_many, format_si, from_si
-from robomill.viz.engagement import shade
-from robomill.viz.paths import components_figure
-from robomill.viz.picking import add_picks, add_point
-from robomill.viz.theme import palette
+from robomill.viz.along import add_picks, add_point, shade
+from robomill.viz.deviation import Components, components_figure
+from robomill.viz.theme import palette, rgba
 
 MAX_HOVERED = 100_000
 
@@ -112,27 +111,18 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     unit = state.project().view.length
     s = from_si(result.path.s, unit)
     delta = from_si(at_feed(result, result.delta), unit)
-    fig = components_figure(
-        s,
-        delta,
-        result.path.block,
-        float(from_si(result.setup.tolerance, unit)),
-        unit,
-        dark=dark,
-        station=float(s[i]) if i >= 0 else None,
-        height=height,
-    )
+    drawn = Components(s, delta, result.path.block, float(from_si(result.setup.tolerance, unit)), unit)
+    fig = components_figure(drawn, dark=dark, station=float(s[i]) if i >= 0 else None, height=height)
     size = np.linalg.norm(delta, axis=1)
     caption = "Deflected minus commanded, in {M}. Click the curve to go there."
     if spread is not None and len(spread.titles) > 1:
         at = from_si(at_feed(result, spread.deviation.T), unit)
-        shade(fig, s, at.min(axis=1), at.max(axis=1), palette(dark).text, "alloy's rows")
+        shade(fig, s, (at.min(axis=1), at.max(axis=1)), "alloy's rows", rgba(palette(dark).text, 0.18))
         caption = "Deflected minus commanded, in {M}; shaded: the alloy's other coefficient rows. Click to go there."
     if uncertainty.banded(fig, result, unit, dark=dark):
         caption = f"{caption} {uncertainty.band_caption(result.setup)}"
-    p = palette(dark)
     if i >= 0:
-        add_point(fig, float(s[i]), float(size[i]), p.accent, p.background)
+        add_point(fig, float(s[i]), float(size[i]), dark=dark)
     words = (
         [
             f"line {line}, after {at:.2f} {unit}<br><b>{off:.4f} {unit}</b><br>δ<sub>X</sub> {d[0]:+.4f}, "

@@ -20,8 +20,8 @@ from robomill.ui.milling.scrubber import at_feed, station_m
 from robomill.ui.toolpath.program_view import program_lines
 from robomill.units import format_si, format_significant, format_times, format_value, from_si
 from robomill.viz.arm import arm_figure, displacement_scale
-from robomill.viz.engagement import Dial, dial_figure
-from robomill.viz.paths import shares_figure
+from robomill.viz.deviation import Shares, shares_figure
+from robomill.viz.dial import Dial, dial_figure
 from robomill.viz.sections import section_figure
 from robomill.viz.views import arm_scene, section_drawing
 
@@ -168,23 +168,10 @@ def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> N
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
     s = from_si(result.path.s, unit)
-    fig = shares_figure(
-        s,
-        from_si(at_feed(result, every), unit),
-        names,
-        from_si(at_feed(result, result.delta), unit)[:, column],
-        axis,
-        unit,
-        dark=dark,
-        station=float(s[i]) if i >= 0 else None,
-        height=height,
-    )
-    named: set[str] = set()
-    for trace in fig.data:  # a joint that pushes both ways has two areas and needs one name
-        trace.showlegend = trace.name not in named
-        named.add(trace.name)
+    total = from_si(at_feed(result, result.delta), unit)[:, column]
+    drawn = Shares(s, from_si(at_feed(result, every), unit), names, total, axis, unit)
     parts.figure(
-        fig,
+        shares_figure(drawn, dark=dark, station=float(s[i]) if i >= 0 else None, height=height),
         f"shares-{axis}",
         name=f"joint-shares-{axis}",
         table=lambda: deviation_columns(result),

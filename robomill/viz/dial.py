@@ -1,0 +1,204 @@
+"""How the tool meets the part at one place: the dial, seen from the spindle with the feed pointing up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from robomill.arrays import FloatArray
+from robomill.units import format_value
+from robomill.viz.theme import figure, palette, rgba
+
+
+@dataclass(frozen=True, eq=False)
+class Dial:
+    """One step of the path from above, the feed pointing up.
+
+    phi_st, phi_ex in degrees clockwise from the left of the feed; depth in ``unit``; force (3,) N (feed, feed-normal,
+    axial); scale N is the force whose arrow is as long as the cutter's radius; others (r, 3) N what the alloy's other
+    rows give; peak (3,) N or None at the worst instant of a turn.
+    """
+
+    phi_st: float
+    phi_ex: float
+    depth: float
+    unit: str
+    force: FloatArray
+    scale: float
+    hand: str = "right"
+    flutes: int = 2
+    engaged: bool = True
+    others: FloatArray | None = None
+    peak: FloatArray | None = None
+
+
+def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
+    """The cutter as a circle in its material, the arc that cuts, and the mean force as an arrow."""
+    p = palette(dark)
+    fig = figure(dark=dark, height=height, revision="dial", margin={"l": 4, "r": 4, "t": 6, "b": 4})
+    ring = np.linspace(0.0, 2.0 * np.pi, 121)
+    if dial.engaged and dial.phi_ex > dial.phi_st:
+        _material(fig, dial, dark)
+    fig.add_scatter(
+        x=np.cos(ring),
+        y=np.sin(ring),
+        mode="lines",
+        fill="toself",
+        fillcolor=rgba(p.panel, 0.96),
+        line={"color": p.joint, "width": 1.6},
+        hoverinfo="skip",
+    )
+    if dial.engaged and dial.phi_ex > dial.phi_st:
+        _arc(fig, dial, dark)
+    _teeth(fig, dial, p.muted)
+    _turning(fig, dial, p.muted)
+    _forces(fig, dial, dark)
+    fig.add_annotation(x=0, y=1.86, text="feed ↑", showarrow=False, font={"size": 12, "color": p.muted})
+    size = float(np.hypot(*dial.force[:2]))
+    words = f"{size:.0f} N across" if dial.engaged or size > 0 else "in air"
+    down = (
+        ""
+        if abs(dial.force[2]) < 0.05
+        else f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
+    )
+    fig.add_annotation(x=0, y=-1.72, text=words + down, showarrow=False, font={"size": 13, "color": p.text})
+    fig.update_layout(
+        showlegend=False,
+        hovermode="closest",
+        xaxis={"visible": False, "range": [-1.75, 1.75], "fixedrange": True, "constrain": "domain"},
+        yaxis={"visible": False, "range": [-1.95, 2.0], "scaleanchor": "x", "fixedrange": True},
+    )
+    return fig
+
+
+def _place(phi_deg: Any, radius: Any = 1.0) -> tuple[FloatArray, FloatArray]:
+    """Points on the dial: 0 deg is the left of the feed, 90 straight ahead (up)."""
+    phi = np.radians(phi_deg)
+    return -np.cos(phi) * radius, np.sin(phi) * radius
+
+
+def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
+    """What lies ahead of the cutting arc, hatched as cut metal."""
+    p = palette(dark)
+    phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
+    x, y = _place(phi)
+    top = 1.62
+    outline_x = np.concatenate([x, [x[-1]], [x[0]], [x[0]]])
+    outline_y = np.concatenate([y, [top], [top], [y[0]]])
+    fig.add_scatter(
+        x=outline_x,
+        y=outline_y,
+        mode="none",
+        fill="toself",
+        hoverinfo="skip",
+        fillcolor=rgba(p.metal, 0.4),
+        fillpattern={
+            "shape": "/",
+            "size": 8,
+            "solidity": 0.08,
+            "fgcolor": p.metal_edge,
+            "bgcolor": rgba(p.metal, 0.28),
+        },
+    )
+
+
+def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
+    p = palette(dark)
+    phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
+    x, y = _place(phi)
+    fig.add_scatter(
+        x=np.concatenate([[0.0], x, [0.0]]),
+        y=np.concatenate([[0.0], y, [0.0]]),
+        mode="none",
+        fill="toself",
+        fillcolor=rgba(p.warm, 0.16),
+        hoverinfo="skip",
+    )
+    arc = dial.phi_ex - dial.phi_st
+    fig.add_scatter(
+        x=x,
+        y=y,
+        mode="lines",
+        line={"color": p.warm, "width": 5},
+        name="arc of engagement",
+        hovertemplate=f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>"
+        f"depth {format_value(dial.depth, dial.unit)}<extra></extra>",
+    )
+    at = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
+    fig.add_annotation(
+        x=float(at[0]),
+        y=float(at[1]),
+        text=f"{arc:.0f}°",
+        showarrow=False,
+        bgcolor=rgba(p.background, 0.75),
+        font={"size": 13, "color": p.warm},
+        borderpad=2,
+    )
+
+
+def _teeth(fig: go.Figure, dial: Dial, colour: str) -> None:
+    turn = 1 if dial.hand == "right" else -1
+    for tooth in range(dial.flutes):
+        phi = 20.0 + turn * 360.0 * tooth / dial.flutes
+        x, y = zip(_place(phi, 0.72), _place(phi, 1.0), strict=True)
+        fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 2}, hoverinfo="skip")
+
+
+def _turning(fig: go.Figure, dial: Dial, colour: str) -> None:
+    """An arrow for the sense of turning: clockwise seen from the spindle for a right-hand cutter."""
+    turn = 1.0 if dial.hand == "right" else -1.0
+    phi = 250.0 + turn * np.linspace(-24, 24, 25)
+    x, y = _place(phi, 1.17)
+    fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
+    fig.add_annotation(
+        x=x[-1],
+        y=y[-1],
+        ax=x[-3],
+        ay=y[-3],
+        xref="x",
+        yref="y",
+        axref="x",
+        ayref="y",
+        text="",
+        showarrow=True,
+        arrowhead=2,
+        arrowwidth=1.4,
+        arrowcolor=colour,
+    )
+
+
+def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
+    p = palette(dark)
+    scale = dial.scale or 1.0
+    if dial.others is not None and len(dial.others):
+        fig.add_scatter(
+            x=-dial.others[:, 1] / scale,
+            y=dial.others[:, 0] / scale,
+            mode="markers",
+            name="the alloy's other rows",
+            marker={"size": 8, "color": rgba(p.accent, 0.35), "line": {"width": 1.2, "color": p.accent}},
+            hovertemplate="another row of the alloy<extra></extra>",
+        )
+    for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
+        if force is None or float(np.hypot(force[0], force[1])) < 1e-9:
+            continue
+        fig.add_annotation(
+            x=-force[1] / scale,
+            y=force[0] / scale,
+            ax=0,
+            ay=0,
+            xref="x",
+            yref="y",
+            axref="x",
+            ayref="y",
+            text="",
+            showarrow=True,
+            arrowhead=2,
+            arrowsize=1.0,
+            arrowwidth=width,
+            arrowcolor=colour,
+        )
+    fig.add_scatter(x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")
