@@ -40,7 +40,7 @@ class Shares:
 
 @dataclass(frozen=True, eq=False)
 class BandCurve:
-    """value +- half (m,) of a ``component`` ("": the size) against s (m,), and what the project has now, in ``unit``."""
+    """value +- half (m,) of a ``component`` ("": the size) against s (m,), what the project has now, in ``unit``."""
 
     s: FloatArray
     value: FloatArray

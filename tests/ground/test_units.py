@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -15,6 +16,7 @@ from robomill.units import (
     format_many,
     format_number,
     format_percent,
+    format_short,
     format_short_count,
     format_si,
     format_significant,
@@ -28,39 +30,67 @@ from robomill.units import (
     unit_label,
 )
 
-# The factor of each unit, written independently of the table: one unit in SI.
-ONE = {
-    "mm": 0.001,
-    "um": 1e-6,
-    "in": 0.0254,
-    "deg": math.radians(1),
-    "mm/min": 0.001 / 60,
-    "mm/s": 0.001,
-    "1/min": 1 / 60,
-    "min": 60.0,
-    "N/mm2": 1e6,
-    "N/mm": 1000.0,
-    "um/N": 1e-6,
-    "N/um": 1e6,
-    "1e-7 rad/(N m)": 1e-7,
-    "kN m/rad": 1000.0,
-    "urad/N": 1e-6,
-    "mm3": 1e-9,
-    "mm2": 1e-6,
-    "%": 0.01,
-    "in/min": 0.0254 / 60,
+# What one unit is in SI, how it is written and the decimals shown, written down independently of the table.
+KNOWN = {
+    "1": (1, "", 3),
+    "%": (1 / 100, "%", 1),
+    "m": (1, "m", 4),
+    "mm": (1 / 1000, "mm", 3),
+    "um": (1 / 1000**2, "µm", 1),
+    "in": (0.3048 / 12, "in", 4),
+    "rad": (1, "rad", 5),
+    "deg": (math.radians(1), "°", 2),
+    "mrad": (1 / 1000, "mrad", 3),
+    "urad": (1 / 1000**2, "µrad", 1),
+    "mm/s": (1 / 1000, "mm/s", 1),
+    "mm/min": (1 / 1000 / 60, "mm/min", 0),
+    "in/min": (0.3048 / 12 / 60, "in/min", 2),
+    "mm/tooth": (1 / 1000, "mm/tooth", 4),
+    "1/min": (1 / 60, "min⁻¹", 0),
+    "s": (1, "s", 1),
+    "Hz": (1, "Hz", 1),
+    "min": (60, "min", 2),
+    "N": (1, "N", 1),
+    "kN": (1000, "kN", 3),
+    "N m": (1, "N m", 2),
+    "kN m": (1000, "kN m", 3),
+    "kg": (1, "kg", 2),
+    "N/mm": (1000, "N/mm", 2),
+    "N/mm2": (1000**2, "N/mm²", 1),
+    "um/N": (1 / 1000**2, "µm/N", 3),
+    "mm/N": (1 / 1000, "mm/N", 6),
+    "m/N": (1, "m/N", 9),
+    "N/um": (1000**2, "N/µm", 3),
+    "1e-7 rad/(N m)": (1 / 10**7, "×10⁻⁷ rad/(N m)", 2),
+    "kN m/rad": (1000, "kN m/rad", 1),
+    "1e-9 m/N": (1 / 10**9, "×10⁻⁹ m/N", 2),
+    "urad/N": (1 / 1000**2, "µrad/N", 3),
+    "urad/(N m)": (1 / 1000**2, "µrad/(N m)", 3),
+    "m2": (1, "m²", 3),
+    "m3": (1, "m³", 3),
+    "mm3": (1 / 1000**3, "mm³", 1),
+    "mm2": (1 / 1000**2, "mm²", 2),
 }
 
 
 @pytest.mark.parametrize("unit", UNITS)
-@given(value=st.floats(-1e9, 1e9))
-def test_every_factor_round_trips(unit: str, value: float) -> None:
+def test_every_unit_is_what_it_is_called(unit: str) -> None:
+    factor, label, digits = KNOWN[unit]
+    assert to_si(1.0, unit) == pytest.approx(factor, rel=1e-14)
+    assert from_si(1.0, unit) == pytest.approx(1 / factor, rel=1e-14)
+    assert unit_label(unit) == label
+    decimals = format_value(1.0, unit, with_unit=False).partition(".")[2]
+    assert len(decimals) == digits
+
+
+def test_units_cannot_be_changed_on_the_way() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        UNITS["mm"].factor = 1.0  # type: ignore[misc]
+
+
+@given(value=st.floats(-1e9, 1e9), unit=st.sampled_from(sorted(UNITS)))
+def test_every_factor_round_trips(value: float, unit: str) -> None:
     assert from_si(to_si(value, unit), unit) == pytest.approx(value, rel=1e-14, abs=1e-300)
-
-
-@pytest.mark.parametrize(("unit", "factor"), ONE.items())
-def test_factors_are_the_right_way_up(unit: str, factor: float) -> None:
-    assert to_si(1.0, unit) == pytest.approx(factor, rel=1e-15)
 
 
 def test_one_formatter() -> None:
@@ -77,6 +107,7 @@ def test_one_formatter() -> None:
     assert format_value(-45.0, "deg", 0, with_unit=False) == "−45"
     assert format_si(7.14e-7, "1e-7 rad/(N m)") == "7.14 ×10⁻⁷ rad/(N m)"
     assert format_si(0.5, "1") == "0.500"
+    assert [format_short(v, "mm") for v in (8e-3, 1.25e-3, -0.1234567)] == ["8 mm", "1.25 mm", "−123.457 mm"]
     assert format_si(math.nan, "mm", with_unit=False) == "not reached"
 
 
@@ -99,6 +130,9 @@ def test_bare_numbers() -> None:
     assert format_times(2.5, 6) == "× 2.5"
     assert format_times(1.0, 6) == "× 1"
     assert rounded(0.1 + 0.2) == 0.3
+    assert rounded(0.123456789012345) == 0.123456789012
+    assert format_significant(1.23456789) == "1.23457"
+    assert format_times(1234567.0, 12) == "× 1,234,567"
     assert rounded(1234.0, 2) == 1200.0
 
 
@@ -154,8 +188,3 @@ def test_the_unit_comes_off_where_one_follows() -> None:
     assert split_unit("2 sample") == ("2", "sample")
     assert split_unit("3 x2") == ("3 x2", "")
     assert split_unit("joint 4") == ("joint 4", "")
-
-
-def test_labels_are_written_for_people() -> None:
-    assert unit_label("um/N") == "µm/N"
-    assert unit_label("1") == ""
