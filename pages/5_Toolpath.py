@@ -6,7 +6,6 @@ import streamlit as st
 
 from robomill import ui
 from robomill.simulation.stations import nearest_judged
-from robomill.toolpath.source import GCodeSource, SketchSource
 from robomill.ui.toolpath import details
 from robomill.ui.toolpath import view as shown
 from robomill.ui.toolpath.lines import lines_inputs
@@ -15,7 +14,7 @@ from robomill.ui.toolpath.program import program_inputs
 from robomill.ui.toolpath.reach import board_reach, path_reach
 from robomill.ui.toolpath.sketch import sketch_inputs
 from robomill.ui.toolpath.sketch_pad import sketch_pad
-from robomill.ui.toolpath.sources import kind_of, kind_switch
+from robomill.ui.toolpath.sources import kind_switch
 from robomill.viz.arm import arm_figure
 from robomill.viz.toolpath import plan_picture, turnable_picture
 from robomill.viz.views import arm_scene
@@ -23,24 +22,23 @@ from robomill.viz.views import arm_scene
 project = ui.begin("Toolpath")
 setup, dark, unit = project.setup, ui.dark(), project.view.length
 source = setup.source
-drawing = isinstance(source, SketchSource)
+drawing = source.kind == "sketch"
 HEIGHT = 300 if drawing else 420
 
-empty = isinstance(source, SketchSource) and not source.sketch.elements
+empty = source.kind == "sketch" and not source.sketch.elements
 path = None if empty else ui.attempt(lambda: setup.toolpath)
 reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(shown.simulated, setup) if reach is not None else None
 
-kind = kind_of(source)
 shown.headline(source, path, reach, result, unit)
-shown.tiles(path, reach, result, unit, kind)
+shown.tiles(path, reach, result, unit, source.kind)
 
-left, right = ui.thirds() if kind == "program" else ui.split([1.2, 1.75], "page", gap="large")
+left, right = ui.thirds() if source.kind == "program" else ui.split([1.2, 1.75], "page", gap="large")
 with left:
     kind_switch()
-    if isinstance(source, GCodeSource):
+    if source.kind == "program":
         program_inputs(source, path, dark)
-    elif isinstance(source, SketchSource):
+    elif source.kind == "sketch":
         sketch_inputs()
     else:
         lines_inputs(source, project.view)
@@ -48,7 +46,7 @@ with left:
         part_zero()
 
 with right:
-    if isinstance(source, SketchSource):
+    if source.kind == "sketch":
         with st.container(border=True):
             board = board_reach(setup, -source.sketch.depth, unit)
             sketch_pad(source.sketch, setup.cutter.diameter, board)
@@ -96,7 +94,7 @@ with right:
     with st.container(border=True):
         st.markdown("**The path in figures**")
         details.path_facts(setup, unit)
-    if isinstance(source, GCodeSource):
+    if source.kind == "program":
         with st.container(border=True):
             details.findings_list(path.findings)
             details.support_table()

@@ -192,9 +192,9 @@ def _robot_table(robot: Robot) -> dict[str, Any]:
 
 
 def _source_table(source: PathSource) -> dict[str, Any]:
-    if isinstance(source, GCodeSource):
+    if source.kind == "program":
         return {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
-    if isinstance(source, SketchSource):
+    if source.kind == "sketch":
         return {"sketch": sketch_to_table(source.sketch, shown)}
     rows = np.hstack([source.start, source.end])
     return {

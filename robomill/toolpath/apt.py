@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.gcode.findings import NO_UNITS, Findings
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.units import to_si
@@ -119,7 +119,7 @@ def read_apt(path_or_text: Source) -> Toolpath:
     if len(state.rows) < 2:
         raise GCodeError("APT file: found fewer than two GOTO points; expected a path.")
     if not state.unit_said:
-        findings.add("suspicious", 0, "no UNITS: lengths are taken as mm")
+        findings.add(NO_UNITS, "suspicious", 0, "no UNITS: lengths are taken as mm")
     table = np.array(state.rows)
     return Toolpath(
         p=table[:, 0:3],
@@ -187,7 +187,7 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
     elif word in _MOVES:
         raise GCodeError(f"Line {line}: {word} moves the tool in a way that is not read; write GOTO points.", line=line)
     elif word not in _SILENT:
-        findings.add("ignored", line, f"{word[:20]} is not known and is left out")
+        findings.add("unknown-word", "ignored", line, f"{word[:20]} is not known and is left out")
 
 
 def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) -> None:

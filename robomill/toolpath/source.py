@@ -1,4 +1,8 @@
-"""Where a toolpath comes from: a program, a table of lines or a sketch. Sources are values; ``read`` gives the path."""
+"""Where a toolpath comes from: a program, a table of lines or a sketch. Sources are values; ``read`` gives the path.
+
+Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``block_name``), and what stands there
+(``block_texts``).
+"""
 
 from __future__ import annotations
 
@@ -6,11 +10,16 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.text import split_lines
+from robomill.units import format_si, format_significant, from_si
 
 MAX_KEPT = 4
 
@@ -22,6 +31,12 @@ class GCodeSource:
     text: str
     name: str = "program.nc"
     dialect: str = "auto"
+    kind: ClassVar[Literal["program"]] = "program"
+    block_name: ClassVar[str] = "line"
+
+    def block_texts(self) -> list[str]:
+        """Its lines, as every reader counts them."""
+        return split_lines(self.text)
 
     def read(
         self, progress: Callable[[float], None] | None = None, cancel: Callable[[], bool] | None = None
@@ -62,6 +77,8 @@ class LinesSource:
     v_f: FloatArray
     n_s: float = 0.0
     name: str = field(default="table of lines", compare=False)
+    kind: ClassVar[Literal["lines"]] = "lines"
+    block_name: ClassVar[str] = "row"
 
     def __post_init__(self) -> None:
         for name, shape in (("start", (None, 3)), ("end", (None, 3)), ("v_f", (None,))):
@@ -72,6 +89,11 @@ class LinesSource:
         """The path; raises ToolpathError naming the row that cannot be cut."""
         return toolpath_from_lines(self.start, self.end, self.v_f, self.n_s)
 
+    def block_texts(self) -> list[str]:
+        """Its rows: from where to where (mm) and how fast."""
+        ends = zip(from_si(self.start, "mm"), from_si(self.end, "mm"), self.v_f, strict=True)
+        return [f"({_point(a)}) → ({_point(b)})  {format_si(v, 'mm/min')}" for a, b, v in ends]
+
 
 @dataclass(frozen=True)
 class SketchSource:
@@ -79,10 +101,23 @@ class SketchSource:
 
     sketch: Sketch
     name: str = field(default="sketch", compare=False)
+    kind: ClassVar[Literal["sketch"]] = "sketch"
+    block_name: ClassVar[str] = "shape"
 
     def read(self) -> Toolpath:
         """The path; raises ToolpathError where nothing is drawn."""
         return self.sketch.toolpath()
+
+    def block_texts(self) -> list[str]:
+        """Its shapes: how many points, how deep and how fast."""
+        return [
+            f"{e.shape}, {len(e.points)} points, {format_si(e.depth, 'mm', 2)} deep, {format_si(e.v_f, 'mm/min', 0)}"
+            for e in self.sketch.elements
+        ]
+
+
+def _point(p: FloatArray) -> str:
+    return ", ".join(format_significant(v) for v in np.round(p, 3))
 
 
 PathSource = GCodeSource | LinesSource | SketchSource

@@ -31,6 +31,12 @@ def read_source(source: Source) -> tuple[bytes, str]:
     return as_plain_bytes(source.encode("utf-8", "surrogateescape")), "program"
 
 
+def split_lines(text: str) -> list[str]:
+    """Lines as the reader counts them, whatever ends them; the empty one after the last end is none."""
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return lines if lines[-1] else lines[:-1]
+
+
 def _is_path(text: str) -> bool:
     if "\n" in text or "\r" in text or "\0" in text or not 0 < len(text) < 4096:
         return False

@@ -14,9 +14,10 @@ from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.toolpath.source import GCodeSource, SketchSource
+from robomill.toolpath.text import split_lines
 from robomill.ui.toolpath import part_zero as part_zero_panel
 from robomill.ui.toolpath import program as program_panel
-from robomill.ui.toolpath.program_view import program_lines, window
+from robomill.ui.toolpath.program_view import window
 from robomill.ui.toolpath.sketch_table import pad_elements, sketch_frame, sketch_from_frame, sketch_from_pad
 from robomill.units import to_si
 
@@ -256,7 +257,7 @@ def test_every_way_to_look_at_the_path(app: AppTest, colour: str, seen: str) -> 
 
 def test_a_long_program_is_shown_around_the_selected_line() -> None:
     text = "\r\n".join(f"G1 X{i}" for i in range(20_000))
-    lines = program_lines(text)
+    lines = split_lines(text)
     assert len(lines) == 20_000
     first, shown = window(lines, 12_345)
     assert first <= 12_345 < first + len(shown)

@@ -164,7 +164,9 @@ def _one(
     if motion == 890:
         hole.go(FEED, a, b, clear)
     elif motion == 880:
-        machine.findings.add("warning", block.line, "G88 stops for a retract by hand, which the path leaves out")
+        machine.findings.add(
+            "manual-retract", "warning", block.line, "G88 stops for a retract by hand, which the path leaves out"
+        )
     else:
         hole.go(TRAVERSE, a, b, clear)
 
@@ -172,7 +174,10 @@ def _one(
 def _tap(machine: Machine, block: Block, hole: _Hole, a: float, b: float, clear: float, bottom: float) -> None:
     if machine.plane != 17:
         machine.findings.add(
-            "warning", block.line, f"G{block.motion // 10} outside of G17 taps along the wrong axes, as LinuxCNC does"
+            "tap-axes",
+            "warning",
+            block.line,
+            f"G{block.motion // 10} outside of G17 taps along the wrong axes, as LinuxCNC does",
         )
     hole.tap(a, b, bottom)
     machine.dwell(machine.cycle.get("p", 0.0))

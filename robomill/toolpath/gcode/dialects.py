@@ -57,7 +57,12 @@ class Dialect:
             return _from_sinumerik(raw, number, findings)
         if self.name == "fanuc":
             if _TIP.search(raw):
-                findings.add("info", number, "G43.4 (tool centre point control) is read as G43: points are tip points")
+                findings.add(
+                    "tip-control",
+                    "info",
+                    number,
+                    "G43.4 (tool centre point control) is read as G43: points are tip points",
+                )
             return _TIP.sub("G43", _DWELL.sub(r"\1P", "O" + raw[1:] if raw[:1] == ":" else raw))
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
             return _from_grbl(raw, number, findings)
@@ -67,11 +72,13 @@ class Dialect:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             if code in HARMLESS[self.name]:
-                machine.findings.add("ignored", block.line, f"{g_name(code)} is left out: it moves nothing")
+                machine.findings.add(
+                    "harmless-g", "ignored", block.line, f"{g_name(code)} is left out: it moves nothing"
+                )
             else:
                 raise block.refuse(f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
         for code in block.unknown_m:
-            machine.findings.add("ignored", block.line, f"M{code} is not known and is left out")
+            machine.findings.add("unknown-m", "ignored", block.line, f"M{code} is not known and is left out")
 
     def unused_word(self, machine: Machine, block: Block, letter: str, use: str) -> None:
         """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
@@ -79,7 +86,7 @@ class Dialect:
             return
         if self.name == "linuxcnc" or letter in "ijkr":
             raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
-        machine.findings.add("ignored", block.line, f"{letter.upper()} without {use} is left out")
+        machine.findings.add("unused-word", "ignored", block.line, f"{letter.upper()} without {use} is left out")
 
     def subprogram(self, block: Block) -> tuple[int, int]:
         """Number and repeats of M98 P... L...; Fanuc also writes them as P<repeats><number>."""
@@ -126,7 +133,7 @@ _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
 def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
     code, mark, comment = raw.partition(";")
     for found in _SILENT.findall(code):
-        findings.add("ignored", number, f"{found.split('(')[0].upper()} is left out: it moves nothing")
+        findings.add("harmless-word", "ignored", number, f"{found.split('(')[0].upper()} is left out: it moves nothing")
     code = _SILENT.sub("", code)
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
@@ -148,5 +155,5 @@ def _from_grbl(raw: str, number: int, findings: Findings) -> str:
         raise GCodeError(
             f"Line {number}: {text[:2]} moves the machine in a way the program does not say; remove it.", line=number
         )
-    findings.add("ignored", number, "lines for the controller ($, !, ~, ?) are left out")
+    findings.add("controller-line", "ignored", number, "lines for the controller ($, !, ~, ?) are left out")
     return ""

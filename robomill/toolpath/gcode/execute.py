@@ -46,7 +46,9 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     if SPINDLE_MODE in g:
         machine.spindle_mode = g[SPINDLE_MODE]
         if g[SPINDLE_MODE] == 960:
-            machine.findings.add("warning", block.line, "G96: the spindle speed follows the diameter and is not known")
+            machine.findings.add(
+                "surface-speed", "warning", block.line, "G96: the spindle speed follows the diameter and is not known"
+            )
     if FEED_MODE in g:
         machine.feed_mode = g[FEED_MODE]
         if machine.feed_mode != 930:
@@ -55,7 +57,10 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
         set_rates(machine, moves.plain_words(block))
     if "f" in words and machine.feed_mode != 930 and g.get(UNITS, machine.unit_code) != machine.unit_code:
         machine.findings.add(
-            "suspicious", block.line, f"F and {g_name(g[UNITS])} on one line: F counts in the units before it"
+            "feed-units",
+            "suspicious",
+            block.line,
+            f"F and {g_name(g[UNITS])} on one line: F counts in the units before it",
         )
     if "t" in words:
         offsets.known_tool(machine, block, round(words["t"]))
@@ -65,7 +70,10 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     if TOOL in block.m or block.m.get(IO) == 66:
         if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
             machine.findings.add(
-                "warning", block.line, "after the tool change, axes without a word go on from the last straight move"
+                "position-after-tool",
+                "warning",
+                block.line,
+                "after the tool change, axes without a word go on from the last straight move",
             )
         machine.p = list(machine.sent)
     return STOP in block.m and _stop(machine, block)
@@ -74,7 +82,7 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
 def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     m = block.m
     if IO in m:
-        machine.findings.add("ignored", block.line, f"M{m[IO]}: inputs and outputs are left out")
+        machine.findings.add("input-output", "ignored", block.line, f"M{m[IO]}: inputs and outputs are left out")
         machine.store.numbered[5399] = -1.0
     if TOOL in m:
         _change_tool(machine, block)
@@ -98,7 +106,9 @@ def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     if OVERRIDE in m and machine.compensation is not None:
         raise block.refuse(f"M{m[OVERRIDE]} cannot be used {_CLOSED}")
     if USER in m:
-        machine.findings.add("ignored", block.line, f"M{m[USER]} is made by the user of a machine and is left out")
+        machine.findings.add(
+            "user-m", "ignored", block.line, f"M{m[USER]} is made by the user of a machine and is left out"
+        )
 
 
 def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
@@ -120,7 +130,9 @@ def _change_tool(machine: Machine, block: Block) -> None:
             raise block.refuse("M61 needs Q, a tool number of 0 or more.")
     else:
         if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
-            machine.findings.add("warning", block.line, "M6 without a tool selected by T: no tool is in the spindle")
+            machine.findings.add(
+                "no-tool", "warning", block.line, "M6 without a tool selected by T: no tool is in the spindle"
+            )
         if machine.compensation is not None:
             raise block.refuse(f"M6 cannot be used {_CLOSED}")
         number = machine.selected
@@ -221,7 +233,7 @@ def _probe(machine: Machine, block: Block) -> None:
     if block.motion in (382, 384) and end == machine.p:
         raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
     machine.probe_to(block.line, end)
-    machine.findings.add("warning", block.line, "probing: the probe is taken to travel its whole way")
+    machine.findings.add("probing", "warning", block.line, "probing: the probe is taken to travel its whole way")
     machine.store.numbered[5061:5067] = end
     machine.store.numbered[5070] = 0.0
     machine.p = end

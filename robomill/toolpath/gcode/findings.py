@@ -6,23 +6,22 @@ from robomill.provenance import Finding, Level
 
 _ORDER = {"error": 0, "warning": 1, "suspicious": 2, "ignored": 3, "info": 4}
 
+NO_UNITS = "no-units"
+"""The code of what is found where a program does not say its unit."""
+
 
 class Findings:
     """Collects findings; equal level and message are one finding with a count and its first line."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[Level, str], tuple[int, int]] = {}
+        self._found: dict[tuple[str, Level, str], tuple[int, int]] = {}
 
-    def add(self, level: Level, line: int, message: str, count: int = 1) -> None:
-        """Note ``message`` for ``line`` (0: the whole file)."""
-        first, before = self._found.get((level, message), (line, 0))
-        self._found[level, message] = (min(first, line), before + count)
-
-    def has(self, level: Level) -> bool:
-        """True if something of this level was noted."""
-        return any(key[0] == level for key in self._found)
+    def add(self, code: str, level: Level, line: int, message: str) -> None:
+        """Note ``message``, which is of the kind ``code``, for ``line`` (0: the whole file)."""
+        first, before = self._found.get((code, level, message), (line, 0))
+        self._found[code, level, message] = (min(first, line), before + 1)
 
     def freeze(self) -> tuple[Finding, ...]:
         """All findings, the grave ones first, then by line."""
-        found = [Finding(level, line, message, n) for (level, message), (line, n) in self._found.items()]
+        found = [Finding(level, line, message, n, code) for (code, level, message), (line, n) in self._found.items()]
         return tuple(sorted(found, key=lambda f: (_ORDER[f.level], f.line, f.message)))

@@ -67,7 +67,7 @@ class Interpreter(OWords):
             return
         reader = Reader(text, line, machine.store)
         if text[0] == "/":
-            machine.findings.add("info", line, "block delete (/) is off: these lines are executed")
+            machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if text[0] in "/n":
             skip_number(reader)
         if text[reader.at : reader.at + 1] == "o":
@@ -123,7 +123,9 @@ class Interpreter(OWords):
                 self.percent = True
                 self.pc = index + 1
                 if len(text) > 1:
-                    self.machine.findings.add("info", index + 1, "text after % is the name of the program")
+                    self.machine.findings.add(
+                        "program-name", "info", index + 1, "text after % is the name of the program"
+                    )
             return
 
     def _percent(self, index: int, text: str) -> None:
@@ -132,7 +134,7 @@ class Interpreter(OWords):
                 f"Line {index + 1}: found % and more; a % that ends the program stands alone.", line=index + 1
             )
         if not self.percent:
-            self.machine.findings.add("warning", index + 1, "% ends the program, but none starts it")
+            self.machine.findings.add("percent", "warning", index + 1, "% ends the program, but none starts it")
         self.finish(index + 1)
         self.ended = True
 
@@ -141,7 +143,7 @@ class Interpreter(OWords):
         if len(self.frames) > 1:
             label = self.frames[-1].label
             raise GCodeError(f"Line {last}: the file ends inside O{label}; close it with endsub or M99.", line=last)
-        self.machine.findings.add("warning", last, "the program ends without M2, M30 or %")
+        self.machine.findings.add("no-end", "warning", last, "the program ends without M2, M30 or %")
         self.finish(last)
 
     def _comment(self, block: Block) -> None:

@@ -216,7 +216,10 @@ class OWords:
     def _left_over(self, index: int, entry: flow.OLine, cause: str) -> None:
         """LinuxCNC keeps one flag each for break and continue; the reference's quirk is followed and said."""
         self.machine.findings.add(
-            "warning", index + 1, f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop"
+            "loop-flags",
+            "warning",
+            index + 1,
+            f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop",
         )
 
     # --- subroutines
@@ -272,7 +275,9 @@ class OWords:
         if path is None or not path.is_file() or path.stat().st_size > MAX_FILE:
             raise reader.refuse(f"O{label} is called, but there is no O{label} sub; define it in the program.")
         lines = Lines(path.read_bytes())
-        self.machine.findings.add("info", reader.line, f"O{label} is read from {path.name} beside the program")
+        self.machine.findings.add(
+            "sub-file", "info", reader.line, f"O{label} is read from {path.name} beside the program"
+        )
         self.others[label] = File(path.name, lines, folder)
         return self.others[label]
 
@@ -284,7 +289,7 @@ class OWords:
         reader = Reader("", block.line, self.machine.store)
         if code == 99:
             if len(self.frames) == 1:
-                self.machine.findings.add("info", block.line, "M99 in the main program is taken as its end")
+                self.machine.findings.add("m99-ends", "info", block.line, "M99 in the main program is taken as its end")
                 self.finish(block.line)
                 self.ended = True
             else:

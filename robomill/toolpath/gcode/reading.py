@@ -11,6 +11,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
+from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
@@ -71,9 +72,11 @@ def interpret(
     except GCodeError as exc:
         if not partial:
             raise
-        machine.findings.add("error", exc.line, str(exc))
+        machine.findings.add("refused", "error", exc.line, str(exc))
     if chosen.guessed and chosen.name != "linuxcnc":
-        machine.findings.add("info", 0, f"read as {chosen.name} code; this is a guess from how it looks")
+        machine.findings.add(
+            "dialect-guessed", "info", 0, f"read as {chosen.name} code; this is a guess from how it looks"
+        )
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
 
 
@@ -83,7 +86,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         bad = int(columns["line"][np.flatnonzero(~np.isfinite(columns["end"]).all(axis=1))[:1]].sum())
         raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
     if not machine.units_said and len(columns["line"]):
-        machine.findings.add("suspicious", 0, "no G20 or G21: lengths are taken as mm")
+        machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     _doubt_size(machine, columns)
     return Program(
         **columns,
@@ -111,7 +114,11 @@ def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
     shown = format_si(size, "mm", 1)
     if machine.units_said != "in" and 0.0 < size < LIKELY[0]:
         other = format_si(size * inch, "mm", 1)
-        machine.findings.add("suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}")
+        machine.findings.add(
+            "size-doubt", "suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}"
+        )
     elif size > LIKELY[1]:
         other = format_si(size / inch, "mm", 1)
-        machine.findings.add("suspicious", 0, f"the part is {shown} across; a unit taken wrongly would make it {other}")
+        machine.findings.add(
+            "size-doubt", "suspicious", 0, f"the part is {shown} across; a unit taken wrongly would make it {other}"
+        )

@@ -8,17 +8,14 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
 from robomill.report.tables import deviation_columns, section_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
-from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.ui import cache, inputs, parts, state
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import at_feed, station_m
-from robomill.ui.toolpath.program_view import program_lines
-from robomill.units import format_si, format_significant, format_times, format_value, from_si
+from robomill.units import format_si, format_times, from_si
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.deviation import Shares, shares_figure
 from robomill.viz.dial import Dial, dial_figure
@@ -30,7 +27,7 @@ AROUND = 5
 
 def code(result: SimulationResult, i: int, height: int = 300) -> None:
     """The program around the line in force."""
-    lines = source_lines(result.setup.source)
+    lines = result.setup.source.block_texts()
     block = int(result.path.block[i]) if i >= 0 else 0
     first = max(0, min(block - 1 - AROUND, len(lines) - 2 * AROUND - 1))
     shown = []
@@ -49,24 +46,6 @@ def code(result: SimulationResult, i: int, height: int = 300) -> None:
         f'<div style="--rm-code:#2F7FD0;font-family:Source Code Pro,monospace;font-size:.84rem;line-height:1.75;'
         f'min-height:{height}px">{"".join(shown)}</div>'
     )
-
-
-def source_lines(source: PathSource) -> list[str]:
-    """What a block number points at: lines of a program, rows of a table, shapes of a sketch."""
-    if isinstance(source, GCodeSource):
-        return list(program_lines(source.text))
-    if isinstance(source, LinesSource):
-        ends = zip(from_si(source.start, "mm"), from_si(source.end, "mm"), from_si(source.v_f, "mm/min"), strict=True)
-        return [f"({_point(a)}) → ({_point(b)})  {format_value(v, 'mm/min')}" for a, b, v in ends]
-    assert isinstance(source, SketchSource)
-    return [
-        f"{e.shape}, {len(e.points)} points, {format_si(e.depth, 'mm', 2)} deep, {format_si(e.v_f, 'mm/min', 0)}"
-        for e in source.sketch.elements
-    ]
-
-
-def _point(p: FloatArray) -> str:
-    return ", ".join(format_significant(v) for v in np.round(p, 3))
 
 
 def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None:

@@ -13,7 +13,6 @@ from robomill.report.paper import SLOT
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
-from robomill.toolpath.source import GCodeSource
 from robomill.ui import cache, parts, state
 from robomill.ui.start.story import PAPER
 from robomill.units import from_si
@@ -28,7 +27,7 @@ def _process_setup() -> SimulationSetup:
 def is_papers_path(project: state.Project) -> bool:
     """Whether the project cuts the paper's slot, by the text of its program: beside another part the chart misleads."""
     source, paper = project.setup.source, state.preset_setup(PAPER).source
-    if isinstance(source, GCodeSource) and isinstance(paper, GCodeSource):
+    if source.kind == "program" and paper.kind == "program":
         return source.text == paper.text
     return source == paper
 

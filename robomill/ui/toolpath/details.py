@@ -12,17 +12,16 @@ from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.apt import is_apt
+from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import parts
-from robomill.ui.toolpath.program_view import LEVELS, program_lines, select_line, selected_line
+from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
 from robomill.units import format_count, format_many, format_si, unit_label
 
 DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
-
-ASSUMED_UNITS = "lengths are taken as mm"
 
 
 def duration(seconds: float) -> str:
@@ -48,9 +47,8 @@ def finding_words(finding: Finding, most: int = 64) -> str:
 def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
     """The program's units and who says so: ``mm (G21)``, ``mm, assumed (no G20 or G21)``."""
     name = {"mm": "millimetres" if long else "mm", "in": "inches" if long else "in"}.get(path.units, path.units)
-    silent = [f.message.partition(":")[0] for f in path.findings if f.message.endswith(ASSUMED_UNITS)]
-    if silent:
-        return f"{name}, assumed ({silent[0]})"
+    if any(f.code == NO_UNITS for f in path.findings):
+        return f"{name}, assumed ({'no UNITS' if is_apt(source.text[:200_000].encode()) else 'no G20 or G21'})"
     if is_apt(source.text[:200_000].encode()):
         return f"{name} (UNITS)"
     return f"{name} ({'G20' if path.units == 'in' else 'G21'})"
@@ -124,7 +122,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
         rows.append(("Feed", _range(summary.feeds, "mm/min"), _range(summary.feeds, "mm/s")))
     if summary.spindles:
         rows.append(("Spindle", _range(summary.spindles, "1/min"), ""))
-    if isinstance(setup.source, GCodeSource):
+    if setup.source.kind == "program":
         tools = summary.tools
         words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
         rows.append(("Written in", written_in(setup.source, path, long=True), words))
@@ -148,12 +146,11 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     if not line:
         return ""
     path = setup.toolpath
-    name = {"GCodeSource": "Line", "LinesSource": "Row"}.get(type(setup.source).__name__, "Shape")
     text = ""
-    if isinstance(setup.source, GCodeSource):
-        lines = program_lines(setup.source.text)
+    if setup.source.kind == "program":
+        lines = setup.source.block_texts()
         text = lines[line - 1].strip()[:80] if line <= len(lines) else ""
-    words = [f"{name} {line:,}" + (f": {text}" if text else "")]
+    words = [f"{setup.source.block_name.capitalize()} {line:,}" + (f": {text}" if text else "")]
     i = np.flatnonzero(path.block == line)
     i = i[path.step_length[i] > 0]
     if len(i) == 0:

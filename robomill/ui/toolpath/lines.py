@@ -31,7 +31,7 @@ def lines_inputs(source: LinesSource, view: state.View) -> None:
 
 def _source() -> LinesSource:
     source = state.project().setup.source
-    assert isinstance(source, LinesSource)
+    assert source.kind == "lines"
     return source
 
 

@@ -17,7 +17,7 @@ from robomill.toolpath.source import GCodeSource
 from robomill.ui import inputs, parts, state
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
-from robomill.ui.toolpath.program_view import program_lines, program_view, select_line, selected_line
+from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
 from robomill.ui.toolpath.sources import put
 
 SUFFIXES = ("nc", "ngc", "tap", "gcode", "cnc", "txt", "mpf", "eia", "min")
@@ -71,14 +71,14 @@ def dialect_words(source: GCodeSource) -> str:
 def _take_dialect(name: str) -> None:
     assert name == "auto" or name in NAMES
     source = state.project().setup.source
-    assert isinstance(source, GCodeSource)
+    assert source.kind == "program"
     changed = dataclasses.replace(source, dialect=name)
     changed.read()
     put(changed, f"program {source.name}")
 
 
 def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
-    lines = program_lines(source.text)
+    lines = source.block_texts()
     if MODE not in st.session_state:
         st.session_state[MODE] = "code"
     with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
@@ -187,6 +187,6 @@ def _take_text(text: str) -> None:
     old = state.project().setup.source
     if not text.strip():
         raise ToolpathError("The program is empty; type at least one G1 move.")
-    source = GCodeSource(text, old.name if isinstance(old, GCodeSource) else "program.nc")
+    source = GCodeSource(text, old.name if old.kind == "program" else "program.nc")
     source.read()
     put(source, f"program {source.name}, edited")

@@ -11,6 +11,7 @@ import streamlit as st
 
 from robomill.arrays import digest
 from robomill.provenance import Finding
+from robomill.toolpath.text import split_lines
 from robomill.viz.theme import palette
 
 KEY = "program.view"
@@ -44,12 +45,6 @@ def select_line(line: int) -> None:
 
 
 @lru_cache(maxsize=4)
-def program_lines(text: str) -> tuple[str, ...]:
-    """Lines as the reader counts them."""
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return tuple(lines[:-1] if lines and not lines[-1] else lines)
-
-
 def program_view(
     text: str, findings: Sequence[Finding], dark: bool, height: int = 420, *, fixed: int | None = None
 ) -> None:
@@ -57,7 +52,7 @@ def program_view(
 
     ``fixed`` shows a program that is not in force, around that line; clicks then point at nothing.
     """
-    lines = program_lines(text)
+    lines = split_lines(text)
     selected = min(selected_line() if fixed is None else fixed, len(lines))
     first, shown = window(lines, selected)
     marks: dict[str, dict[str, str]] = {}

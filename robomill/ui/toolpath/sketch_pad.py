@@ -78,7 +78,7 @@ def _take() -> None:
     memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
     source = state.project().setup.source
     # What was drawn on a board that has been overwritten since is not merged into the new one.
-    if not sent or sent.get("rev") != memory.rev or not isinstance(source, SketchSource):
+    if not sent or sent.get("rev") != memory.rev or source.kind != "sketch":
         return
     inputs.attempt(KEY, None, lambda: _write(dict(sent), source, memory))
     if KEY in state.store().refused:
@@ -103,7 +103,7 @@ def _history() -> None:
 
 def _leads_to_a_sketch(steps: list[state.Project]) -> bool:
     """The board's own undo stays with the sketch; the one in the sidebar goes on."""
-    return bool(steps) and isinstance(steps[-1].setup.source, SketchSource)
+    return bool(steps) and steps[-1].setup.source.kind == "sketch"
 
 
 def _fingerprint(sketch: Sketch, unit: str) -> str:

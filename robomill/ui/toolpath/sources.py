@@ -21,15 +21,10 @@ KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
 MAX_ROWS = 200
 
 
-def kind_of(source: PathSource) -> str:
-    """A key of ``KINDS``."""
-    return {"GCodeSource": "program", "LinesSource": "lines", "SketchSource": "sketch"}[type(source).__name__]
-
-
 def kind_switch() -> None:
     """The choice between the three."""
     source = state.project().setup.source
-    inputs.choice("Path from", "source.kind", KINDS, kind_of(source), switch)
+    inputs.choice("Path from", "source.kind", KINDS, source.kind, switch)
 
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
@@ -40,7 +35,7 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
     if force is not None and force.kind in ("paper", "measured"):
         # What was measured on one cut is an assumption on another.
         provenance["force"] = Provenance("assumed", f"carried over from {setup.name!r}: {force.source}")
-    more.setdefault("name", PurePath(source.name).stem if isinstance(source, GCodeSource) else "Drawn here")
+    more.setdefault("name", PurePath(source.name).stem if source.kind == "program" else "Drawn here")
     state.change(source=source, provenance=provenance, from_editor=from_editor, **more)
     program_view.select_line(0)
 
@@ -48,14 +43,14 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
 def switch(kind: str) -> None:
     """The same path by other means, as far as that goes; undo leads back."""
     setup = state.project().setup
-    if kind == kind_of(setup.source):
+    if kind == setup.source.kind:
         return
     if kind == "lines":
         put(lines_of_path(_path()), "converted to a table of lines")
     elif kind == "program":
         from robomill.io.gcode_out import write_gcode
 
-        name = "sketch.nc" if isinstance(setup.source, SketchSource) else "lines.nc"
+        name = f"{setup.source.kind}.nc"
         put(GCodeSource(write_gcode(_path()), name), f"written from a {setup.source.name}")
     else:
         put(SketchSource(_sketch(setup.cutter.diameter)), "sketched by hand", **_stock_follows())
@@ -111,7 +106,7 @@ def sketch_of_path(path: Toolpath) -> Sketch | None:
 def sketch_source() -> SketchSource:
     """The project's sketch; only where the path is sketched."""
     source = state.project().setup.source
-    assert isinstance(source, SketchSource)
+    assert source.kind == "sketch"
     return source
 
 

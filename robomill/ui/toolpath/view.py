@@ -12,12 +12,11 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.source import GCodeSource, PathSource
+from robomill.toolpath.source import PathSource
 from robomill.ui import cache, parts, state
 from robomill.ui.toolpath.details import duration, finding_words, move_words, worst_first, written_in
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
-from robomill.ui.toolpath.sources import kind_of
 from robomill.ui.toolpath.summary import missed_blocks, path_summary
 from robomill.units import (
     format_count,
@@ -75,14 +74,14 @@ def headline(
 
     Always two lines, so that the board beneath does not move while one draws.
     """
-    name, noun = source.name, kind_of(source)
+    name, noun = source.name, source.kind
     if path is None:
         parts.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
     size = format_many(summary.high - summary.low, unit, 1 if unit == "mm" else 2, " × ")
     lead = f"{format_count(summary.blocks, NOUNS[noun])} within {size}."
-    if isinstance(source, GCodeSource):
+    if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
     parts.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
 
@@ -217,7 +216,7 @@ def picture(
         length_unit=unit_label(unit),
         reached=use.reached if use is not None else reach.reached,
         selected=selected_line(),
-        noun=PLACES[kind_of(setup.source)],
+        noun=PLACES[setup.source.kind],
         stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)),
         total=len(setup.toolpath) - 1,
         indices=_kept(use if use is not None else reach),
