@@ -15,6 +15,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
+from robomill.simulation.stations import nearest_feed
 from robomill.surface.groove import GrooveSection
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
@@ -93,7 +94,7 @@ def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
 
 def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str, Any]:
     """A section's dimensions, and the deviation and force at the path's sample nearest to it."""
-    i = result.sample_at(section.station)
+    i = nearest_feed(result, section.station)
     return {
         "station_mm": float(from_si(section.station, "mm")),
         "width_mm": float(from_si(section.width, "mm")),

@@ -10,6 +10,7 @@ from robomill.cutting.tool import Cutter
 from robomill.report.paper import EQUATIONS, SLOT, TABLES
 from robomill.report.reproduction_row import Evidence, Found
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.stations import nearest_feed
 from robomill.units import format_si, from_si
 from robomill.workspace.fields import compliance_field
 
@@ -90,5 +91,5 @@ def machined(evidence: Evidence) -> Found:
 
 def _offsets(result: SimulationResult) -> tuple[float, float]:
     """Deviation in Y (size) and Z (signed) at mid-cut, m."""
-    i = result.sample_at(0.5 * float(result.path.s[-1]))
+    i = nearest_feed(result, 0.5 * float(result.path.s[-1]))
     return abs(float(result.delta[i, 1])), float(result.delta[i, 2])

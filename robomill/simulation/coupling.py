@@ -41,17 +41,6 @@ class FixedPoint:
         return _largest(self.value - self.one_pass)
 
     @property
-    def error_bound(self) -> float:
-        """How far ``value`` may be from the true fixed point, q/(1-q) times the last change; infinite if unknown."""
-        last = self.changes[-1] if self.changes else np.inf
-        if not self.converged:
-            return np.inf
-        if last == 0.0:
-            return 0.0
-        q = self.contraction
-        return last * q / (1.0 - q) if 0.0 <= q < 1.0 else np.inf
-
-    @property
     def sentence(self) -> str:
         """For the result, where the values are lengths in m."""
         count = f"{self.iterations} iteration{'' if self.iterations == 1 else 's'}"

@@ -18,6 +18,7 @@ from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
+from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si
@@ -78,12 +79,6 @@ class SimulationResult:
     def delta_component(self) -> FloatArray:
         """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
         return np.einsum("mij,mjc,mc->mci", self.C, self.R_MF, self.force_components)
-
-    @cached_property
-    def delta_rest(self) -> FloatArray:
-        """(m, 3) m: what a measured map gives beyond joints and springs (structure, spindle); 0 without a map."""
-        modelled = self.C_joint.sum(axis=-3) + self.C_spring.sum(axis=-3)
-        return np.einsum("mij,mj->mi", self.C - modelled, self.F)
 
     @cached_property
     def answered(self) -> BoolArray:
@@ -190,11 +185,6 @@ class SimulationResult:
         setup = self.setup
         return cut(setup.stock_block, setup.cell, setup.cutter, p, self.path.k, self.removes)
 
-    def sample_at(self, station: float) -> int:
-        """Index of the feed sample nearest to ``station`` (m, length travelled at feed)."""
-        at_feed = np.flatnonzero(self.path.cutting)
-        return int(at_feed[np.argmin(np.abs(self.path.s[at_feed] - station))])
-
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
         return self.grooves([station])[0]
@@ -203,9 +193,8 @@ class SimulationResult:
         """The groove's sections at ``stations`` (q,) m."""
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
-        return groove_sections(
-            self.setup.stock_block, self.setup.cutter, path.p, moved, path.cutting, path.block, stations, k=path.k
-        )
+        run = CutPath(path.p, moved, path.cutting, path.k, path.block)
+        return groove_sections(self.setup.stock_block, self.setup.cutter, run, stations)
 
     @cached_property
     def stations(self) -> FloatArray:

@@ -38,29 +38,25 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
     ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path), near="path")
     C_joint, C_spring = compliances(setup, ik.theta)
+    C = total_compliance(setup, path, C_joint, C_spring)
     sag = None if setup.links is None else gravity_sag(setup.robot, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
     R_MF = feed_directions(setup, path)
-    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
-    if setup.measured_map is not None:
-        measured = setup.measured_map.compliance(setup.in_base(path.p))
-        C = np.where(path.cutting[:, None, None], measured, C)
     conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
-    delta_joint, delta_spring = deflection(C_joint, F), deflection(C_spring, F)
     return SimulationResult(
         setup=setup,
         path=path,
         ik=ik,
         C_joint=C_joint,
         C_spring=C_spring,
+        C=C,
         conditions=conditions,
         R_MF=R_MF,
         F=F,
-        delta_joint=delta_joint,
-        delta_spring=delta_spring,
-        sag=sag,
-        C=C,
+        delta_joint=deflection(C_joint, F),
+        delta_spring=deflection(C_spring, F),
         delta=bend(C, F) + offset,
+        sag=sag,
         coupling=coupling,
     )
 
@@ -69,9 +65,16 @@ def compliances(setup: SimulationSetup, theta: FloatArray) -> tuple[FloatArray, 
     """Shares of the joints (m, n, 3, 3) and of the springs beside them (m, k, 3, 3), m/N, eqs. (13), (14)."""
     J = geometric_jacobian(setup.robot, theta)
     C_joint = joint_contributions(J[..., :3, :], setup.robot.C_theta)
-    if not setup.springs:
-        return C_joint, np.zeros((len(theta), 0, 3, 3))
     return C_joint, extra_contributions(setup.springs, joint_frames(setup.robot, theta))
+
+
+def total_compliance(setup: SimulationSetup, path: Toolpath, C_joint: FloatArray, C_spring: FloatArray) -> FloatArray:
+    """C (m, 3, 3) m/N that the deflection is computed with: all shares, or at feed what was measured, if it was."""
+    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
+    if setup.measured_map is None:
+        return C
+    measured = setup.measured_map.compliance(setup.in_base(path.p))
+    return np.where(path.cutting[:, None, None], measured, C)
 
 
 def forces(

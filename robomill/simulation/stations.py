@@ -1,46 +1,87 @@
-"""What holds at a station of the cut (m, length travelled at feed), and what the alloy's other rows make of it."""
+"""What holds at a station of a run (m of length cut) and of the whole cut: samples, places, straightness, shares."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.surface.metrology import GrooveProfile
+from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
 
+UPWARDS = 1e-12  # m: a feed step shorter than this in plan goes along z
+SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
+ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 
-def place_at(path: Toolpath, station: float) -> tuple[FloatArray, FloatArray]:
-    """Point and unit direction (3,), (3,) in {W} of the commanded path at ``station``."""
-    i = int(np.clip(np.searchsorted(path.s, station - 1e-12), 1, len(path) - 1))
-    while i < len(path) - 1 and not path.cutting[i]:
-        i += 1
-    step = path.p[i] - path.p[i - 1]
-    length = float(np.linalg.norm(step))
-    share = 1.0 - (float(path.s[i]) - station) / length if length > 0 else 1.0
-    return path.p[i - 1] + np.clip(share, 0.0, 1.0) * step, step / length if length > 0 else np.array([1.0, 0.0, 0.0])
+
+def nearest_feed(result: SimulationResult, station: float) -> int:
+    """Index of the sample at feed nearest to ``station``."""
+    return _nearest(result, np.flatnonzero(result.path.cutting), station)
 
 
 def nearest_judged(result: SimulationResult, station: float) -> int:
-    """Index of the sample nearest to ``station`` among those judged; the worst one, -1, where none is."""
+    """Index of the sample nearest to ``station`` among those that count for the verdict; -1 where none does."""
     judged = np.flatnonzero(result.judged)
-    if len(judged) == 0:
-        return result.worst
-    return int(judged[np.argmin(np.abs(result.path.s[judged] - station))])
+    return _nearest(result, judged, station) if len(judged) else -1
+
+
+def _nearest(result: SimulationResult, among: IntArray, station: float) -> int:
+    return int(among[np.argmin(np.abs(result.path.s[among] - station))])
+
+
+def place_at(path: Toolpath, station: float) -> tuple[FloatArray, FloatArray]:
+    """Point (3,) m and unit direction (3,) in {W} of the commanded path at ``station``, held within the cut."""
+    found = station_at(path.p, path.cutting, min(max(station, 0.0), float(path.s[-1])))
+    step = path.p[found.entry] - path.p[found.entry - 1]
+    return found.centre, step / np.linalg.norm(step)
 
 
 def is_straight(path: Toolpath) -> bool:
-    """Whether every cut goes the same way, so that the groove is one straight line."""
+    """Whether every cut goes the same way (or back): a form error can then be told from a shift and a turn."""
     step = np.diff(path.p, axis=0)[path.cutting[1:]]
     length = np.linalg.norm(step, axis=1)
     along = step[length > 0] / length[length > 0, None]
-    return bool(len(along) and np.abs(np.cross(along, along[0])).max() < 1e-6)
+    return bool(len(along) and np.abs(np.cross(along, along[0])).max() < SAME_WAY)
+
+
+def one_groove(path: Toolpath) -> bool:
+    """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
+    points = path.p[path.cutting][:, :2]
+    along = points[-1] - points[0]
+    length = float(np.linalg.norm(along))
+    if length < ON_LINE:
+        return False
+    off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
+    return bool(np.abs(off).max() <= ON_LINE)
+
+
+def groove_error(result: SimulationResult, i: int) -> tuple[float, float]:
+    """(aside, up) m: how far the tip at sample i goes to the left of the feed, seen from above, and up, in {W}.
+
+    NaN aside where the feed is along z.
+    """
+    delta = result.setup.T_MW[:3, :3].T @ result.delta[i]
+    feed = result.path.p[i] - result.path.p[i - 1]
+    plan = float(np.hypot(feed[0], feed[1]))
+    aside = float(delta[1] * feed[0] - delta[0] * feed[1]) / plan if plan > UPWARDS else float("nan")
+    return aside, float(delta[2])
+
+
+def joint_shares(result: SimulationResult, i: int) -> FloatArray:
+    """(n,) share of each joint in the deviation at sample i: its deflection's part along the deviation, over its size.
+
+    They sum to 1 where nothing beside the joints gives; zero where nothing is deflected.
+    """
+    size = float(np.linalg.norm(result.delta[i])) or 1.0
+    return np.asarray(result.delta_joint[i] @ result.delta[i] / size**2)
 
 
 def force_components(result: SimulationResult, spread: AlloySpread) -> FloatArray:
     """(r, m, 3) N: the force of each row of the alloy along feed, feed-normal and axial."""
-    return np.einsum("mij,rmi->rmj", result.R_MF, spread.F)
+    return np.asarray(np.einsum("mij,rmi->rmj", result.R_MF, spread.F))
 
 
 def largest_deviations(result: SimulationResult, spread: AlloySpread) -> FloatArray:
@@ -48,9 +89,17 @@ def largest_deviations(result: SimulationResult, spread: AlloySpread) -> FloatAr
     return np.asarray(np.where(result.judged, spread.deviation, -np.inf).max(axis=1))
 
 
+def offset_by_row(result: SimulationResult, spread: AlloySpread, station: ArrayLike, offset: ArrayLike) -> FloatArray:
+    """(r, q) m: the groove's centre offset (q,) at stations (q,) m for each row of the alloy.
+
+    The tip moves aside as far as the row's deflection differs from that of the row in force.
+    """
+    i = np.array([nearest_feed(result, float(s)) for s in np.atleast_1d(station)])
+    moved = spread.delta[:, i] - result.delta[i]
+    return np.asarray(offset) + np.einsum("rqc,qc->rq", moved, result.R_MF[i, :, 1])
+
+
 def offset_band(result: SimulationResult, spread: AlloySpread, profile: GrooveProfile) -> FloatArray:
     """(2, q) m: lowest and highest centre offset over the alloy's rows at the profile's stations."""
-    i = np.array([result.sample_at(float(s)) for s in profile.station])
-    normal = result.R_MF[i][:, :, 1]
-    every = profile.centre_offset + np.einsum("rqc,qc->rq", spread.delta[:, i] - result.delta[i], normal)
+    every = offset_by_row(result, spread, profile.station, profile.centre_offset)
     return np.stack([every.min(axis=0), every.max(axis=0)])

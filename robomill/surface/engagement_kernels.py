@@ -83,16 +83,14 @@ def arc_of(shape: Shape, heading: Heading, tile: Heights, bottom: float) -> tupl
 
 @kernel
 def engage_moves(shape: Shape, moves: TiltedMoves, tile: Heights, hidden: Hidden, bottom: float, result: Out2) -> None:
-    """Engagement (phi_st, phi_ex, a_p, a_e, plunge) of moves into result (n, 5), cutting each into the heights."""
+    """Engagement (phi_st, phi_ex, a_p, a_e) of moves into result (n, 4), cutting each into the heights."""
     for n in range(len(moves.ends)):
         ax, ay, az, bx, by, bz = moves.ends[n]
         kx, ky, kz = moves.axes[n]
         fx, fy, fz = bx - ax, by - ay, bz - az
         length = math.sqrt(fx * fx + fy * fy + fz * fz)
         along = fx * kx + fy * ky + fz * kz
-        if length > 0.0 and abs(along) >= ALONG_AXIS * length:
-            result[n, 4] = 1.0
-        elif length > 0.0:
+        if abs(along) < ALONG_AXIS * length:
             across = math.sqrt(length * length - along * along)
             fx, fy, fz = (fx - along * kx) / across, (fy - along * ky) / across, (fz - along * kz) / across
             heading = Heading(

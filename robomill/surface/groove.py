@@ -17,7 +17,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock, stock_span
-from robomill.surface.swept import Station, SweptPath, station_at, swept_path
+from robomill.surface.swept import CutPath, Station, SweptPath, station_at, swept_path
 from robomill.surface.trace import trace_groove
 
 
@@ -31,12 +31,11 @@ class GrooveSection:
     width, depth   of the machined groove: between its walls at the top, and from the stock's top to its floor
     centre_offset  machined middle between the walls minus the ideal one, positive along the feed-normal (left)
     floor_error    machined floor minus ideal floor at the tool axis, positive: material left
-    wall_left, wall_right            positions w of the machined walls at the top
+    wall_left, wall_right            positions w of the machined walls at the top; NaN where the stock's side is open
     wall_left_ideal, wall_right_ideal
     wall_left_angle, wall_right_angle    from the floor's side of the horizontal: 90 degrees is upright, more opens up
     wall_left_straightness, wall_right_straightness   range about the best straight line
-    floor, floor_ideal, floor_tilt   heights at the tool axis; slope of the machined floor across the groove
-    open_left, open_right            True where the cut reaches the stock's side: no wall there
+    floor, floor_tilt                height at the tool axis; slope of the machined floor across the groove
     w, z_ideal, z_machined           (q,) the section's profile
     note                             why something could not be measured, or ""
     """
@@ -58,61 +57,32 @@ class GrooveSection:
     wall_left_straightness: float
     wall_right_straightness: float
     floor: float
-    floor_ideal: float
     floor_tilt: float
-    open_left: bool
-    open_right: bool
     w: FloatArray
     z_ideal: FloatArray
     z_machined: FloatArray
     note: str = ""
 
 
-def groove_section(
-    stock: Stock,
-    cutter: Cutter,
-    p_ideal: ArrayLike,
-    p_machined: ArrayLike,
-    cutting: ArrayLike,
-    block: ArrayLike | None,
-    station: float,
-    *,
-    k: ArrayLike | None = None,
-    samples: int = 401,
-) -> GrooveSection:
-    """Section of the groove at path length ``station`` (m) of the commanded path; see GrooveSection.
+def groove_sections(
+    stock: Stock, cutter: Cutter, path: CutPath, stations: ArrayLike, samples: int = 401
+) -> tuple[GrooveSection, ...]:
+    """Sections of the groove at path lengths ``stations`` (q,) m of the commanded path; see GrooveSection.
 
-    p_ideal, p_machined (m, 3) m commanded and deflected tool tips, cutting (m,) bool, block (m,) source lines.
     The groove is the cut region around the tool, between the first material on either side; its walls come from
     all feed moves of the path, so a neighbouring pass that merges with it moves its wall.
     """
-    return groove_sections(stock, cutter, p_ideal, p_machined, cutting, block, [station], k=k, samples=samples)[0]
-
-
-def groove_sections(
-    stock: Stock,
-    cutter: Cutter,
-    p_ideal: ArrayLike,
-    p_machined: ArrayLike,
-    cutting: ArrayLike,
-    block: ArrayLike | None,
-    stations: ArrayLike,
-    *,
-    k: ArrayLike | None = None,
-    samples: int = 401,
-) -> tuple[GrooveSection, ...]:
-    """``groove_section`` at each of ``stations`` (q,) m."""
-    ideal = as_floats(p_ideal, "commanded points", (None, 3), error=SurfaceError)
-    moved = as_floats(p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
-    used = np.asarray(cutting, dtype=bool)
-    lines = np.zeros(len(ideal), dtype=int) if block is None else np.asarray(block)
-    paths = swept_path(stock, cutter, ideal, k, used), swept_path(stock, cutter, moved, k, used)
+    ideal = as_floats(path.p, "commanded points", (None, 3), error=SurfaceError)
+    moved = as_floats(path.p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
+    used = np.asarray(path.cutting, dtype=bool)
+    lines = np.zeros(len(ideal), dtype=int) if path.block is None else np.asarray(path.block)
+    paths = swept_path(stock, cutter, ideal, path.k, used), swept_path(stock, cutter, moved, path.k, used)
     found = []
     for station in np.atleast_1d(np.asarray(stations, dtype=float)):
         place = station_at(ideal, used, float(station))
         i, f = place.entry, place.fraction
         tip = moved[i - 1] + f * (moved[i] - moved[i - 1])
-        found.append(_section(stock, cutter, paths, place, tip, int(lines[i]), samples))
+        found.append(_section(paths, place, tip, int(lines[i]), samples))
     return tuple(found)
 
 
@@ -121,14 +91,9 @@ WIDE = "wider than the cutter: several passes made it, so look at the walls; the
 
 
 def _section(
-    stock: Stock,
-    cutter: Cutter,
-    paths: tuple[SweptPath, SweptPath],
-    place: Station,
-    tip: FloatArray,
-    block: int,
-    samples: int,
+    paths: tuple[SweptPath, SweptPath], place: Station, tip: FloatArray, block: int, samples: int
 ) -> GrooveSection:
+    stock, cutter = paths[0].stock, paths[0].cutter
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():
@@ -166,10 +131,7 @@ def _section(
         wall_left_straightness=machined.left_straightness,
         wall_right_straightness=machined.right_straightness,
         floor=machined.floor,
-        floor_ideal=ideal.floor,
         floor_tilt=machined.floor_tilt,
-        open_left=bool(np.isnan(machined.left)),
-        open_right=bool(np.isnan(machined.right)),
         w=frozen(w),
         z_ideal=frozen(ideal.height(w)),
         z_machined=frozen(machined.height(w)),
@@ -183,4 +145,4 @@ def _empty(place: Station, block: int, note: str) -> GrooveSection:
         nothing[name] = frozen(np.zeros(0))
     normal = frozen(np.full(3, np.nan) if place.normal is None else place.normal)
     known = {"station": place.station, "block": block, "centre": frozen(place.centre), "normal": normal}
-    return GrooveSection(**{**nothing, **known, "open_left": False, "open_right": False, "note": note})
+    return GrooveSection(**{**nothing, **known, "note": note})

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.passes import feed_passes
@@ -17,6 +17,19 @@ from robomill.surface.stock import Stock
 from robomill.units import format_si
 
 Heights = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class CutPath:
+    """A path as commanded and as it was really run: tool tips p, p_machined (m, 3) m in {W} (not finite where not
+    reached), cutting (m,) bool, unit tool axes k (3,) or (m, 3) (None: upright), source lines block (m,).
+    """
+
+    p: FloatArray
+    p_machined: FloatArray
+    cutting: BoolArray
+    k: FloatArray | None = None
+    block: IntArray | None = None
 
 
 @dataclass(frozen=True)
@@ -76,12 +89,6 @@ class Station:
     fraction: float
     centre: FloatArray
     normal: FloatArray | None
-
-
-def feed_length(p: ArrayLike, cutting: ArrayLike) -> float:
-    """Length of the feed moves of a path p (m, 3) m, m: the last station."""
-    points, used = np.asarray(p, dtype=float), np.asarray(cutting, dtype=bool)
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=1)[used[1:]].sum())
 
 
 def station_at(p: FloatArray, cutting: BoolArray, station: float) -> Station:

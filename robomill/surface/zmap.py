@@ -13,7 +13,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.passes import at_one_axis, feed_passes, leaning
 from robomill.surface.raster import stock_heights
-from robomill.surface.removal import Cancel, EdgeCells, Progress, Watch, cut_tilted, cut_upright
+from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
 from robomill.surface.stock import AXES, Stock, stock_grid
 from robomill.units import format_si
 
@@ -99,18 +99,16 @@ def cut(
     k: ArrayLike | None = None,
     cutting: ArrayLike | None = None,
     *,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
     must_touch: bool = True,
 ) -> ZMap:
     """The stock after the feed moves of a path have been cut.
 
     p (m, 3) m tool tip in {W}; k (3,) or (m, 3) unit tool axis (default: upright); cutting (m,) bool, entry i for
     the move p[i-1] -> p[i] (default: all). Moves with an end that is not finite are left out and counted.
-    ``progress`` is called with 0..1, ``cancel`` asked whether to stop. Raises SurfaceError for a cell size that
-    does not fit, a tool axis too close to level, a cancelled cut, and (``must_touch``) a path that misses the stock.
+    Raises SurfaceError for a cell size that does not fit, a tool axis too close to level and (``must_touch``) a path
+    that misses the stock.
     """
-    cells, watch = stock_grid(stock, cell), Watch(progress, cancel)
+    cells = stock_grid(stock, cell)
     moves, skipped = feed_passes(p, k, cutting)
     if len(moves.ends) + skipped == 0:
         raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
@@ -120,11 +118,11 @@ def cut(
     z_stock = stock_heights(stock, x, y)
     z = np.empty((cells.nx, cells.ny))
     z[...] = z_stock
-    edge = cut_upright(z, cells, cutter, ends[~leans], watch)
+    edge = cut_upright(z, cells, cutter, ends[~leans])
     overhang = 0
     if leans.any():
         before = z.reshape(-1)[edge.index]
-        overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans]), watch).sum())
+        overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans])).sum())
         kept = z.reshape(-1)[edge.index] == before
         edge = EdgeCells(edge.index[kept], edge.mean[kept])
     bottom = float(stock.lower[2])

@@ -7,6 +7,7 @@ import numpy as np
 from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.stations import groove_error, one_groove, place_at
 from robomill.ui import cache, state, uncertainty
 from robomill.ui.parts import Tile
 from robomill.units import format_percent, format_si
@@ -19,7 +20,6 @@ WORDS = {
     "missed": "Misses the stock",
 }
 TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out", "missed": "out"}
-STRAIGHT = 1e-6  # m: cuts that stay this close to one line are one groove
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
@@ -64,37 +64,18 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     if i < 0:
         return result.verdict.sentence
     digits = 3 if unit == "in" else 2
-    delta = result.setup.T_MW[:3, :3].T @ result.delta[i]
-    plane = delta[:2]
-    feed = result.path.p[i] - result.path.p[i - 1]
-    left = np.array([-feed[1], feed[0]])
-    length = float(np.linalg.norm(left))
-    if length < 1e-12:
+    aside, depth = groove_error(result, i)
+    if np.isnan(aside):
         return result.verdict.sentence
-    aside = float(plane @ left / length)
-    if not one_groove(result):
-        worst, sideways, down = (
-            format_si(abs(v), unit, digits) for v in (result.max_deviation, aside, float(delta[2]))
-        )
-        words = "too deep" if delta[2] < 0 else "too shallow"
-        return f"At worst {worst} off, at line {result.worst_block}: {sideways} aside and {down} {words}."
-    axis = "Y" if abs(left[1]) > 0.999 * length else "X" if abs(left[0]) > 0.999 * length else ""
-    name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
-    depth = float(delta[2])
     words = "too deep" if depth < 0 else "too shallow"
+    if not one_groove(result.path):
+        worst, sideways, down = (format_si(abs(v), unit, digits) for v in (result.max_deviation, aside, depth))
+        return f"At worst {worst} off, at line {result.worst_block}: {sideways} aside and {down} {words}."
+    feed = np.abs(place_at(result.path, float(result.path.s[i]))[1][:2])
+    axis = "Y" if feed[0] > 0.999 * np.hypot(*feed) else "X" if feed[1] > 0.999 * np.hypot(*feed) else ""
+    name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
     sideways, down = (format_si(abs(v), unit, digits) for v in (aside, depth))
     return f"The groove is {sideways} off {name} and {down} {words}."
-
-
-def one_groove(result: SimulationResult) -> bool:
-    """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
-    points = result.path.p[result.path.cutting][:, :2]
-    along = points[-1] - points[0]
-    length = float(np.linalg.norm(along))
-    if length < STRAIGHT:
-        return False
-    off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
-    return bool(np.abs(off).max() <= STRAIGHT)
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

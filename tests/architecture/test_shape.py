@@ -48,9 +48,9 @@ UNUSED = {
 DEAD = {
     *("joint_torques", "arc_of_cut"),
     *("write_mesh", "NOTE", "smallest_singular_value", "condition_number", "all_branches", "FLAGS", "P_S", "P_W"),
-    *("residual_angle", "with_convention", "with_blocked", "error_bound", "delta_rest", "plunge"),
-    *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "floor_ideal"),
-    *("open_left", "open_right", "groove_section", "feed_length", "compensated", "says", "DIFFERENCES", "snap"),
+    *("residual_angle", "with_convention", "with_blocked"),
+    *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness"),
+    *("compensated", "says", "DIFFERENCES", "snap"),
     *("reset", "machining_box"),
 }
 

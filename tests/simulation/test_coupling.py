@@ -13,7 +13,7 @@ GOAL = np.array([1.0, -2.0, 0.5])
 def test_contraction_reaches_its_fixed_point(q):
     result = fixed_point(lambda x: GOAL + q * (x - GOAL), np.zeros(3), tol=1e-9, max_iter=300)
     assert result.converged
-    np.testing.assert_allclose(result.value, GOAL, atol=max(result.error_bound, 1e-12) * 1.01)
+    np.testing.assert_allclose(result.value, GOAL, atol=1.01e-9 * max(abs(q) / (1 - abs(q)), 1e-3))
     assert not result.one_pass.any()
     assert result.difference == pytest.approx(2.0, abs=1e-7)
     if q:
@@ -38,7 +38,6 @@ def test_divergence_is_said_and_the_one_pass_kept(q):
     np.testing.assert_array_equal(result.value, result.one_pass)
     assert result.iterations <= 6
     assert result.difference == 0.0
-    assert result.error_bound == np.inf
     assert "does not converge" in result.sentence
     assert "the one-pass answer is kept" in result.sentence
 
@@ -77,7 +76,7 @@ def test_unreached_steps_do_not_count():
 
 def test_no_coupling_at_all_takes_one_iteration():
     result = fixed_point(lambda x: GOAL, GOAL, tol=1e-9)
-    assert (result.converged, result.iterations, result.difference, result.error_bound) == (True, 1, 0.0, 0.0)
+    assert (result.converged, result.iterations, result.difference) == (True, 1, 0.0)
     assert result.sentence == "Coupling converged after 1 iteration; it differs from one pass by at most 0.0 µm."
 
 

@@ -10,6 +10,7 @@ from robomill.io.samples import samples_dir
 from robomill.simulation.enlarged import PICTURE_CELLS, enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
+from robomill.simulation.stations import nearest_feed
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +40,7 @@ def process() -> SimulationResult:
 def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(process: SimulationResult, times: float) -> None:
     shown = enlarged(process, times)
     i = int(np.argmin(np.abs(shown.drawn.x)))
-    sample = process.sample_at(0.05)
+    sample = nearest_feed(process, 0.05)
     aside, depth = float(np.linalg.norm(process.delta[sample, :2])), float(process.delta[sample, 2])
     error = shown.error[i]
     y = shown.drawn.y
@@ -64,10 +65,10 @@ def test_the_cut_so_far_grows_to_the_whole(process: SimulationResult) -> None:
     start = so_far(process, shown, 0)
     assert np.isnan(start.error).all()
     assert (start.drawn.z == shown.ideal.z_stock).all()
-    middle = so_far(process, shown, process.sample_at(0.05))
+    middle = so_far(process, shown, nearest_feed(process, 0.05))
     ahead = shown.drawn.x > 0.01
     assert np.isnan(middle.error[ahead]).all()
-    np.testing.assert_allclose(tip_drawn(process, shown, process.sample_at(0.05))[1], 10 * 0.2773e-3, atol=5e-6)
+    np.testing.assert_allclose(tip_drawn(process, shown, nearest_feed(process, 0.05))[1], 10 * 0.2773e-3, atol=5e-6)
 
 
 def test_a_picture_has_no_more_cells_than_a_screen_needs(result: SimulationResult) -> None:

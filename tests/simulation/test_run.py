@@ -145,8 +145,9 @@ def test_halving_the_step_moves_no_answer(setup) -> None:
 def test_a_measured_map_replaces_the_joint_model_and_says_where_it_ends(setup) -> None:
     mapped = load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
     run = simulate(mapped)
-    total = run.delta_joint.sum(axis=1) + run.delta_rest
-    assert total[run.judged] == pytest.approx(run.delta[run.judged], abs=1e-15)
+    p_M = run.path.p[run.judged] @ mapped.T_MW[:3, :3].T + mapped.T_MW[:3, 3]
+    expected = np.einsum("mij,mj->mi", mapped.measured_map.compliance(p_M), run.F[run.judged])
+    assert run.delta[run.judged] == pytest.approx(expected, abs=1e-15)
     outside = simulate(mapped.replace(T_MW=part_frame([0.58, -1.3, 0.002])))
     assert outside.reached.all()
     assert 0 < outside.judged.sum() < outside.path.cutting.sum()

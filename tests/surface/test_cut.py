@@ -118,15 +118,6 @@ def test_a_cell_must_have_a_size(cell):
         cut(STOCK, cell, FLAT, walk(3))
 
 
-def test_progress_rises_to_one_and_cancel_stops():
-    seen: list[float] = []
-    cut(STOCK, 5e-4, FLAT, walk(200), progress=seen.append)
-    assert seen == sorted(seen)
-    assert seen[-1] == 1.0
-    with pytest.raises(SurfaceError, match="stopped on request"):
-        cut(STOCK, 5e-4, FLAT, walk(200), cancel=lambda: True)
-
-
 def test_tiles_do_not_show(monkeypatch):
     p = walk(12, ramp=0.002)
     whole = cut(STOCK, 3e-4, CUTTERS["ball"], p)

@@ -9,6 +9,7 @@ from robomill.surface.deviation import deviation
 from robomill.surface.groove import groove_sections
 from robomill.surface.metrology import compare_profile, fit_groove, fit_line, groove_profile
 from robomill.surface.stock import Stock
+from robomill.surface.swept import CutPath
 from robomill.surface.zmap import cut
 
 FLAT = Cutter("flat", 0.008)
@@ -79,7 +80,7 @@ def wavy_profile():
     stock = Stock((-0.06, -0.02, -0.01), (0.06, 0.02, 0.002))
     moved = p + np.column_stack([0 * s, offset, 0 * s])
     stations = np.linspace(0, 0.1, 41)
-    return groove_profile(groove_sections(stock, FLAT, p, moved, s > 0, None, stations))
+    return groove_profile(groove_sections(stock, FLAT, CutPath(p, moved, s > 0), stations))
 
 
 def test_best_fit_separates_shift_turn_and_form():

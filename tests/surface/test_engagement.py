@@ -48,7 +48,6 @@ def test_air_entry_slot_and_exit():
         assert a_p == pytest.approx(0.002)
     rising = found.a_e[(np.append(0, middle) > -R) & (np.append(0, middle) < 0)]
     assert (np.diff(rising) >= 0).all()
-    assert not found.plunge.any()
 
 
 @pytest.mark.parametrize("angle", [0.0, 90.0, 37.0])
@@ -103,9 +102,9 @@ def test_stepped_stock_gives_the_mean_depth():
     assert found.a_p[n] == pytest.approx(0.0015, abs=3e-5)
 
 
-def test_plunge_has_no_arc_and_is_marked():
+def test_plunge_has_no_arc():
     found = run(line([0.02, 0, 0.003], [0.02, 0, -0.003]))
-    assert found.plunge[1:].all()
+    assert (found.phi_ex == 0).all()
     assert (found.a_p == 0).all()
 
 

@@ -17,6 +17,7 @@ from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.spread import peak_force
+from robomill.simulation.stations import nearest_feed
 from robomill.toolpath.source import GCodeSource
 from robomill.units import from_si
 from robomill.viz.along import MAX_PICKS, add_picks
@@ -175,7 +176,7 @@ def pixels(data: bytes) -> Any:
 
 
 def test_every_kind_of_picture_is_drawn(worker: RenderWorker, result: SimulationResult) -> None:
-    i = result.sample_at(0.05)
+    i = nearest_feed(result, 0.05)
     plain = pixels(worker.render(picture(result)))
     tool = posed(result, i, result.path.p[i], arm=False)
     for name, changes in {

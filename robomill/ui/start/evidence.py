@@ -13,6 +13,7 @@ from robomill.report.paper import SLOT
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
+from robomill.simulation.stations import offset_by_row
 from robomill.ui import cache, parts, state
 from robomill.ui.start.story import PAPER
 from robomill.units import from_si
@@ -64,8 +65,7 @@ def sideways(result: SimulationResult) -> tuple[float, float, float]:
     spread = alloy_spread(result)
     if spread is None or len(spread.titles) < 2:
         return offset, float("nan"), float("nan")
-    i = result.sample_at(middle)
-    every = offset + (spread.delta[:, i] - result.delta[i]) @ result.R_MF[i][:, 1]
+    every = offset_by_row(result, spread, middle, offset)
     return offset, float(np.min(every)), float(np.max(every))
 
 

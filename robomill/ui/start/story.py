@@ -14,6 +14,7 @@ from robomill.report.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.stations import joint_shares
 from robomill.ui import cache, parts, render, state
 from robomill.units import format_percent, format_si, format_times, from_si
 from robomill.viz.surfaces import surface_figure
@@ -50,8 +51,7 @@ def cause(result: SimulationResult, unit: str) -> str:
         return ""
     size = np.linalg.norm(result.delta_joint[i], axis=-1)
     order = np.argsort(size)[::-1]
-    along = result.delta[i] / (np.linalg.norm(result.delta[i]) or 1.0)
-    share = result.delta_joint[i] @ along / (np.linalg.norm(result.delta[i]) or 1.0)
+    share = joint_shares(result, i)
     main = [j for j in order if share[j] > 0.08][:3]
     numbers = result.setup.robot.joint_numbers
     blame = " and ".join(f"joint {numbers[j]} ({format_percent(share[j])})" for j in main)
