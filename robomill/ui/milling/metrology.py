@@ -48,7 +48,7 @@ def section_facts(groove: GrooveSection | None) -> None:
         return format_si(value, unit, sign=sign) if np.isfinite(value) else "open"
 
     def wall(side: str) -> tuple[str, str, str]:
-        if getattr(groove, f"open_{side}"):
+        if np.isnan(getattr(groove, f"wall_{side}")):
             return f"{side.capitalize()} wall", "open", "the cut reaches the stock's side"
         angle = format_si(getattr(groove, f"wall_{side}_angle"), "deg")
         form = format_si(getattr(groove, f"wall_{side}_straightness"), "um")
