@@ -85,7 +85,7 @@ class Quantity:
             return " or ".join(", ".join(self.options).rsplit(", ", 1))
         if self.kind == "switch":
             return "true or false"
-        low, high = (None if bound is None else self._short(bound) for bound in (self._lowest, self._highest))
+        low, high = (None if bound is None else self.short(bound) for bound in (self._lowest, self._highest))
         if low is None and high is None:
             words = "a whole number" if self.kind == "whole" else "a finite number"
         elif high is None:
@@ -130,9 +130,14 @@ class Quantity:
     def _offending(self, value: Any) -> str:
         """The first number out of bounds, as people read it."""
         worst = float(np.ravel(value)[np.flatnonzero(~np.ravel(self._allowed(value)))[0]])
-        return self._short(worst) if math.isfinite(worst) else str(worst)
+        return self.short(worst) if math.isfinite(worst) else str(worst)
 
-    def _short(self, value: float) -> str:
+    def short(self, value: Any) -> str:
+        """A value of the field (SI) in words: ``"8 mm"``, the title of a choice, ``"on"`` or ``"off"``."""
+        if self.kind == "choice":
+            return self.options[value]
+        if self.kind == "switch":
+            return "on" if value else "off"
         return format_short(value, self.unit)
 
     def _refusal(self, found: str, error: type[RobomillError], who: str) -> RobomillError:
@@ -205,6 +210,19 @@ def settle(value: Any, error: type[RobomillError], who: str = "") -> None:
     """
     for name, declared in quantities(type(value)).items():
         object.__setattr__(value, name, declared.settled(getattr(value, name), error, who))
+
+
+def described(value: Any) -> str:
+    """The declared numbers of a value in words, e.g. ``"Feed 0 N, Axial −23 N"``; what is absent is left out."""
+    said = []
+    for name, declared in quantities(type(value)).items():
+        found = getattr(value, name)
+        if declared.kind == "array":
+            numbers = ", ".join(declared.short(v).partition(" ")[0] for v in np.ravel(found))
+            said.append(f"{declared.label} ({numbers}) {unit_label(declared.unit)}".rstrip())
+        elif found is not None:
+            said.append(f"{declared.label} {declared.short(found)}")
+    return ", ".join(said)
 
 
 def file_suffix(unit: str) -> str:

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.arrays import FloatArray, as_floats
 from robomill.errors import RobotError
 from robomill.kinematics.forward import joint_frames
 from robomill.provenance import Provenance
+from robomill.quantities import quantity, settle
 from robomill.robot.model import Robot
 
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
@@ -29,19 +30,18 @@ class LinkMasses:
     Raises RobotError for negative masses or shapes that differ.
     """
 
-    mass: FloatArray
-    centre: FloatArray
+    mass: FloatArray = quantity("Mass", "kg", shape=(None,), least=0.0)
+    centre: FloatArray = quantity("Centre of mass", "mm", shape=(None, 3), axes="xyz")
     provenance: Provenance = BY_HAND
 
     def __post_init__(self) -> None:
-        mass = as_floats(self.mass, "link masses (kg)", (None,), error=RobotError)
-        if mass.ndim != 1 or (mass < 0.0).any():
-            raise RobotError("Link masses (kg): expected one number a joint, 0 or more.", where="mass")
-        centre = as_floats(self.centre, "centres of mass (m)", (len(mass), 3), error=RobotError)
-        if centre.ndim != 2:
-            raise RobotError(f"Centres of mass (m): expected shape ({len(mass)}, 3), found {centre.shape}.")
-        object.__setattr__(self, "mass", frozen(mass))
-        object.__setattr__(self, "centre", frozen(centre))
+        settle(self, RobotError, "Weight of the arm")
+        if len(self.mass) != len(self.centre):
+            raise RobotError(
+                f"Weight of the arm: found {len(self.mass)} masses and {len(self.centre)} centres of mass; "
+                "expected one of each for every joint.",
+                where="centre",
+            )
 
 
 def gravity_torques(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: ArrayLike = GRAVITY) -> FloatArray:

@@ -7,93 +7,125 @@ and axial = z_T (out of the part, towards the spindle).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.conditions import CutConditions
+from robomill.cutting.materials import Material
+from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
+from robomill.quantities import described, quantities, settle
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
-ASSUMED = Provenance("user", "entered by hand")
-
+BY_HAND = Provenance("user", "entered by hand")
 
 Frame = Literal["path", "M"]
 
 
-class ForceModel(Protocol):
-    """Every model gives the mean force on the tool at every step, in the ``frame`` it is known in.
+@dataclass(frozen=True, eq=False)
+class MeanForce:
+    """The force that pushed so far, so that another model can start from it: (3,) N in {M}, and feed frame."""
 
-    ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame.
+    in_M: FloatArray
+    along_path: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ForceSpread:
+    """Lowest and highest of each component, each (m, 3) N: over a revolution, or over alternative coefficients.
+
+    ``at_peak`` (m, 3) is the force vector at the instant (or for the coefficients) at which it is largest.
     """
+
+    low: FloatArray
+    high: FloatArray
+    at_peak: FloatArray
+
+
+class ForceModel:
+    """Mean force on the tool at every step, in the ``frame`` it is known in. Each model is a file in ``forces``.
+
+    A child is a frozen dataclass whose numbers are declared with ``quantity``; they are checked here, and files, the
+    page and the report follow from them. Fields of other types (a material, a record) are read, written and drawn by
+    their type; a field ``cutter`` is the set-up's. Raises CuttingError for a number that cannot be.
+
+    kind         its name in files; a child that states one is found in ``kinds``
+    title, hint  what the page calls it, and says beneath its numbers; ``rank`` where it stands among the others
+    follows_cut  whether it follows feed, depth and arc of engagement by itself, so that deflection can change it
+    ends_with_material   whether the engagement, where it is computed, ends the force in air
+    stated       whether its numbers are a person's, so that the page says where they come from
+    takes, example   the kind of material row it needs, and the sample it starts with
+    frame        ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame
+    """
+
+    kind: ClassVar[str] = ""
+    title: ClassVar[str] = ""
+    hint: ClassVar[str | None] = None
+    rank: ClassVar[int] = 100
+    follows_cut: ClassVar[bool] = False
+    ends_with_material: ClassVar[bool] = True
+    stated: ClassVar[bool] = True
+    takes: ClassVar[str] = ""
+    example: ClassVar[str] = ""
+    kinds: ClassVar[dict[str, type[ForceModel]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if cls.kind:
+            ForceModel.kinds[cls.kind] = cls
+
+    def __post_init__(self) -> None:
+        settle(self, CuttingError, f"{self.kind.replace('_', ' ').capitalize()} force")
+
+    @classmethod
+    def first(cls, mean: MeanForce) -> dict[str, Any]:
+        """Its numbers when it is chosen in place of a model that pushed ``mean``."""
+        return {}
 
     @property
     def frame(self) -> Frame:
         """Axes of ``components``."""
-        ...
+        return "path"
 
     @property
     def provenance(self) -> Provenance:
         """Where its numbers come from."""
-        ...
+        return BY_HAND
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is unknown or assumed, in sentences for the result."""
-        ...
+        return ()
+
+    @property
+    def numbers(self) -> str:
+        """Its numbers in words, for the report."""
+        return described(self) + (" in {M}" if self.frame == "M" else "")
+
+    def unit_of(self, name: str) -> str:
+        """The unit in which the page shows the field ``name``."""
+        return quantities(type(self))[name].unit
+
+    def cut_by(self, cutter: Cutter) -> Self:
+        """The same model for another cutter; itself where it does not depend on one."""
+        return self
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Mean force ON the tool at every step, (m, 3) N, in ``frame``."""
-        ...
+        raise NotImplementedError
 
+    def peak(self, conditions: CutConditions) -> ForceSpread | None:
+        """Extremes over a revolution, feed frame; None where only a mean is known."""
+        return None
 
-@dataclass(frozen=True, eq=False)
-class ConstantForce:
-    """The paper's static force: one vector (3,) N in {M} wherever the tool cuts."""
-
-    vector_M: FloatArray
-    provenance: Provenance = ASSUMED
-    notes: tuple[str, ...] = ()
-    frame: ClassVar[Frame] = "M"
-
-    def __post_init__(self) -> None:
-        vector = as_floats(self.vector_M, "constant force (x, y, z in N)", (3,), error=CuttingError)
-        if vector.shape != (3,):
-            raise CuttingError(f"Constant force: expected three numbers x, y, z in N, found shape {vector.shape}.")
-        object.__setattr__(self, "vector_M", frozen(vector))
-
-    def components(self, conditions: CutConditions) -> FloatArray:
-        """The vector at every step, (m, 3) N in {M}."""
-        return np.tile(self.vector_M, (len(conditions), 1))
-
-
-@dataclass(frozen=True)
-class PathForce:
-    """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N."""
-
-    feed: float = 0.0
-    feed_normal: float = 0.0
-    axial: float = 0.0
-    provenance: Provenance = ASSUMED
-    notes: tuple[str, ...] = ()
-    frame: ClassVar[Frame] = "path"
-
-    def __post_init__(self) -> None:
-        for name in ("feed", "feed_normal", "axial"):
-            value = as_floats(getattr(self, name), f"path force, {name} (N)", (), error=CuttingError)
-            if value.shape != ():
-                raise CuttingError(f"Path force, {name} (N): expected one number, found shape {value.shape}.")
-            object.__setattr__(self, name, float(value))
-
-    def components(self, conditions: CutConditions) -> FloatArray:
-        """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""
-        force = np.tile([self.feed, self.feed_normal, self.axial], (len(conditions), 1))
-        force[conditions.across <= PLUNGE, :2] = 0.0
-        return force
+    def by_material(self, conditions: CutConditions) -> list[tuple[Material, FloatArray]]:
+        """Mean force (m, 3) N for the material in force and each other of its alloy; none without a material."""
+        return []
 
 
 def feed_share(p: ArrayLike, k: ArrayLike) -> FloatArray:

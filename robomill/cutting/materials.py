@@ -6,7 +6,6 @@ A coefficient that no source gives is None: it is then taken as 0, and ``notes``
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,27 +13,23 @@ from typing import Any
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
-from robomill.units import from_si, to_si, unit_label
+from robomill.quantities import quantity, settle
+from robomill.units import to_si
 
 MECHANISTIC = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
 KIENZLE = ("kc11", "mc", "radial_ratio", "axial_ratio")
-#: Unit at the edge of every coefficient.
-COEFFICIENT_UNITS = {
-    "Ktc": "N/mm2",
-    "Kte": "N/mm",
-    "Krc": "N/mm2",
-    "Kre": "N/mm",
-    "Kac": "N/mm2",
-    "Kae": "N/mm",
-    "kc11": "N/mm2",
-    "mc": "1",
-    "radial_ratio": "1",
-    "axial_ratio": "1",
-}
-#: No metal known to milling lies outside these; a value that does was given in another unit.
-CREDIBLE = {"N/mm2": (to_si(10.0, "N/mm2"), to_si(5e4, "N/mm2")), "N/mm": (0.0, to_si(1e3, "N/mm"))}
 #: Chip thickness and width at which kc1.1 holds.
 REFERENCE_CHIP = to_si(1.0, "mm")
+
+
+def _per_area(label: str, *, leads: bool = False) -> Any:
+    """Force per chip area; no metal has less than 10 or more than 50 000 N/mm^2: such a value has another unit."""
+    least = to_si(10.0, "N/mm2") if leads else 0.0
+    return quantity(label, "N/mm2", optional=True, least=least, most=to_si(5e4, "N/mm2"))
+
+
+def _per_length(label: str) -> Any:
+    return quantity(label, "N/mm", optional=True, least=0.0, most=to_si(1e3, "N/mm"))
 
 
 @dataclass(frozen=True)
@@ -54,24 +49,23 @@ class Material:
     title: str
     alloy: str
     provenance: Provenance
-    Ktc: float | None = None
-    Kte: float | None = None
-    Krc: float | None = None
-    Kre: float | None = None
-    Kac: float | None = None
-    Kae: float | None = None
-    kc11: float | None = None
-    mc: float | None = None
-    radial_ratio: float | None = None
-    axial_ratio: float | None = None
+    Ktc: float | None = _per_area("Ktc", leads=True)
+    Kte: float | None = _per_length("Kte")
+    Krc: float | None = _per_area("Krc")
+    Kre: float | None = _per_length("Kre")
+    Kac: float | None = _per_area("Kac")
+    Kae: float | None = _per_length("Kae")
+    kc11: float | None = _per_area("kc11", leads=True)
+    mc: float | None = quantity("mc", optional=True, least=0.0, below=1.0)
+    radial_ratio: float | None = quantity("radial_ratio", optional=True, least=0.0)
+    axial_ratio: float | None = quantity("axial_ratio", optional=True, least=0.0)
 
     def __post_init__(self) -> None:
         if not self.name or not self.title or not self.alloy:
             raise CuttingError("A material needs a name, a title and an alloy.", where="name")
         if not self.provenance.source.strip():
             raise CuttingError(f"{self._who}: it needs a source; say where the numbers come from.", where="source")
-        for coefficient in (*MECHANISTIC, *KIENZLE):
-            self._check_number(coefficient)
+        settle(self, CuttingError, self._who)
         mechanistic = [c for c in MECHANISTIC if getattr(self, c) is not None]
         kienzle = [c for c in KIENZLE if getattr(self, c) is not None]
         if mechanistic and kienzle:
@@ -98,32 +92,20 @@ class Material:
     def _who(self) -> str:
         return f"Material {self.name!r}"
 
-    def _check_number(self, name: str) -> None:
-        value = getattr(self, name)
-        if value is None:
-            return
-        try:
-            number = float(value)
-        except (TypeError, ValueError) as exc:
-            raise CuttingError(f"{self._who}: {name} should be a number, found {value!r:.40}.", where=name) from exc
-        unit = COEFFICIENT_UNITS[name]
-        shown = f"{from_si(number, unit):g} {unit_label(unit)}".rstrip()
-        if not math.isfinite(number):
-            raise CuttingError(f"{self._who}: {name} should be a finite number, found {number}.", where=name)
-        if number < 0.0 or (number == 0.0 and name in ("Ktc", "kc11")):
-            expected = "must be greater than 0" if name in ("Ktc", "kc11") else "cannot be negative"
-            raise CuttingError(f"{self._who}: {name} is {shown}; it {expected}.", where=name)
-        if name == "mc" and number >= 1.0:
-            raise CuttingError(f"{self._who}: mc is {number:g}; expected 0 to less than 1.", where=name)
-        low, high = CREDIBLE.get(unit, (0.0, math.inf))
-        if number > high or (name in ("Ktc", "kc11") and number < low):
-            raise CuttingError(f"{self._who}: {name} is {shown}, which no metal has; check its unit.", where=name)
-        object.__setattr__(self, name, number)
-
     @property
     def kind(self) -> str:
         """``"mechanistic"`` or ``"kienzle"``."""
         return "mechanistic" if self.Ktc is not None else "kienzle"
+
+    @property
+    def coefficients(self) -> tuple[str, ...]:
+        """Names of the coefficients of its kind, given or not."""
+        return MECHANISTIC if self.kind == "mechanistic" else KIENZLE
+
+    @property
+    def knows_axial(self) -> bool:
+        """Whether its source gives what pulls along the axis."""
+        return self.Kac is not None or self.axial_ratio is not None
 
     @property
     def terms(self) -> tuple[EdgeTerm, ...]:

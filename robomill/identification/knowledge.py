@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
-from robomill.compliance.springs import Spring
+from robomill.compliance.spring import Spring
 from robomill.errors import ProjectError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult

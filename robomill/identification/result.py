@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.compliance.springs import JointBending, SpindleSpring, Spring
+from robomill.compliance.spring import Spring
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
 from robomill.identification.models import Model, Parameter
 from robomill.provenance import Finding, Provenance

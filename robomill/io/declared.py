@@ -92,8 +92,9 @@ def to_table(value: Any, codecs: Mapping[Any, Codec] = CODECS) -> dict[str, Any]
     defaults = {each.name: each.default for each in fields(value)}
     for name, kind in declared_types(type(value)).items():
         codec = codecs.get(kind)
-        if codec is not None and getattr(value, name) != defaults[name]:
-            out |= codec.write(name, getattr(value, name))
+        found, default = getattr(value, name), defaults[name]
+        if codec is not None and not (found is default or (np.ndim(found) == 0 and found == default)):
+            out |= codec.write(name, found)
     return out
 
 
@@ -129,17 +130,10 @@ def _array(table: Table, declared: Quantity) -> Any:
     return np.array(table.numbers(declared.key, length, declared.unit))
 
 
-def _choice(table: Table, declared: Quantity) -> str:
-    code = table.text(declared.key)
-    if code not in declared.options:
-        raise table.refuse(declared.key, f"expected {declared.expected}, found {code!r:.40}.")
-    return code
-
-
 _READERS: dict[str, Callable[[Table, Quantity], Any]] = {
     "number": lambda table, declared: table.number(declared.key, declared.unit),
     "whole": lambda table, declared: table.whole(declared.key),
     "switch": lambda table, declared: table.flag(declared.key, False),
     "array": _array,
-    "choice": _choice,
+    "choice": lambda table, declared: table.choice(declared.key, tuple(declared.options)),
 }

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from robomill.cutting.force import Frame
-from robomill.cutting.measured import FEWEST, Axis, ForceRecord
+from robomill.cutting.forces.measured import FEWEST, Axis, ForceRecord
 from robomill.errors import CuttingError
 from robomill.io.columns import Columns, Layout, read_columns
 from robomill.units import from_si

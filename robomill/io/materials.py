@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
-from robomill.cutting.materials import COEFFICIENT_UNITS, KIENZLE, MECHANISTIC, Material
+from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
+from robomill.io.declared import read_quantity, write_quantity
 from robomill.io.samples import samples_dir
-from robomill.provenance import Provenance
-from robomill.units import from_si, to_si
+from robomill.io.tables import Table, parse_toml, toml_value
+from robomill.quantities import quantities
 
-SUFFIX = {"N/mm2": "_N_mm2", "N/mm": "_N_mm", "1": ""}
-#: Key in the file -> (field of Material, unit).
-KEYS = {f"{name}{SUFFIX[unit]}": (name, unit) for name, unit in COEFFICIENT_UNITS.items()}
+WORDS = ("name", "title", "alloy")
 
 
 def material_names() -> list[str]:
@@ -44,71 +42,27 @@ def load_material(name_or_path: str | Path) -> Material:
 
 def material_from_toml(text: str, where: str = "material") -> Material:
     """A row from TOML text: name, title, alloy, [coefficients], [provenance]. ``where`` starts every sentence."""
+    top = Table(parse_toml(text, where, CuttingError), where, CuttingError)
+    given: dict[str, Any] = {key: top.text(key) for key in WORDS}
+    coefficients = top.table("coefficients")
+    given |= {name: read_quantity(coefficients, declared) for name, declared in quantities(Material).items()}
+    coefficients.finish()
+    given["provenance"] = top.provenance("provenance")
+    top.finish()
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as exc:
-        raise CuttingError(f"{where}: not a TOML file ({exc}).", where=where) from exc
-    _only(data, {"name", "title", "alloy", "coefficients", "provenance"}, where)
-    words = {key: _text(data, key, where) for key in ("name", "title", "alloy")}
-    coefficients, provenance = (_table(data, key, where) for key in ("coefficients", "provenance"))
-    _only(coefficients, set(KEYS), f"{where} [coefficients]")
-    _only(provenance, {"kind", "source"}, f"{where} [provenance]")
-    values: dict[str, float] = {}
-    for key, value in coefficients.items():
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise CuttingError(f"{where} [coefficients] {key}: expected a number, found {value!r:.40}.", where=key)
-        name, unit = KEYS[key]
-        values[name] = to_si(float(value), unit)
-    kind, source = (_text(provenance, key, f"{where} [provenance]") for key in ("kind", "source"))
-    try:
-        return Material(**words, provenance=Provenance(kind, source), **values)  # type: ignore[arg-type]
+        return Material(**given)
     except RobomillError as exc:
         raise CuttingError(f"{where}: {exc}", where=exc.where) from exc
 
 
 def material_to_toml(material: Material) -> str:
     """TOML text that ``material_from_toml`` reads back to an equal row."""
-    lines = [f"{key} = {_quoted(getattr(material, key))}" for key in ("name", "title", "alloy")]
+    lines = [f"{key} = {toml_value(getattr(material, key))}" for key in WORDS]
     lines += ["", "[coefficients]"]
-    keys = {name: (key, unit) for key, (name, unit) in KEYS.items()}
-    for name in (*MECHANISTIC, *KIENZLE):
-        value = getattr(material, name)
+    for name, declared in quantities(Material).items():
+        value = write_quantity(declared, getattr(material, name))
         if value is not None:
-            key, unit = keys[name]
-            lines.append(f"{key} = {_shortest(value, unit)!r}")
+            lines.append(f"{declared.key} = {toml_value(value)}")
     lines += ["", "[provenance]"]
-    lines += [f"{key} = {_quoted(getattr(material.provenance, key))}" for key in ("kind", "source")]
+    lines += [f"{key} = {toml_value(getattr(material.provenance, key))}" for key in ("kind", "source")]
     return "\n".join(lines) + "\n"
-
-
-def _shortest(value: float, unit: str) -> float:
-    """The rounded number in ``unit`` if it leads back to the same SI value, else the full one."""
-    shown = from_si(value, unit)
-    short = float(f"{shown:.12g}")
-    return short if to_si(short, unit) == value else shown
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in escaped) + '"'
-
-
-def _only(table: dict[str, Any], known: set[str], where: str) -> None:
-    for key in table:
-        if key not in known:
-            raise CuttingError(f"{where}: key {key!r} is not known; expected {', '.join(sorted(known))}.", where=key)
-
-
-def _text(table: dict[str, Any], key: str, where: str) -> str:
-    value = table.get(key)
-    if not isinstance(value, str) or not value.strip():
-        found = "nothing" if value is None else repr(value)[:40]
-        raise CuttingError(f"{where}: {key} should be a text, found {found}.", where=key)
-    return value
-
-
-def _table(data: dict[str, Any], key: str, where: str) -> dict[str, Any]:
-    value = data.get(key)
-    if not isinstance(value, dict):
-        raise CuttingError(f"{where}: the table [{key}] is missing.", where=key)
-    return value

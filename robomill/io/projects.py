@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from robomill.compliance.gravity import LinkMasses
 from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
-from robomill.io.declared import from_table, to_table
+from robomill.io.declared import from_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import read_program
 from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
 from robomill.io.sketches import sketch_from_table, sketch_to_table
-from robomill.io.springs import links_from_table, links_to_table, spring_from_table, spring_to_table
+from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.workpiece import (
     part_from_table,
@@ -24,14 +25,16 @@ from robomill.io.workpiece import (
     stock_from_table,
     stock_to_table,
 )
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 
 FORMAT = "robomill-setup"
 VERSION = 1
+NUMBERS = quantities(SimulationSetup)
+NUMERICS = tuple(name for name in NUMBERS if name != "tolerance")  # in [numerics]; the tolerance stands at the top
 PROGRAMS = (".nc", ".ngc", ".tap", ".gcode", ".cnc")
-BLOCKS = ("path", "part", "stock", "cutter", "force", "tolerance")
 
 
 def load_setup(path: str | Path) -> SimulationSetup:
@@ -72,7 +75,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
-        tolerance=top.number("tolerance_mm", "mm", 0.3e-3),
+        tolerance=read_quantity(top, NUMBERS["tolerance"]),
         robot=robot,
         source=_source(top.table("path"), folder),
         T_MW=part_from_table(top.table("part", {})),
@@ -82,7 +85,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         provenance=_provenance(top.table("provenance", {})),
         springs=tuple(spring_from_table(entry) for entry in top.tables("springs")),
         measured_map=map_from_table(top.table("measured_map"), robot, folder) if top.has("measured_map") else None,
-        links=links_from_table(top.table("links")) if top.has("links") else None,
+        links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
     top.asked.update(("stock", "links", "measured_map"))
@@ -128,13 +131,7 @@ def _source(table: Table, folder: Path | None) -> PathSource:
 
 
 def _numerics(table: Table) -> dict[str, Any]:
-    values = {
-        "step": table.number("step_mm", "mm", 1e-3),
-        "cell": table.number("cell_mm", "mm", 1e-4),
-        "engagement": table.flag("engagement", False),
-        "coupling": table.flag("coupling", False),
-        "add_sag": table.flag("add_sag", False),
-    }
+    values = {name: read_quantity(table, NUMBERS[name]) for name in NUMERICS}
     table.finish()
     return values
 
@@ -153,19 +150,13 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "version": VERSION,
         "name": setup.name,
         "description": setup.description,
-        "tolerance_mm": shown(setup.tolerance, "mm"),
+        NUMBERS["tolerance"].key: write_quantity(NUMBERS["tolerance"], setup.tolerance),
         "robot": _robot_table(setup.robot),
         "path": _source_table(setup.source),
         "part": part_to_table(T_MW),
         "cutter": to_table(setup.cutter),
         "force": force_to_table(setup.force),
-        "numerics": {
-            "step_mm": shown(setup.step, "mm"),
-            "cell_mm": shown(setup.cell, "mm"),
-            "engagement": setup.engagement,
-            "coupling": setup.coupling,
-            "add_sag": setup.add_sag,
-        },
+        "numerics": {NUMBERS[name].key: write_quantity(NUMBERS[name], getattr(setup, name)) for name in NUMERICS},
         "provenance": {key: {"kind": p.kind, "source": p.source} for key, p in setup.provenance.items()},
     }
     if setup.stock is not None:
@@ -175,7 +166,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
     if setup.measured_map is not None:
         data["measured_map"] = map_to_table(setup.measured_map)
     if setup.links is not None:
-        data["links"] = links_to_table(setup.links)
+        data["links"] = to_table(setup.links)
     # TOML reads the line ends of multi-line strings as plain ones, so a program with others is written escaped.
     plain = "\r" not in getattr(setup.source, "text", "")
     return tomli_w.dumps(data, multiline_strings=plain)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
 from robomill.surface.stock import Stock
 from robomill.units import to_si
@@ -47,32 +48,31 @@ def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
 
 
 def stock_from_table(table: Table, folder: Path | None) -> Stock:
-    if table.has("stl"):
-        from robomill.io.meshes import read_stl_stock  # meshes load only where one is read
+    """A block by its corners (a solid by its packed mesh), or an STL file beside the set-up."""
+    if not table.has("stl"):
+        return from_table(table, Stock, codecs=MESH)
+    from robomill.io.meshes import read_stl_stock  # meshes load only where one is read
 
-        stock, _ = read_stl_stock((folder or Path()) / table.text("stl"), unit=table.text("unit", "mm"))
-    else:
-        lower, upper = table.numbers("lower_mm", 3, "mm"), table.numbers("upper_mm", 3, "mm")
-        stock = Stock(np.array(lower), np.array(upper), _triangles(table))
+    stock, _ = read_stl_stock((folder or Path()) / table.text("stl"), unit=table.text("unit", "mm"))
     table.finish()
     return stock
 
 
-def _triangles(table: Table) -> FloatArray | None:
-    packed = table.text("triangles", "")
-    if not packed:
-        return None
+def stock_to_table(stock: Stock) -> dict[str, Any]:
+    return to_table(stock, MESH)
+
+
+def _unpacked(table: Table, name: str, around: Around) -> FloatArray | None:
+    packed = table.text(name)
     try:
         numbers = np.frombuffer(zlib.decompress(base64.b64decode(packed, validate=True)), dtype="<f8")
         return numbers.reshape(-1, 3, 3)
     except (binascii.Error, zlib.error, ValueError):
-        raise table.refuse("triangles", "the packed mesh is damaged; read the STL file again.") from None
+        raise table.refuse(name, "the packed mesh is damaged; read the STL file again.") from None
 
 
-def stock_to_table(stock: Stock) -> dict[str, Any]:
-    table: dict[str, Any] = {
-        f"{name}_mm": [shown(v, "mm") for v in getattr(stock, name)] for name in ("lower", "upper")
-    }
-    if stock.triangles is not None:
-        table["triangles"] = base64.b64encode(zlib.compress(stock.triangles.astype("<f8").tobytes())).decode()
-    return table
+def _packed(name: str, triangles: FloatArray) -> dict[str, Any]:
+    return {name: base64.b64encode(zlib.compress(triangles.astype("<f8").tobytes())).decode()}
+
+
+MESH: dict[Any, Codec] = {FloatArray | None: Codec(("{name}",), _unpacked, _packed)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.milling import MechanisticForce
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.report.paper import EQUATIONS, SLOT, TABLES
 from robomill.report.reproduction_row import Evidence, Found

@@ -40,7 +40,7 @@ def sources(setup: SimulationSetup) -> list[Source]:
         Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
         Source("Path", f"{format_si(float(path.s[-1]), 'mm', 0)} at feed", given.get("path", NOT_STATED)),
         Source("Cutter", setup.cutter.title, given.get("cutter", NOT_STATED)),
-        Source("Force", _force(setup), given.get("force", setup.force.provenance)),
+        Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
         Source("Stock", _stock(setup), given.get("stock", NOT_STATED)),
         Source("Tolerance", format_si(setup.tolerance, "mm", 2), given.get("tolerance", NOT_STATED)),
         Source("Model", "C = J C_θ Jᵀ, δ = C F", MODEL),
@@ -55,15 +55,3 @@ def _lengths(setup: SimulationSetup) -> list[float]:
 def _stock(setup: SimulationSetup) -> str:
     size = from_si(setup.stock_block.upper - setup.stock_block.lower, "mm")
     return " × ".join(format_significant(v) for v in np.round(size, 3)) + " mm"
-
-
-def _force(setup: SimulationSetup) -> str:
-    vector = getattr(setup.force, "vector_M", None)
-    if vector is not None:
-        return "(" + format_many(vector, "N", 0, with_unit=False) + ") N in {M}"
-    parts = [
-        f"{format_si(getattr(setup.force, name), 'N', 0)} {word}"
-        for name, word in (("feed", "along the feed"), ("feed_normal", "left of the feed"), ("axial", "axial"))
-        if getattr(setup.force, name, 0.0)
-    ]
-    return ", ".join(parts) or type(setup.force).__name__

@@ -8,9 +8,9 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.compliance.gravity import gravity_sag
-from robomill.compliance.springs import extra_contributions
+from robomill.compliance.spring import extra_contributions
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import ConstantForce, PathForce, feed_frame, force_on_tool
+from robomill.cutting.force import feed_frame, force_on_tool
 from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import inverse_kinematics
@@ -86,7 +86,7 @@ def forces(
         p = None if delta is None else moved_points(setup.T_MW, path, reached, delta)
         conditions = cut_conditions(setup, path, reached, p)
         force = force_on_tool(setup.force, conditions, R_MF)
-        if setup.engagement and isinstance(setup.force, ConstantForce | PathForce):
+        if setup.engagement and setup.force.ends_with_material:
             force = np.where((conditions.a_p > 0.0)[:, None], force, 0.0)  # a stated force ends with the material
         return conditions, force
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,17 +12,17 @@ import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.compliance.gravity import LinkMasses
-from robomill.compliance.springs import Spring
+from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.provenance import Provenance
+from robomill.quantities import quantity, settle, switch
 from robomill.robot.model import Robot
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.units import format_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,15 +52,29 @@ class SimulationSetup:
     cutter: Cutter
     force: ForceModel
     stock: Stock | None = None
-    tolerance: float = 0.3e-3
-    step: float = 1e-3
-    cell: float = 1e-4
-    engagement: bool = False
-    coupling: bool = False
+    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, step=0.05)
+    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, step=0.5)
+    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, step=0.05, digits=4)
+    engagement: bool = switch(
+        "Engagement from the part",
+        default=False,
+        hint="The arc and depth of each step come from the stock as it stands: no force in air, less in a side cut. "
+        "Off: a full slot everywhere. Models with fixed numbers push wherever the path is at feed.",
+    )
+    coupling: bool = switch(
+        "Deflection changes the cut",
+        default=False,
+        hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
+        "from the part.",
+    )
     springs: tuple[Spring, ...] = ()
     measured_map: MeasuredField | None = None
     links: LinkMasses | None = None
-    add_sag: bool = False
+    add_sag: bool = switch(
+        "Add the sag to the deviation",
+        default=False,
+        hint="Off: shown only. A part is zeroed with the arm already sagged.",
+    )
     description: str = field(default="", compare=False)
     provenance: Mapping[str, Provenance] = field(default_factory=dict, compare=False)
 
@@ -71,14 +84,9 @@ class SimulationSetup:
         if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:
             raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
         object.__setattr__(self, "T_MW", frozen(T_MW))
-        for name, label, unit in (("tolerance", "Tolerance", "mm"), ("step", "Step", "mm"), ("cell", "Cell", "mm")):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                found = format_si(value, unit) if math.isfinite(value) else str(value)
-                raise SetupError(f"{label}: found {found}; expected more than 0 mm.", where=name)
-        if getattr(self.force, "cutter", self.cutter) != self.cutter:
-            # A process force is computed for the cutter that cuts; a changed cutter changes it too.
-            object.__setattr__(self, "force", dataclasses.replace(self.force, cutter=self.cutter))  # type: ignore[type-var]
+        settle(self, SetupError)
+        # A process force is computed for the cutter that cuts; a changed cutter changes it too.
+        object.__setattr__(self, "force", self.force.cut_by(self.cutter))
         if self.stock is not None:
             stock_grid(self.stock, self.cell)  # refuses a cell size that would need too many cells
         names = [spring.name for spring in self.springs]

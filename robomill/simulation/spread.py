@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.milling import ForceSpread, ProcessForce
+from robomill.cutting.force import ForceSpread
+from robomill.cutting.materials import Material
 from robomill.simulation.result import SimulationResult
 
 
@@ -15,14 +16,22 @@ from robomill.simulation.result import SimulationResult
 class AlloySpread:
     """The same run with every coefficient row of the alloy, the one in force first.
 
-    titles (r,) of the rows; F (r, m, 3) N and delta (r, m, 3) m in {M}; axial (r,) whether a row knows the
-    axial force.
+    materials (r,), the rows; F (r, m, 3) N and delta (r, m, 3) m in {M}.
     """
 
-    titles: tuple[str, ...]
-    axial: tuple[bool, ...]
+    materials: tuple[Material, ...]
     F: FloatArray
     delta: FloatArray
+
+    @property
+    def titles(self) -> tuple[str, ...]:
+        """(r,) what the rows are called."""
+        return tuple(material.title for material in self.materials)
+
+    @property
+    def axial(self) -> tuple[bool, ...]:
+        """(r,) whether a row knows the axial force."""
+        return tuple(material.knows_axial for material in self.materials)
 
     @property
     def deviation(self) -> FloatArray:
@@ -35,20 +44,17 @@ def alloy_spread(result: SimulationResult) -> AlloySpread | None:
 
     The part of delta that the force does not cause (sag) stays; coupling is not iterated anew.
     """
-    force = result.setup.force
-    if not isinstance(force, ProcessForce):
+    rows = result.setup.force.by_material(result.conditions)
+    if not rows:
         return None
-    rows = force.by_material(result.conditions)
     at_feed = result.conditions.cutting[:, None]
     C = result.C
     F = np.stack([np.where(at_feed, np.einsum("mij,mj->mi", result.R_MF, f), 0.0) for _, f in rows])
     rest = result.delta - np.einsum("mij,mj->mi", C, result.F)
     delta = np.einsum("mij,rmj->rmi", C, F) + rest
-    titles = tuple(material.title for material, _ in rows)
-    return AlloySpread(titles, tuple(m.Kac is not None or m.axial_ratio is not None for m, _ in rows), F, delta)
+    return AlloySpread(tuple(material for material, _ in rows), F, delta)
 
 
 def peak_force(result: SimulationResult) -> ForceSpread | None:
     """Extremes of the force over a revolution, feed frame, (m, 3) N; None where only a mean is known."""
-    force = result.setup.force
-    return force.peak(result.conditions) if isinstance(force, ProcessForce) else None
+    return result.setup.force.peak(result.conditions)

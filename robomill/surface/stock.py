@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
+from robomill.quantities import quantity, settle
 from robomill.units import format_si
 
-AXES = ("X", "Y", "Z")
+AXES = "XYZ"
 SMALLEST, LARGEST = 2e-3, 5.0  # m: a part outside these was probably given in another unit
 
 
@@ -25,19 +26,16 @@ class Stock:
     Raises SurfaceError for corners the wrong way round or a block without extent.
     """
 
-    lower: FloatArray
-    upper: FloatArray
+    lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, step=1.0, digits=2)
+    upper: FloatArray = quantity("to", "mm", shape=(3,), axes=AXES, step=1.0, digits=2)
     triangles: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        lower = as_floats(self.lower, "stock lower corner", (3,), error=SurfaceError)
-        upper = as_floats(self.upper, "stock upper corner", (3,), error=SurfaceError)
-        for name, a, b in zip(AXES, lower, upper, strict=True):
+        settle(self, SurfaceError, "Stock")
+        for name, a, b in zip(AXES, self.lower, self.upper, strict=True):
             if not b - a > 1e-9:
                 found = f"{format_si(a, 'mm')} to {format_si(b, 'mm')}"
                 raise SurfaceError(f"Stock in {name}: found {found}; the upper end must lie above the lower end.")
-        object.__setattr__(self, "lower", frozen(lower))
-        object.__setattr__(self, "upper", frozen(upper))
         if self.triangles is not None:
             triangles = as_floats(self.triangles, "stock mesh", (None, 3, 3), error=SurfaceError)
             object.__setattr__(self, "triangles", frozen(triangles))

@@ -8,7 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
-from robomill.compliance.springs import JointBending, SpindleSpring, ToolBending, extra_contributions
+from robomill.compliance.spring import extra_contributions
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.errors import RobotError
 from robomill.io.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
@@ -132,14 +135,14 @@ def test_names_are_lines_of_the_result():
 @pytest.mark.parametrize(
     ("build", "sentence"),
     [
-        (lambda: ToolBending(0.0, 0.04), "Tool bending: diameter is 0.000 mm; it must be greater than 0"),
-        (lambda: ToolBending(8e-3, -0.04), "stick_out is −40.000 mm"),
-        (lambda: ToolBending(8e-3, None), "stick_out should be a number, found None"),
-        (lambda: ToolBending(8e-3, 0.04, E=math.inf), "E should be finite"),
-        (lambda: ToolBending(8e-3, 0.04, core=1.5), "at most 1"),
-        (lambda: SpindleSpring(-1e-6), "Spindle and holder: lateral is −1.000 µm/N; it cannot be negative"),
-        (lambda: JointBending(0), "joint is 0; expected a number from 1"),
-        (lambda: JointBending(2, C_y=-1e-7), "Joint 2 bending: C_y is −1.00"),
+        (lambda: ToolBending(0.0, 0.04), "Tool bending, Diameter: found 0 mm; expected more than 0 mm."),
+        (lambda: ToolBending(8e-3, -0.04), "Stick-out: found −40 mm"),
+        (lambda: ToolBending(8e-3, None), "Stick-out: found None"),
+        (lambda: ToolBending(8e-3, 0.04, E=math.inf), "Young's modulus: found inf"),
+        (lambda: ToolBending(8e-3, 0.04, core=1.5), "Bending Ø / Ø: found 1.5; expected more than 0 to 1."),
+        (lambda: SpindleSpring(-1e-6), "Spindle and holder, Across: found −1 µm/N; expected 0 µm/N or more."),
+        (lambda: JointBending(0), "Joint: found 0; expected 1 or more."),
+        (lambda: JointBending(2, C_y=-1e-7), "Joint 2 bending, about y: found −1 ×10⁻⁷ rad/(N m)"),
         (lambda: JointBending(9).compliance(ROBOT, THETA), "there is no joint 9; the robot has 5"),
     ],
 )

@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import ConstantForce, PathForce, feed_frame, feed_share, force_on_tool
-from robomill.cutting.milling import MechanisticForce
+from robomill.cutting.force import feed_frame, feed_share, force_on_tool
+from robomill.cutting.forces.along_path import PathForce
+from robomill.cutting.forces.constant import ConstantForce
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material
@@ -95,5 +97,5 @@ def test_refusals():
         ConstantForce([0, np.nan, 0])
     with pytest.raises(CuttingError, match=r"expected shape \(..., 3\), found \(2,\)"):
         ConstantForce([0, 1])
-    with pytest.raises(CuttingError, match="feed_normal"):
+    with pytest.raises(CuttingError, match="Path force, Feed-normal: found"):
         PathForce(feed_normal="much")

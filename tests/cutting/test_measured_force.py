@@ -5,7 +5,7 @@ import pytest
 
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
-from robomill.cutting.measured import ForceRecord, MeasuredForce
+from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.errors import CuttingError
 
 T = np.arange(0.0, 4.0, 1e-3)
@@ -97,7 +97,7 @@ def test_refusals():
         record(100.0, axis="angle")
     with pytest.raises(CuttingError, match="frame is 'W'; expected 'path' or 'M'"):
         record(100.0, frame="W")
-    with pytest.raises(CuttingError, match="cut-off -5 Hz; it must be greater than 0, or left out"):
+    with pytest.raises(CuttingError, match="Low-pass cut-off: found −5 Hz; expected more than 0 Hz, or left out"):
         MeasuredForce(record(100.0), cutoff=-5.0)
-    with pytest.raises(CuttingError, match="start nan is not a number"):
+    with pytest.raises(CuttingError, match="Path starts at: found nan"):
         MeasuredForce(record(100.0), start=float("nan"))

@@ -6,8 +6,8 @@ import pytest
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import alternatives
-from robomill.cutting.milling import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.io.materials import load_material, sample_materials
 from robomill.io.robots import load_robot

@@ -11,7 +11,9 @@ import pytest
 from scipy.optimize import nnls
 
 import robomill as rm
-from robomill.compliance.springs import JointBending, SpindleSpring, extra_contributions
+from robomill.compliance.spring import extra_contributions
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
 from robomill.identification.crossvalidation import cross_validate
 from robomill.identification.estimate import identify

@@ -10,7 +10,7 @@ import tomli_w
 
 import robomill as rm
 from robomill.arrays import digest
-from robomill.compliance.springs import SpindleSpring
+from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
 from robomill.io.samples import samples_dir

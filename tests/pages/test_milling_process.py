@@ -10,14 +10,18 @@ import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.compliance.springs import SpindleSpring, ToolBending
-from robomill.cutting.measured import MeasuredForce
-from robomill.cutting.milling import KienzleForce, MechanisticForce, ProcessForce
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.forces import FORCES
+from robomill.cutting.forces.kienzle import KienzleForce
+from robomill.cutting.forces.measured import MeasuredForce
+from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.process import ProcessForce
+from robomill.cutting.tool import SHAPES
 from robomill.errors import CuttingError, RobotError
 from robomill.io.materials import load_material
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.milling import cut as cut_panel
-from robomill.ui.milling import force as force_panel
 from robomill.ui.milling import materials as material_panel
 from robomill.ui.milling import metrology as metrology_panel
 from robomill.ui.milling import springs as springs_panel
@@ -58,7 +62,7 @@ def test_process_data_give_the_papers_numbers_with_their_band(app: AppTest) -> N
 
 def test_axial_pull_can_be_left_out(app: AppTest) -> None:
     mechanistic(milling(app, "force"))
-    app.toggle(key="force.axial_on").set_value(False).run()
+    app.toggle(key="force.axial").set_value(False).run()
     assert not app.exception
     assert "The groove is 0.26 mm off in Y" in words(app)
 
@@ -84,7 +88,7 @@ def test_kienzle_row_and_back(app: AppTest) -> None:
     assert isinstance(store(app).project.setup.force, KienzleForce)
     app.selectbox(key="force.kind").set_value("path").run()
     assert not app.exception
-    assert app.number_input(key="in:force.feed_normal:N").value > 0
+    assert app.number_input(key="force.feed_normal:N").value > 0
 
 
 def test_a_row_of_ones_own_joins_the_band(app: AppTest) -> None:
@@ -117,37 +121,37 @@ def test_edited_coefficients_are_the_users_and_refusals_name_them() -> None:
         material_panel.with_coefficients(row, frame)
     frame.loc[5, "value"] = 0.7
     frame.loc[0, "value"] = -5.0
-    with pytest.raises(CuttingError, match="Ktc is -5"):
+    with pytest.raises(CuttingError, match="Ktc: found −5 N/mm²"):
         material_panel.with_coefficients(row, frame)
 
 
 def test_springs_have_their_own_lines(app: AppTest) -> None:
     milling(app, "tip")
     before = store(app).project.setup
-    app.toggle(key="springs.tool").set_value(True).run()
+    app.toggle(key="springs.tool_bending").set_value(True).run()
     app.toggle(key="springs.spindle").set_value(True).run()
     assert not app.exception
     assert [type(s) for s in store(app).project.setup.springs] == [ToolBending, SpindleSpring]
     text = words(app)
     assert "tool bending" in text
     assert "spindle and holder" in text
-    app.number_input(key="springs.spindle.lateral").set_value(-1.0).run()
+    app.number_input(key="springs.spindle.lateral:um/N").set_value(-1.0).run()
     assert len(errors(app)) == 1
-    assert "cannot be negative" in errors(app)[0]
-    app.number_input(key="springs.spindle.lateral").set_value(0.1).run()
+    assert "Spindle and holder, Across: found −1 µm/N" in errors(app)[0]
+    app.number_input(key="springs.spindle.lateral:um/N").set_value(0.1).run()
     assert errors(app) == []
-    app.toggle(key="springs.tool").set_value(False).run()
+    app.toggle(key="springs.tool_bending").set_value(False).run()
     app.toggle(key="springs.spindle").set_value(False).run()
     assert store(app).project.setup.digest() == before.digest()
 
 
 def test_bending_and_weight_tables_to_springs_and_back() -> None:
-    frame = springs_panel.bending_frame(5, {})
-    assert springs_panel.bending_from(frame) == []
+    frame = springs_panel.joint_frame(JointBending, 5, {})
+    assert springs_panel.joint_springs(JointBending, frame) == []
     frame.loc[1, "about y"] = 3.0
-    (spring,) = springs_panel.bending_from(frame)
+    (spring,) = springs_panel.joint_springs(JointBending, frame)
     assert (spring.joint, spring.C_x, spring.C_y) == (2, 0.0, pytest.approx(3e-7))
-    assert springs_panel.bending_frame(5, {2: spring}).loc[1, "about y"] == pytest.approx(3.0)
+    assert springs_panel.joint_frame(JointBending, 5, {2: spring}).loc[1, "about y"] == pytest.approx(3.0)
     weight = springs_panel.weight_frame(5, None)
     assert springs_panel.weight_from(weight) is None
     weight.loc[2, ["kg", "x mm"]] = 40.0, 250.0
@@ -244,9 +248,9 @@ def test_a_force_record_is_filtered_and_laid_on_the_path(app: AppTest) -> None:
     assert "low-pass 50 Hz, zero phase" in words(app)
     assert "The groove is 0.23 mm off in Y" in words(app)
     assert app.session_state[FORCE_FILE][0] == "record.csv"
-    app.number_input(key="in:force.cutoff:1").set_value(0.0).run()
+    app.number_input(key="force.cutoff:Hz").set_value(0.0).run()
     assert len(errors(app)) == 1
-    assert app.number_input(key="in:force.cutoff:1").value == 0.0
+    assert app.number_input(key="force.cutoff:Hz").value == 0.0
 
 
 def give(app: AppTest, key: str, name: str, data: bytes) -> None:
@@ -325,10 +329,10 @@ def test_a_stopped_spindle_and_no_feed_are_refused_with_their_line(app: AppTest)
 
 def test_inputs_of_every_panel_are_still_there_when_nothing_can_be_computed(app: AppTest) -> None:
     milling(app)
-    app.number_input(key="in:stock.lower[2]:mm").set_value(-1.0).run()
+    app.number_input(key="stock.lower[2]:mm").set_value(-1.0).run()
     assert not app.exception
     keys = {n.key for n in app.number_input}
-    assert {"in:cutter.diameter:mm", "in:tolerance:mm", "in:stock.lower[2]:mm"} <= keys
+    assert {"cutter.diameter:mm", "tolerance:mm", "stock.lower[2]:mm"} <= keys
 
 
 def test_form_error_is_apart_from_the_shift(app: AppTest) -> None:
@@ -340,6 +344,6 @@ def test_form_error_is_apart_from_the_shift(app: AppTest) -> None:
 
 
 def test_titles_and_names_cover_every_kind() -> None:
-    assert set(force_panel.KINDS) == {"path", "constant", "mechanistic", "kienzle", "measured"}
-    assert set(cut_panel.KINDS) == {"flat", "ball", "bull", "chamfer"}
+    assert set(FORCES) == {"path", "constant", "mechanistic", "kienzle", "measured"}
+    assert set(SHAPES) == {"flat", "ball", "bull", "chamfer"}
     assert metrology_panel.STATIONS % 2 == 1

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from robomill.compliance.cartesian import cartesian_compliance
-from robomill.cutting.force import ConstantForce, PathForce
+from robomill.cutting.forces.along_path import PathForce
+from robomill.cutting.forces.constant import ConstantForce
 from robomill.errors import SurfaceError, ToolpathError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir

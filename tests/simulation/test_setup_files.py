@@ -71,7 +71,7 @@ BAD = [
         TEXT.replace("tolerance_mm = 0.3", 'tolerance_mm = "wide"'),
         "tolerance_mm: expected a number in mm, found 'wide'",
     ),
-    (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = 0"), "Tolerance: found 0.000 mm; expected more than 0 mm"),
+    (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = 0"), "Tolerance: found 0 mm; expected more than 0 mm"),
     (TEXT.replace("tolerance_mm = 0.3", "tolerance_mm = nan"), "tolerance_mm: expected a finite number"),
     (
         TEXT.replace("cell_mm = 0.1", "cel_mm = 0.1"),
@@ -79,7 +79,7 @@ BAD = [
     ),
     (TEXT.replace("diameter_mm = 8.0", ""), "[cutter], diameter_mm: missing; add it"),
     (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "Cutter, Diameter: found −8 mm"),
-    (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of constant, path"),
+    (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of path, constant"),
     (TEXT.replace('name = "slavkovic_5r"', 'name = "robbie"'), "robbie"),
     (TEXT.replace('"table_2"', '"table_9"'), "table_9"),
     (TEXT.replace('program = "path.nc"', 'program = "lost.nc"'), "lost.nc: there is no such program"),

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from robomill.io.materials import sample_materials
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
 from robomill.simulation.result import SimulationResult
@@ -73,7 +74,7 @@ def test_the_alloys_rows_by_sample_and_row(result: SimulationResult) -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
     F = np.random.default_rng(3).normal(size=(3, len(result.path), 3)) * 40.0
     delta = np.random.default_rng(4).normal(size=F.shape) * 1e-4
-    spread = AlloySpread(("a", "b", "c"), (True, True, False), F, delta)
+    spread = AlloySpread(tuple(sample_materials()[:3]), F, delta)
     feed, normal = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])  # the flute runs along X
     R, found = setup.T_MW[:3, :3], force_components(result, spread)
     for r in range(3):

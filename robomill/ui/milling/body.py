@@ -7,7 +7,7 @@ import dataclasses
 import streamlit as st
 
 from robomill.cutting.conditions import cut_warnings
-from robomill.cutting.milling import ForceSpread
+from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cache, inputs, parts, state

@@ -7,14 +7,13 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import SHAPES
 from robomill.io.meshes import read_stl_stock
 from robomill.surface.stock import Stock
-from robomill.ui import boxes, inputs, parts, state
+from robomill.ui import inputs, parts, state
+from robomill.ui.milling.numbers import box
 from robomill.units import format_count, format_many
 
-KINDS = {"flat": "Flat", "ball": "Ball", "bull": "Bull", "chamfer": "Chamfer"}
-HANDS = {"right": "right", "left": "left"}
 STOCKS = {"path": "Around the path", "block": "Block", "stl": "From STL"}
 STL_UNITS = {"mm": "mm", "in": "inch", "m": "m"}
 FILE, PENDING, ODD = "milling.stock.file", "milling.stock.pending", "milling.stock.odd"
@@ -23,73 +22,26 @@ MAX_STL_MB = 80
 
 def cutter_inputs() -> None:
     """Kind, size, teeth, helix and lengths."""
-    cutter, unit = state.project().setup.cutter, state.project().view.length
-    inputs.choice("Kind", "cutter.kind", KINDS, cutter.kind, _switch, label_visibility="collapsed")
-    step = 1.0 if unit == "mm" else 0.05
-    left, right = st.columns(2)
-    with left:
-        inputs.number("Diameter", "cutter.diameter", unit, step=step)
-    with right:
-        inputs.whole("Flutes", "cutter.flutes")
-    if cutter.kind == "bull":
-        inputs.number("Corner radius", "cutter.corner_radius", unit, step=step / 4)
-    if cutter.kind == "chamfer":
-        left, right = st.columns(2)
-        with left:
-            inputs.number("Full tip angle", "cutter.tip_angle", "deg", step=5.0)
-        with right:
-            inputs.number("Tip diameter", "cutter.tip_diameter", unit, step=step / 4)
-    left, right = st.columns(2)
-    with left:
-        _length("Stick-out", "stick_out", "Free length from the holder; tool bending grows with its cube.")
-    with right:
-        _length("Flute length", "flute_length", "Deeper cuts are warned of: the shank would rub.")
-    left, right = st.columns(2)
-    with left:
-        inputs.choice(
-            "Helix",
-            "cutter.helix",
-            HANDS,
-            cutter.helix,
-            lambda v: state.change(cutter=_cutter().replace(helix=v)),
-            hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
-        )
-    with right:
-        inputs.number("Helix angle", "cutter.helix_angle", "deg", step=5.0, digits=1)
+    cutter = state.project().setup.cutter
+    kinds = {kind: shape.short for kind, shape in SHAPES.items()}
+    inputs.choice("Kind", "cutter.kind", kinds, cutter.kind, _switch, label_visibility="collapsed")
+    _rows(["diameter", "flutes"], list(cutter.shape.needs), ["stick_out", "flute_length"], ["helix", "helix_angle"])
 
 
-def _cutter() -> Cutter:
-    return state.project().setup.cutter
+def _rows(*rows: list[str]) -> None:
+    for names in filter(None, rows):
+        for column, name in zip(st.columns(len(names)), names, strict=True):
+            with column:
+                box(f"cutter.{name}")
 
 
-def _length(label: str, field: str, hint: str) -> None:
-    unit = state.project().view.length
-    boxes.number_box(
-        label,
-        f"cutter.{field}:{unit}",
-        getattr(_cutter(), field),
-        unit,
-        lambda v: state.change(cutter=_cutter().replace(**{field: v})),
-        optional=True,
-        step=1.0 if unit == "mm" else 0.05,
-        digits=1 if unit == "mm" else 3,
-        hint=hint,
-    )
-
-
-def _switch(kind: str) -> None:
-    old = _cutter()
-    common: dict[str, Any] = {
-        name: getattr(old, name)
-        for name in ("diameter", "flutes", "helix", "helix_angle", "hand", "flute_length", "stick_out")
-    }
-    special = {"bull": {"corner_radius": old.diameter / 8}, "chamfer": {"tip_angle": np.pi / 2}}.get(kind, {})
-    state.change(cutter=Cutter(kind=kind, **common, **special))  # type: ignore[arg-type]
+def _switch(kind: Any) -> None:
+    state.change(cutter=state.project().setup.cutter.reshaped(kind))
 
 
 def stock_inputs() -> None:
     """Around the path, a block, or a solid from an STL file."""
-    setup, unit = state.project().setup, state.project().view.length
+    setup = state.project().setup
     stock = setup.stock
     given = "path" if stock is None else "stl" if stock.triangles is not None else "block"
     # Asked for, but no file yet; any change of the project makes an end of the wait.
@@ -100,10 +52,8 @@ def stock_inputs() -> None:
     elif stock is None:
         parts.note(f"{parts.badge('computed')} {_size(setup.stock_block)} around the feed moves")
     else:
-        for side, label in (("lower", "from"), ("upper", "to")):
-            for i, (column, axis) in enumerate(zip(st.columns(3), "XYZ", strict=True)):
-                with column:
-                    inputs.number(f"{axis} {label}", f"stock.{side}[{i}]", unit, step=1.0, digits=2)
+        box("stock.lower")
+        box("stock.upper")
 
 
 def _size(stock: Stock) -> str:
@@ -177,11 +127,9 @@ def _read() -> None:
 
 def judgement_inputs() -> None:
     """Tolerance, and how finely path and surface are computed."""
-    unit = state.project().view.length
-    small = 0.05 if unit == "mm" else 0.002
-    inputs.number("Tolerance", "tolerance", unit, step=small)
+    box("tolerance")
     left, right = st.columns(2)
     with left:
-        inputs.number("Cell of the surface", "cell", unit, step=small, digits=4)
+        box("cell")
     with right:
-        inputs.number("Step along the path", "step", unit, step=0.5 if unit == "mm" else 0.02)
+        box("step")

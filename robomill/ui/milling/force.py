@@ -2,140 +2,117 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
-from robomill.cutting.force import ConstantForce, ForceModel, PathForce
-from robomill.cutting.measured import PAPER_CUTOFF, MeasuredForce
-from robomill.cutting.milling import ProcessForce
+from robomill.cutting.force import ForceModel, MeanForce
+from robomill.cutting.forces import FORCES
+from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.cutting.materials import Material
+from robomill.cutting.tool import Cutter
 from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
-from robomill.ui import boxes, cache, inputs, parts, state
+from robomill.quantities import declared_types, quantities
+from robomill.ui import cache, inputs, parts, state
 from robomill.ui.milling import materials as material_panel
-from robomill.units import format_count, format_si
+from robomill.ui.milling.numbers import boxes_of, draw
+from robomill.units import format_count
 
-KINDS = {
-    "path": "Follows the path",
-    "constant": "Fixed in {M} (the paper's)",
-    "mechanistic": "From the material, mechanistic",
-    "kienzle": "From the material, Kienzle",
-    "measured": "Measured, from a CSV file",
-}
-DEFAULT_ROW = {"mechanistic": "al7075_t6_carbide_ref190", "kienzle": "al_wrought_cured_kienzle"}
 PENDING = "milling.force.pending"
 FILE = "milling.force.file"
 MAX_FORCE_MB = 60
 
 
-def kind_of(force: ForceModel) -> str:
-    """A key of ``KINDS``."""
-    if isinstance(force, ProcessForce):
-        return force.kind
-    if isinstance(force, MeasuredForce):
-        return "measured"
-    return "constant" if isinstance(force, ConstantForce) else "path"
-
-
-def title(force: ForceModel) -> str:
-    """The model in a few words, for the head of its panel."""
-    if isinstance(force, ProcessForce):
-        return force.material.title
-    if isinstance(force, MeasuredForce):
-        return force.record.source
-    if isinstance(force, ConstantForce):
-        return f"{format_si(np.linalg.norm(force.vector_M), 'N', 0)}, fixed in {{M}}"
-    if isinstance(force, PathForce):
-        return f"{format_si(np.linalg.norm([force.feed, force.feed_normal, force.axial]), 'N', 0)}, follows the path"
-    return type(force).__name__
-
-
 def inputs_panel() -> None:
     """Model, numbers, engagement, coupling."""
     setup = state.project().setup
-    force = setup.force
-    # Asked for, but no record yet; any change of the project makes an end of the wait.
-    waits = st.session_state.get(PENDING) == setup.digest()
-    current = "measured" if waits else kind_of(force)
-    inputs.choice("Model", "force.kind", KINDS, current, _switch, horizontal=False)
-    if current == "measured":
-        _measured(force if isinstance(force, MeasuredForce) else None)
-    elif isinstance(force, ProcessForce):
-        material_panel.picker(force)
-    elif isinstance(force, ConstantForce):
-        _three([(f"F {a}", f"force.vector_M[{i}]") for i, a in enumerate("XYZ")])
-    elif isinstance(force, PathForce):
-        _three([("Feed", "force.feed"), ("Feed-normal", "force.feed_normal"), ("Axial", "force.axial")])
-        parts.note("Feed-normal is to the left of the feed; axial is positive out of the part.")
-    if current != "measured":
-        provenance = (
-            force.provenance if isinstance(force, ProcessForce) else setup.provenance.get("force", force.provenance)
-        )
-        source = "" if isinstance(force, ProcessForce) else provenance.source
-        if source:
-            parts.note(f"{parts.badge(provenance.kind)} {parts.subscripts(source)}")
-    _process_switches(isinstance(force, ProcessForce) and current != "measured")
+    force: ForceModel | None = setup.force
+    current = setup.force.kind
+    # Asked for, but what it needs is not there yet; any change of the project makes an end of the wait.
+    digest, wanted = st.session_state.get(PENDING, ("", ""))
+    if digest == setup.digest() and wanted != current:
+        force, current = None, wanted
+    titles = {kind: model.title for kind, model in FORCES.items()}
+    inputs.choice("Model", "force.kind", titles, current, _switch, horizontal=False)
+    for kind in declared_types(FORCES[current]).values():
+        if kind in EDITORS:
+            EDITORS[kind](force)
+    if force is not None:
+        boxes_of(force, "force", _write, force.unit_of)
+        if force.hint:
+            parts.note(force.hint)
+        if force.stated:
+            provenance = setup.provenance.get("force", force.provenance)
+            parts.note(f"{parts.badge(provenance.kind)} {parts.subscripts(provenance.source)}")
+    _process_switches(force is not None and force.follows_cut)
 
 
-def _three(fields: list[tuple[str, str]]) -> None:
-    for column, (label, path) in zip(st.columns(3), fields, strict=True):
-        with column:
-            inputs.number(label, path, "N", step=10.0, digits=1)
+def _write(name: str, value: Any) -> None:
+    state.change(label=f"force.{name}", force=replace(state.project().setup.force, **{name: value}))  # type: ignore[type-var]
 
 
 def _process_switches(process: bool) -> None:
     setup = state.project().setup
-    boxes.switch(
-        "Engagement from the part",
+    said = quantities(type(setup))
+    draw(
+        said["engagement"],
         "setup.engagement",
         setup.engagement,
         lambda on: state.change(engagement=on, coupling=setup.coupling and on),
-        hint="The arc and depth of each step come from the stock as it stands: no force in air, less in a side cut. "
-        "Off: a full slot everywhere. Models with fixed numbers push wherever the path is at feed.",
     )
-    boxes.switch(
-        "Deflection changes the cut",
+    draw(
+        said["coupling"],
         "setup.coupling",
         setup.coupling,
         lambda on: state.change(coupling=on),
         disabled=not (setup.engagement and process),
-        hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
-        "from the part.",
     )
 
 
 def _switch(kind: str) -> None:
+    """Another model, with what its fields start from; one that needs what is not there yet waits for it."""
+    setup = state.project().setup
     st.session_state.pop(PENDING, None)
-    if kind == "measured":
-        if not isinstance(state.project().setup.force, MeasuredForce):
-            st.session_state[PENDING] = state.project().setup.digest()
+    if kind == setup.force.kind:
         return
-    if kind in DEFAULT_ROW:
-        row = material_panel.rows(kind)[DEFAULT_ROW[kind]]
-        state.change(force=material_panel.model(row), engagement=True)
-        return
-    mean, feed_normal = _mean_force()
-    if kind == "constant":
-        state.change(force=ConstantForce(mean), coupling=False)
-    else:
-        feed, normal, axial = (float(v) for v in feed_normal)
-        state.change(force=PathForce(feed, normal, axial), coupling=False)
+    model = FORCES[kind]
+    given: dict[str, Any] = {}
+    for name, wanted in declared_types(model).items():
+        if wanted is Cutter:
+            given[name] = setup.cutter
+        elif wanted is Material:
+            given[name] = material_panel.rows(model.takes)[model.example]
+        elif wanted == tuple[Material, ...]:
+            given[name] = material_panel.others(given["material"])
+        elif wanted is ForceRecord:
+            st.session_state[PENDING] = (setup.digest(), kind)
+            return
+    follows = model.follows_cut
+    state.change(
+        force=model(**model.first(_mean_force()), **given),
+        engagement=setup.engagement or follows,
+        coupling=setup.coupling and follows,
+    )
 
 
-def _mean_force() -> tuple[Any, Any]:
+def _mean_force() -> MeanForce:
     """The force at the worst point in {M} and along the path, so that switching changes as little as can be."""
     try:
         result = cache.result(state.project().setup)
     except RobomillError:
         result = None
     if result is None or result.worst < 0:
-        return np.array([0.0, 100.0, 0.0]), np.array([0.0, 100.0, 0.0])
+        return MeanForce(np.array([0.0, 100.0, 0.0]), np.array([0.0, 100.0, 0.0]))
     i = result.worst
-    return np.round(result.F[i], 6) + 0.0, np.round(result.force_components[i], 6) + 0.0
+    return MeanForce(np.round(result.F[i], 6) + 0.0, np.round(result.force_components[i], 6) + 0.0)
 
 
-def _measured(force: MeasuredForce | None) -> None:
+def _record(force: Any) -> None:
+    """The file of a measured force, and what was read from it."""
     key = f"force:file:{state.store().revision if force is None else 'kept'}"
     st.file_uploader(
         "Force record (.csv): t_s or s_mm, then F_feed_N, F_feed_normal_N, F_axial_N, or F_x_N, F_y_N, F_z_N",
@@ -164,28 +141,8 @@ def _measured(force: MeasuredForce | None) -> None:
         if not state.store().refused.get("force:file"):
             parts.note("Until a record is given, the force stays as it was.")
         return
-    record = force.record
-    boxes.switch(
-        "Low-pass, zero phase",
-        "force:filter",
-        force.cutoff is not None,
-        lambda on: state.change(force=MeasuredForce(record, PAPER_CUTOFF if on else None, force.start)),
-    )
-    left, right = st.columns(2)
-    with left:
-        if force.cutoff is not None:
-            inputs.number("Cut-off (Hz)", "force.cutoff", "1", step=10.0, digits=1)
-    with right:
-        boxes.number_box(
-            "Path starts at",
-            "force:start",
-            force.start,
-            "s" if record.axis == "time" else "mm",
-            lambda v: state.change(force=MeasuredForce(record, force.cutoff, float(v or 0.0))),
-            digits=3,
-        )
-    samples = format_count(len(record.x), "sample")
-    parts.note(f"{parts.badge('measured')} {force.provenance.source}: {samples} against {record.axis}.")
+    samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
+    parts.note(f"{parts.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
 
 
 def _take(file: Any) -> None:
@@ -206,11 +163,15 @@ def _again() -> None:
         on = st.session_state.get("force:on", "tool")
         record = read_forces(data, on=on, source=name, trust_units=bool(st.session_state.get("force:trust")))
         old = state.project().setup.force
-        cutoff, start = (old.cutoff, old.start) if isinstance(old, MeasuredForce) else (PAPER_CUTOFF, 0.0)
-        force = MeasuredForce(record, cutoff, start)
+        given = {name: getattr(old, name) for name in ("cutoff", "start")} if old.kind == MeasuredForce.kind else {}
+        force = MeasuredForce(record, **given)
         # What cannot be laid on this path is refused here, with the file, and not on the page.
         force.components(cache.result(state.project().setup).conditions)
         state.change(force=force, coupling=False)
         st.session_state.pop(PENDING, None)
 
     inputs.attempt("force:file", None, read)
+
+
+#: What draws a field that is no number, by its type; it gets the model, or None while the field is waited for.
+EDITORS: dict[Any, Callable[[Any], None]] = {Material: material_panel.picker, ForceRecord: _record}

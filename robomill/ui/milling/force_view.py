@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.cutting.milling import ForceSpread, ProcessForce
+from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
@@ -127,15 +127,13 @@ def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 
 
 def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     """Every coefficient row of the alloy: its force at the station and the deviation it leads to."""
-    force = result.setup.force
-    if spread is None or not isinstance(force, ProcessForce) or i < 0:
+    if spread is None or i < 0:
         parts.note("A band comes with a force from the material: the other rows of the same alloy.")
         return
     unit = state.project().view.length
-    materials = (force.material, *force.alternatives)
     F, largest = force_components(result, spread)[:, i], largest_deviations(result, spread)
     body = ""
-    for row, (material, known) in enumerate(zip(materials, spread.axial, strict=True)):
+    for row, (material, known) in enumerate(zip(spread.materials, spread.axial, strict=True)):
         shown = [format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row]]
         cells = "".join(f'<td class="n">{v}</td>' for v in shown[:2])
         axial = shown[2] if known else "not given"

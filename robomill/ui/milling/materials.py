@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import streamlit as st
 
-from robomill.cutting.materials import COEFFICIENT_UNITS, KIENZLE, MECHANISTIC, Material
+from robomill.cutting.forces import FORCES
+from robomill.cutting.materials import Material
 from robomill.cutting.materials import alternatives as others_of
-from robomill.cutting.milling import ProcessForce
 from robomill.errors import CuttingError
-from robomill.io.force_models import PROCESS
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
 from robomill.provenance import Provenance
-from robomill.ui import boxes, inputs, parts, state
+from robomill.quantities import quantities
+from robomill.ui import inputs, parts, state
 from robomill.ui.editors import table_editor
 from robomill.units import from_si, to_si, unit_label
 
@@ -28,58 +30,59 @@ def _samples() -> tuple[Material, ...]:
 
 
 def rows(kind: str) -> dict[str, Material]:
-    """Every row of a kind ("mechanistic", "kienzle"): the samples, then those of this session."""
+    """Every row of a kind ("mechanistic", "kienzle"): the samples, those of this session, the one a project brings."""
     every = [*_samples(), *st.session_state.get(OWN, {}).values()]
-    force = state.project().setup.force
-    if isinstance(force, ProcessForce):
-        every.append(force.material)  # a project may bring a row of its own
-    return {m.name: m for m in every if m.kind == kind}
+    brought = getattr(state.project().setup.force, "material", None)
+    return {m.name: m for m in (*every, *([brought] if brought is not None else [])) if m.kind == kind}
 
 
-def model(material: Material, *, axial: bool = True) -> ProcessForce:
-    """The force model of a row, with the other rows of its alloy as its band."""
-    cutter = state.project().setup.cutter
-    found = others_of(material, rows(material.kind).values())
-    return PROCESS[material.kind](cutter, material, found, axial)
+def others(material: Material) -> tuple[Material, ...]:
+    """The other rows of its alloy: the band."""
+    return others_of(material, rows(material.kind).values())
 
 
-def picker(force: ProcessForce) -> None:
+def _use(material: Material, from_editor: bool = False) -> None:
+    """Put a row in force: in the present model, or in the one that takes rows of its kind."""
+    setup = state.project().setup
+    given = {"material": material, "alternatives": others(material)}
+    force: Any = setup.force
+    if force.takes == material.kind:
+        force = replace(force, **given)
+    else:
+        model: Any = next(model for model in FORCES.values() if model.takes == material.kind)
+        force = model(cutter=setup.cutter, **given)
+    state.change(force=force, from_editor=from_editor)
+
+
+def picker(force: Any) -> None:
     """The row in force with its source, its coefficients and the way to a new one."""
-    material = force.material
-    found = rows(force.kind)
+    material: Material = force.material
+    found = rows(force.takes)
     inputs.choice(
         "Material",
         f"force.material.{force.kind}",
         {m.name: m.title for m in found.values()},
         material.name,
-        lambda name: state.change(force=model(found[name], axial=force.axial)),
+        lambda name: _use(found[name]),
         horizontal=False,
     )
-    others = len(force.alternatives)
-    words = f" The band comes from {others} other rows of {material.alloy}." if others else " No other row: no band."
+    count = len(others(material))
+    words = f" The band comes from {count} other rows of {material.alloy}." if count else " No other row: no band."
     source = material.provenance.source
     parts.note(f"{parts.badge(material.provenance.kind)} {source}.{words}")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
-        _coefficients(force)
+        _coefficients(material)
     with right, st.popover("Add a row", icon=":material/add:", width="stretch"):
         _add(material)
-    boxes.switch(
-        "Axial pull of the helix",
-        "force.axial_on",
-        force.axial,
-        lambda on: state.change(force=model(material, axial=on)),
-        hint="Off names what the feed force and the feed-normal force do alone.",
-    )
 
 
-def _coefficients(force: ProcessForce) -> None:
-    material = force.material
+def _coefficients(material: Material) -> None:
     st.markdown(f"**{material.title}**")
     table_editor(
         f"material:{material.name}",
         lambda: coefficient_frame(material),
-        lambda frame: _keep(with_coefficients(material, frame), force.axial, from_editor=True),
+        lambda frame: _keep(with_coefficients(material, frame), from_editor=True),
         columns={"value": st.column_config.NumberColumn("value", format="%.6g")},
         locked=("coefficient", "unit"),
     )
@@ -145,24 +148,23 @@ def _from_file(file: object) -> None:
     inputs.attempt("material:add", None, put)
 
 
-def _keep(material: Material, axial: bool = True, from_editor: bool = False) -> None:
+def _keep(material: Material, from_editor: bool = False) -> None:
     """Add or replace a row of this session and put it in force."""
     st.session_state[OWN] = {**st.session_state.get(OWN, {}), material.name: material}
-    state.change(force=model(material, axial=axial), from_editor=from_editor)
+    _use(material, from_editor)
 
 
 def coefficient_frame(material: Material) -> pd.DataFrame:
     """One row a coefficient in the units of the trade; empty where the source does not give it."""
-    names = MECHANISTIC if material.kind == "mechanistic" else KIENZLE
-    values = [getattr(material, name) for name in names]
-    units = [COEFFICIENT_UNITS[name] for name in names]
+    said = [quantities(Material)[name] for name in material.coefficients]
+    values = [getattr(material, q.name) for q in said]
     return pd.DataFrame(
         {
-            "coefficient": list(names),
+            "coefficient": [q.name for q in said],
             "value": [
-                None if v is None else float(f"{from_si(v, u):.10g}") for v, u in zip(values, units, strict=True)
+                None if v is None else float(f"{from_si(v, q.unit):.10g}") for v, q in zip(values, said, strict=True)
             ],
-            "unit": [unit_label(u) for u in units],
+            "unit": [unit_label(q.unit) for q in said],
         }
     )
 
@@ -172,7 +174,7 @@ def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
     values: dict[str, float | None] = {}
     for name, value in zip(frame["coefficient"], frame["value"], strict=True):
         empty = value is None or value is pd.NA or (isinstance(value, float) and np.isnan(value))
-        values[name] = None if empty else to_si(float(value), COEFFICIENT_UNITS[name])
+        values[name] = None if empty else to_si(float(value), quantities(Material)[name].unit)
     if material.provenance.kind == "user":
         return material.replace(**values)
     return material.replace(

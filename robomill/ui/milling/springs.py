@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import html
-from dataclasses import replace as changed
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,176 +12,129 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.gravity import LinkMasses
-from robomill.compliance.springs import JointBending, SpindleSpring, Spring, ToolBending
+from robomill.compliance.spring import TYPED, Spring
+from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
-from robomill.io.springs import BENDING
-from robomill.provenance import Provenance
+from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
 from robomill.ui import boxes, parts, state
 from robomill.ui.editors import table_editor
+from robomill.ui.milling.numbers import box, boxes_of
 from robomill.units import format_si, from_si, to_si, unit_label
 
-SPINDLE = SpindleSpring(
-    to_si(0.05, "um/N"),
-    to_si(0.02, "um/N"),
-    provenance=Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder"),
-)
-BENDING_ON, WEIGHT_ON = "milling.bending", "milling.weight"
-TYPED = Provenance("user", "entered in the app")
-Kind = TypeVar("Kind", bound=Spring)
+WEIGHT_ON = "milling.weight"
+SWITCHED = "milling.springs."  # + kind: a table of joints is open though nothing in it bends yet
 
 
 def title() -> str:
     """What is switched on, in a few words."""
     setup = state.project().setup
-    words = [spring.name for spring in setup.springs if not isinstance(spring, JointBending)]
-    bent = sum(isinstance(spring, JointBending) for spring in setup.springs)
-    words += [f"bending of {bent} joint{'s' if bent > 1 else ''}"] if bent else []
+    words = []
+    for kind in SPRINGS.values():
+        found = _find(kind)
+        if kind.each_joint and found:
+            words.append(f"{kind.title.lower()} ({len(found)})")
+        words += [spring.name for spring in found if not kind.each_joint]
     words += ["weight"] if setup.links is not None else []
     return ", ".join(words) or "joints only"
 
 
 def inputs_panel() -> None:
-    """The four switches with their numbers."""
-    _tool()
-    _spindle()
-    _bending()
+    """A switch a kind of spring with its numbers, and the weight of the arm."""
+    for kind in SPRINGS.values():
+        if kind.each_joint:
+            _each_joint(kind)
+        else:
+            _one(kind)
     _weight()
 
 
-def _find(kind: type[Kind]) -> Kind | None:
-    return next((s for s in state.project().setup.springs if isinstance(s, kind)), None)
+def _find(kind: type[Spring]) -> list[Any]:
+    return [spring for spring in state.project().setup.springs if spring.kind == kind.kind]
 
 
 def _put(kind: type[Spring], *new: Spring, from_editor: bool = False) -> None:
     """Replace every spring of ``kind`` by ``new``."""
-    kept = tuple(s for s in state.project().setup.springs if not isinstance(s, kind))
+    kept = tuple(spring for spring in state.project().setup.springs if spring.kind != kind.kind)
     state.change(springs=(*kept, *new), from_editor=from_editor)
 
 
-def _tool() -> None:
-    cutter, unit = state.project().setup.cutter, state.project().view.length
-    spring = _find(ToolBending)
-    length = cutter.stick_out or 4.0 * cutter.diameter
+def _one(kind: type[Spring]) -> None:
+    """The switch of a spring at the tool, its numbers, and what it says of itself."""
+    cutter, key = state.project().setup.cutter, f"springs.{kind.kind}"
+    found = _find(kind)
     boxes.switch(
-        "Tool bending",
-        "springs.tool",
-        spring is not None,
-        lambda on: _put(ToolBending, *([ToolBending(cutter.diameter, length)] if on else [])),
-        hint="The cutter as a cantilever of solid carbide.",
+        kind.title, key, bool(found), lambda on: _put(kind, *([kind.first(cutter)] if on else [])), hint=kind.hint
     )
-    if spring is None:
+    if not found:
         return
-    left, right = st.columns(2)
-    with left:
-        boxes.number_box(
-            "Stick-out",
-            f"springs.tool.length:{unit}",
-            spring.stick_out,
-            unit,
-            lambda v: _put(ToolBending, changed(spring, stick_out=float(v or 0.0))),
-            step=1.0 if unit == "mm" else 0.05,
-            digits=1 if unit == "mm" else 3,
-        )
-    with right:
-        boxes.number_box(
-            "Bending Ø / Ø",
-            "springs.tool.core",
-            spring.core,
-            "1",
-            lambda v: _put(ToolBending, changed(spring, core=float(v or 0.0))),
-            step=0.05,
-            digits=2,
-            hint="Flutes weaken the shank: its bending diameter over the cutter's.",
-        )
-    if spring.diameter != cutter.diameter:
+    spring: Spring = found[0]
+    units = quantities(kind)
+    boxes_of(spring, key, lambda name, v: _put(kind, spring.edited(**{name: v})), lambda name: units[name].unit)
+    fitted = spring.fitted(cutter)
+    if fitted != spring:
         st.button(
-            f"It bends as {format_si(spring.diameter, unit, 1)}: take the cutter's diameter",
-            key="springs.tool.same",
-            on_click=lambda: _put(ToolBending, changed(spring, diameter=cutter.diameter)),
+            f"It bends otherwise than the {cutter.title}: take the cutter's numbers",
+            key=f"{key}.same",
+            on_click=lambda: _put(kind, fitted),
             type="tertiary",
             icon=":material/sync:",
         )
-    parts.note(f"{parts.badge(spring.provenance.kind)} {format_si(spring.lateral, 'um/N', 4)} across the axis")
+    parts.note(f"{parts.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
 
 
-def _spindle() -> None:
-    spring = _find(SpindleSpring)
-    boxes.switch(
-        "Spindle and holder",
-        "springs.spindle",
-        spring is not None,
-        lambda on: _put(SpindleSpring, *([SPINDLE] if on else [])),
-    )
-    if spring is None:
-        return
-    for column, (label, field) in zip(st.columns(2), (("Across", "lateral"), ("Along", "axial")), strict=True):
-        with column:
-            boxes.number_box(
-                label,
-                f"springs.spindle.{field}",
-                getattr(spring, field),
-                "um/N",
-                _writer(spring, field),
-                step=0.01,
-                digits=4,
-            )
-    parts.note(f"{parts.badge(spring.provenance.kind)} {html.escape(spring.provenance.source)}")
-
-
-def _writer(spring: SpindleSpring, field: str) -> Any:
-    def write(value: float | None) -> None:
-        new: dict[str, Any] = {field: float(value or 0.0)}
-        _put(SpindleSpring, changed(spring, provenance=TYPED, **new))
-
-    return write
-
-
-def _bending() -> None:
-    n = state.project().setup.robot.n
-    springs = {s.joint: s for s in state.project().setup.springs if isinstance(s, JointBending)}
-    boxes.switch(
-        "Bending of joints",
-        "springs.bending",
-        bool(springs) or st.session_state.get(BENDING_ON, False),
-        _switch_bending,
-        hint="Tilting of a joint's bearing and link about the x and y axes of its frame.",
-    )
-    if not (springs or st.session_state.get(BENDING_ON)):
-        return
-    table_editor(
-        "springs.bending",
-        lambda: bending_frame(n, springs),
-        lambda frame: _put(JointBending, *bending_from(frame), from_editor=True),
-        locked=("joint",),
-        columns={c: st.column_config.NumberColumn(c, format="%.4g", min_value=0.0) for c in ("about x", "about y")},
-    )
-    parts.note(f"{parts.badge('user')} {unit_label(BENDING)}; 0 is rigid, which is what the paper assumes.")
-
-
-def _switch_bending(on: bool) -> None:
-    st.session_state[BENDING_ON] = on
+def _each_joint(kind: type[Spring]) -> None:
+    """The switch of a spring that each joint can have, and their table."""
+    n, key = state.project().setup.robot.n, f"springs.{kind.kind}"
+    springs = {spring.joint: spring for spring in _find(kind)}
+    on = bool(springs) or st.session_state.get(SWITCHED + kind.kind, False)
+    boxes.switch(kind.title, key, on, lambda on: _switch_table(kind, on), hint=kind.hint)
     if not on:
-        _put(JointBending)
+        return
+    columns = joint_columns(kind)
+    table_editor(
+        key,
+        lambda: joint_frame(kind, n, springs),
+        lambda frame: _put(kind, *joint_springs(kind, frame), from_editor=True),
+        locked=("joint",),
+        columns={q.label: st.column_config.NumberColumn(q.label, format="%.4g") for q in columns},
+    )
+    units = ", ".join(dict.fromkeys(unit_label(q.unit) for q in columns))
+    parts.note(f"{parts.badge('user')} {units}; 0 is rigid, which is what the paper assumes.")
+
+
+def _switch_table(kind: type[Spring], on: bool) -> None:
+    st.session_state[SWITCHED + kind.kind] = on
+    if not on:
+        _put(kind)
     state.store().revision += 1
 
 
-def bending_frame(n: int, springs: dict[int, JointBending]) -> pd.DataFrame:
-    """One row a joint: its bending compliances about x and y."""
-    rows = [springs.get(joint, JointBending(joint)) for joint in range(1, n + 1)]
-    values = {f"about {a}": [from_si(getattr(s, f"C_{a}"), BENDING) for s in rows] for a in "xy"}
+def joint_columns(kind: type[Spring]) -> list[Quantity]:
+    """The declared numbers of a spring that each joint can have, beside the joint itself."""
+    return [q for q in quantities(kind).values() if q.name != "joint"]
+
+
+def joint_frame(kind: type[Any], n: int, springs: Mapping[int, Any]) -> pd.DataFrame:
+    """One row a joint with its numbers; joints without the spring as it starts."""
+    rows = [springs.get(joint, kind(joint)) for joint in range(1, n + 1)]
+    values = {q.label: [from_si(getattr(s, q.name), q.unit) for s in rows] for q in joint_columns(kind)}
     return pd.DataFrame({"joint": [str(s.joint) for s in rows], **values})
 
 
-def bending_from(frame: pd.DataFrame) -> list[JointBending]:
-    """The springs of a table; joints that do not bend are left out."""
+def joint_springs(kind: type[Any], frame: pd.DataFrame) -> list[Any]:
+    """The springs of a table; joints whose numbers are all as at the start are left out."""
     found = []
-    for joint, about_x, about_y in zip(frame["joint"], frame["about x"], frame["about y"], strict=True):
-        C_x, C_y = (to_si(0.0 if pd.isna(v) else float(v), BENDING) for v in (about_x, about_y))
-        spring = JointBending(int(joint), C_x, C_y, provenance=TYPED)
-        if C_x > 0 or C_y > 0:
+    for i, joint in enumerate(frame["joint"]):
+        values = {q.name: to_si(_cell(frame[q.label].iloc[i]), q.unit) for q in joint_columns(kind)}
+        spring = kind(int(joint), **values, provenance=TYPED)
+        if spring != kind(int(joint), provenance=TYPED):
             found.append(spring)
     return found
+
+
+def _cell(value: Any) -> float:
+    return 0.0 if pd.isna(value) else float(value)
 
 
 def _weight() -> None:
@@ -207,13 +160,7 @@ def _weight() -> None:
     if links is None:
         parts.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
-    boxes.switch(
-        "Add the sag to the deviation",
-        "springs.add_sag",
-        setup.add_sag,
-        lambda on: state.change(add_sag=on),
-        hint="Off: shown only. A part is zeroed with the arm already sagged.",
-    )
+    box("add_sag")
 
 
 WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")

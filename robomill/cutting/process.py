@@ -2,54 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.conditions import CutConditions, cut_warnings
+from robomill.cutting.conditions import CutConditions
 from robomill.cutting.edge import force_over_pitch, mean_force
-from robomill.cutting.force import PLUNGE, Frame
+from robomill.cutting.force import PLUNGE, ForceModel, ForceSpread
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
-
-
-@dataclass(frozen=True, eq=False)
-class ForceSpread:
-    """Lowest and highest of each component, each (m, 3) N: over a revolution, or over alternative coefficients.
-
-    ``at_peak`` (m, 3) is the force vector at the instant (or for the coefficients) at which it is largest.
-    """
-
-    low: FloatArray
-    high: FloatArray
-    at_peak: FloatArray
+from robomill.quantities import switch
 
 
 @dataclass(frozen=True)
-class ProcessForce:
-    """Mean force over a revolution from a cutter and a material row; parent of the two models below.
+class ProcessForce(ForceModel):
+    """Mean force over a revolution from a cutter and a material row; parent of the models that differ in their rows.
 
-    ``alternatives`` are other rows of the same alloy; ``band`` is the range they span together with ``material``.
+    ``alternatives`` are other rows of the same alloy; ``by_material`` gives the force of each.
     ``axial`` False leaves out the axial component, to name what the helix adds.
     """
 
     cutter: Cutter
     material: Material
     alternatives: tuple[Material, ...] = ()
-    axial: bool = True
+    axial: bool = switch(
+        "Axial pull of the helix",
+        default=True,
+        hint="Off names what the feed force and the feed-normal force do alone.",
+    )
 
-    kind: ClassVar[str] = ""
-    frame: ClassVar[Frame] = "path"
+    follows_cut: ClassVar[bool] = True
+    ends_with_material: ClassVar[bool] = False
+    stated: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         for row in (self.material, *self.alternatives):
-            if row.kind != self.kind:
+            if row.kind != self.takes:
                 raise CuttingError(
-                    f"Material {row.name!r} has {row.kind} coefficients; a {self.kind} force needs {self.kind} ones.",
+                    f"Material {row.name!r} has {row.kind} coefficients; a {self.kind} force needs {self.takes} ones.",
                     where="material",
                 )
 
@@ -65,9 +60,14 @@ class ProcessForce:
         """Unknown coefficients taken as 0."""
         return self.material.notes
 
-    def warnings(self, conditions: CutConditions) -> tuple[str, ...]:
-        """Depth beyond the flutes, plunging: see ``cut_warnings``."""
-        return cut_warnings(self.cutter, conditions)
+    @property
+    def numbers(self) -> str:
+        """The material, and whether the axial force is left out."""
+        return self.material.title + ("" if self.axial else ", axial force left out")
+
+    def cut_by(self, cutter: Cutter) -> Self:
+        """The same material cut by another cutter."""
+        return self if cutter == self.cutter else replace(self, cutter=cutter)
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air, on rapids and in a plunge.
@@ -76,12 +76,6 @@ class ProcessForce:
         Raises CuttingError where the tool cuts with its spindle stopped or without feed.
         """
         return self._mean(self.material, conditions)
-
-    def band(self, conditions: CutConditions) -> ForceSpread:
-        """Range of the mean force over ``material`` and ``alternatives``."""
-        rows = np.stack([force for _, force in self.by_material(conditions)])
-        largest = np.argmax(np.linalg.norm(rows, axis=-1), axis=0)
-        return ForceSpread(rows.min(0), rows.max(0), rows[largest, np.arange(rows.shape[1])])
 
     def by_material(self, conditions: CutConditions) -> list[tuple[Material, FloatArray]]:
         """Mean force (m, 3) N for ``material`` and each of ``alternatives``."""
@@ -126,17 +120,3 @@ class ProcessForce:
         result[index] = mean_force(material.terms, self.cutter, *load.T)
         result[:, 2] *= self.axial
         return result
-
-
-@dataclass(frozen=True)
-class MechanisticForce(ProcessForce):
-    """Chip and edge coefficients (Ktc..Kae), closed form of the mean (Altintas, Manufacturing Automation)."""
-
-    kind: ClassVar[str] = "mechanistic"
-
-
-@dataclass(frozen=True)
-class KienzleForce(ProcessForce):
-    """Kienzle's kc = kc1.1 (h / 1 mm)^(-mc), its mean over the arc as incomplete beta integrals."""
-
-    kind: ClassVar[str] = "kienzle"

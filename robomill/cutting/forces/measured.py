@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import Frame
+from robomill.cutting.force import ForceModel, Frame
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
+from robomill.quantities import quantity
 from robomill.units import format_si
 
 Axis = Literal["time", "path"]
+AXIS_UNITS: dict[Axis, str] = {"time": "s", "path": "mm"}
 #: Cut-off of the paper's dynamometer filter, Hz (its milling test, section 5).
 PAPER_CUTOFF = 50.0
 #: Order of the Butterworth filter; run forwards and backwards it has twice that and no phase.
@@ -83,25 +85,40 @@ class ForceRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredForce:
+class MeasuredForce(ForceModel):
     """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the path.
 
     ``cutoff`` (Hz, None for no filter) applies in time; a path record is filtered at cutoff / feed, with the median
     feed of the cut.
     """
 
-    record: ForceRecord
-    cutoff: float | None = PAPER_CUTOFF
-    start: float = 0.0
+    kind: ClassVar[str] = "measured"
+    title: ClassVar[str] = "Measured, from a CSV file"
+    rank: ClassVar[int] = 5
+    ends_with_material: ClassVar[bool] = False
+    stated: ClassVar[bool] = False
 
-    def __post_init__(self) -> None:
-        if self.cutoff is not None and not (np.isfinite(self.cutoff) and self.cutoff > 0.0):
-            raise CuttingError(
-                f"{self.record.source}: cut-off {self.cutoff:g} Hz; it must be greater than 0, or left out.",
-                where="cutoff",
-            )
-        if not np.isfinite(self.start):
-            raise CuttingError(f"{self.record.source}: the start {self.start} is not a number.", where="start")
+    record: ForceRecord
+    cutoff: float | None = quantity(
+        "Low-pass cut-off",
+        "Hz",
+        default=PAPER_CUTOFF,
+        optional=True,
+        above=0.0,
+        written_none=0.0,
+        step=10.0,
+        hint="Without phase shift; empty: no filter.",
+    )
+    start: float = quantity("Path starts at", default=0.0, digits=3)
+
+    @property
+    def numbers(self) -> str:
+        """The record and its filter."""
+        return self.provenance.source
+
+    def unit_of(self, name: str) -> str:
+        """The start has the unit of the record's axis."""
+        return AXIS_UNITS[self.record.axis] if name == "start" else super().unit_of(name)
 
     @property
     def frame(self) -> Frame:
@@ -131,7 +148,7 @@ class MeasuredForce:
             return np.zeros((len(conditions), 3))
         slack = 1.0 / record.rate
         if cut.min() < record.x[0] - slack or cut.max() > record.x[-1] + slack:
-            unit = "s" if record.axis == "time" else "mm"
+            unit = AXIS_UNITS[record.axis]
             low, high, first, last = (
                 format_si(float(v), unit, 3) for v in (cut.min(), cut.max(), record.x[0], record.x[-1])
             )

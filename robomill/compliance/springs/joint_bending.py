@@ -1,0 +1,56 @@
+"""Tilting of a joint's bearing and link."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.compliance.spring import ASSUMED, Spring, checked_frames
+from robomill.errors import RobotError
+from robomill.provenance import Provenance
+from robomill.quantities import quantity, whole
+
+UNIT = "1e-7 rad/(N m)"
+
+
+@dataclass(frozen=True)
+class JointBending(Spring):
+    """Tilting of joint ``joint`` (1-based among the free joints) about the x and y axes of its frame, rad/(N m).
+
+    The frame is the one before the joint turns, so the axes stay with the link that carries the bearing.
+    The joint's own z axis is the robot's C_theta.
+    """
+
+    kind: ClassVar[str] = "joint_bending"
+    title: ClassVar[str] = "Bending of joints"
+    hint: ClassVar[str | None] = "Tilting of a joint's bearing and link about the x and y axes of its frame."
+    rank: ClassVar[int] = 3
+    each_joint: ClassVar[bool] = True
+
+    joint: int = whole("Joint", least=1)
+    C_x: float = quantity("about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm")
+    C_y: float = quantity("about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm")
+    provenance: Provenance = ASSUMED
+
+    @property
+    def name(self) -> str:
+        """E.g. ``"joint 2 bending"``."""
+        return f"joint {self.joint} bending"
+
+    def contribution(self, frames: ArrayLike) -> FloatArray:
+        """C (..., 3, 3) m/N in {M}: the sum over both axes of C_axis J J^T with J = axis x (tip - origin)."""
+        frames = checked_frames(frames)
+        n = frames.shape[-3] - 1
+        if self.joint > n:
+            raise RobotError(f"Joint bending: there is no joint {self.joint}; the robot has {n}.", where="joint")
+        frame = frames[..., self.joint - 1, :, :]
+        reach = frames[..., -1, :3, 3] - frame[..., :3, 3]
+        C = np.zeros((*frames.shape[:-3], 3, 3))
+        for axis, compliance in ((0, self.C_x), (1, self.C_y)):
+            column = np.cross(frame[..., :3, axis], reach)
+            C += compliance * column[..., :, None] * column[..., None, :]
+        return C

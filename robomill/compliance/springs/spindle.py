@@ -1,0 +1,40 @@
+"""Spindle, holder and their bearings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.compliance.spring import ASSUMED, Spring, about_tool
+from robomill.cutting.tool import Cutter
+from robomill.provenance import Provenance
+from robomill.quantities import quantity
+from robomill.units import to_si
+
+TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder")
+
+
+@dataclass(frozen=True)
+class SpindleSpring(Spring):
+    """Spindle, holder and bearings as springs at the tip: ``lateral`` and ``axial`` compliance, m/N; 0 is rigid."""
+
+    kind: ClassVar[str] = "spindle"
+    title: ClassVar[str] = "Spindle and holder"
+    rank: ClassVar[int] = 2
+
+    lateral: float = quantity("Across", "um/N", least=0.0, step=0.01, digits=4)
+    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, step=0.01, digits=4)
+    name: str = "spindle and holder"
+    provenance: Provenance = ASSUMED
+
+    @classmethod
+    def first(cls, cutter: Cutter) -> Self:
+        """A typical spindle."""
+        return cls(to_si(0.05, "um/N"), to_si(0.02, "um/N"), provenance=TYPICAL)
+
+    def contribution(self, frames: ArrayLike) -> FloatArray:
+        """C (..., 3, 3) m/N in {M}."""
+        return about_tool(frames, self.lateral, self.axial)

@@ -1,0 +1,84 @@
+"""Bending of the cutter."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.compliance.spring import Spring, about_tool
+from robomill.cutting.tool import Cutter
+from robomill.provenance import Provenance
+from robomill.quantities import quantity
+from robomill.units import format_si, to_si
+
+#: Young's modulus of solid carbide, Pa.
+E_CARBIDE = to_si(600e3, "N/mm2")
+#: Bending diameter of a fluted cutter over its outer diameter.
+FLUTED_CORE = 0.8
+CARBIDE = Provenance("assumed", "cantilever of solid carbide, E = 600 GPa, bending diameter 0.8 of the cutter's")
+
+
+@dataclass(frozen=True)
+class ToolBending(Spring):
+    """The cutter as a cantilever: delta = F L^3 / (3 E I) across its axis, rigid along it.
+
+    diameter m, stick_out L m, E Pa; the bending diameter is ``core`` times the diameter (flutes weaken it).
+    """
+
+    kind: ClassVar[str] = "tool_bending"
+    title: ClassVar[str] = "Tool bending"
+    hint: ClassVar[str | None] = "The cutter as a cantilever of solid carbide."
+    rank: ClassVar[int] = 1
+
+    diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False)
+    stick_out: float = quantity("Stick-out", "mm", above=0.0, step=1.0, digits=1)
+    E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, above=0.0, step=10e3, digits=0)
+    core: float = quantity(
+        "Bending Ø / Ø",
+        default=FLUTED_CORE,
+        above=0.0,
+        most=1.0,
+        step=0.05,
+        digits=2,
+        hint="Flutes weaken the shank: its bending diameter over the cutter's.",
+    )
+    name: str = "tool bending"
+    provenance: Provenance = CARBIDE
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.provenance == CARBIDE and (self.E, self.core) != (E_CARBIDE, FLUTED_CORE):
+            words = f"cantilever, E = {self.E:.4g} N/m^2, bending diameter {self.core:g} of the cutter's"
+            object.__setattr__(self, "provenance", Provenance("user", words))
+
+    @classmethod
+    def first(cls, cutter: Cutter) -> Self:
+        """The cutter as it sticks out; four diameters where that is not given."""
+        return cls(cutter.diameter, cutter.stick_out or 4.0 * cutter.diameter)
+
+    @property
+    def lateral(self) -> float:
+        """Compliance across the axis, m/N: L^3 / (3 E I)."""
+        second_moment = math.pi / 64.0 * (self.core * self.diameter) ** 4
+        return self.stick_out**3 / (3.0 * self.E * second_moment)
+
+    @property
+    def facts(self) -> str:
+        """Its compliance."""
+        return f"Ø {format_si(self.diameter, 'mm', 1)}: {format_si(self.lateral, 'um/N', 4)} across the axis"
+
+    def edited(self, **changes: Any) -> Self:
+        """A copy with numbers changed; its source says by itself what differs from solid carbide."""
+        return replace(self, **changes)
+
+    def fitted(self, cutter: Cutter) -> Self:
+        """With the diameter of ``cutter``."""
+        return replace(self, diameter=cutter.diameter)
+
+    def contribution(self, frames: ArrayLike) -> FloatArray:
+        """C (..., 3, 3) m/N in {M}."""
+        return about_tool(frames, self.lateral, 0.0)

@@ -1,0 +1,45 @@
+"""A force that turns with the path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import BY_HAND, PLUNGE, ForceModel, MeanForce
+from robomill.provenance import Provenance
+from robomill.quantities import quantity
+
+
+@dataclass(frozen=True)
+class PathForce(ForceModel):
+    """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N."""
+
+    kind: ClassVar[str] = "path"
+    title: ClassVar[str] = "Follows the path"
+    hint: ClassVar[str | None] = "Feed-normal is to the left of the feed; axial is positive out of the part."
+    rank: ClassVar[int] = 1
+
+    feed: float = quantity("Feed", "N", default=0.0, step=10.0, digits=1)
+    feed_normal: float = quantity("Feed-normal", "N", default=0.0, step=10.0, digits=1)
+    axial: float = quantity("Axial", "N", default=0.0, step=10.0, digits=1)
+    provenance: Provenance = BY_HAND
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def first(cls, mean: MeanForce) -> dict[str, Any]:
+        """The components that pushed so far."""
+        return dict(zip(("feed", "feed_normal", "axial"), map(float, mean.along_path), strict=True))
+
+    @property
+    def _vector(self) -> tuple[float, float, float]:
+        return (self.feed, self.feed_normal, self.axial)
+
+    def components(self, conditions: CutConditions) -> FloatArray:
+        """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""
+        force = np.tile(self._vector, (len(conditions), 1))
+        force[conditions.across <= PLUNGE, :2] = 0.0
+        return force

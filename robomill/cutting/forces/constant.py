@@ -1,0 +1,41 @@
+"""A force that stays as it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import BY_HAND, ForceModel, Frame, MeanForce
+from robomill.provenance import Provenance
+from robomill.quantities import quantity
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantForce(ForceModel):
+    """The paper's static force: one vector (3,) N in {M} wherever the tool cuts."""
+
+    kind: ClassVar[str] = "constant"
+    title: ClassVar[str] = "Fixed in {M} (the paper's)"
+    rank: ClassVar[int] = 2
+
+    vector_M: FloatArray = quantity("F", "N", shape=(3,), axes="XYZ", step=10.0, digits=1, key="vector_N")
+    provenance: Provenance = BY_HAND
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def first(cls, mean: MeanForce) -> dict[str, Any]:
+        """The vector that pushed so far."""
+        return {"vector_M": mean.in_M}
+
+    @property
+    def frame(self) -> Frame:
+        """The robot's."""
+        return "M"
+
+    def components(self, conditions: CutConditions) -> FloatArray:
+        """The vector at every step, (m, 3) N in {M}."""
+        return np.tile(self.vector_M, (len(conditions), 1))
