@@ -31,6 +31,8 @@ LONG = {
 }
 # Modules that import each other inside functions, to be untied.
 CIRCLES = {frozenset({"robomill.ui.files", "robomill.ui.state"})}
+# What keeps a state while it runs: the session, and whoever reads a program line by line.
+RUNNING = ("robomill/ui/", "robomill/toolpath/gcode/", "robomill/toolpath/apt.py")
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
 UNUSED = {
     "*Force": "force models are found in their folder",
@@ -118,6 +120,19 @@ def test_functions_with_many_parameters_become_fewer() -> None:
             if len([name for name in names if name not in ("self", "cls")]) > MOST_PARAMETERS:
                 found.append(f"{path.relative_to(ROOT)}:{f.lineno} {f.name}")
     assert len(found) <= MANY_PARAMETERS, "group what belongs together in a frozen dataclass:\n" + "\n".join(found)
+
+
+def test_values_are_frozen() -> None:
+    """A dataclass is a value: a change is a replacement, so that digests and caches may rest on it."""
+    open_ones = {
+        f"{path.relative_to(ROOT)} {node.name}"
+        for path in PRODUCT
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ClassDef)
+        for mark in node.decorator_list
+        if "dataclass" in ast.unparse(mark) and "frozen=True" not in ast.unparse(mark)
+    }
+    assert not {name for name in open_ones if not name.startswith(RUNNING)}
 
 
 def test_lines_are_as_the_formatter_leaves_them() -> None:

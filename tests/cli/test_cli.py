@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -216,3 +218,95 @@ def test_a_letter_o_for_a_zero_is_guessed(capsys, tmp_path: Path) -> None:
     assert code == 2
     assert "letter O among its digits; write the digit 0" in err
     assert "ine 2" in err
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ((), ["--server.address=127.0.0.1", "--browser.gatherUsageStats=false"]),
+        (
+            ("--server.port", "9"),
+            ["--server.address=127.0.0.1", "--browser.gatherUsageStats=false", "--server.port", "9"],
+        ),
+        (("--server.address=0.0.0.0",), ["--browser.gatherUsageStats=false", "--server.address=0.0.0.0"]),
+    ],
+)
+def test_without_a_verb_the_app_is_served_on_this_machine_only(monkeypatch, words, expected) -> None:
+    called = []
+    monkeypatch.setattr(subprocess, "call", lambda command: called.append(command) or 7)
+    assert main(list(words)) == 7
+    (command,) = called
+    assert command[:4] == [sys.executable, "-m", "streamlit", "run"]
+    assert Path(command[4]).name == "app.py"
+    assert Path(command[4]).is_file()
+    assert command[5:] == expected
+
+
+def test_an_interrupted_app_exits_with_130(monkeypatch) -> None:
+    def interrupted(command: list[str]) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(subprocess, "call", interrupted)
+    assert main([]) == 130
+
+
+def test_version_and_help_are_no_apps(capsys) -> None:
+    for word, said in (("--version", "robomill 0."), ("--help", "simulate")):
+        with pytest.raises(SystemExit) as left:
+            main([word])
+        assert left.value.code == 0
+        assert said in capsys.readouterr().out
+
+
+def test_robots_as_lines(capsys) -> None:
+    code, out, _ = run(capsys, "robots")
+    assert code == 0
+    assert "slavkovic_5r       5 joints  Five-axis machining robot (Slavkovic et al. 2013)" in out.splitlines()
+
+
+def test_another_compliance_set_gives_its_own_numbers(capsys) -> None:
+    words = ("pose", "slavkovic_5r", "--theta-deg", "0,0,0,0,0")
+    soft = record(capsys, *words, "--compliance-set", "table_3")
+    stiff = record(capsys, *words)
+    assert (stiff["compliance_set"], soft["compliance_set"]) == ("table_2", "table_3")
+    share = np.array(soft["joint_share_um_per_N"]) / np.array(stiff["joint_share_um_per_N"])
+    ratio = np.nanmax(share, axis=(1, 2))  # each joint's share grows as its compliance: Tables 2 and 3
+    np.testing.assert_allclose(ratio, np.array([9.03, 11.17, 14.74, 27.65, 97.58]) / [7.14, 10.12, 12.30, 17.32, 91.35])
+    code, _, err = run(capsys, *words, "--compliance-set", "table_9")
+    assert code == 2
+    assert "it has: table_2, table_3" in err
+
+
+def test_sliding_joints_are_in_millimetres(capsys, tmp_path: Path) -> None:
+    turn = "[[joint]]\nalpha_deg = 0\na_mm = 0\nd_mm = 0\ntheta_offset_deg = 0\n"
+    text = f'{turn}limits_deg = [-90, 90]\n{turn}type = "prismatic"\nlimits_mm = [0, 500]\n'
+    file = tmp_path / "slide.toml"
+    file.write_text(text + "[compliance]\nC_theta_SI = [1e-6, 1e-8]\n")
+    r = record(capsys, "pose", file, "--theta-deg", "30,250")
+    np.testing.assert_allclose(np.array(r["T_MT"])[:3, 3], [0, 0, 0.25], atol=1e-15)
+    np.testing.assert_allclose(np.array(r["T_MT"])[0, :2], [np.sqrt(0.75), -0.5])
+    np.testing.assert_allclose(r["theta_deg"], [30, 250])
+    np.testing.assert_allclose(np.array(r["C_um_per_N"])[2, 2], 1e-8 * 1e6)
+    assert r["det_J"] is None
+
+
+def test_moves_are_written_one_a_line(capsys, tmp_path: Path) -> None:
+    out = tmp_path / "moves.jsonl"
+    record(capsys, "gcode", FLUTE / "path.nc", "--moves", out)
+    assert all(json.loads(line) for line in out.read_text().splitlines())
+
+
+def test_a_tilted_map(capsys) -> None:
+    words = ("map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
+    tilted = record(capsys, *words, "--a-deg", "-10", "--b-deg", "5")
+    assert (tilted["a_deg"], tilted["b_deg"]) == (pytest.approx(-10), pytest.approx(5))
+    answer = record(capsys, "ik", "slavkovic_5r", "--pose", "0,-1300,0,-10,5")
+    pose = record(capsys, "pose", "slavkovic_5r", "--theta-deg", ",".join(map(repr, answer["theta_deg"])))
+    assert tilted["quantities"][0]["values"][0][0][0] == pytest.approx(pose["C_um_per_N"][1][1], rel=1e-9)
+
+
+def test_bending_joints_have_to_be_numbers(capsys) -> None:
+    tests = samples_dir() / "load_tests" / "nine_points.csv"
+    code, _, err = run(capsys, "identify", "slavkovic_5r", tests, "--bending-joints", "")
+    assert code == 2
+    assert "--bending-joints: expected one or more numbers" in err
