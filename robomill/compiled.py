@@ -72,6 +72,7 @@ InBool1 = Annotated[BoolArray, Axes("bool_", 1)]
 Out1 = Annotated[FloatArray, Axes("float64", 1, written=True)]
 Out2 = Annotated[FloatArray, Axes("float64", 2, written=True)]
 Out3 = Annotated[FloatArray, Axes("float64", 3, written=True)]
+Out4 = Annotated[FloatArray, Axes("float64", 4, written=True)]
 OutInt1 = Annotated[IntArray, Axes("int64", 1, written=True)]
 OutBool1 = Annotated[BoolArray, Axes("bool_", 1, written=True)]
 OutBool2 = Annotated[BoolArray, Axes("bool_", 2, written=True)]
@@ -81,14 +82,15 @@ def part(function: F) -> F:
     """Mark a function that kernels call: compiled into each of them, for the types it is called with."""
     from numba import njit
 
-    return njit(forceinline=True, **OPTIONS)(function)  # type: ignore[no-any-return]
+    options: dict[str, Any] = {**OPTIONS, "forceinline": True, "_nrt": False}  # no counting of references to arrays
+    return njit(**options)(function)  # type: ignore[no-any-return]
 
 
 def kernel(function: F) -> F:
     """Mark an entry point: compiled here and now for the types of its annotations, or loaded from the cache on disk.
 
-    Annotations: float, int, bool, the aliases of this module (``In2``, ``Out3``, ...), tuples of these, and NamedTuples
-    whose fields are annotated so. An entry of the cache that cannot be read is removed and made again.
+    Annotations: float, complex, int, bool, the aliases of this module (``In2``, ``Out3``, ...), tuples of these, and
+    NamedTuples whose fields are annotated so. An entry of the cache that cannot be read is removed and made again.
     """
     from numba import config, njit
     from numba.core.errors import NumbaError
@@ -121,7 +123,13 @@ def _signature(function: Callable[..., Any]) -> Any:
 def _numba_type(hint: Any) -> Any:
     from numba import from_dtype, types
 
-    plain = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.void}
+    plain = {
+        float: types.float64,
+        complex: types.complex128,
+        int: types.int64,
+        bool: types.boolean,
+        type(None): types.void,
+    }
     if hint in plain:
         return plain[hint]
     if get_origin(hint) is Annotated:

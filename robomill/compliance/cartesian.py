@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.jacobian import geometric_jacobian, pose_jacobian_gram
+from robomill.kinematics.jacobian import geometric_jacobian, pose_and_jacobian
 from robomill.robot.model import Robot
 
 
@@ -30,7 +30,12 @@ def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
 
 def pose_jacobian_compliance(robot: Robot, theta: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
     """(T_MT (..., 4, 4), J (..., 6, n), C (..., 3, 3) m/N) in one pass over theta (..., n)."""
-    return pose_jacobian_gram(robot, theta, robot.C_theta)
+    from robomill.kinematics import kernels
+
+    T_MT, J = pose_and_jacobian(robot, theta)
+    C = np.empty((*J.shape[:-2], 3, 3))
+    kernels.compliance_of(J.reshape(-1, 6, robot.n), robot.C_theta, C.reshape(-1, 3, 3))
+    return T_MT, J, C
 
 
 def full_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:

@@ -1,93 +1,79 @@
-"""Which of the solutions to take: limits, nearness, continuity along a path, spin about the tool axis."""
+"""Which of the closed form's solutions to take: the nearest within limits, or those that join along a path."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
-from robomill.kinematics.result import LIMIT_SLACK, overshoot, wrap
+from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.kinematics.decoupled import LIMIT_SLACK, Answer, Decoupled, Rules
+from robomill.kinematics.forward import rows
+from robomill.kinematics.transforms import rotation_z, transform
 from robomill.robot.model import Robot
 
 # Order in which shoulder and elbow are tried: as at home, other elbow, other shoulder, both.
 ARM_ORDER = np.array([0, 0, 1, 1, 2, 2, 3, 3])
-ARM_WEIGHT = 1e6  # rad^2: far above any joint motion
 SPIN_STEPS = 24
-SPIN_HALVINGS = 7
-
-Solver = Callable[[FloatArray], tuple[FloatArray, BoolArray]]
 
 
-def choose(
-    robot: Robot, every: FloatArray, possible: BoolArray, goal: FloatArray, arm_first: bool
-) -> tuple[FloatArray, IntArray, FloatArray]:
-    """(theta (m, n), index (m,), cost (m,)): of the solutions every (m, 8, n) within limits, the nearest to ``goal``.
+def rules(robot: Robot, arm: Decoupled, wanted: BoolArray, arm_first: bool, free_spin: bool) -> Rules:
+    """Take of the ``wanted`` (8,) solutions within limits the one with the least sum of squared joint motions.
 
-    Nearness is the sum of squared joint motions. With ``arm_first`` the order of shoulder and elbow goes before it.
-    index -1 and infinite cost where none is within limits.
+    With ``arm_first`` the order of shoulder and elbow goes before it, with ``free_spin`` the turn about the tool axis
+    is the one with the least motion: searched in steps of 15 degrees, refined by halving the step to about 0.1
+    degrees; where the tool axis is axis 6, that stays as it is.
     """
-    turned, within = settle(robot, every, goal)
-    cost = ((turned - goal) ** 2).sum(axis=-1)
-    if arm_first:
-        cost = cost + ARM_WEIGHT * ARM_ORDER
-    cost = np.where(within & possible, cost, np.inf)
-    index = np.argmin(cost, axis=-1)
-    best = np.take_along_axis(turned, index[:, None, None], axis=1)[:, 0]
-    least = np.take_along_axis(cost, index[:, None], axis=1)[:, 0]
-    return best, np.where(np.isfinite(least), index, -1), least
+    held = free_spin and arm.spindle_on_last_axis
+    spins = SPIN_STEPS if free_spin and not held else 0
+    whole = robot.n == 6 and not free_spin
+    return Rules(robot.limits, frozen(wanted, bool), arm_first, spins, held, whole)
+
+
+def nearest(robot: Robot, arm: Decoupled, T_MT: FloatArray, goal: FloatArray, rules: Rules) -> Answer:
+    """Of the solutions of poses T_MT (m, 4, 4) the one to take, by ``rules``, nearest to ``goal`` (1 or m, n)."""
+    from robomill.kinematics import inverse_kernels
+
+    m = len(T_MT)
+    answer = Answer(np.empty((m, robot.n)), np.empty(m, dtype=np.int64), np.empty((m, 3)))
+    poses, goals = np.ascontiguousarray(T_MT), np.ascontiguousarray(goal)
+    inverse_kernels.nearest_of(poses, arm, robot.chain, rules, goals, answer)
+    return answer
+
+
+def every(robot: Robot, arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """(theta (m, 8, n), sound (m, 8)) of poses T_MT (m, 4, 4), without limits, in the order of ``branch_names``."""
+    from robomill.kinematics import inverse_kernels
+
+    theta, sound = np.empty((len(T_MT), 8, robot.n)), np.empty((len(T_MT), 8), dtype=bool)
+    inverse_kernels.every_of(np.ascontiguousarray(T_MT), arm, robot.chain, theta, sound)
+    return theta, sound
+
+
+def spun(T_MT: FloatArray, angle: float) -> FloatArray:
+    """Poses (..., 4, 4) turned about their own z axis by ``angle`` rad."""
+    return T_MT @ transform(rotation_z(angle), np.zeros(3))
+
+
+def turn(robot: Robot, theta: FloatArray, near: FloatArray) -> FloatArray:
+    """Angles (..., n) moved by whole turns: to the turn nearest ``near`` (n,) within limits, else nearest mid-range."""
+    from robomill.kinematics import inverse_kernels
+
+    result = np.empty(theta.shape)
+    inverse_kernels.turned_of(rows(theta), robot.limits, near, result.reshape(-1, robot.n))
+    return result
+
+
+def overshoot(robot: Robot, theta: FloatArray) -> FloatArray:
+    """How far each coordinate (..., n) is past its limits: negative below, positive above, 0 inside."""
+    low, high = robot.limits[:, 0], robot.limits[:, 1]
+    return np.maximum(theta - high, 0.0) + np.minimum(theta - low, 0.0)
 
 
 def settle(robot: Robot, theta: FloatArray, near: FloatArray) -> tuple[FloatArray, BoolArray]:
     """(theta (..., n), within (...,)): angles turned towards ``near`` and, within rounding, put inside the limits."""
-    turned = wrap(theta, robot.limits, near)
+    turned = turn(robot, theta, near)
     within: BoolArray = np.all(np.abs(overshoot(robot, turned)) <= LIMIT_SLACK, axis=-1)
     clipped = np.clip(turned, robot.limits[:, 0], robot.limits[:, 1])
     return np.where(np.expand_dims(within, -1), clipped, turned), within
-
-
-def choose_spin(
-    robot: Robot, solve: Solver, T_MT: FloatArray, goal: FloatArray, wanted: BoolArray, arm_first: bool
-) -> tuple[FloatArray, IntArray, FloatArray]:
-    """(theta (m, n), index (m,), spin (m,)): of all spins about the tool axis, the one with the least joint motion.
-
-    Searched in steps of 15 degrees, then refined by halving the step to about 0.1 degrees.
-    """
-    m = len(T_MT)
-    theta, index = np.zeros((m, robot.n)), np.full(m, -1)
-    cost, spin = np.full(m, np.inf), np.zeros(m)
-
-    def attempt(angle: FloatArray) -> None:
-        every, possible = solve(spun(T_MT, angle))
-        found, which, price = choose(robot, every, possible & wanted, goal, arm_first)
-        better = price < cost
-        theta[better], index[better], cost[better], spin[better] = (
-            found[better],
-            which[better],
-            price[better],
-            angle[better],
-        )
-
-    step = 2 * np.pi / SPIN_STEPS
-    for i in range(SPIN_STEPS):
-        attempt(np.full(m, i * step))
-    for _ in range(SPIN_HALVINGS):
-        step /= 2
-        centre = spin.copy()
-        attempt(centre + step)
-        attempt(centre - step)
-    return theta, index, spin
-
-
-def spun(T_MT: FloatArray, angle: FloatArray | float) -> FloatArray:
-    """Poses (m, 4, 4) turned about their own z axis by ``angle`` (m,) rad."""
-    c, s = np.cos(angle), np.sin(angle)
-    if np.ndim(c):
-        c, s = np.asarray(c)[:, None], np.asarray(s)[:, None]
-    result = np.array(T_MT)
-    result[..., 0] = c * T_MT[..., 0] + s * T_MT[..., 1]
-    result[..., 1] = c * T_MT[..., 1] - s * T_MT[..., 0]
-    return result
 
 
 Score = tuple[int, int, float]

@@ -5,80 +5,85 @@ parallel, axis 1 square to them, axes 4, 5 (and 6) through one point, axes 4 and
 elbow offsets are free. With five axes the tip must lie on the tool axis through the wrist centre, because only the tool
 axis is commanded.
 
-Every solution is found in the arm's own frame {S}: z along axis 1, y along axis 2, origin on axis 1 at the height of
-axis 2. A rotation about y by phi turns the complex number x - i z by exp(i phi), which makes shoulder and elbow two
-divisions.
+The solutions are found in ``inverse_kernels``, in the arm's own frame {S}: z along axis 1, y along axis 2, origin on
+axis 1 at the height of axis 2.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.arrays import FloatArray, frozen
+from robomill.compiled import In1, In2, InBool1, Out2, OutInt1
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
 
 SQUARE = 1e-9  # rad: how square or parallel axes must be
 CROSSING = 1e-9  # m: how close axes must pass to count as crossing
 ROUNDING = 1e-12  # how far below zero a square may come out and still be zero
-SIDES = np.array([1.0, -1.0])
+RESIDUAL = 1e-9  # m and rad: an answer further off than this is not an answer
+LIMIT_SLACK = 1e-10  # rad or m past a limit that is still rounding
 
 
-@dataclass(frozen=True, eq=False)
-class Decoupled:
-    """Constants of a decoupled arm. Lengths in m.
+class Decoupled(NamedTuple):
+    """Constants of a decoupled arm, as the kernels take them. Lengths in m.
 
     S (3, 3) rows are the axes of {S} in {M}, origin (3,) its origin; a_1 shoulder offset, h lateral offset; l_2, l_3
-    the two links as (re, im) of x - i z at theta = 0; W (3, 3) rows are the wrist's axes in {S} (y along axis 5, z
-    along axis 4); u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u,
-    its normal c_g (six axes), and the shift c_w from the wrist centre to the tip; g, gn (3,) the normal and u x g in
-    wrist axes; direction (n,) turns the angles about S's and W's axes into theta.
+    the two links as x - i z at theta = 0; W (3, 3) rows are the wrist's axes in {S} (y along axis 5, z along axis 4);
+    u (3,) the direction the wrist must place, in wrist axes at theta = 0; in {T}: that direction c_u, its normal c_g
+    (six axes), and the shift c_w from the wrist centre to the tip; g, gn (3,) the normal and u x g in wrist axes;
+    direction (n,) turns the angles about S's and W's axes into theta.
     """
 
-    n: int
-    S: FloatArray
-    origin: FloatArray
+    S: In2
+    origin: In1
     a_1: float
     h: float
-    l_2: FloatArray
-    l_3: FloatArray
-    W: FloatArray
-    u: FloatArray
-    g: FloatArray
-    gn: FloatArray
-    c_u: FloatArray
-    c_g: FloatArray
-    c_w: FloatArray
-    direction: FloatArray
+    l_2: complex
+    l_3: complex
+    W: In2
+    u: In1
+    g: In1
+    gn: In1
+    c_u: In1
+    c_g: In1
+    c_w: In1
+    direction: In1
 
-    @cached_property
-    def packed(self) -> FloatArray:
-        """All constants in one row, in the order the compiled kernel reads them."""
-        parts = (
-            self.S.ravel(),
-            self.W.ravel(),
-            self.origin,
-            [self.a_1, self.h],
-            self.l_2,
-            self.l_3,
-            self.u,
-            self.g,
-            self.gn,
-            self.c_u,
-            self.c_g,
-            self.c_w,
-            self.direction,
-        )
-        return frozen(np.concatenate(parts))
+    @property
+    def n(self) -> int:
+        """Five or six axes."""
+        return len(self.direction)
 
     @property
     def spindle_on_last_axis(self) -> bool:
         """True where the tool axis is axis 6 itself: the spin about the tool is joint 6 and moves nothing else."""
         along = abs(abs(self.c_u[2]) - 1.0) < SQUARE
         return self.n == 6 and along and bool(np.hypot(self.c_w[0], self.c_w[1]) < CROSSING)
+
+
+class Rules(NamedTuple):
+    """Which of the solutions to take: limits (n, 2), wanted (8,) branches, shoulder and elbow as at home before all
+    motion, how many spins about the tool axis to try (0: the pose as given), whether axis 6 is held at its goal, and
+    whether the residual is that of the whole rotation."""
+
+    limits: In2
+    wanted: InBool1
+    arm_first: bool
+    spins: int
+    held: bool
+    whole: bool
+
+
+class Answer(NamedTuple):
+    """theta (m, n), branch (m,), -1 where none is within limits, and fit (m, 3): spin rad, residuals m and rad."""
+
+    theta: Out2
+    branch: OutInt1
+    fit: Out2
 
 
 @lru_cache(maxsize=64)
@@ -129,9 +134,9 @@ def _constants(
     S = np.array([np.cross(y, z), y, z])
     origin = p[0] + z * (z @ (p[1] - p[0]))
     shoulder, elbow, wrist = S @ (p[1] - origin), S @ (p[2] - origin), S @ (centre - origin)
-    l_2 = np.array([elbow[0] - shoulder[0], -(elbow[2] - shoulder[2])])
-    l_3 = np.array([wrist[0] - elbow[0], -(wrist[2] - elbow[2])])
-    if np.hypot(*l_2) < CROSSING or np.hypot(*l_3) < CROSSING:
+    l_2 = complex(elbow[0] - shoulder[0], -(elbow[2] - shoulder[2]))
+    l_3 = complex(wrist[0] - elbow[0], -(wrist[2] - elbow[2]))
+    if abs(l_2) < CROSSING or abs(l_3) < CROSSING:
         return None
     W = np.array([np.cross(k[4], k[3]), k[4], k[3]]) @ S.T
     u = W @ S @ R @ c_u
@@ -147,13 +152,12 @@ def _constants(
     sign = robot.chain.sign
     axis_sign = np.array([k[0] @ z, k[1] @ y, k[2] @ y, 1.0, flip, 1.0])[: robot.n]
     return Decoupled(
-        n=robot.n,
         S=frozen(S),
         origin=frozen(origin),
         a_1=float(shoulder[0]),
         h=float(wrist[1]),
-        l_2=frozen(l_2),
-        l_3=frozen(l_3),
+        l_2=l_2,
+        l_3=l_3,
         W=frozen(W),
         u=frozen(u),
         g=frozen(g),
@@ -163,79 +167,6 @@ def _constants(
         c_w=frozen(c_w),
         direction=frozen(np.sign(axis_sign) * sign),
     )
-
-
-# ---- the eight solutions, on columns -------------------------------------------------------------------------------
-
-
-def unit(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(x, y) / hypot(x, y), and (1, 0) at the origin."""
-    size = np.sqrt(x * x + y * y)
-    some = size > 1e-150
-    scale = 1.0 / np.where(some, size, 1.0)
-    return np.where(some, x * scale, 1.0), y * scale
-
-
-def solution_columns(arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """(theta (m, 8, n), possible (m, 8)) of poses T_MT (m, 4, 4): shoulder x elbow x wrist, in (-pi, pi].
-
-    Where the geometry has no solution the nearest attempt is given and ``possible`` is False; a check by forward
-    kinematics has the last word.
-    """
-    R = T_MT[:, :3, :3]
-    p_S = arm.S @ ((T_MT[:, :3, 3] - R @ arm.c_w) - arm.origin).T
-    side = SIDES[:, None]
-    # Shoulder (2, m): axis 1 turns the arm's plane through the wrist centre.
-    rho2 = p_S[0] ** 2 + p_S[1] ** 2
-    under = rho2 - arm.h**2
-    x = side * np.sqrt(np.maximum(under, 0.0))
-    c_1, s_1 = unit(p_S[0] * x + p_S[1] * arm.h, p_S[1] * x - p_S[0] * arm.h)
-    # Elbow (2, 2, m): two links in the plane.
-    L_2, L_3 = np.hypot(*arm.l_2), np.hypot(*arm.l_3)
-    r_x, r_z = x - arm.a_1, p_S[2]
-    cos_g = (r_x**2 + r_z**2 - L_2**2 - L_3**2) / (2 * L_2 * L_3)
-    placed = (under >= -ROUNDING) & (np.abs(cos_g) <= 1.0 + ROUNDING)
-    cos_g = np.clip(cos_g, -1.0, 1.0)
-    sin_g = SIDES[None, :, None] * (side * np.sqrt((1.0 - cos_g) * (1.0 + cos_g)))[:, None]
-    cos_g = cos_g[:, None]
-    bend = complex(*arm.l_2) * complex(*arm.l_3).conjugate() / (L_2 * L_3)
-    c_3, s_3 = bend.real * cos_g - bend.imag * sin_g, bend.real * sin_g + bend.imag * cos_g
-    m_re = arm.l_2[0] + arm.l_3[0] * c_3 - arm.l_3[1] * s_3
-    m_im = arm.l_2[1] + arm.l_3[0] * s_3 + arm.l_3[1] * c_3
-    r_x = r_x[:, None]
-    c_2, s_2 = unit(r_x * m_re - r_z * m_im, -r_z * m_re - r_x * m_im)
-    # Wrist (2, 2, 2, m): the direction u must come to v.
-    turn = (c_1[:, None], s_1[:, None], c_2 * c_3 - s_2 * s_3, s_2 * c_3 + c_2 * s_3)
-    v = _into_wrist(arm, turn, arm.S @ (R @ arm.c_u).T)
-    under = v[0] ** 2 + v[1] ** 2 - arm.u[1] ** 2
-    possible = np.broadcast_to((placed[:, None] & (under >= -ROUNDING))[:, :, None], (2, 2, 2, len(T_MT)))
-    x_w = SIDES[:, None] * np.sqrt(np.maximum(under, 0.0))[:, :, None]
-    v = [component[:, :, None] for component in v]
-    c_5, s_5 = unit(v[2] * arm.u[2] + x_w * arm.u[0], x_w * arm.u[2] - v[2] * arm.u[0])
-    c_4, s_4 = unit(v[0] * x_w + v[1] * arm.u[1], v[1] * x_w - v[0] * arm.u[1])
-    shape = c_5.shape
-    theta = np.empty((*shape[:3], arm.n, shape[3]))
-    theta[..., 0, :] = np.arctan2(s_1, c_1)[:, None, None]
-    theta[..., 1, :] = np.arctan2(s_2, c_2)[:, :, None]
-    theta[..., 2, :] = np.arctan2(s_3, c_3)[:, :, None]
-    theta[..., 3, :] = np.arctan2(s_4, c_4)
-    theta[..., 4, :] = np.arctan2(s_5, c_5)
-    if arm.n == 6:
-        g = [component[:, :, None] for component in _into_wrist(arm, turn, arm.S @ (R @ arm.c_g).T)]
-        g_x, g_y = c_4 * g[0] + s_4 * g[1], c_4 * g[1] - s_4 * g[0]
-        g_x, g_z = c_5 * g_x - s_5 * g[2], s_5 * g_x + c_5 * g[2]
-        across = g_x * arm.gn[0] + g_y * arm.gn[1] + g_z * arm.gn[2]
-        theta[..., 5, :] = np.arctan2(across, g_x * arm.g[0] + g_y * arm.g[1] + g_z * arm.g[2])
-    theta *= arm.direction[:, None]
-    return theta.reshape(8, arm.n, -1).transpose(2, 0, 1), possible.reshape(8, -1).T
-
-
-def _into_wrist(arm: Decoupled, turn: tuple[FloatArray, ...], d: FloatArray) -> list[FloatArray]:
-    """Directions d (3, m) in {S} seen from the wrist before it turns, three (2, 2, m)."""
-    c_1, s_1, c, s = turn
-    x, y = c_1 * d[0] + s_1 * d[1], c_1 * d[1] - s_1 * d[0]
-    x, z = c * x - s * d[2], s * x + c * d[2]
-    return [row[0] * x + row[1] * y + row[2] * z for row in arm.W]
 
 
 def branch_names() -> tuple[str, ...]:
@@ -259,7 +190,7 @@ def shortfall(arm: Decoupled, T_MT: FloatArray) -> str:
     rho = float(np.hypot(p[0], p[1]))
     if rho < abs(arm.h):
         return f"{abs(arm.h) - rho:.2g} m inside the arm's lateral offset, too close to axis 1"
-    L_2, L_3 = float(np.hypot(*arm.l_2)), float(np.hypot(*arm.l_3))
+    L_2, L_3 = abs(arm.l_2), abs(arm.l_3)
     x = np.sqrt(max(rho**2 - arm.h**2, 0.0))
     reach = [float(np.hypot(side * x - arm.a_1, p[2])) for side in (1.0, -1.0)]
     beyond, inside = min(reach) - (L_2 + L_3), abs(L_2 - L_3) - max(reach)

@@ -68,18 +68,17 @@ def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
     Six axes: of the 6 x 6 Jacobian, m^3. Planar arms: m^2. Seven axes have no determinant; its size, the
     manipulability, is given instead.
     """
-    J = task_matrix(robot, theta)
-    if J.shape[-1] != J.shape[-2]:
-        return manipulability(robot, theta)
-    with np.errstate(invalid="ignore"):  # NaN in, NaN out
-        return np.linalg.det(J)
+    from robomill.kinematics import kernels
+
+    A = task_matrix(robot, theta)
+    det = np.empty(A.shape[:-2])
+    kernels.determinant_of(np.ascontiguousarray(A.reshape(-1, *A.shape[-2:])), det.reshape(-1))
+    return det
 
 
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """sqrt(det(J J^T)) (...,), Yoshikawa's measure, of the arm's task Jacobian; |det(J)| where that is square."""
-    J = task_matrix(robot, theta)
-    with np.errstate(invalid="ignore"):  # NaN in, NaN out
-        return np.sqrt(np.maximum(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0))
+    """sqrt(det(J J^T)) (...,), Yoshikawa's measure, of the arm's task Jacobian, which is |det(J)|."""
+    return np.abs(determinant(robot, theta))
 
 
 def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:

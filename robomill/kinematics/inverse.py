@@ -10,17 +10,14 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.choice import SPIN_STEPS, Score, choose, choose_spin, join_path, path_score, spun
+from robomill.kinematics.choice import SPIN_STEPS, Score, every, join_path, nearest, path_score, rules, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
-from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.numeric import bent_home, solve_numerically
-from robomill.kinematics.result import RESIDUAL, IKResult, Mode, check, task_mode, within_residual
-from robomill.kinematics.solutions import compiled_solutions, nearest_solutions, solutions
+from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
 from robomill.robot.model import Robot
 
 Spin = float | Literal["least motion", "fixed"]
-Found = tuple[FloatArray, IntArray, FloatArray | None]
-Fit = tuple[FloatArray, FloatArray]
+Found = tuple[FloatArray, IntArray, FloatArray | None]  # theta (m, n), branch (m,), spin (m,)
 
 
 def inverse_kinematics(
@@ -62,7 +59,6 @@ def inverse_kinematics(
         raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
     arm = decoupled(robot)
     names = ("numerical",) if arm is None else branch_names()
-    fit: Fit | None = None
     if arm is None:
         if branch is not None:
             raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
@@ -71,8 +67,12 @@ def inverse_kinematics(
     elif along_path:
         theta, index, turn = _along_path(robot, arm, flat, lead[-1], branch_mask(branch), free_spin)
     else:
-        theta, index, turn, fit = _closed(robot, arm, flat, goal, branch_mask(branch), near is None, free_spin)
-    residual, angle = fit or check(robot, theta, flat, mode)[1:]
+        theta, index, fit = nearest(
+            robot, arm, flat, goal, rules(robot, arm, branch_mask(branch), near is None, free_spin)
+        )
+        turn, residual, angle = (fit[:, 0] if free_spin else None), fit[:, 1], fit[:, 2]
+    if arm is None or along_path:
+        residual, angle = misfit(robot, theta, flat, mode)
     reached = (index >= 0) & within_residual(residual, angle, mode)
     return IKResult(
         robot=robot,
@@ -87,32 +87,6 @@ def inverse_kinematics(
         free_spin=free_spin,
         spin=None if turn is None else turn.reshape(lead),
     )
-
-
-def all_branches(robot: Robot, T_MT: ArrayLike) -> tuple[FloatArray, BoolArray]:
-    """(theta (..., 8, n), sound (..., 8)): every closed-form solution, without limits, ordered as ``branch_names()``.
-
-    ``sound`` says which meet the pose by forward kinematics to 1e-9 m and rad; angles are in (-pi, pi]. Six axes: the
-    whole pose. Raises KinematicsError where the arm has no closed form.
-    """
-    T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
-    arm = decoupled(robot)
-    if arm is None:
-        raise KinematicsError(
-            f"{robot.name}: its wrist axes do not cross as a closed form needs; use inverse_kinematics."
-        )
-    flat = T_MT.reshape(-1, 4, 4)
-    lead = T_MT.shape[:-2]
-    found = compiled_solutions(robot, arm, flat, RESIDUAL)
-    if found is not None:
-        return found[0].reshape(*lead, 8, robot.n), found[1].reshape(*lead, 8)
-    theta = np.empty((len(flat), 8, robot.n))
-    sound = np.empty((len(flat), 8), dtype=bool)
-    for start in range(0, len(flat), BLOCK):
-        block = slice(start, start + BLOCK)
-        theta[block], possible = solutions(robot, arm, flat[block])
-        sound[block] = possible & check(robot, theta[block], flat[block, None], task_mode(robot))[0]
-    return theta.reshape(*lead, 8, robot.n), sound.reshape(*lead, 8)
 
 
 def branch_mask(branch: str | None) -> BoolArray:
@@ -134,49 +108,6 @@ def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
     return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
 
 
-def _closed(
-    robot: Robot,
-    arm: Decoupled,
-    flat: FloatArray,
-    goal: FloatArray,
-    wanted: BoolArray,
-    arm_first: bool,
-    free_spin: bool,
-) -> tuple[FloatArray, IntArray, FloatArray | None, Fit | None]:
-    """(theta, index, spin, (residual, residual angle) where the kernel has found them already)."""
-    compiled = nearest_solutions(robot, arm, flat, goal, wanted, arm_first, SPIN_STEPS if free_spin else 0)
-    if compiled is None:
-        return (*_pose_by_pose(robot, arm, flat, goal, wanted, arm_first, free_spin), None)
-    theta, index, fit = compiled
-    return theta, index, fit[:, 0] if free_spin else None, (fit[:, 1], fit[:, 2])
-
-
-def _pose_by_pose(
-    robot: Robot,
-    arm: Decoupled,
-    flat: FloatArray,
-    goal: FloatArray,
-    wanted: BoolArray,
-    arm_first: bool,
-    free_spin: bool,
-) -> Found:
-    theta = np.empty((len(flat), robot.n))
-    index = np.empty(len(flat), dtype=np.int64)
-    turn = np.zeros(len(flat)) if free_spin else None
-    for start in range(0, len(flat), BLOCK):
-        block = slice(start, start + BLOCK)
-        target = (goal if len(goal) == 1 else goal[block])[:, None, :]
-        if free_spin and not arm.spindle_on_last_axis:
-            found = choose_spin(robot, partial(solutions, robot, arm), flat[block], target, wanted, arm_first)
-            theta[block], index[block], turn[block] = found  # type: ignore[index]
-            continue
-        every, possible = solutions(robot, arm, flat[block])
-        if free_spin:
-            every[..., 5] = target[..., 5]
-        theta[block], index[block], _ = choose(robot, every, possible & wanted, target, arm_first)
-    return theta, index, turn
-
-
 def _along_path(
     robot: Robot, arm: Decoupled, flat: FloatArray, length: int, wanted: BoolArray, free_spin: bool
 ) -> Found:
@@ -185,14 +116,14 @@ def _along_path(
     index = np.empty(len(flat), dtype=np.int64)
     turn = np.zeros(len(flat)) if free_spin else None
 
-    def every(T_MT: FloatArray, angle: float) -> tuple[FloatArray, BoolArray]:
-        found, possible = solutions(robot, arm, spun(T_MT, angle))
+    def solutions(T_MT: FloatArray, angle: float) -> tuple[FloatArray, BoolArray]:
+        found, sound = every(robot, arm, spun(T_MT, angle))
         if free_spin and arm.spindle_on_last_axis:
             found[..., 5] = robot.home[5]
-        return found, possible & wanted
+        return found, sound & wanted
 
     def score(T_MT: FloatArray, angle: float) -> Score:
-        return path_score(robot, *every(T_MT, angle), robot.home)
+        return path_score(robot, *solutions(T_MT, angle), robot.home)
 
     choose_it = free_spin and not arm.spindle_on_last_axis
     for start in range(0, len(flat), max(length, 1)):
@@ -201,7 +132,7 @@ def _along_path(
         if choose_it:
             angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
             best = min(angles, key=partial(score, flat[run]))
-        theta[run], index[run] = join_path(robot, *every(flat[run], best), robot.home)
+        theta[run], index[run] = join_path(robot, *solutions(flat[run], best), robot.home)
         if turn is not None:
             turn[run] = best
     return theta, index, turn

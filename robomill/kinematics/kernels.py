@@ -1,180 +1,178 @@
-"""Compiled forward kinematics and Jacobian, LANES configurations at a time.
+"""Forward kinematics, the Jacobian and what is made of it, one configuration at a time, compiled.
 
-Every step is a loop over lanes of straight-line arithmetic on the rows of small buffers, updated in place, so that the
-compiler can prove the rows apart and use vector instructions. The NumPy columns of ``forward`` and ``jacobian`` are the
-same formulas, and a test holds the two together. Import only through ``compiled``.
-
-numba's cache looks at the file a kernel stands in, not at those it takes helpers from: after a change here or in
-``kernel_math``, clear the caches of the other kernel modules (``__pycache__/*.nb?``) too.
+``@part`` functions are the laws at one configuration; ``@kernel`` functions run them over a batch.
 """
 
-# mypy: disable-error-code="no-untyped-def, attr-defined, call-overload"
-# numba types these functions by their signatures; Python's annotations would say nothing more.
+# mypy: disable-error-code="no-untyped-def"
+# Parts are typed by whoever calls them.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
-from numba.types import Array, boolean, float64, int64, void
 
-from robomill.kinematics.kernel_math import INLINE, sin_cos
-
-LANES = 64
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-
-# Signatures are spelled out, so that importing this module compiles (or reads the cache) and calling never does.
-IN1, IN2, IN3 = (Array(float64, dims, "C", readonly=True) for dims in (1, 2, 3))
-OUT1, OUT2, OUT3 = (Array(float64, dims, "C") for dims in (1, 2, 3))
-IN_FLAGS = Array(boolean, 1, "C", readonly=True)
-INDEX = Array(int64, 1, "C")
-FLAGS, FLAGS2 = Array(boolean, 1, "C"), Array(boolean, 2, "C")
-CHAIN = (IN2, IN3, IN1, IN1, IN_FLAGS)
-
-# Rows of the tool's buffer: R row-major 0-8, p 9-11, then sine, cosine and shift of the joint at hand.
-TOOL_ROWS = 15
+from robomill.compiled import In1, In2, In3, Out1, Out3, Out4, kernel, part
+from robomill.kinematics.trig_kernels import sin_cos
+from robomill.robot.dh import Chain
 
 
-@njit(**INLINE)
-def chain_block(tool, theta, first, axes, n, T_0, E, sign, offset, prismatic):
-    """Run the chain over rows first .. first + n of theta: fills tool (15, LANES) and axes (6 n, LANES).
+@part
+def copy(T, to):
+    """The frame T (4, 4) into another."""
+    for r in range(4):
+        for k in range(4):
+            to[r, k] = T[r, k]
 
-    axes holds, for each joint, its axis z (3 rows) and a point on it (3 rows), before the joint moves.
+
+@part
+def forward(theta, chain, turns, frames):
+    """Frames (n + 1, 4, 4) in {M} at theta (n,): the frame each joint moves about, then {T}. Eqs. (4), (5), (7).
+
+    turns (n, 3) is room for each joint's sine, cosine and shift.
     """
+    E = chain.E
+    for i in range(len(theta)):
+        q = chain.sign[i] * theta[i] + chain.offset[i]
+        turns[i, 0], turns[i, 1] = sin_cos(0.0 if chain.prismatic[i] else q)
+        turns[i, 2] = q if chain.prismatic[i] else 0.0
+    copy(chain.T_0, frames[0])
+    for i in range(len(theta)):
+        s, c, slide = turns[i, 0], turns[i, 1], turns[i, 2]
+        for r in range(3):
+            x, y, z, p = frames[i, r, 0], frames[i, r, 1], frames[i, r, 2], frames[i, r, 3]
+            x, y, p = c * x + s * y, c * y - s * x, p + slide * z
+            for k in range(4):
+                frames[i + 1, r, k] = x * E[i, 0, k] + y * E[i, 1, k] + z * E[i, 2, k]
+            frames[i + 1, r, 3] += p
+        frames[i + 1, 3, 0], frames[i + 1, 3, 1], frames[i + 1, 3, 2], frames[i + 1, 3, 3] = 0.0, 0.0, 0.0, 1.0
+
+
+@part
+def jacobian(frames, chain, J):
+    """J (6, n) from the frames: a turning joint moves the tip by z x r, a sliding one by z. Eqs. (8), (9)."""
+    n = len(chain.sign)
+    for i in range(n):
+        s = chain.sign[i]
+        z_x, z_y, z_z = s * frames[i, 0, 2], s * frames[i, 1, 2], s * frames[i, 2, 2]
+        r_x = frames[n, 0, 3] - frames[i, 0, 3]
+        r_y = frames[n, 1, 3] - frames[i, 1, 3]
+        r_z = frames[n, 2, 3] - frames[i, 2, 3]
+        if chain.prismatic[i]:
+            J[0, i], J[1, i], J[2, i] = z_x, z_y, z_z
+            J[3, i], J[4, i], J[5, i] = 0.0, 0.0, 0.0
+        else:
+            J[0, i], J[1, i], J[2, i] = z_y * r_z - z_z * r_y, z_z * r_x - z_x * r_z, z_x * r_y - z_y * r_x
+            J[3, i], J[4, i], J[5, i] = z_x, z_y, z_z
+
+
+@part
+def elimination(A):
+    """det of A (n, n) by elimination with the largest pivot; A is used up."""
+    det, n = 1.0, len(A)
+    for k in range(n):
+        pivot = k
+        for r in range(k + 1, n):
+            if abs(A[r, k]) > abs(A[pivot, k]):
+                pivot = r
+        if A[pivot, k] == 0.0:
+            return 0.0
+        if pivot != k:
+            det = -det
+            for c in range(k, n):
+                A[k, c], A[pivot, c] = A[pivot, c], A[k, c]
+        det *= A[k, k]
+        for r in range(k + 1, n):
+            factor = A[r, k] / A[k, k]
+            for c in range(k + 1, n):
+                A[r, c] -= factor * A[k, c]
+    return det
+
+
+@part
+def determinant(A, AAt):
+    """det of A (k, n), which is used up; where it is not square its size, sqrt(det(A A^T)). AAt (k, k) is room."""
+    k, n = A.shape
+    if k == n:
+        return elimination(A)
+    for r in range(k):
+        for c in range(k):
+            AAt[r, c] = 0.0
+            for j in range(n):
+                AAt[r, c] += A[r, j] * A[c, j]
+    return np.sqrt(max(elimination(AAt), 0.0))
+
+
+@part
+def misfit(T, wanted, whole):
+    """(m, rad) how far the frame T (4, 4) is from the wanted one: tips, and tool axes or the ``whole`` rotation.
+
+    Two directions an angle apart have the chord 2 sin(angle / 2); a matrix turned by it is off by the square root of
+    twice that squared.
+    """
+    shift, chord = 0.0, 0.0
     for r in range(3):
-        for lane in range(LANES):
-            tool[3 * r, lane] = T_0[r, 0]
-            tool[3 * r + 1, lane] = T_0[r, 1]
-            tool[3 * r + 2, lane] = T_0[r, 2]
-            tool[9 + r, lane] = T_0[r, 3]
-    for i in range(n):
-        s_i, o_i = sign[i], offset[i]
-        e00, e01, e02, e03 = E[i, 0, 0], E[i, 0, 1], E[i, 0, 2], E[i, 0, 3]
-        e10, e11, e12, e13 = E[i, 1, 0], E[i, 1, 1], E[i, 1, 2], E[i, 1, 3]
-        e20, e21, e22, e23 = E[i, 2, 0], E[i, 2, 1], E[i, 2, 2], E[i, 2, 3]
-        slide = 1.0 if prismatic[i] else 0.0
-        turn = 1.0 - slide
+        shift += (T[r, 3] - wanted[r, 3]) ** 2
+        chord += (T[r, 2] - wanted[r, 2]) ** 2
+    if whole:
         for r in range(3):
-            for lane in range(LANES):
-                axes[6 * i + r, lane] = tool[3 * r + 2, lane]
-                axes[6 * i + 3 + r, lane] = tool[9 + r, lane]
-        for lane in range(LANES):
-            q = s_i * theta[first + i, lane] + o_i
-            s, c = sin_cos(turn * q)
-            tool[12, lane] = s
-            tool[13, lane] = c
-            tool[14, lane] = e23 + slide * q
-        for lane in range(LANES):
-            s, c, c23 = tool[12, lane], tool[13, lane], tool[14, lane]
-            c00, c01, c02, c03 = c * e00 - s * e10, c * e01 - s * e11, c * e02 - s * e12, c * e03 - s * e13
-            c10, c11, c12, c13 = s * e00 + c * e10, s * e01 + c * e11, s * e02 + c * e12, s * e03 + c * e13
-            x, y, z = tool[0, lane], tool[1, lane], tool[2, lane]
-            tool[0, lane] = x * c00 + y * c10 + z * e20
-            tool[1, lane] = x * c01 + y * c11 + z * e21
-            tool[2, lane] = x * c02 + y * c12 + z * e22
-            tool[9, lane] = x * c03 + y * c13 + z * c23 + tool[9, lane]
-            x, y, z = tool[3, lane], tool[4, lane], tool[5, lane]
-            tool[3, lane] = x * c00 + y * c10 + z * e20
-            tool[4, lane] = x * c01 + y * c11 + z * e21
-            tool[5, lane] = x * c02 + y * c12 + z * e22
-            tool[10, lane] = x * c03 + y * c13 + z * c23 + tool[10, lane]
-            x, y, z = tool[6, lane], tool[7, lane], tool[8, lane]
-            tool[6, lane] = x * c00 + y * c10 + z * e20
-            tool[7, lane] = x * c01 + y * c11 + z * e21
-            tool[8, lane] = x * c02 + y * c12 + z * e22
-            tool[11, lane] = x * c03 + y * c13 + z * c23 + tool[11, lane]
+            chord += (T[r, 0] - wanted[r, 0]) ** 2 + (T[r, 1] - wanted[r, 1]) ** 2
+        chord *= 0.5
+    return np.sqrt(shift), 2.0 * np.arcsin(min(0.5 * np.sqrt(chord), 1.0))
 
 
-@njit(**INLINE)
-def jacobian_block(tool, axes, n, sign, prismatic, J):
-    """J (6 n, LANES), six rows a joint, from the buffers of ``chain_block``."""
-    for i in range(n):
-        k = 6 * i
-        s = sign[i]
-        slide = 1.0 if prismatic[i] else 0.0
-        turn = 1.0 - slide
-        for lane in range(LANES):
-            zx, zy, zz = s * axes[k, lane], s * axes[k + 1, lane], s * axes[k + 2, lane]
-            rx = tool[9, lane] - axes[k + 3, lane]
-            ry = tool[10, lane] - axes[k + 4, lane]
-            rz = tool[11, lane] - axes[k + 5, lane]
-            J[k, lane] = slide * zx + turn * (zy * rz - zz * ry)
-            J[k + 1, lane] = slide * zy + turn * (zz * rx - zx * rz)
-            J[k + 2, lane] = slide * zz + turn * (zx * ry - zy * rx)
-            J[k + 3, lane] = turn * zx
-            J[k + 4, lane] = turn * zy
-            J[k + 5, lane] = turn * zz
+@kernel
+def frames_of(theta: In2, chain: Chain, frames: Out4) -> None:
+    """frames (m, n + 1, 4, 4) of theta (m, n)."""
+    turns = np.empty((theta.shape[1], 3))
+    for i in range(len(theta)):
+        forward(theta[i], chain, turns, frames[i])
 
 
-@njit(**INLINE)
-def load_rows(theta, start, count, block):
-    """Rows start .. start + count of theta (m, n) into block (n, LANES); spare lanes repeat the last row."""
-    for lane in range(LANES):
-        row = start + min(lane, count - 1)
-        for i in range(theta.shape[1]):
-            block[i, lane] = theta[row, i]
-
-
-@njit(**INLINE)
-def store_pose(tool, start, count, T_MT):
-    """The tool buffer into T_MT[start : start + count]."""
-    for lane in range(count):
-        for r in range(3):
-            T_MT[start + lane, r, 0] = tool[3 * r, lane]
-            T_MT[start + lane, r, 1] = tool[3 * r + 1, lane]
-            T_MT[start + lane, r, 2] = tool[3 * r + 2, lane]
-            T_MT[start + lane, r, 3] = tool[9 + r, lane]
-            T_MT[start + lane, 3, r] = 0.0
-        T_MT[start + lane, 3, 3] = 1.0
-
-
-@njit(void(IN2, *CHAIN, OUT3), **OPTIONS)
-def forward(theta, T_0, E, sign, offset, prismatic, T_MT):
+@kernel
+def pose_of(theta: In2, chain: Chain, T_MT: Out3) -> None:
     """T_MT (m, 4, 4) of theta (m, n)."""
-    m, n = theta.shape
-    block, tool, axes = np.empty((n, LANES)), np.empty((TOOL_ROWS, LANES)), np.empty((6 * n, LANES))
-    for start in range(0, m, LANES):
-        count = min(LANES, m - start)
-        load_rows(theta, start, count, block)
-        chain_block(tool, block, 0, axes, n, T_0, E, sign, offset, prismatic)
-        store_pose(tool, start, count, T_MT)
+    n = theta.shape[1]
+    turns, frames = np.empty((n, 3)), np.empty((n + 1, 4, 4))
+    for i in range(len(theta)):
+        forward(theta[i], chain, turns, frames)
+        copy(frames[n], T_MT[i])
 
 
-@njit(void(IN2, *CHAIN, IN1, OUT3, OUT3, OUT3), **OPTIONS)
-def forward_jacobian(theta, T_0, E, sign, offset, prismatic, weight, T_MT, J_out, G_out):
-    """T_MT (m, 4, 4), J (m, 6, n) and, where G (m, 3, 3) has rows, G = J_v diag(weight) J_v^T of theta (m, n)."""
-    m, n = theta.shape
-    block, tool, axes = np.empty((n, LANES)), np.empty((TOOL_ROWS, LANES)), np.empty((6 * n, LANES))
-    J, G = np.empty((6 * n, LANES)), np.empty((6, LANES))
-    for start in range(0, m, LANES):
-        count = min(LANES, m - start)
-        load_rows(theta, start, count, block)
-        chain_block(tool, block, 0, axes, n, T_0, E, sign, offset, prismatic)
-        jacobian_block(tool, axes, n, sign, prismatic, J)
-        store_pose(tool, start, count, T_MT)
-        for lane in range(count):
-            for r in range(6):
-                for i in range(n):
-                    J_out[start + lane, r, i] = J[6 * i + r, lane]
-        if G_out.shape[0] == 0:
-            continue
-        G[:] = 0.0
-        for i in range(n):
-            k, w = 6 * i, weight[i]
-            for lane in range(LANES):
-                a, b, c = J[k, lane], J[k + 1, lane], J[k + 2, lane]
-                G[0, lane] += w * a * a
-                G[1, lane] += w * b * b
-                G[2, lane] += w * c * c
-                G[3, lane] += w * a * b
-                G[4, lane] += w * a * c
-                G[5, lane] += w * b * c
-        for lane in range(count):
-            row = start + lane
-            G_out[row, 0, 0] = G[0, lane]
-            G_out[row, 0, 1] = G[3, lane]
-            G_out[row, 0, 2] = G[4, lane]
-            G_out[row, 1, 0] = G[3, lane]
-            G_out[row, 1, 1] = G[1, lane]
-            G_out[row, 1, 2] = G[5, lane]
-            G_out[row, 2, 0] = G[4, lane]
-            G_out[row, 2, 1] = G[5, lane]
-            G_out[row, 2, 2] = G[2, lane]
+@kernel
+def jacobian_of(theta: In2, chain: Chain, T_MT: Out3, J: Out3) -> None:
+    """T_MT (m, 4, 4) and J (m, 6, n) of theta (m, n)."""
+    n = theta.shape[1]
+    turns, frames = np.empty((n, 3)), np.empty((n + 1, 4, 4))
+    for i in range(len(theta)):
+        forward(theta[i], chain, turns, frames)
+        jacobian(frames, chain, J[i])
+        copy(frames[n], T_MT[i])
+
+
+@kernel
+def compliance_of(J: In3, C_theta: In1, C: Out3) -> None:
+    """C (m, 3, 3) = J_v diag(C_theta) J_v^T, the rows v of J (m, 6, n). Eqs. (11), (12)."""
+    for i in range(len(J)):
+        for r in range(3):
+            for k in range(3):
+                total = 0.0
+                for j in range(len(C_theta)):
+                    total += C_theta[j] * J[i, r, j] * J[i, k, j]
+                C[i, r, k] = total
+
+
+@kernel
+def misfit_of(theta: In2, chain: Chain, wanted: In3, whole: bool, shift: Out1, angle: Out1) -> None:
+    """shift (m,) m and angle (m,) rad of theta (m, n) from the poses wanted (m, 4, 4)."""
+    n = theta.shape[1]
+    turns, frames = np.empty((n, 3)), np.empty((n + 1, 4, 4))
+    for i in range(len(theta)):
+        forward(theta[i], chain, turns, frames)
+        shift[i], angle[i] = misfit(frames[n], wanted[i], whole)
+
+
+@kernel
+def determinant_of(A: In3, det: Out1) -> None:
+    """det (m,) of A (m, k, n)."""
+    k = A.shape[1]
+    AAt = np.empty((k, k))
+    for i in range(len(A)):
+        det[i] = determinant(A[i].copy(), AAt)

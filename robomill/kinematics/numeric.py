@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.decoupled import RESIDUAL
 from robomill.kinematics.forward import BLOCK, tool_pose
 from robomill.kinematics.jacobian import pose_and_jacobian
-from robomill.kinematics.result import RESIDUAL, Mode
+from robomill.kinematics.result import Mode
 from robomill.robot.model import Robot
 
 STARTS = 64  # starts a pose is given before it counts as not found

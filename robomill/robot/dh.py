@@ -10,26 +10,26 @@ tool frame are folded into the constants, so a chain has one entry a *free* join
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.compiled import In1, In2, In3, InBool1
 
 
-@dataclass(frozen=True, eq=False)
-class Chain:
+class Chain(NamedTuple):
     """A serial arm as constants: what forward kinematics and the Jacobian need, and nothing else.
 
     T_0 (4, 4); E (n, 4, 4), the last one includes the tool frame; sign (n,) of +-1; offset (n,) rad (m where
     prismatic); prismatic (n,) bool. n counts the free joints.
     """
 
-    T_0: FloatArray
-    E: FloatArray
-    sign: FloatArray
-    offset: FloatArray
-    prismatic: BoolArray
+    T_0: In2
+    E: In3
+    sign: In1
+    offset: In1
+    prismatic: InBool1
 
     @property
     def n(self) -> int:

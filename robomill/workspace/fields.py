@@ -101,7 +101,9 @@ def compliance_field(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -
     """
     _finite_tilt(A, B)
     grid.check_budget(8 * (13 * robot.n + 2 + 6) + 1)
-    theta, reached, J, shares, det_J = solve_grid(robot, grid, A, B)
+    theta, reached, laws = solve_grid(robot, grid, A, B)
+    J, shares, det_J = (array.reshape(*grid.shape, *array.shape[1:]) for array in laws)
+    theta, reached = theta.reshape(*grid.shape, robot.n), reached.reshape(grid.shape)
     return ComplianceField(robot, grid, A, B, theta, reached, J, shares, det_J)
 
 

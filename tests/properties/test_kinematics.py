@@ -8,7 +8,8 @@ from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_
 
 import robomill as rm
 from robomill.kinematics.decoupled import decoupled
-from robomill.kinematics.inverse import all_branches
+from robomill.kinematics.choice import every
+from robomill.kinematics.decoupled import decoupled
 
 POSES = 10_000
 # The numeric solver: share of reachable poses of general arms that it must find.
@@ -96,7 +97,7 @@ def test_every_reachable_pose_of_spherical_wrist_arms_is_found(shoulder, lateral
     again = rm.inverse_kinematics(robot, T_MT, spin="fixed", near=theta)
     # Near a singular wrist the angles are ill determined, the pose is not.
     assert np.median(np.abs(again.theta - theta)) < 1e-12
-    branches, sound = all_branches(robot, T_MT[:1000])
+    branches, sound = every(robot, decoupled(robot), T_MT[:1000])
     turned = (branches - theta[:1000, None] + np.pi) % (2 * np.pi) - np.pi
     assert np.abs(turned).max(axis=-1).min(axis=-1).max() < 1e-6
     assert sound.any(axis=-1).all()

@@ -1,26 +1,21 @@
-"""sin, cos and atan2 as straight-line arithmetic, so that the compiler can do many lanes at once.
+"""Sine, cosine and arc tangent as straight-line arithmetic, compiled: several at once where a loop takes many.
 
-Only imported once numba is at hand (see ``compiled``). Coefficients: fdlibm's kernels for sine and cosine (Sun
-Microsystems, 1993) after reduction by pi/2 in two parts, good to about 1e-16 for |x| < 1e5; Cephes' rational
-approximation for the arc tangent (Moshier, 1989).
+Coefficients: fdlibm's kernels for sine and cosine (Sun Microsystems, 1993) after reduction by pi/2 in two parts, good
+to about 1e-16 for |x| < 1e5; Cephes' rational approximation for the arc tangent (Moshier, 1989).
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numba import njit
 
-# Inlined by LLVM, not by numba: the arithmetic ends up in one loop all the same, and compiling takes half the time.
-INLINE: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "fastmath": {"contract"}}
+from robomill.compiled import part
 
 TWO_OVER_PI = 0.63661977236758134308
 PI_2_HIGH = 1.57079632673412561417  # 33 bits, so that a small multiple of it is exact
 PI_2_LOW = 6.07710050650619224932e-11
 
 
-@njit(**INLINE)
+@part
 def sin_cos(x: float) -> tuple[float, float]:
     """(sin x, cos x)."""
     k = np.floor(x * TWO_OVER_PI + 0.5)
@@ -49,7 +44,7 @@ def sin_cos(x: float) -> tuple[float, float]:
     return sine, cosine
 
 
-@njit(**INLINE)
+@part
 def arc_tangent(y: float, x: float) -> float:
     """atan2(y, x); 0 at the origin."""
     ax, ay = abs(x), abs(y)
