@@ -19,13 +19,14 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from importlib.metadata import version
@@ -39,6 +40,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 PACKAGE = Path(__file__).parent
 PATTERNS = ("*/**/kernels.py", "*/**/*_kernels.py")
 RULES = "*/**/*_rules.py"  # plain Python that kernels compile too
+IMPORTED = re.compile(r"^from robomill\.([\w.]+) import", re.MULTILINE)
 WORDS = "Preparing the kernels, once, about 20 s"
 COMPLETE = "complete"
 PLACE = "ROBOMILL_CACHE"
@@ -162,17 +164,16 @@ def kept_in() -> Path:
     private temporary folder.
     """
     name = f"kernels-{_key()}"
-    for root in _roots():
-        folder = root / name
-        if _own(folder):
-            _forget_older(folder)
-            return folder
-        if (folder / COMPLETE).is_file():  # made by whoever installed the package; the compiler wants to write there
-            copy = next(other / name for other in _roots() if _own(other / name))
-            return Path(shutil.copytree(folder, copy, dirs_exist_ok=True))
-    os.environ[PLACE] = tempfile.mkdtemp(prefix="robomill-")  # the process that compiles inherits it
-    folder = Path(os.environ[PLACE]) / name
-    folder.mkdir()
+    places = [root / name for root in _roots()]
+    folder = next((place for place in places if _own(place)), None)
+    if folder is None:
+        os.environ[PLACE] = tempfile.mkdtemp(prefix="robomill-")  # the process that compiles inherits it
+        folder = Path(os.environ[PLACE]) / name
+        folder.mkdir()
+    made = next((place for place in places if (place / COMPLETE).is_file()), folder)
+    if made != folder:  # by whoever installed the package; the compiler wants to write where it reads
+        shutil.copytree(made, folder, dirs_exist_ok=True)
+    _forget_older(folder)
     return folder
 
 
@@ -180,9 +181,16 @@ def _key() -> str:
     """A digest of every source that kernels are made from: the compiler by itself looks only at a function's own file,
     and would keep running old code of the functions it calls."""
     state = hashlib.sha256(f"{sys.implementation.cache_tag} {version('numba')} {_processor()}".encode())
-    for source in [Path(__file__), *_sources(), *sorted(PACKAGE.glob(RULES))]:
+    for source in _made_from():
         state.update(source.name.encode() + source.read_bytes())
     return state.hexdigest()[:16]
+
+
+def _made_from() -> list[Path]:
+    """The kernel modules, what they import from this package (constants, kinds of tuples), and rules."""
+    named = {name for source in _sources() for name in IMPORTED.findall(source.read_text())}
+    imported = {PACKAGE.joinpath(*name.split(".")).with_suffix(".py") for name in named}
+    return sorted({*_sources(), *PACKAGE.glob(RULES), *(path for path in imported if path.is_file())})
 
 
 def _processor() -> str:
@@ -263,33 +271,6 @@ def _prepare() -> None:
     if _announced and missing() and not _tried:
         _announced[-1](WORDS)
         build()
-
-
-# ---- until every kernel module is marked as above ----------------------------------------------------------------
-
-
-def cache_folder(sources: Sequence[Path]) -> Path | None:
-    """The folder for kernels made from ``sources``, or None for the compiler's own choice."""
-    key = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:12]
-    for root in (sources[0].parent / "__pycache__", Path.home() / ".cache" / "robomill"):
-        if _own(root / f"kernels-{key}"):
-            return root / f"kernels-{key}"
-    return None
-
-
-@contextmanager
-def cached_in(folder: Path | None) -> Iterator[None]:
-    """Kernels imported inside the block are compiled into, or loaded from, ``folder``."""
-    import numba
-
-    config: Any = numba.config
-    with _lock:
-        before = config.CACHE_DIR
-        config.CACHE_DIR = before if before or folder is None else str(folder)
-        try:
-            yield
-        finally:
-            config.CACHE_DIR = before
 
 
 if __name__ == "__main__":

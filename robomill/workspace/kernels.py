@@ -9,7 +9,7 @@ import numpy as np
 from robomill.compiled import In1, In2, kernel, part
 from robomill.kinematics.kernels import determinant, forward, jacobian
 from robomill.robot.dh import Chain
-from robomill.workspace.solve import Laws
+from robomill.workspace.laws import Laws
 
 
 @part

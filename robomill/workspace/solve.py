@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.compiled import Out1, Out3
 from robomill.kinematics.dexterity import square_matrix
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
-
-
-class Laws(NamedTuple):
-    """What holds at m configurations: J (m, 6, n); shares (m, n, 6), each joint's part of C_xx, C_yy, C_zz, C_xy,
-    C_xz, C_yz; det_J (m,)."""
-
-    J: Out3
-    shares: Out3
-    det_J: Out1
+from robomill.workspace.laws import Laws
 
 
 def solve_grid(robot: Robot, grid: Grid, A: float, B: float) -> tuple[FloatArray, BoolArray, Laws]:

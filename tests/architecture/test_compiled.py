@@ -160,6 +160,7 @@ def test_where_the_package_cannot_be_written_the_users_cache_serves(tmp_path, mo
     real = compiled._own
     monkeypatch.setattr(compiled, "_own", lambda folder: shut not in folder.parents and real(folder))
     assert compiled.kept_in() == home / "kernels-key"
+    assert not list((home / "kernels-key").iterdir())
     # What the installer compiled there is taken along.
     compiled.kept_in.cache_clear()
     (shut / "kernels-key").mkdir(parents=True)
@@ -200,4 +201,9 @@ def test_the_digest_covers_every_source(tmp_path, monkeypatch):
     (room / "other.py").write_text("d")
     assert compiled._key() == before
     second.write_text("e")
+    assert compiled._key() != before
+    # What a kernel module takes from the package counts too: a constant is compiled in.
+    second.write_text("from robomill.room.other import LIMIT")
+    before = compiled._key()
+    (room / "other.py").write_text("LIMIT = 2")
     assert compiled._key() != before

@@ -21,10 +21,8 @@ MANY_PARAMETERS = 81
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
 LONG = {
     "intervals_figure",
-    "solve",
     "evidence_figure",
     "plan_picture",
-    "search_block",
     "section_figure",
     "inverse_kinematics",
     "turnable_picture",
@@ -51,7 +49,7 @@ UNUSED = {
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
     *("joint_torques", "arc_of_cut"),
-    *("write_mesh", "NOTE", "smallest_singular_value", "condition_number", "all_branches", "FLAGS", "P_S", "P_W"),
+    *("write_mesh", "NOTE", "smallest_singular_value", "condition_number",),
     *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness"),
     *("compensated", "says", "DIFFERENCES", "snap"),

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_arm
 
 import robomill as rm
-from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.choice import every
 from robomill.kinematics.decoupled import decoupled
 
