@@ -49,7 +49,12 @@ UNUSED = {
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
     *("joint_torques", "arc_of_cut"),
-    *("write_mesh", "NOTE", "smallest_singular_value", "condition_number",),
+    *(
+        "write_mesh",
+        "NOTE",
+        "smallest_singular_value",
+        "condition_number",
+    ),
     *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness"),
     *("compensated", "says", "DIFFERENCES", "snap"),
