@@ -8,17 +8,15 @@ cutter's hand; a right-hand cutter's teeth run from 0 to pi.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
-from robomill.cutting.tool import Cutter, Hand
+from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.units import format_si
-
-Side = Literal["slot", "climb", "conventional"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,39 +111,11 @@ class CutConditions:
         a_p: ArrayLike,
         *,
         arc: tuple[float, float] = (0.0, np.pi),
-        cutting: ArrayLike = True,
-        s: ArrayLike = 0.0,
-        t: ArrayLike = 0.0,
-        across: ArrayLike = 1.0,
-        block: ArrayLike = 0,
+        **others: ArrayLike,
     ) -> CutConditions:
-        """The same arc everywhere, a full slot unless ``arc`` (phi_st, phi_ex) says otherwise."""
-        values: dict[str, Any] = {"v_f": v_f, "n_s": n_s, "a_p": a_p, "cutting": cutting, "s": s, "t": t}
-        return cls(**values, phi_st=arc[0], phi_ex=arc[1], across=across, block=block)  # type: ignore[arg-type]
-
-
-def arc_of_cut(a_e: ArrayLike, diameter: float, side: Side, hand: Hand = "right") -> tuple[FloatArray, FloatArray]:
-    """Arc (phi_st, phi_ex), each (...,) rad, of a side cut with radial width ``a_e`` (...) m.
-
-    Climb: the teeth enter at full chip thickness and leave at none; a right-hand cutter then has the part on
-    the right of its feed. Conventional is the other way round. A slot cuts its full width whatever ``a_e``.
-    Raises CuttingError for a width outside 0..diameter.
-    """
-    width = as_floats(a_e, "radial width of cut", (), error=CuttingError)
-    if (width < 0.0).any() or (width > diameter * (1.0 + 1e-9)).any():
-        raise CuttingError(
-            f"Radial width of cut {format_si(float(np.max(width)), 'mm')}: expected 0 to the cutter's diameter "
-            f"{format_si(diameter, 'mm')}.",
-            where="a_e",
-        )
-    if side not in ("slot", "climb", "conventional"):
-        raise CuttingError(f"Side of the cut {side!r}: expected 'slot', 'climb' or 'conventional'.", where="side")
-    if side == "slot":
-        return np.zeros_like(width), np.full_like(width, np.pi)
-    arc = 2.0 * np.arcsin(np.sqrt(np.clip(width / diameter, 0.0, 1.0)))
-    if (side == "conventional") == (hand == "right"):
-        return np.zeros_like(width), arc
-    return np.pi - arc, np.full_like(width, np.pi)
+        """The same arc everywhere, a full slot unless ``arc`` (phi_st, phi_ex) says otherwise; cutting, s = t = 0."""
+        given: dict[str, Any] = {"cutting": True, "s": 0.0, "t": 0.0, **others}
+        return cls(v_f=v_f, n_s=n_s, a_p=a_p, phi_st=arc[0], phi_ex=arc[1], **given)  # type: ignore[arg-type]
 
 
 def cut_warnings(cutter: Cutter, conditions: CutConditions) -> tuple[str, ...]:

@@ -23,6 +23,9 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
 
+#: Pieces of the depth over which the lag of the helix is taken as one.
+SLICES = 48
+
 
 @dataclass(frozen=True)
 class EdgeTerm:
@@ -129,20 +132,16 @@ def force_over_pitch(
     cutter: Cutter,
     c: ArrayLike,
     a_p: ArrayLike,
-    phi_st: ArrayLike,
-    phi_ex: ArrayLike,
-    *,
+    arc: tuple[ArrayLike, ArrayLike],
     instants: int = 120,
-    slices: int = 48,
 ) -> FloatArray:
     """Force ON the tool at ``instants`` evenly spread over one tooth pitch, (..., instants, 3) N, with helix lag.
 
-    The depth is cut into ``slices``; the edge lags by z tan(helix angle) / R (constant lead). The pattern repeats
-    every pitch (teeth alike, no run-out), so its mean is ``mean_force`` and its extremes are those of a revolution.
+    ``arc`` is (phi_st, phi_ex). The depth is cut into ``SLICES``; the edge lags by z tan(helix angle) / R (constant
+    lead). The pattern repeats every pitch (teeth alike, no run-out), so its mean is ``mean_force`` and its extremes
+    are those of a revolution.
     """
-    c, a_p, st, ex = np.broadcast_arrays(
-        *(np.asarray(v, dtype=np.float64)[..., None] for v in (c, a_p, phi_st, phi_ex))
-    )
+    c, a_p, st, ex = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64)[..., None] for v in (c, a_p, *arc)))
     mirror = cutter.hand == "left"
     if mirror:
         st, ex = np.pi - ex, np.pi - st
@@ -150,8 +149,8 @@ def force_over_pitch(
     turn = (np.arange(instants) + 0.5) * (pitch / instants)
     lag_per_depth = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
     force = np.zeros((*c.shape[:-1], instants, 3))
-    for i in range(slices):
-        low, high = a_p * (i / slices), a_p * ((i + 1) / slices)
+    for i in range(SLICES):
+        low, high = a_p * (i / SLICES), a_p * ((i + 1) / SLICES)
         lag = 0.5 * (low + high) * lag_per_depth
         loads = []
         for term in terms:

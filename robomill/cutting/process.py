@@ -97,7 +97,8 @@ class ProcessForce(ForceModel):
         cases = load[first]
         for start in range(0, len(cases), 2048):
             part = cases[start : start + 2048]
-            turns = force_over_pitch(self.material.terms, self.cutter, *part.T)
+            c, a_p, *arc = part.T
+            turns = force_over_pitch(self.material.terms, self.cutter, c, a_p, (arc[0], arc[1]))
             turns[..., 2] *= self.axial
             rows = np.flatnonzero((inverse >= start) & (inverse < start + len(part)))
             case = inverse[rows] - start

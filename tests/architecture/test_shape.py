@@ -17,7 +17,7 @@ MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts).removesuffix(".__
 MOST_LINES = 60
 MOST_PARAMETERS = 6
 # Functions that take more. The number only falls: whoever groups what belongs together lowers it.
-MANY_PARAMETERS = 81
+MANY_PARAMETERS = 79
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
 LONG = {
     "intervals_figure",
@@ -48,7 +48,7 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    *("joint_torques", "arc_of_cut"),
+    "joint_torques",
     *(
         "write_mesh",
         "NOTE",

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robomill.cutting.conditions import CutConditions, arc_of_cut, cut_warnings
+from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, force_over_pitch, mean_force, sine_integral
 from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
@@ -154,16 +154,14 @@ def test_left_hand_cutter_is_the_mirror_image():
     left = MILL.replace(hand="left", helix="left")
     right = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc)
     np.testing.assert_allclose(mean_force(REF190.terms, left, CHIP, 2e-3, *mirrored), right * [1, -1, 1], rtol=1e-12)
-    turns = [
-        force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, *arc), (left, CHIP, 2e-3, *mirrored))
-    ]
+    turns = [force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, arc), (left, CHIP, 2e-3, mirrored))]
     np.testing.assert_allclose(turns[1], turns[0] * [1, -1, 1], atol=1e-12)
 
 
 def test_climb_pushes_away_from_the_wall_and_conventional_less_or_towards():
     # Half immersion with this row: climb has the part on the right and is pushed left, away from it.
-    climb = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc_of_cut(4e-3, 8e-3, "climb"))
-    conventional = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc_of_cut(4e-3, 8e-3, "conventional"))
+    climb = mean_force(REF190.terms, MILL, CHIP, 2e-3, np.pi / 2, np.pi)
+    conventional = mean_force(REF190.terms, MILL, CHIP, 2e-3, 0.0, np.pi / 2)
     assert climb[1] > conventional[1]
     assert climb[1] > 0
     assert climb[0] > conventional[0]  # climb pulls the tool into the cut
@@ -171,18 +169,9 @@ def test_climb_pushes_away_from_the_wall_and_conventional_less_or_towards():
     np.testing.assert_allclose(climb + conventional, slot, rtol=1e-12)
 
 
-def test_engagement_arcs_against_geometry():
-    assert np.degrees(arc_of_cut(8e-3, 8e-3, "climb")) == pytest.approx([0, 180], abs=1e-6)
-    assert np.degrees(arc_of_cut(4e-3, 8e-3, "climb")) == pytest.approx([90, 180])
-    assert np.degrees(arc_of_cut(4e-3, 8e-3, "conventional")) == pytest.approx([0, 90])
-    assert np.degrees(arc_of_cut(2e-3, 8e-3, "conventional")) == pytest.approx([0, 60])
-    assert np.degrees(arc_of_cut(2e-3, 8e-3, "conventional", "left")) == pytest.approx([120, 180])
-    assert np.degrees(arc_of_cut(1e-3, 8e-3, "slot")) == pytest.approx([0, 180])
-
-
 @pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
 def test_mean_over_a_pitch_is_the_mean_force(cutter):
-    turns = force_over_pitch(REF190.terms, cutter, CHIP, 2e-3, 0.3, 2.2, instants=720)
+    turns = force_over_pitch(REF190.terms, cutter, CHIP, 2e-3, (0.3, 2.2), instants=720)
     exact = mean_force(REF190.terms, cutter, CHIP, 2e-3, 0.3, 2.2)
     assert np.linalg.norm(turns.mean(0) - exact) < 2e-3 * np.linalg.norm(exact)
 
@@ -294,11 +283,7 @@ def test_refused_conditions(change, sentence):
     assert sentence in str(refusal.value)
 
 
-def test_refused_arcs_and_models():
-    with pytest.raises(CuttingError, match=r"9\.000 mm: expected 0 to the cutter's diameter 8\.000 mm"):
-        arc_of_cut(9e-3, 8e-3, "climb")
-    with pytest.raises(CuttingError, match="Side of the cut 'up'"):
-        arc_of_cut(1e-3, 8e-3, "up")
+def test_refused_models():
     with pytest.raises(CuttingError, match="has kienzle coefficients; a mechanistic force needs"):
         MechanisticForce(MILL, load_material("al_wrought_cured_kienzle"))
 
@@ -320,7 +305,7 @@ def test_moments_of_an_empty_arc_and_of_no_depth():
 @pytest.mark.parametrize(("helix", "first", "last"), [("right", 1.0, 1.1 + 0.5774), ("left", 1.0 - 0.5774, 1.1)])
 def test_the_upper_edge_lags_on_a_pulling_helix_and_leads_on_a_pushing_one(helix, first, last):
     mill = MILL.replace(flutes=1, helix=helix)  # 30 deg: the edge turns by tan(30 deg) over 4 mm
-    force = force_over_pitch(REF190.terms, mill, CHIP, 4e-3, 1.0, 1.1, instants=1440)
+    force = force_over_pitch(REF190.terms, mill, CHIP, 4e-3, (1.0, 1.1), instants=1440)
     turn = (np.arange(1440) + 0.5) * 2 * np.pi / 1440
     cuts = turn[np.abs(force).sum(1) > 0]
     assert (cuts.min(), cuts.max()) == pytest.approx((first, last), abs=0.02)
