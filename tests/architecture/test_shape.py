@@ -17,7 +17,7 @@ MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts).removesuffix(".__
 MOST_LINES = 60
 MOST_PARAMETERS = 6
 # Functions that take more. The number only falls: whoever groups what belongs together lowers it.
-MANY_PARAMETERS = 79
+MANY_PARAMETERS = 38
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
 LONG = {
     "intervals_figure",
@@ -48,17 +48,10 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    "joint_torques",
-    *(
-        "write_mesh",
-        "NOTE",
-        "smallest_singular_value",
-        "condition_number",
-    ),
-    *("residual_angle", "with_convention", "with_blocked"),
-    *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness"),
-    *("compensated", "says", "DIFFERENCES", "snap"),
-    *("reset", "machining_box"),
+    *("C_X", "det_J_unit", "gives_most", "joint_torques", "smallest_singular_value", "condition_number"),
+    *("residual_angle", "with_convention", "with_blocked", "modelled", "machining_box"),
+    *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
+    *("pw", "says", "DIFFERENCES", "closed", "snap", "reset"),
 }
 
 
@@ -145,7 +138,6 @@ def test_lines_are_as_the_formatter_leaves_them() -> None:
     ]
 
 
-@pytest.mark.xfail(reason="foundations are laid before the rooms that stand on them move", strict=False)
 def test_nothing_is_there_that_nobody_uses() -> None:
     search = Vulture(ignore_names=list(UNUSED))
     search.scavenge([str(path) for path in PRODUCT])
