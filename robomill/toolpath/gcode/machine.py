@@ -85,7 +85,7 @@ class Machine:
     @property
     def is_plain(self) -> bool:
         """True while the rules of ``motion_rules`` alone say what G0 to G3 do."""
-        return self.compensation is None and not self.diameter_mode and self.motion in (0, 10, 20, 30)
+        return self.compensation is None and not self.diameter_mode and self.motion in (-1, 0, 10, 20, 30, 800)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
