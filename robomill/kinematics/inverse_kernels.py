@@ -98,7 +98,7 @@ def last_joint(g_x, g_y, g_z, arm, e_4, e_5):
 def solve(goal, arm, posture, factors, theta):
     """theta (2, n): both wrists, + and -, of a posture 0-3 (front or back x elbow up or down). True where real.
 
-    factors (2, 2, n) is room for the real and imaginary parts of e_1 ... e_n: their angles are taken at once.
+    factors (3, 2 n) is room for the real and imaginary parts of e_1 ... e_n and their angles, which are taken at once.
     """
     n = len(arm.direction)
     side, sense = 1.0 - 2.0 * (posture // 2), 1.0 - 2.0 * (posture % 2)
@@ -114,22 +114,25 @@ def solve(goal, arm, posture, factors, theta):
         x_w = across if w == 0 else -across
         e_4 = complex(v_x, v_y) * complex(x_w, -u[1])
         e_5 = complex(v_z, x_w) * complex(u[2], -u[0])
-        put(factors, w, 0, e_1)
-        put(factors, w, 1, e_2)
-        put(factors, w, 2, e_3)
-        put(factors, w, 3, e_4)
-        put(factors, w, 4, e_5)
+        first = w * n
+        put(e_1, factors, first)
+        put(e_2, factors, first + 1)
+        put(e_3, factors, first + 2)
+        put(e_4, factors, first + 3)
+        put(e_5, factors, first + 4)
         if n == 6:
-            put(factors, w, 5, last_joint(g_x, g_y, g_z, arm, e_4, e_5))
+            put(last_joint(g_x, g_y, g_z, arm, e_4, e_5), factors, first + 5)
+    for k in range(2 * n):
+        factors[2, k] = arc_tangent(factors[1, k], factors[0, k])
     for w in range(2):
         for j in range(n):
-            theta[w, j] = arm.direction[j] * arc_tangent(factors[1, w, j], factors[0, w, j])
+            theta[w, j] = arm.direction[j] * factors[2, w * n + j]
     return placed and bent and under >= -ROUNDING
 
 
 @part
-def put(factors, w, j, e):
-    factors[0, w, j], factors[1, w, j] = e.real, e.imag
+def put(e, factors, k):
+    factors[0, k], factors[1, k] = e.real, e.imag
 
 
 @part
@@ -215,7 +218,7 @@ def choose(T, arm, rules, goal, room, best):
 def nearest_of(T_MT: In3, arm: Decoupled, chain: Chain, rules: Rules, goals: In2, answer: Answer) -> None:
     """The answer for poses T_MT (m, 4, 4), nearest to goals (1 or m, n)."""
     n = len(chain.sign)
-    room = (np.empty((3, 3)), np.empty((2, 2, n)), np.empty((2, n)))
+    room = (np.empty((3, 3)), np.empty((3, 2 * n)), np.empty((2, n)))
     best, turns, frames = np.empty(n), np.empty((n, 3)), np.empty((n + 1, 4, 4))
     for i in range(len(T_MT)):
         goal = goals[i if len(goals) > 1 else 0]
@@ -245,7 +248,7 @@ def solve_all(T, arm, chain, room, theta, sound):
 def every_of(T_MT: In3, arm: Decoupled, chain: Chain, theta: Out3, sound: OutBool2) -> None:
     """All solutions theta (m, 8, n) in (-pi, pi] of poses T_MT (m, 4, 4), and whether they meet them, (m, 8)."""
     n = len(chain.sign)
-    room = (np.empty((3, 3)), np.empty((2, 2, n)), np.empty((n, 3)), np.empty((n + 1, 4, 4)))
+    room = (np.empty((3, 3)), np.empty((3, 2 * n)), np.empty((n, 3)), np.empty((n + 1, 4, 4)))
     for i in range(len(T_MT)):
         solve_all(T_MT[i], arm, chain, room, theta[i], sound[i])
 
