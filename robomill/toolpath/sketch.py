@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
@@ -190,12 +189,6 @@ class Sketch:
             at = [*outline[-1].tolist(), z]
         if at is not None:
             yield [at[0], at[1], self.clearance], 0.0, len(self.elements)
-
-
-def snap(points: ArrayLike, grid: float) -> FloatArray:
-    """Points (..., 2) m moved to the nearest node of a grid (m); as they are for a grid of 0."""
-    p = as_floats(points, "points", (2,), error=ToolpathError)
-    return np.asarray(np.round(p / grid) * grid) if grid > 0 else p
 
 
 def tidy(value: Any, unit: str) -> Any:

@@ -9,7 +9,7 @@ import pytest
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.gcode import CHORD_ERROR
-from robomill.toolpath.sketch import APPROACH, Element, Sketch, snap
+from robomill.toolpath.sketch import APPROACH, Element, Sketch
 
 
 def line(*points, depth=2e-3, v_f=0.03):
@@ -128,14 +128,6 @@ def test_settings_that_make_no_sense_are_refused(change, words):
 def test_an_empty_sketch_says_what_to_do():
     with pytest.raises(ToolpathError, match="empty: draw a line"):
         Sketch().toolpath()
-
-
-def test_snap_is_the_nearest_node_and_done_once():
-    p = np.random.default_rng(1).uniform(-1, 1, (50, 2))
-    q = snap(p, 5e-3)
-    assert np.abs(q - p).max() <= 2.5e-3 + 1e-12
-    np.testing.assert_allclose(snap(q, 5e-3), q, atol=1e-15)
-    np.testing.assert_array_equal(snap(p, 0.0), p)
 
 
 def test_values_are_frozen_and_drawing_settings_do_not_change_the_path():

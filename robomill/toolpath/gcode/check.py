@@ -2,26 +2,10 @@
 
 from __future__ import annotations
 
+from robomill.toolpath.gcode import words as modal
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import implied_motion, is_arc
-from robomill.toolpath.gcode.words import (
-    COMPENSATION,
-    CONTROL,
-    CYCLES,
-    DISTANCE,
-    IO,
-    LENGTH,
-    MOTION,
-    NEEDS_AXES,
-    NON_MODAL,
-    OVERRIDE,
-    SPINDLE,
-    SPINDLE_MODE,
-    TOOL,
-    USER,
-    Block,
-    g_name,
-)
+from robomill.toolpath.gcode.words import Block, g_name
 
 _AXES = "xyzabcuvw"
 _SPECIAL = frozenset("dehijklpqr")
@@ -40,8 +24,8 @@ def choose_motion(machine: Machine, block: Block) -> None:
         for letter in "xy":
             if letter in words:
                 raise block.refuse(f"polar coordinates and {letter.upper()} are on one line; give one of them.")
-    non_modal, motion = block.g.get(NON_MODAL, -1), block.g.get(MOTION, -1)
-    covets = non_modal in NEEDS_AXES
+    non_modal, motion = block.g.get(modal.NON_MODAL, -1), block.g.get(modal.MOTION, -1)
+    covets = non_modal in modal.NEEDS_AXES
     if covets and (polar or (not axes and non_modal in (520, 920))):
         raise block.refuse(f"{g_name(non_modal)} needs axis words such as X0.")
     if motion == 800:
@@ -56,11 +40,13 @@ def choose_motion(machine: Machine, block: Block) -> None:
             raise block.refuse(f"{g_name(motion)} needs axis words such as X0.")
     if motion >= 0:
         block.motion = motion
-    elif not covets and block.g.get(LENGTH) != 431:
+    elif not covets and block.g.get(modal.LENGTH) != 431:
         if (axes or polar) and machine.motion in (-1, 800):
             raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
         block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))
-    if non_modal == 530 and (block.g.get(DISTANCE) == 910 or (DISTANCE not in block.g and not machine.absolute)):
+    if non_modal == 530 and (
+        block.g.get(modal.DISTANCE) == 910 or (modal.DISTANCE not in block.g and not machine.absolute)
+    ):
         raise block.refuse("G53 needs absolute coordinates; use G90 first.")
     for letter in "uvw":
         if letter in words:
@@ -70,8 +56,8 @@ def choose_motion(machine: Machine, block: Block) -> None:
 def check_words(block: Block) -> list[tuple[str, str]]:
     """Words without a use, as (letter, who would use it). Raises GCodeError for senseless combinations."""
     words, motion = block.words, block.motion
-    non_modal = block.g.get(NON_MODAL, -1)
-    is_cycle = motion in CYCLES
+    non_modal = block.g.get(modal.NON_MODAL, -1)
+    is_cycle = motion in modal.CYCLES
     if non_modal == 40:
         if "p" not in words:
             raise block.refuse("G4 needs P, its dwell in seconds.")
@@ -90,7 +76,7 @@ def check_words(block: Block) -> list[tuple[str, str]]:
             raise block.refuse(f"{g_name(motion)} needs K, the distance per turn.")
         if "f" in words:
             raise block.refuse(f"{g_name(motion)} takes no F; K says the distance per turn.")
-    if block.g.get(SPINDLE_MODE) == 960 and "s" not in words:
+    if block.g.get(modal.SPINDLE_MODE) == 960 and "s" not in words:
         raise block.refuse("G96 needs S, the surface speed.")
     if words.keys().isdisjoint(_SPECIAL):
         return []
@@ -99,15 +85,15 @@ def check_words(block: Block) -> list[tuple[str, str]]:
 
 def _uses(block: Block) -> list[tuple[str, bool, str]]:
     motion, g, m = block.motion, block.g, block.m
-    non_modal, compensation = g.get(NON_MODAL, -1), g.get(COMPENSATION, -1)
+    non_modal, compensation = g.get(modal.NON_MODAL, -1), g.get(modal.COMPENSATION, -1)
     data = non_modal == 100
     arc, spline, thread = is_arc(motion), motion in (50, 51), motion == 760
-    cycle = motion in CYCLES
-    io, user, orient = m.get(IO, -1), USER in m, m.get(SPINDLE) == 19
+    cycle = motion in modal.CYCLES
+    io, user, orient = m.get(modal.IO, -1), modal.USER in m, m.get(modal.SPINDLE) == 19
     return [
-        ("d", compensation in _COMPENSATION_ON or g.get(SPINDLE_MODE) == 960, "G41, G42 or G96"),
+        ("d", compensation in _COMPENSATION_ON or g.get(modal.SPINDLE_MODE) == 960, "G41, G42 or G96"),
         ("e", thread or io in (66, 67, 68), "G76, M66, M67 or M68"),
-        ("h", g.get(LENGTH) in (430, 432) or thread, "G43"),
+        ("h", g.get(modal.LENGTH) in (430, 432) or thread, "G43"),
         ("i", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
         ("j", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
         ("k", arc or motion in (330, 331, 760, 870), "G2, G3, G33 or G87"),
@@ -116,12 +102,12 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
             "p",
             data
             or non_modal == 40
-            or g.get(CONTROL) == 640
+            or g.get(modal.CONTROL) == 640
             or arc
             or thread
             or motion in (50, 52)
             or motion in (740, 820, 840, 860, 880, 890)
-            or OVERRIDE in m
+            or modal.OVERRIDE in m
             or io in range(62, 67)
             or orient
             or user,
@@ -131,8 +117,8 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
             "q",
             motion in (730, 830, 50, 760)
             or data
-            or m.get(TOOL) == 61
-            or g.get(CONTROL) == 640
+            or m.get(modal.TOOL) == 61
+            or g.get(modal.CONTROL) == 640
             or io in (66, 67, 68)
             or orient
             or user,

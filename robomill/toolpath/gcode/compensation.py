@@ -175,7 +175,7 @@ class Compensation:
         if self.programmed is None:
             self._enter_straight(machine, block, full, u, v, w)
             return
-        pu, pv, pw = self.programmed
+        pu, pv, _ = self.programmed
         cu, cv, cw = self.current(machine)
         if u == pu and v == pv:
             self._hold(machine, block, (cu, cv, w), full)

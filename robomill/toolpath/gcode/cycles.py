@@ -96,8 +96,7 @@ def _check(machine: Machine, block: Block, name: str, same: bool) -> None:
         raise block.refuse(f"{name} needs a feed rate; give an F word above 0 first.")
     if machine.feed_mode == 930:
         raise block.refuse(f"{name} cannot be used in inverse time mode (G93); use G94 first.")
-    if machine.compensation is not None:
-        raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
+    machine.need_compensation_off(block, name)
     axis = "XYZ"[axes(machine.plane)[2]]
     if "r" not in words and not (same and "r" in kept):
         raise block.refuse(f"{name} needs R, its clearance plane.")

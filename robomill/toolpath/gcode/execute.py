@@ -6,68 +6,43 @@ import math
 from typing import Any
 
 from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
+from robomill.toolpath.gcode import words as modal
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import set_rates
 from robomill.toolpath.gcode.tools import Tool
-from robomill.toolpath.gcode.words import (
-    ARC_DISTANCE,
-    COMPENSATION,
-    CONTROL,
-    COOLANT,
-    COORDINATES,
-    CYCLES,
-    DIAMETER,
-    DISTANCE,
-    FEED_MODE,
-    IO,
-    LENGTH,
-    NON_MODAL,
-    OVERRIDE,
-    PLANE,
-    PROBES,
-    RETRACT,
-    SPINDLE,
-    SPINDLE_MODE,
-    STOP,
-    TOOL,
-    UNITS,
-    USER,
-    Block,
-    g_name,
-)
+from robomill.toolpath.gcode.words import Block, g_name
 
 _DIRECTIONS = {3: 1, 4: -1, 5: 0, 19: 0}
-_CLOSED = "with cutter compensation on; use G40 first."
 
 
 def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     """Execute a checked line; True if the program ends here. ``saved`` is where M70 keeps the modes."""
     words, g = block.words, block.g
-    if SPINDLE_MODE in g:
-        machine.spindle_mode = g[SPINDLE_MODE]
-        if g[SPINDLE_MODE] == 960:
+    if modal.SPINDLE_MODE in g:
+        machine.spindle_mode = g[modal.SPINDLE_MODE]
+        if g[modal.SPINDLE_MODE] == 960:
             machine.findings.add(
                 "surface-speed", "warning", block.line, "G96: the spindle speed follows the diameter and is not known"
             )
-    if FEED_MODE in g:
-        machine.feed_mode = g[FEED_MODE]
+    if modal.FEED_MODE in g:
+        machine.feed_mode = g[modal.FEED_MODE]
         if machine.feed_mode != 930:
             machine.feed = 0.0
     if "f" in words or "s" in words:
         set_rates(machine, moves.plain_words(block))
-    if "f" in words and machine.feed_mode != 930 and g.get(UNITS, machine.unit_code) != machine.unit_code:
+    if "f" in words and machine.feed_mode != 930 and g.get(modal.UNITS, machine.unit_code) != machine.unit_code:
         machine.findings.add(
             "feed-units",
             "suspicious",
             block.line,
-            f"F and {g_name(g[UNITS])} on one line: F counts in the units before it",
+            f"F and {g_name(g[modal.UNITS])} on one line: F counts in the units before it",
         )
     if "t" in words:
         offsets.known_tool(machine, block, round(words["t"]))
         machine.selected = round(words["t"])
     _execute_m(machine, block, saved)
     _execute_g(machine, block)
-    if TOOL in block.m or block.m.get(IO) == 66:
+    if modal.TOOL in block.m or block.m.get(modal.IO) == 66:
         if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
             machine.findings.add(
                 "position-after-tool",
@@ -76,17 +51,17 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
                 "after the tool change, axes without a word go on from the last straight move",
             )
         machine.p = list(machine.sent)
-    return STOP in block.m and _stop(machine, block)
+    return modal.STOP in block.m and _stop(machine, block)
 
 
 def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     m = block.m
-    if IO in m:
-        machine.findings.add("input-output", "ignored", block.line, f"M{m[IO]}: inputs and outputs are left out")
+    if modal.IO in m:
+        machine.findings.add("input-output", "ignored", block.line, f"M{m[modal.IO]}: inputs and outputs are left out")
         machine.store.numbered[5399] = -1.0
-    if TOOL in m:
+    if modal.TOOL in m:
         _change_tool(machine, block)
-    spindle = m.get(SPINDLE, -1)
+    spindle = m.get(modal.SPINDLE, -1)
     if spindle in _DIRECTIONS:
         machine.spindle = _DIRECTIONS[spindle]
     elif spindle in (70, 73):
@@ -98,16 +73,16 @@ def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
         if not saved:
             raise block.refuse("M72 has nothing to restore; M70 or M73 comes first.")
         restore_modes(machine, block, saved)
-    coolant = m.get(COOLANT, -1)
+    coolant = m.get(modal.COOLANT, -1)
     if coolant == 9:
         machine.mist = machine.flood = False
     elif coolant >= 0:
         machine.mist, machine.flood = machine.mist or coolant == 7, machine.flood or coolant == 8
-    if OVERRIDE in m and machine.compensation is not None:
-        raise block.refuse(f"M{m[OVERRIDE]} cannot be used {_CLOSED}")
-    if USER in m:
+    if modal.OVERRIDE in m:
+        machine.need_compensation_off(block, f"M{m[modal.OVERRIDE]}")
+    if modal.USER in m:
         machine.findings.add(
-            "user-m", "ignored", block.line, f"M{m[USER]} is made by the user of a machine and is left out"
+            "user-m", "ignored", block.line, f"M{m[modal.USER]} is made by the user of a machine and is left out"
         )
 
 
@@ -124,7 +99,7 @@ def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None
 
 
 def _change_tool(machine: Machine, block: Block) -> None:
-    if block.m[TOOL] == 61:
+    if block.m[modal.TOOL] == 61:
         number = round(block.words.get("q", -1.0))
         if number < 0:
             raise block.refuse("M61 needs Q, a tool number of 0 or more.")
@@ -133,8 +108,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
             machine.findings.add(
                 "no-tool", "warning", block.line, "M6 without a tool selected by T: no tool is in the spindle"
             )
-        if machine.compensation is not None:
-            raise block.refuse(f"M6 cannot be used {_CLOSED}")
+        machine.need_compensation_off(block, "M6")
         number = machine.selected
         machine.spindle = 0
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
@@ -143,38 +117,38 @@ def _change_tool(machine: Machine, block: Block) -> None:
 
 def _execute_g(machine: Machine, block: Block) -> None:
     g = block.g
-    if g.get(NON_MODAL) == 40:
+    if g.get(modal.NON_MODAL) == 40:
         machine.dwell(block.words["p"])
-    if PLANE in g:
-        _set_plane(machine, block, g[PLANE])
-    if UNITS in g:
-        machine.set_units(g[UNITS])
-    if DIAMETER in g:
-        diameter = g[DIAMETER] == 70
+    if modal.PLANE in g:
+        _set_plane(machine, block, g[modal.PLANE])
+    if modal.UNITS in g:
+        machine.set_units(g[modal.UNITS])
+    if modal.DIAMETER in g:
+        diameter = g[modal.DIAMETER] == 70
         if diameter != machine.diameter_mode and "x" in block.words:
             block.words["x"] *= 0.5 if diameter else 2.0
         machine.diameter_mode = diameter
-    if COMPENSATION in g:
-        if g[COMPENSATION] == 400:
+    if modal.COMPENSATION in g:
+        if g[modal.COMPENSATION] == 400:
             if machine.compensation is not None:
                 machine.compensation.off(machine, block)
         else:
             offsets.compensation_on(machine, block)
-    if LENGTH in g:
-        offsets.tool_length(machine, block, g[LENGTH])
-    if COORDINATES in g:
-        offsets.select_system(machine, block, g[COORDINATES])
-    for group in (CONTROL, RETRACT):
-        if group in g and machine.compensation is not None:
-            raise block.refuse(f"{g_name(g[group])} cannot be used {_CLOSED}")
-    if DISTANCE in g:
-        machine.absolute = g[DISTANCE] == 900
-    if ARC_DISTANCE in g:
-        machine.arc_absolute = g[ARC_DISTANCE] == 901
-    if RETRACT in g:
-        machine.retract_r = g[RETRACT] == 990
-    if NON_MODAL in g:
-        _non_modal(machine, block, g[NON_MODAL])
+    if modal.LENGTH in g:
+        offsets.tool_length(machine, block, g[modal.LENGTH])
+    if modal.COORDINATES in g:
+        offsets.select_system(machine, block, g[modal.COORDINATES])
+    for group in (modal.CONTROL, modal.RETRACT):
+        if group in g:
+            machine.need_compensation_off(block, g_name(g[group]))
+    if modal.DISTANCE in g:
+        machine.absolute = g[modal.DISTANCE] == 900
+    if modal.ARC_DISTANCE in g:
+        machine.arc_absolute = g[modal.ARC_DISTANCE] == 901
+    if modal.RETRACT in g:
+        machine.retract_r = g[modal.RETRACT] == 990
+    if modal.NON_MODAL in g:
+        _non_modal(machine, block, g[modal.NON_MODAL])
     if block.motion >= 0:
         _move(machine, block)
 
@@ -183,7 +157,7 @@ def _set_plane(machine: Machine, block: Block, code: int) -> None:
     if code % 10:
         raise block.refuse(f"{g_name(code)}: this machine has no U, V, W axes; use G17, G18 or G19.")
     if machine.compensation is not None and code != 10 * machine.plane:
-        raise block.refuse(f"{g_name(code)} cannot change the plane {_CLOSED}")
+        raise block.refuse(f"{g_name(code)} cannot change the plane with cutter compensation on; use G40 first.")
     machine.plane = code // 10
 
 
@@ -202,7 +176,7 @@ def _non_modal(machine: Machine, block: Block, code: int) -> None:
 
 def _move(machine: Machine, block: Block) -> None:
     code = block.motion
-    if code not in CYCLES:
+    if code not in modal.CYCLES:
         machine.initial_level = math.nan
     if code in (0, 10, 20, 30):
         moves.move(machine, block)
@@ -210,9 +184,9 @@ def _move(machine: Machine, block: Block) -> None:
         moves.in_step(machine, block)
     elif code == 800:
         machine.motion = 800
-    elif code in CYCLES:
+    elif code in modal.CYCLES:
         cycles.cycle(machine, block)
-    elif code in PROBES:
+    elif code in modal.PROBES:
         _probe(machine, block)
     elif code in (50, 51, 52):
         splines.spline(machine, block)
@@ -223,8 +197,7 @@ def _move(machine: Machine, block: Block) -> None:
 
 
 def _probe(machine: Machine, block: Block) -> None:
-    if machine.compensation is not None:
-        raise block.refuse(f"{g_name(block.motion)} cannot be used {_CLOSED}")
+    machine.need_compensation_off(block, g_name(block.motion))
     if machine.feed == 0.0:
         raise block.refuse(f"{g_name(block.motion)} needs a feed rate; give an F word above 0 first.")
     if machine.feed_mode == 950:
@@ -243,4 +216,4 @@ def _probe(machine: Machine, block: Block) -> None:
 def _stop(machine: Machine, block: Block) -> bool:
     if machine.compensation is not None:
         machine.compensation.finish(machine, block)
-    return block.m[STOP] in (2, 30)
+    return block.m[modal.STOP] in (2, 30)

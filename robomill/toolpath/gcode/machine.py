@@ -15,6 +15,7 @@ from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, 
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.tools import Tool, ToolTable
+from robomill.toolpath.gcode.words import Block
 from robomill.units import from_si, to_si
 
 UNITS = {200: "in", 210: "mm"}
@@ -107,6 +108,11 @@ class Machine:
     def from_user(self, length: float) -> float:
         """A stored parameter (mm) in program units."""
         return from_si(to_si(length, "mm"), self.unit)
+
+    def need_compensation_off(self, block: Block, name: str) -> None:
+        """Refuse what cannot be done while cutter compensation is on."""
+        if self.compensation is not None:
+            raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
 
     # --- moves
     def go(self, kind: int, line: int, end: list[float], v_f: float | None = None) -> None:

@@ -126,7 +126,7 @@ def move(machine: Machine, block: Block) -> None:
         if block.motion == rules.LINE:
             rules.inverse_time(machine, words, rules.straight_length(machine.p, end))
         if block.g.get(NON_MODAL) == 530:
-            raise block.refuse("G53 cannot be used with cutter compensation on; use G40 first.")
+            machine.need_compensation_off(block, "G53")
         compensation.straight(machine, block, end)
         return
     row = Move(block.line)
@@ -149,9 +149,7 @@ def in_step(machine: Machine, block: Block) -> None:
     machine.motion = block.motion
     end = find_end(machine, block)
     if machine.compensation is not None and machine.compensation.radius > 0:
-        if block.g.get(NON_MODAL) == 530:
-            raise block.refuse("G53 cannot be used with cutter compensation on; use G40 first.")
-        raise block.refuse("G33 cannot be used with cutter compensation on; use G40 first.")
+        machine.need_compensation_off(block, "G53" if block.g.get(NON_MODAL) == 530 else "G33")
     if machine.spindle == 0:
         raise block.refuse("G33 needs a turning spindle; start it with M3 or M4.")
     pitch_speed = abs(block.words["k"]) * machine.factor * rules.spindle_speed(machine)
@@ -162,8 +160,7 @@ def in_step(machine: Machine, block: Block) -> None:
 
 def home(machine: Machine, block: Block, code: int) -> None:
     """G28 and G30: by way of the point on the line to the stored point, which is 5161... or 5181... (mm)."""
-    if machine.compensation is not None:
-        raise block.refuse(f"G{code // 10} cannot be used with cutter compensation on; use G40 first.")
+    machine.need_compensation_off(block, f"G{code // 10}")
     end = find_end(machine, block)
     machine.traverse(block.line, end)
     stored = 5161 if code == 280 else 5181

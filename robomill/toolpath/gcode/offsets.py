@@ -42,8 +42,7 @@ def _in_system(machine: Machine, absolute: list[float], origin: list[float], rot
 
 def select_system(machine: Machine, block: Block, code: int) -> None:
     """G54 to G59.3."""
-    if machine.compensation is not None:
-        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    machine.need_compensation_off(block, g_name(code))
     system = SYSTEMS[code]
     if system == machine.system:
         return
@@ -56,8 +55,7 @@ def select_system(machine: Machine, block: Block, code: int) -> None:
 
 def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     """G52 and the G92 family."""
-    if machine.compensation is not None:
-        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    machine.need_compensation_off(block, g_name(code))
     numbered = machine.store.numbered
     if code in (520, 920):
         numbered[5210] = 1.0
@@ -184,8 +182,7 @@ class _Assumed(dict[int, Tool]):
 
 def tool_length(machine: Machine, block: Block, code: int) -> None:
     """G43, G43.1, G43.2 and G49."""
-    if machine.compensation is not None:
-        raise block.refuse(f"{g_name(code)} cannot be used {_CORNER_OFF}")
+    machine.need_compensation_off(block, g_name(code))
     if code == 490:
         machine.set_length_offset([0.0, 0.0, 0.0])
         return

@@ -18,8 +18,7 @@ MAX_CONTROL_POINTS = 2000
 def spline(machine: Machine, block: Block) -> None:
     """G5 (cubic: I J leave, P Q arrive), G5.1 (quadratic: I J) and G5.2 (a control point with weight P)."""
     name = f"G5.{block.motion % 10}" if block.motion % 10 else "G5"
-    if machine.compensation is not None:
-        raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
+    machine.need_compensation_off(block, name)
     need_feed(machine, block, name)
     if machine.plane != 17:
         raise block.refuse(f"{name} works in the plane G17 only.")

@@ -12,7 +12,7 @@ Status = Literal["read", "ignored", "refused"]
 class Support:
     """A row: the words, what they mean, and an ``example`` (in mm) that ends at ``end`` after ``moves`` moves.
 
-    Refused rows say which words the refusal has (``says``); ``tools`` tells that the example needs a tool table.
+    ``tools`` tells that the example needs a tool table.
     """
 
     words: str
@@ -21,7 +21,6 @@ class Support:
     example: str
     end: tuple[float, float, float] = (0.0, 0.0, 0.0)
     moves: int = 0
-    says: str = ""
     dialect: str = "linuxcnc"
     tools: bool = False
 
@@ -126,15 +125,13 @@ SUPPORT: tuple[Support, ...] = (
         (3, 0, 0),
         1,
     ),
-    Support("M62 to M68", "inputs and outputs", "ignored", "M64 P1\nG0 X1", (1, 0, 0), 1, says="inputs and outputs"),
-    Support(
-        "M100 to M199", "M codes that users of a machine make", "ignored", "M101\nG0 X1", (1, 0, 0), 1, says="M101"
-    ),
-    Support("other M codes", "counted", "ignored", "M36\nG0 X1", (1, 0, 0), 1, says="M36"),
-    Support("other G codes", "they may move the machine", "refused", "G12.1 X1", says="may move"),
-    Support("G70 to G72", "lathe roughing", "refused", "G71 Q100 X5 Z5 D1", says="may move"),
-    Support("U V W, G17.1", "axes that the machine lacks", "refused", "G0 U1", says="no U axis"),
-    Support("G68", "rotation on Fanuc machines", "refused", "G68 X0 Y0 R45", says="may move", dialect="fanuc"),
+    Support("M62 to M68", "inputs and outputs", "ignored", "M64 P1\nG0 X1", (1, 0, 0), 1),
+    Support("M100 to M199", "M codes that users of a machine make", "ignored", "M101\nG0 X1", (1, 0, 0), 1),
+    Support("other M codes", "counted", "ignored", "M36\nG0 X1", (1, 0, 0), 1),
+    Support("other G codes", "they may move the machine", "refused", "G12.1 X1"),
+    Support("G70 to G72", "lathe roughing", "refused", "G71 Q100 X5 Z5 D1"),
+    Support("U V W, G17.1", "axes that the machine lacks", "refused", "G0 U1"),
+    Support("G68", "rotation on Fanuc machines", "refused", "G68 X0 Y0 R45", dialect="fanuc"),
     _row(
         "CR= X= G70 G71 MSG",
         "basics of Sinumerik",
@@ -144,7 +141,7 @@ SUPPORT: tuple[Support, ...] = (
         dialect="sinumerik",
     ),
     _row("$ lines", "settings of grbl are left out", "$10=1\nG0 X1", (1, 0, 0), 1, dialect="grbl"),
-    Support("$H $J", "grbl's own motion", "refused", "$H\nG0 X1", says="moves the machine", dialect="grbl"),
+    Support("$H $J", "grbl's own motion", "refused", "$H\nG0 X1", dialect="grbl"),
 )
 """The table: what a page shows, and what the tests run."""
 

@@ -61,8 +61,7 @@ def thread(machine: Machine, block: Block) -> None:
     for letter in "pijk":
         if letter not in words:
             raise block.refuse(f"G76 needs {letter.upper()}.")
-    if machine.compensation is not None:
-        raise block.refuse("G76 cannot be used with cutter compensation on; use G40 first.")
+    machine.need_compensation_off(block, "G76")
     if machine.spindle == 0:
         raise block.refuse("G76 needs a turning spindle; start it with M3 or M4.")
     if words["i"] == 0 or words["j"] <= 0 or words["k"] <= words["j"]:

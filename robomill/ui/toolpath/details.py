@@ -175,7 +175,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
 
 def support_table() -> None:
     """Which words are read, left out or refused; every row has its test."""
-    from robomill.toolpath.gcode.support import SUPPORT
+    from robomill.toolpath.gcode.support import DIFFERENCES, SUPPORT
 
     said = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
     with st.expander("What is supported", icon=":material/fact_check:"):
@@ -198,4 +198,5 @@ def support_table() -> None:
                 "dialect": st.column_config.TextColumn(width=80),
             },
         )
+        st.caption("Where reading differs from LinuxCNC: " + " ".join(DIFFERENCES))
         parts.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")
