@@ -44,10 +44,9 @@ def ellipsoid_traces(
     *,
     dark: bool,
     width: float,
-    word: str = "softest",
     away: FloatArray | None = None,
 ) -> list[Any]:
-    """The ellipsoid, half transparent, and its soft direction as a line through the tip with its word.
+    """The ellipsoid, half transparent, and its soft direction as a line through the tip with a word.
 
     The word stands at the end that points away from ``away`` (3,), so that it does not cover an arrow there.
     """
@@ -66,5 +65,5 @@ def ellipsoid_traces(
             p.caution,
             "soft direction",
         ),
-        solids.word(end, word, p.caution),
+        solids.word(end, "softest", p.caution),
     ]

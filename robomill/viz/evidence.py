@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.units import format_value
-from robomill.viz.theme import axis, figure, palette, rgba
+from robomill.viz.theme import axis, figure, palette, rgba, say
 
 COLOURS = {
     "paper": "#2F7FD0",
@@ -34,63 +34,16 @@ class Claim:
 
 def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: int = 0) -> go.Figure:
     """Each claim a row: a dot with its number, a bar for its range."""
-    p = palette(dark)
-    rows = len(claims)
-    fig = figure(
-        dark=dark, height=height or 70 + 46 * rows, revision="evidence", margin={"l": 8, "r": 24, "t": 8, "b": 8}
-    )
-    digits = 3 if unit == "mm" else 4
+    p, rows = palette(dark), len(claims)
+    margin = {"l": 8, "r": 24, "t": 8, "b": 8}
+    fig = figure(dark=dark, height=height or 70 + 46 * rows, revision="evidence", margin=margin)
     measured = [c.value for c in claims if c.kind == "measured" and np.isfinite(c.value)]
     for value in measured[:1]:
         fig.add_vline(x=value, line={"color": COLOURS["measured"], "width": 1.2, "dash": "dash"})
     for i, claim in enumerate(claims):
-        y = rows - 1 - i
-        colour = COLOURS.get(claim.kind, p.muted)
-        band = np.isfinite(claim.low) and np.isfinite(claim.high)
-        if band:
-            fig.add_scatter(
-                x=[claim.low, claim.high],
-                y=[y, y],
-                mode="lines",
-                line={"color": colour, "width": 9},
-                opacity=0.35,
-                hovertemplate=f"{format_value(claim.low, unit, digits)} to {format_value(claim.high, unit, digits)}"
-                "<extra></extra>",
-            )
-        fig.add_scatter(
-            x=[claim.value],
-            y=[y],
-            mode="markers",
-            cliponaxis=False,
-            marker={
-                "size": 13,
-                "color": colour,
-                "line": {"width": 1.5, "color": p.background},
-                "symbol": "diamond" if claim.kind == "measured" else "circle",
-            },
-            hovertemplate=f"{claim.label}: {format_value(claim.value, unit, digits)}<br>{claim.kind}. {claim.note}"
-            "<extra></extra>",
-        )
-        about = "about " if claim.note.startswith("about") else ""
-        shown = 2 if claim.kind != "computed" and unit == "mm" else digits
-        text = f"<b>{about}{format_value(claim.value, unit, shown)}</b>"
-        if band:
-            ends = [
-                format_value(v, unit, 2 if unit == "mm" else digits, with_unit=False) for v in (claim.low, claim.high)
-            ]
-            text += f"  ({ends[0]} to {ends[1]})"
-        fig.add_annotation(
-            x=claim.value,
-            y=y,
-            text=text,
-            showarrow=False,
-            yshift=17,
-            font={"size": 12.5, "color": p.text},
-            bgcolor=rgba(p.background, 0.8),
-            borderpad=1,
-        )
-    known = [v for c in claims for v in (c.value, c.low, c.high) if np.isfinite(v)]
-    top = max([*known, 1e-9])
+        _row(fig, claim, rows - 1 - i, unit, dark)
+    top = max([*(v for c in claims for v in (c.value, c.low, c.high) if np.isfinite(v)), 1e-9])
+    kinds = [f"<span style='color:{COLOURS.get(c.kind, p.muted)}'>{c.kind}</span>" for c in claims]
     fig.update_layout(
         showlegend=False,
         xaxis=axis(f"Sideways error of the groove, {unit}", dark=dark, range=[0.0, 1.12 * top], rangemode="tozero"),
@@ -99,12 +52,34 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
             "range": [-0.6, rows - 0.25],
             "showgrid": False,
             "zeroline": False,
-            "ticktext": [
-                f"{c.label}  <span style='color:{COLOURS.get(c.kind, p.muted)}'>{c.kind}</span>"
-                for c in reversed(claims)
-            ],
+            "ticktext": [f"{c.label}  {kind}" for c, kind in zip(claims, kinds, strict=True)][::-1],
             "tickfont": {"size": 13, "color": p.text},
             "automargin": True,
         },
     )
     return fig
+
+
+def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
+    p = palette(dark)
+    colour = COLOURS.get(claim.kind, p.muted)
+    digits, short = (3, 2) if unit == "mm" else (4, 4)
+    value = format_value(claim.value, unit, digits)
+    about = "about " if claim.note.startswith("about") else ""
+    text = f"<b>{about}{value if claim.kind == 'computed' else format_value(claim.value, unit, short)}</b>"
+    if np.isfinite(claim.low) and np.isfinite(claim.high):
+        ends = [format_value(v, unit, short, with_unit=False) for v in (claim.low, claim.high)]
+        text += f"  ({ends[0]} to {ends[1]})"
+        hover = f"{format_value(claim.low, unit, digits)} to {format_value(claim.high, unit, digits)}<extra></extra>"
+        bar = {"mode": "lines", "line": {"color": colour, "width": 9}, "opacity": 0.35, "hovertemplate": hover}
+        fig.add_scatter(x=[claim.low, claim.high], y=[y, y], **bar)
+    symbol = "diamond" if claim.kind == "measured" else "circle"
+    fig.add_scatter(
+        x=[claim.value],
+        y=[y],
+        mode="markers",
+        cliponaxis=False,
+        marker={"size": 13, "color": colour, "line": {"width": 1.5, "color": p.background}, "symbol": symbol},
+        hovertemplate=f"{claim.label}: {value}<br>{claim.kind}. {claim.note}<extra></extra>",
+    )
+    say(fig, text, claim.value, y, p.text, size=12.5, yshift=17, bgcolor=rgba(p.background, 0.8), borderpad=1)

@@ -13,7 +13,7 @@ import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.units import format_number
-from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba
+from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba, say
 
 MAX_TESTS = 3000
 REFERENCE_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open", "circle-open")
@@ -40,79 +40,18 @@ class Intervals:
 
 def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
     """Each parameter as a point on its 95 % interval, the numbers written at the right."""
-    p = palette(dark)
     low, high = _clipped(shown)
     compared = bool(shown.references) or shown.truth is not None
-    top = 34 if compared else 8
+    top, y = 34 if compared else 8, np.arange(len(shown.labels))
     fig = figure(
         dark=dark,
-        height=50 + top + _ROW * len(shown.labels),
+        height=50 + top + _ROW * len(y),
         revision=f"intervals-{shown.unit}",
         margin={"l": 8, "r": 156, "t": top, "b": 8},
         showlegend=compared,
     )
-    colours = joint_colours(7, dark)
-    y = np.arange(len(shown.labels))
-    for k in y:
-        if not np.isfinite(shown.value[k]):
-            fig.add_annotation(
-                x=0.02,
-                xref="paper",
-                y=k,
-                xanchor="left",
-                text=shown.words[k],
-                showarrow=False,
-                font={"size": 12.5, "color": p.muted},
-            )
-            continue
-        fig.add_scatter(
-            x=[low[k], high[k]],
-            y=[k, k],
-            mode="lines",
-            showlegend=False,
-            hoverinfo="skip",
-            line={"color": rgba(colours[k % 7], 0.42), "width": 11},
-        )
-    known = np.isfinite(shown.value)
-    fig.add_scatter(
-        x=np.clip(shown.value[known], low[known], None),
-        y=y[known],
-        mode="markers",
-        name="fitted, with its 95 % interval",
-        marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
-        text=[shown.words[k] for k in y[known]],
-        hovertemplate="%{text}<extra></extra>",
-    )
-    for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
-        fig.add_scatter(
-            x=values,
-            y=y - 0.3,
-            mode="markers",
-            name=name,
-            marker={"size": 9, "symbol": symbol, "color": p.text, "line": {"width": 1.6}},
-            hovertemplate=f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>",
-        )
-    if shown.truth is not None:
-        fig.add_scatter(
-            x=shown.truth,
-            y=y,
-            mode="markers",
-            name="truth",
-            hovertemplate="truth: %{x:.2f}<extra></extra>",
-            marker={"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": p.text}},
-        )
-    for k in y[known]:
-        fig.add_annotation(
-            x=1.0,
-            xref="paper",
-            xshift=8,
-            y=k,
-            xanchor="left",
-            align="left",
-            text=shown.words[k],
-            showarrow=False,
-            font={"size": 12.5, "color": p.text},
-        )
+    _fitted(fig, shown, low, high, dark)
+    _compared(fig, shown, dark)
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
     fig.update_layout(
         xaxis=axis(shown.unit, dark=dark, **more),
@@ -127,6 +66,42 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
         ),
     )
     return fig
+
+
+def _fitted(fig: go.Figure, shown: Intervals, low: FloatArray, high: FloatArray, dark: bool) -> None:
+    """Bars, points and numbers; words instead where a value is not known."""
+    p, colours = palette(dark), joint_colours(7, dark)
+    y, known = np.arange(len(shown.labels)), np.isfinite(shown.value)
+    for k in y:
+        if known[k]:
+            line = {"color": rgba(colours[k % 7], 0.42), "width": 11}
+            fig.add_scatter(x=[low[k], high[k]], y=[k, k], mode="lines", line=line, showlegend=False, hoverinfo="skip")
+            place = {"xshift": 8, "align": "left"}
+            say(fig, shown.words[k], 1.0, float(k), p.text, size=12.5, xref="paper", xanchor="left", **place)
+        else:
+            say(fig, shown.words[k], 0.02, float(k), p.muted, size=12.5, xref="paper", xanchor="left")
+    fig.add_scatter(
+        x=np.clip(shown.value[known], low[known], None),
+        y=y[known],
+        mode="markers",
+        name="fitted, with its 95 % interval",
+        marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
+        text=[shown.words[k] for k in y[known]],
+        hovertemplate="%{text}<extra></extra>",
+    )
+
+
+def _compared(fig: go.Figure, shown: Intervals, dark: bool) -> None:
+    """Reference sets as open symbols above their rows, the truth as crosses."""
+    colour, y = palette(dark).text, np.arange(len(shown.labels))
+    for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
+        marker = {"size": 9, "symbol": symbol, "color": colour, "line": {"width": 1.6}}
+        hover = f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>"
+        fig.add_scatter(x=values, y=y - 0.3, mode="markers", name=name, marker=marker, hovertemplate=hover)
+    if shown.truth is not None:
+        marker = {"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": colour}}
+        hover = "truth: %{x:.2f}<extra></extra>"
+        fig.add_scatter(x=shown.truth, y=y, mode="markers", name="truth", marker=marker, hovertemplate=hover)
 
 
 def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool, height: int = 330) -> go.Figure:

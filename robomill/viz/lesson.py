@@ -10,20 +10,17 @@ from robomill.viz.theme import axis, figure, palette
 
 def ray_figure(
     radius: FloatArray,
-    det: FloatArray,
-    soft: FloatArray,
     here: int,
-    radius_title: str,
-    det_title: str,
-    soft_title: str,
+    titles: tuple[str, str, str],
+    curves: tuple[FloatArray, FloatArray],
     *,
     dark: bool,
     height: int = 250,
 ) -> go.Figure:
-    """det (m,) above and the softest compliance (m,) below against radius (m,), with a mark at index ``here``."""
+    """Two curves (m,), one above the other, against radius (m,), marked at ``here``; titles of radius and curves."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision="ray", showlegend=False, margin={"l": 8, "r": 8, "t": 8, "b": 8})
-    for values, colour, suffix, title in ((det, p.accent, "", det_title), (soft, p.caution, "2", soft_title)):
+    for values, colour, suffix, title in zip(curves, (p.accent, p.caution), ("", "2"), titles[1:], strict=True):
         fig.add_scatter(
             x=radius,
             y=values,
@@ -47,7 +44,7 @@ def ray_figure(
         fig.update_layout(
             {
                 f"xaxis{suffix}": axis(
-                    "" if top else radius_title, dark=dark, anchor=f"y{suffix}", nticks=5, showticklabels=not top
+                    "" if top else titles[0], dark=dark, anchor=f"y{suffix}", nticks=5, showticklabels=not top
                 ),
                 f"yaxis{suffix}": axis(title, dark=dark, anchor=f"x{suffix}", domain=domain, nticks=4),
             }

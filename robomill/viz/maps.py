@@ -50,6 +50,21 @@ class Scale:
             return values
         return np.where(np.isfinite(values), np.searchsorted(self.joints, np.nan_to_num(values)), np.nan)
 
+    def colours(self, dark: bool) -> dict[str, Any]:
+        """Colour scale and its ends, as plotly takes them."""
+        if self.kind == "joints":
+            count = len(self.joints)
+            colours = joint_colours(count, dark)
+            steps = [[(i + side) / count, colours[i]] for i in range(count) for side in (0, 1)]
+            return {"colorscale": steps, "cmin": -0.5, "cmax": count - 0.5}
+        if self.kind == "reach":
+            return {"colorscale": [[0, palette(dark).panel], [1, palette(dark).accent]], "cmin": 0, "cmax": 1}
+        if self.kind == "diverging":
+            top = max(abs(self.low), abs(self.high)) or 1.0
+            return {"colorscale": diverging(dark), "cmin": -top, "cmax": top}
+        high = self.high if self.high > self.low else self.low + 1e-9
+        return {"colorscale": SEQUENTIAL, "cmin": self.low, "cmax": high}
+
 
 @dataclass(frozen=True, eq=False)
 class Map:
@@ -117,10 +132,10 @@ def sheet_figure(
         for c, panel in enumerate(row):
             if panel is None:
                 continue
-            place = ((c * (width + gap_x), min(c * (width + gap_x) + width, 1.0)), (y0, min(y1, 1.0)))
-            titled = (r == n_rows - 1 or _below_empty(sheet, r, c), c == 0 or not any(row[:c]))
+            x0, lowest = c * (width + gap_x), r == n_rows - 1 or _below_empty(sheet, r, c)
+            place = (x0, min(x0 + width, 1.0), lowest), (y0, min(y1, 1.0), c == 0 or not any(row[:c]))
             data += _traces(sheet, panel, index, used, dark)
-            _decorate(layout, sheet, panel, index, place, titled, dark)
+            _decorate(layout, sheet, panel, index, place, dark)
             index += 1
     return unchecked(data, layout)
 
@@ -153,19 +168,8 @@ def _colour_axis(sheet: MapSheet, name: str, used: list[str], beside: bool, dark
     if beside:
         bar["xpad"] += RIGHT * place
     if scale.kind == "joints":
-        count = len(scale.joints)
-        colours = joint_colours(count, dark)
-        steps = [[(i + side) / count, colours[i]] for i in range(count) for side in (0, 1)]
-        bar.update(tickvals=list(range(count)), ticktext=[f"joint {j}" for j in scale.joints])
-        return {"colorscale": steps, "cmin": -0.5, "cmax": count - 0.5, "colorbar": bar}
-    if scale.kind == "reach":
-        p = palette(dark)
-        return {"colorscale": [[0, p.panel], [1, p.accent]], "cmin": 0, "cmax": 1, "showscale": False}
-    if scale.kind == "diverging":
-        top = max(abs(scale.low), abs(scale.high)) or 1.0
-        return {"colorscale": diverging(dark), "cmin": -top, "cmax": top, "colorbar": bar}
-    high = scale.high if scale.high > scale.low else scale.low + 1e-9
-    return {"colorscale": SEQUENTIAL, "cmin": scale.low, "cmax": high, "colorbar": bar}
+        bar.update(tickvals=list(range(len(scale.joints))), ticktext=[f"joint {j}" for j in scale.joints])
+    return {**scale.colours(dark), **({"showscale": False} if scale.kind == "reach" else {"colorbar": bar})}
 
 
 def _traces(sheet: MapSheet, panel: Map, index: int, used: list[str], dark: bool) -> list[dict[str, Any]]:
@@ -245,15 +249,13 @@ def _decorate(
     sheet: MapSheet,
     panel: Map,
     index: int,
-    place: tuple[tuple[float, float], tuple[float, float]],
-    titled: tuple[bool, bool],
+    place: tuple[tuple[float, float, bool], tuple[float, float, bool]],
     dark: bool,
 ) -> None:
-    """Axes, title and outline of one panel; ``titled`` says whether it is the lowest and the leftmost."""
+    """Axes, title and outline of one panel; ``place``: from, to and whether the axis is titled, across and upwards."""
     p = palette(dark)
     name = _number(index)
-    (x0, x1), (y0, y1) = place
-    lowest, leftmost = titled
+    (x0, x1, lowest), (y0, y1, leftmost) = place
     for letter, other, domain, points, shown, title in (
         ("x", "y", [x0, x1], sheet.u, lowest, sheet.u_title),
         ("y", "x", [y0, y1], sheet.v, leftmost, sheet.v_title),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,47 +12,48 @@ from robomill.arrays import FloatArray
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, palette, rgba
 
 
-def level_figure(
-    x: FloatArray,
-    y: FloatArray,
-    values: FloatArray,
-    points: FloatArray,
-    limits: tuple[float, float],
-    title: str,
-    unit: str,
-    *,
-    signed: bool,
-    length_unit: str,
-    dark: bool,
-    revision: str,
-    height: int = 340,
-) -> go.Figure:
+@dataclass(frozen=True, eq=False)
+class Level:
     """values (nx, ny) over x (nx,), y (ny,), everything in display units; NaN is masked and reads as not measured.
 
     points (k, 2): where it was measured, as dots; limits: the ends of the colour scale; signed: blue to orange.
     """
+
+    x: FloatArray
+    y: FloatArray
+    values: FloatArray
+    points: FloatArray
+    limits: tuple[float, float]
+    title: str
+    unit: str
+    length_unit: str
+    signed: bool = False
+
+
+def level_figure(level: Level, *, dark: bool, revision: str, height: int = 340) -> go.Figure:
+    """The level as a map with its measured points."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 8, "b": 8})
-    bar: dict[str, Any] = colour_bar(f"{title}, {unit}", dark=dark)
+    bar: dict[str, Any] = colour_bar(f"{level.title}, {level.unit}", dark=dark)
     # Within the paper, over a plot that leaves room for it: outside, plotly would shrink the plot.
     bar.update(
         {"orientation": "h", "x": 0.5, "xanchor": "center", "y": 0.86, "yanchor": "bottom", "len": 0.9, "ypad": 0}
     )
     bar["title"]["side"] = "top"
     fig.add_heatmap(
-        x=x,
-        y=y,
-        z=values.T,
-        zmin=limits[0],
-        zmax=limits[1],
-        colorscale=diverging(dark) if signed else SEQUENTIAL,
+        x=level.x,
+        y=level.y,
+        z=level.values.T,
+        zmin=level.limits[0],
+        zmax=level.limits[1],
+        colorscale=diverging(dark) if level.signed else SEQUENTIAL,
         colorbar=bar,
-        hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + unit + "<extra></extra>",
+        hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + level.unit + "<extra></extra>",
     )
-    if len(points):
+    if len(level.points):
         fig.add_scatter(
-            x=points[:, 0],
-            y=points[:, 1],
+            x=level.points[:, 0],
+            y=level.points[:, 1],
             mode="markers",
             showlegend=False,
             hoverinfo="skip",
@@ -59,8 +61,10 @@ def level_figure(
         )
     fig.update_layout(
         plot_bgcolor=rgba(p.muted, 0.16),
-        xaxis=axis(f"X<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(x)),
-        yaxis=axis(f"Y<sub>M</sub>, {length_unit}", dark=dark, showgrid=False, range=_span(y), domain=[0.0, 0.83]),
+        xaxis=axis(f"X<sub>M</sub>, {level.length_unit}", dark=dark, showgrid=False, range=_span(level.x)),
+        yaxis=axis(
+            f"Y<sub>M</sub>, {level.length_unit}", dark=dark, showgrid=False, range=_span(level.y), domain=[0.0, 0.83]
+        ),
     )
     return fig
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_value
-from robomill.viz.theme import axis, figure, palette, rgba
+from robomill.viz.theme import axis, figure, palette, rgba, say
+
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +40,7 @@ class SectionDrawing:
 
 def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, revision: str = "section") -> go.Figure:
     """The drawing, to one scale in both directions; the reader looks along the feed, left is left."""
-    p = palette(dark)
-    d = drawing
+    p, d = palette(dark), drawing
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 30, "b": 8})
     good = np.isfinite(d.machined)
     u, z = d.u[good], d.machined[good]
@@ -46,110 +48,56 @@ def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, re
         return fig
     step = max(d.depth, 0.12 * d.width, 1e-6) if np.isfinite(d.depth) else 1.0
     bottom = float(np.min(z)) - 0.9 * step
-    fig.add_scatter(
-        x=[u[0], *u, u[-1]],
-        y=[bottom, *z, bottom],
-        mode="none",
-        fill="toself",
-        name="material",
-        fillcolor=rgba(p.metal, 0.30),
-        hoverinfo="skip",
-        fillpattern={
-            "shape": "/",
-            "size": 9,
-            "solidity": 0.06,
-            "fgcolor": p.metal_edge,
-            "bgcolor": rgba(p.metal, 0.22),
-        },
-    )
-    fig.add_scatter(
-        x=u,
-        y=z,
-        mode="lines",
-        name="machined",
-        line={"color": p.text, "width": 2.6},
-        hovertemplate=f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>machined</extra>",
-    )
+    hatched = {"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge, "bgcolor": rgba(p.metal, 0.22)}
+    filled = {"mode": "none", "fill": "toself", "fillcolor": rgba(p.metal, 0.30), "fillpattern": hatched}
+    fig.add_scatter(x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], name="material", hoverinfo="skip", **filled)
     keep = np.isfinite(d.ideal)
-    fig.add_scatter(
-        x=d.u_ideal[keep],
-        y=d.ideal[keep],
-        mode="lines",
-        name="ideal",
-        line={"color": p.accent, "width": 1.8, "dash": "dash"},
-        hovertemplate=f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>ideal</extra>",
-    )
+    for x, y, name, line in (
+        (u, z, "machined", {"color": p.text, "width": 2.6}),
+        (d.u_ideal[keep], d.ideal[keep], "ideal", {"color": p.accent, "width": 1.8, "dash": "dash"}),
+    ):
+        hover = f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>{name}</extra>"
+        fig.add_scatter(x=x, y=y, mode="lines", name=name, line=line, hovertemplate=hover)
     if np.isfinite([d.wall_left, d.wall_right, d.depth]).all():
         _dimensions(fig, d, step, dark)
+    plain: dict[str, Any] = {"dark": dark, "showgrid": False, "constrain": "domain"}
     # Left of the feed is +u; looking along the feed it lies on the left, so the axis runs backwards.
-    fig.update_layout(
-        xaxis=axis(
-            f"Across the cut, {d.unit} (+ is left of the feed)",
-            dark=dark,
-            showgrid=False,
-            constrain="domain",
-            range=[float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])],
-        ),
-        yaxis=axis(
-            f"Height z<sub>W</sub>, {d.unit}",
-            dark=dark,
-            scaleanchor="x",
-            scaleratio=1,
-            showgrid=False,
-            constrain="domain",
-            range=[bottom, d.top + 1.45 * step],
-        ),
+    across = [float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])]
+    upwards: dict[str, Any] = {"scaleanchor": "x", "scaleratio": 1, "range": [bottom, d.top + 1.45 * step]}
+    return fig.update_layout(
+        xaxis=axis(f"Across the cut, {d.unit} (+ is left of the feed)", range=across, **plain),
+        yaxis=axis(f"Height z<sub>W</sub>, {d.unit}", **upwards, **plain),
     )
-    return fig
 
 
 def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> None:
     p = palette(dark)
+    walls = sorted((d.wall_left, d.wall_right))
     centre = 0.5 * (d.wall_left + d.wall_right)
     ideal_centre = centre - d.centre_offset
     over = d.top + 0.95 * step
     seen = float(np.nanmin(d.u)), float(np.nanmax(d.u))
-    if min(d.wall_left, d.wall_right) < seen[0] or max(d.wall_left, d.wall_right) > seen[1]:
+    if walls[0] < seen[0] or walls[1] > seen[1]:
         _wide(fig, d, over, seen, dark)
         return
-    for x in (d.wall_left, d.wall_right):
-        _line(fig, x, d.top + 0.08 * step, x, over + 0.14 * step, p.muted)
-    _arrow(fig, (centre, over), (d.wall_left, over), p.text)
-    _arrow(fig, (centre, over), (d.wall_right, over), p.text)
-    _text(fig, centre, over, f"width {format_value(d.width, d.unit, 3)}", p.text, p.background)
+    for x in walls:
+        _line(fig, (x, d.top + 0.08 * step), (x, over + 0.14 * step), p.muted)
+        _arrow(fig, (centre, over), (x, over), p.text)
+    _text(fig, (centre, over), _width(d), p.text, dark)
 
-    beside = min(d.wall_left, d.wall_right) - 0.75 * step
-    _line(fig, min(d.wall_left, d.wall_right) + 0.1 * step, d.floor, beside - 0.15 * step, d.floor, p.muted)
-    middle = 0.5 * (d.top + d.floor)
-    _arrow(fig, (beside, middle), (beside, d.top), p.text)
-    _arrow(fig, (beside, middle), (beside, d.floor), p.text)
-    _text(fig, beside, middle, f"depth {format_value(d.depth, d.unit, 3)}", p.text, p.background)
+    beside, middle = walls[0] - 0.75 * step, 0.5 * (d.top + d.floor)
+    _line(fig, (walls[0] + 0.1 * step, d.floor), (beside - 0.15 * step, d.floor), p.muted)
+    for y in (d.top, d.floor):
+        _arrow(fig, (beside, middle), (beside, y), p.text)
+    _text(fig, (beside, middle), _depth(d), p.text, dark)
 
-    under = d.floor - 0.42 * step
+    under, side, reach = d.floor - 0.42 * step, 1.0 if d.centre_offset >= 0 else -1.0, 0.55 * step
     for x, colour in ((ideal_centre, p.accent), (centre, p.warm)):
-        _line(fig, x, d.floor - 0.62 * step, x, d.top + 0.45 * step, colour, "dashdot")
-    side = 1.0 if d.centre_offset >= 0 else -1.0
-    reach = 0.55 * step
+        _line(fig, (x, d.floor - 0.62 * step), (x, d.top + 0.45 * step), colour, "dashdot")
     _arrow(fig, (centre + side * reach, under), (centre, under), p.warm)
     _arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm)
-    _text(
-        fig,
-        centre + side * reach,
-        under,
-        f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}",
-        p.warm,
-        p.background,
-        xanchor="right" if side > 0 else "left",
-    )
-    away = 0.5 * (max(d.wall_left, d.wall_right) + float(np.nanmax(d.u)))
-    _text(
-        fig,
-        away,
-        d.floor,
-        f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}",
-        p.warm,
-        p.background,
-    )
+    _text(fig, (centre + side * reach, under), _off(d), p.warm, dark, "right" if side > 0 else "left")
+    _text(fig, (0.5 * (walls[1] + seen[1]), d.floor), _floor(d), p.warm, dark)
 
 
 def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:
@@ -159,19 +107,33 @@ def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, flo
     ends = [*inside, *[seen[0] if w < seen[0] else seen[1] for w in (d.wall_left, d.wall_right) if w not in inside]]
     middle = 0.5 * (min(ends) + max(ends))
     for wall in inside:
-        _line(fig, wall, d.top, wall, over, p.muted)
+        _line(fig, (wall, d.top), (wall, over), p.muted)
         _arrow(fig, (middle, over), (wall, over), p.text)
     for end in ends[len(inside) :]:
-        _line(fig, middle, over, end, over, p.text)
-    words = f"width {format_value(d.width, d.unit, 3)}, depth {format_value(d.depth, d.unit, 3)}"
-    _text(fig, middle, over, words, p.text, p.background)
-    off = f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}"
-    floor = f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}"
-    _text(fig, middle, d.floor - 0.4 * (over - d.top), f"{off}, {floor}", p.warm, p.background)
+        _line(fig, (middle, over), (end, over), p.text)
+    _text(fig, (middle, over), f"{_width(d)}, {_depth(d)}", p.text, dark)
+    _text(fig, (middle, d.floor - 0.4 * (over - d.top)), f"{_off(d)}, {_floor(d)}", p.warm, dark)
 
 
-def _line(fig: go.Figure, x0: float, y0: float, x1: float, y1: float, colour: str, dash: str = "solid") -> None:
-    fig.add_shape(type="line", x0=x0, y0=y0, x1=x1, y1=y1, line={"color": colour, "width": 1, "dash": dash})
+def _width(d: SectionDrawing) -> str:
+    return f"width {format_value(d.width, d.unit, 3)}"
+
+
+def _depth(d: SectionDrawing) -> str:
+    return f"depth {format_value(d.depth, d.unit, 3)}"
+
+
+def _off(d: SectionDrawing) -> str:
+    return f"centre off {format_value(d.centre_offset, d.unit, 3, sign=True)}"
+
+
+def _floor(d: SectionDrawing) -> str:
+    return f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}"
+
+
+def _line(fig: go.Figure, a: Point, b: Point, colour: str, dash: str = "solid") -> None:
+    line = {"color": colour, "width": 1, "dash": dash}
+    fig.add_shape(type="line", x0=a[0], y0=a[1], x1=b[0], y1=b[1], line=line)
 
 
 def _arrow(fig: go.Figure, tail: tuple[float, float], head: tuple[float, float], colour: str) -> None:
@@ -194,15 +156,6 @@ def _arrow(fig: go.Figure, tail: tuple[float, float], head: tuple[float, float],
     )
 
 
-def _text(fig: go.Figure, x: float, y: float, text: str, colour: str, background: str, xanchor: str = "center") -> None:
-    fig.add_annotation(
-        x=x,
-        y=y,
-        text=text,
-        showarrow=False,
-        xanchor=xanchor,
-        yanchor="middle",
-        borderpad=3,
-        font={"size": 13, "color": colour},
-        bgcolor=rgba(background, 0.88),
-    )
+def _text(fig: go.Figure, at: Point, text: str, colour: str, dark: bool, xanchor: str = "center") -> None:
+    behind: dict[str, Any] = {"bgcolor": rgba(palette(dark).background, 0.88), "borderpad": 3}
+    say(fig, text, *at, colour, size=13, xanchor=xanchor, yanchor="middle", **behind)

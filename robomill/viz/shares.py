@@ -13,6 +13,8 @@ from robomill.units import format_number, format_significant
 from robomill.viz.theme import axis, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, Trace, house_layout, unchecked, words
 
+SHARES_HEIGHT, LINES_HEIGHT = 388, 480
+
 
 def share_bars(
     names: Sequence[str],
@@ -22,7 +24,6 @@ def share_bars(
     *,
     dark: bool,
     old: FloatArray | None = None,
-    height: int = 300,
 ) -> go.Figure:
     """Bars, one a component, of the joints' shares (n, k) in ``unit``: what adds goes right, what takes away left.
 
@@ -32,7 +33,7 @@ def share_bars(
     colours = joint_colours(7, dark)
     margin = {"l": 8, "r": 58, "t": 30, "b": 8}
     layout = house_layout(
-        dark=dark, height=height, revision="share-bars", barmode="relative", bargap=0.34, margin=margin
+        dark=dark, height=SHARES_HEIGHT, revision="share-bars", barmode="relative", bargap=0.34, margin=margin
     )
     data: list[Trace] = [
         {
@@ -142,14 +143,13 @@ def line_panels(
     unit: str,
     *,
     dark: bool,
-    height: int = 480,
     columns: int = 3,
 ) -> go.Figure:
     """Deviation along straight lines, total and by joint, all panels on one vertical scale."""
     p = palette(dark)
     rows = -(-len(panels) // columns)
     margin = {"l": 8, "r": 8, "t": 58, "b": 8}
-    layout = house_layout(dark=dark, height=height, revision="lines", hovermode="x unified", margin=margin)
+    layout = house_layout(dark=dark, height=LINES_HEIGHT, revision="lines", hovermode="x unified", margin=margin)
     layout["legend"] = {**layout["legend"], "y": 1.07}
     gap = 0.08  # with the room left and right of each line it keeps the end labels of two panels apart
     width, tall = (1 - gap * (columns - 1)) / columns, (1 - 0.2 * (rows - 1)) / rows

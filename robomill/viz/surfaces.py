@@ -6,6 +6,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
+from robomill.simulation.enlarged import Enlarged
+from robomill.units import from_si
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
 MAX_CELLS = 60_000
@@ -18,19 +20,12 @@ def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArr
 
 
 def surface_figure(
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    error_um: FloatArray,
-    limit_um: float,
-    *,
-    dark: bool,
-    height: int = 460,
-    revision: str = "surface",
-    unit: str = "mm",
+    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, revision: str = "surface"
 ) -> go.Figure:
-    """Heights z (nx, ny) over x, y in ``unit``, coloured by error_um (NaN: untouched); turn it with the mouse."""
-    x, y, z, error_um = thinned(x, y, z, error_um)
+    """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse."""
+    drawn = [from_si(v, unit) for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
+    x, y, z, error_um = thinned(*drawn, from_si(shown.error, "um"))
+    limit_um = float(from_si(limit, "um"))
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     colour = np.nan_to_num(error_um.T).astype(np.float32)

@@ -139,6 +139,12 @@ def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) ->
     return go.Figure(layout=base)
 
 
+def say(fig: go.Figure, text: str, x: float, y: float, colour: str, **more: Any) -> None:
+    """Words in a plane figure, without an arrow; ``more`` says what x and y refer to and where they are anchored."""
+    font = {"size": more.pop("size", 12), "color": colour}
+    fig.add_annotation(x=x, y=y, text=text, showarrow=False, font=font, **more)
+
+
 def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
     """A plane axis with its title (quantity and unit) and quiet grid lines."""
     p = palette(dark)

@@ -21,60 +21,25 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     """The path from above: rapids dotted, cuts coloured, what is out of reach crossed, the selected line marked."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 30, "b": 8})
-    if picture.stock is not None:
-        (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
-        fig.add_scatter(
-            x=[x0, x1, x1, x0, x0],
-            y=[y0, y0, y1, y1, y0],
-            mode="lines",
-            name="stock",
-            fill="toself",
-            fillcolor=rgba(p.metal, 0.26),
-            line={"color": p.line, "width": 1},
-            hoverinfo="skip",
-        )
-    kept = picture.kept
-    ends = _ends(picture)
+    _stock(fig, picture, dark)
+    kept, ends = picture.kept, _ends(picture)
     cut, lost = picture.cutting[kept], picture.cutting[kept] & ~picture.reached[kept]
     make = go.Scattergl if len(kept) > VECTOR_LINES else go.Scatter
-    flat = (0, 1)
-    xy = _lines(picture, ends, ~cut & (np.arange(len(kept)) > 0), flat)
-    fig.add_trace(
-        make(**xy, mode="lines", name="rapid", line={"color": p.muted, "width": 1, "dash": "dot"}, hoverinfo="skip")
-    )
     width = 3.0 if len(kept) < 3_000 else 1.6
-    fig.add_trace(
-        make(
-            **_lines(picture, ends, cut, flat),
-            mode="lines",
-            line={"color": rgba(p.text, 0.18), "width": 2 * width},
-            hoverinfo="skip",
-            showlegend=False,
-        )
-    )
+
+    def draw(chosen: BoolArray, line: dict[str, Any], **more: Any) -> None:
+        xy = _lines(picture, ends, chosen, (0, 1))
+        fig.add_trace(make(**xy, mode="lines", line=line, hoverinfo="skip", **more))
+
+    draw(~cut & (np.arange(len(kept)) > 0), {"color": p.muted, "width": 1, "dash": "dot"}, name="rapid")
+    draw(cut, {"color": rgba(p.text, 0.18), "width": 2 * width}, showlegend=False)
     _halo(fig, picture, dark)
     for name, colour, chosen, legend in _classes(picture, dark):
-        fig.add_trace(
-            make(
-                **_lines(picture, ends, chosen, flat),
-                mode="lines",
-                name=name,
-                line={"color": colour, "width": width},
-                hoverinfo="skip",
-                showlegend=legend,
-            )
-        )
+        draw(chosen, {"color": colour, "width": width}, name=name, showlegend=legend)
     if lost.any():
         at = picture.points[kept][lost]
-        at = at[:: max(1, len(at) // 400)]
-        fig.add_scatter(
-            x=at[:, 0],
-            y=at[:, 1],
-            mode="markers",
-            showlegend=False,
-            hoverinfo="skip",
-            marker={"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}},
-        )
+        cross = {"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}}
+        _dots(fig, at[:: max(1, len(at) // 400)], cross)
     _marks(fig, picture, dark)
     _picks(fig, picture, dark)
     unit = picture.length_unit
@@ -94,60 +59,53 @@ def turnable_picture(
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     kept, ends = picture.kept, _ends(picture)
-    cut = picture.cutting[kept]
-    rapid = ~cut & (np.arange(len(kept)) > 0)
-    fig.add_scatter3d(
-        **_lines(picture, ends, rapid, (0, 1, 2)),
-        mode="lines",
-        name="rapid",
-        hoverinfo="skip",
-        line={"color": p.muted, "width": 1.5, "dash": "dot"},
-    )
-    here = _selected(picture)
+    rapid = ~picture.cutting[kept] & (np.arange(len(kept)) > 0)
+
+    def draw(xyz: dict[str, Any], line: dict[str, Any], **more: Any) -> None:
+        fig.add_scatter3d(**xyz, mode="lines", line=line, hoverinfo="skip", **more)
+
+    every = (0, 1, 2)
+    draw(_lines(picture, ends, rapid, every), {"color": p.muted, "width": 1.5, "dash": "dot"}, name="rapid")
+    here = picture.points[_selected(picture)]
     if len(here):
-        q = picture.points[here]
-        fig.add_scatter3d(
-            x=q[:, 0],
-            y=q[:, 1],
-            z=q[:, 2],
-            mode="lines",
-            showlegend=False,
-            hoverinfo="skip",
-            line={"color": rgba(p.text, 0.7), "width": 14},
-        )
+        xyz = dict(zip("xyz", here.T, strict=True))
+        draw(xyz, {"color": rgba(p.text, 0.7), "width": 14}, showlegend=False)
     for name, colour, chosen, legend in _classes(picture, dark):
-        fig.add_scatter3d(
-            **_lines(picture, ends, chosen, (0, 1, 2)),
-            mode="lines",
-            name=name,
-            showlegend=legend,
-            hoverinfo="skip",
-            line={"color": colour, "width": 5},
-        )
+        draw(_lines(picture, ends, chosen, every), {"color": colour, "width": 5}, name=name, showlegend=legend)
     if picture.value is not None:
         bar = _scale(picture, dark)
         fig.add_scatter3d(x=[None], y=[None], z=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
-    largest = float(size.max())
-    times = float(np.clip(round(0.22 * largest / max(float(size[2]), 1e-9)), 1, 50))
-    x, y, z = (1.9 * max(float(v), 0.1) for v in size * [1.0, 1.0, times] / largest)
-    unit = picture.length_unit
+    times = float(np.clip(round(0.22 * float(size.max()) / max(float(size[2]), 1e-9)), 1, 50))
+    ratio = [1.9 * max(float(v), 0.1) for v in size * [1.0, 1.0, times] / float(size.max())]
+    camera = {"eye": {"x": -0.75, "y": -1.25, "z": 0.95}, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}
     fig.update_layout(
         scene={
-            "xaxis": axis3d(f"x_W, {unit}", dark=dark),
-            "yaxis": axis3d(f"y_W, {unit}", dark=dark),
-            "zaxis": axis3d(f"z_W, {unit}", dark=dark),
+            **{f"{a}axis": axis3d(f"{a}_W, {picture.length_unit}", dark=dark) for a in "xyz"},
             "aspectmode": "manual",
-            "aspectratio": {"x": x, "y": y, "z": z},
-            "camera": {
-                "projection": {"type": "orthographic"},
-                "eye": {"x": -0.75, "y": -1.25, "z": 0.95},
-                "center": {"x": 0.0, "y": 0.0, "z": -0.1},
-            },
+            "aspectratio": dict(zip("xyz", ratio, strict=True)),
+            "camera": {"projection": {"type": "orthographic"}, **camera},
             "uirevision": revision,
         }
     )
     return fig, times
+
+
+def _stock(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+    if picture.stock is None:
+        return
+    p = palette(dark)
+    (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
+    filled = {"fill": "toself", "fillcolor": rgba(p.metal, 0.26), "line": {"color": p.line, "width": 1}}
+    fig.add_scatter(
+        x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", hoverinfo="skip", **filled
+    )
+
+
+def _dots(fig: go.Figure, at: FloatArray, marker: dict[str, Any], name: str = "") -> None:
+    """Marks at points (q, 3), named in the legend where there is a name."""
+    named: dict[str, Any] = {"name": name} if name else {"showlegend": False}
+    fig.add_scatter(x=at[:, 0], y=at[:, 1], mode="markers", hoverinfo="skip", marker=marker, **named)
 
 
 def _ends(picture: PathPicture) -> tuple[FloatArray, FloatArray]:
@@ -231,57 +189,25 @@ def _selected(picture: PathPicture) -> IntArray:
 
 def _halo(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     """The line that is pointed at, as a border around whatever colour it has."""
-    here = _selected(picture)
-    if len(here) == 0:
-        return
-    p, q = palette(dark), picture.points[here]
-    fig.add_scatter(
-        x=q[:, 0],
-        y=q[:, 1],
-        mode="lines",
-        name=f"{picture.noun} {picture.selected}",
-        hoverinfo="skip",
-        line={"color": p.text, "width": 8},
-    )
+    q = picture.points[_selected(picture)]
+    if len(q):
+        line, name = {"color": palette(dark).text, "width": 8}, f"{picture.noun} {picture.selected}"
+        fig.add_scatter(x=q[:, 0], y=q[:, 1], mode="lines", name=name, hoverinfo="skip", line=line)
 
 
 def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     """Where the path begins, where the value is largest, and where the line that is pointed at ends."""
-    p = palette(dark)
-    here = _selected(picture)
-    if len(here):
-        q = picture.points[here]
-        fig.add_scatter(
-            x=q[-1:, 0],
-            y=q[-1:, 1],
-            mode="markers",
-            showlegend=False,
-            hoverinfo="skip",
-            marker={"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, "width": 2}},
-        )
-    start = picture.points[0]
-    fig.add_scatter(
-        x=[start[0]],
-        y=[start[1]],
-        mode="markers",
-        name="start",
-        hoverinfo="skip",
-        marker={"size": 9, "symbol": "circle-open", "color": p.text, "line": {"width": 2}},
-    )
+    p, rim = palette(dark), {"width": 2}
+    end = picture.points[_selected(picture)][-1:]
+    if len(end):
+        _dots(fig, end, {"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, **rim}})
+    _dots(fig, picture.points[:1], {"size": 9, "symbol": "circle-open", "color": p.text, "line": rim}, "start")
     if picture.worst >= 0:
-        w = picture.points[picture.worst]
-        fig.add_scatter(
-            x=[w[0]],
-            y=[w[1]],
-            mode="markers",
-            name="worst",
-            hoverinfo="skip",
-            marker={"size": 12, "symbol": "diamond-open", "color": p.text, "line": {"width": 2}},
-        )
+        worst = {"size": 12, "symbol": "diamond-open", "color": p.text, "line": rim}
+        _dots(fig, picture.points[picture.worst][None], worst, "worst")
     if picture.value is not None:
-        fig.add_scatter(
-            x=[None], y=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=_scale(picture, dark)
-        )
+        bar = _scale(picture, dark)
+        fig.add_scatter(x=[None], y=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
 
 
 def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:

@@ -14,7 +14,7 @@ from robomill.simulation.stations import place_at
 from robomill.surface.groove import GrooveSection
 from robomill.units import format_si, from_si
 from robomill.viz.arm import ArmScene
-from robomill.viz.picture import Camera, SurfacePicture
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
 PICTURE_CELLS = 160_000
@@ -24,18 +24,14 @@ def surface_picture(
     result: SimulationResult,
     shown: Enlarged,
     *,
-    camera: Camera,
-    dark: bool,
-    station: float | None,
-    size: tuple[int, int] = (1280, 720),
-    words: bool = True,
+    station: float | None = None,
     at: float | None = None,
     **more: Any,
 ) -> SurfacePicture:
     """What the drawing process needs for the machined surface; ``station`` (m of length cut) marks the section.
 
-    ``words=False`` leaves the captions out, where they stand beside the picture; ``at`` (m of length cut, default the
-    station or the middle) gives the direction that the camera presets go by; ``more`` are fields of SurfacePicture.
+    ``at`` (m of length cut, default the station or the middle) gives the direction that the camera presets go by;
+    ``more`` are fields of SurfacePicture, as camera, theme and size.
     """
     setup = result.setup
     middle = 0.5 * float(result.path.s[-1])
@@ -47,10 +43,10 @@ def surface_picture(
     if more.get("solids") and "headroom" not in more:
         more["headroom"] = 4.0 * float(from_si(setup.cutter.diameter, "mm"))
     direction = along[:2] / (np.linalg.norm(along[:2]) or 1.0)
-    captions = [
+    captions = (
         f"Displacement shown x {shown.times:g}" if shown.times != 1 else "True displacement",
         "Thin line: the ideal cut. Parallel projection.",
-    ]
+    )
     return SurfacePicture(
         x=from_si(shown.drawn.x, "mm"),
         y=from_si(shown.drawn.y, "mm"),
@@ -59,13 +55,9 @@ def surface_picture(
         error_um=from_si(shown.error, "um"),
         limit_um=float(from_si(setup.tolerance, "um")),
         bottom=float(from_si(setup.stock_block.lower[2], "mm")),
-        camera=camera,
-        dark=dark,
-        size=size,
         direction=(float(direction[0]), float(direction[1])),
         station=None if station is None else tuple(from_si(where, "mm").tolist()),
-        captions=tuple(captions) if words else (),
-        **more,
+        **{"captions": captions, **more},
     )
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.viz.maps import Scale
 from robomill.viz.solids import LIGHTING, word
-from robomill.viz.theme import SEQUENTIAL, colour_bar, diverging, palette
+from robomill.viz.theme import colour_bar, palette
 
 # The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
 _CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
@@ -41,33 +42,26 @@ def outer_faces(mask: BoolArray) -> tuple[FloatArray, FloatArray]:
 def voxel_trace(
     mask: BoolArray,
     axes: tuple[FloatArray, FloatArray, FloatArray],
+    shown: tuple[FloatArray, Scale] | None = None,
     *,
     dark: bool,
-    values: FloatArray | None = None,
-    limits: tuple[float, float] | None = None,
-    signed: bool = False,
-    title: str = "",
-    opacity: float = 0.35,
 ) -> go.Mesh3d:
-    """Voxels of ``mask`` at the points of ``axes`` (m), in one colour, or coloured by ``values`` (nx, ny, nz)."""
+    """Voxels of ``mask`` at the points of ``axes`` (m): clear and in one colour, or solid and coloured by ``shown``.
+
+    shown: values (nx, ny, nz) in display units and their scale.
+    """
     cells, corners = outer_faces(mask)
     points = np.stack([_place(axes[i], corners[..., i]) for i in range(3)], axis=-1).reshape(-1, 3)
     first = 4 * np.arange(len(cells))
     faces = np.concatenate([first[:, None] + [0, 1, 2], first[:, None] + [0, 2, 3]])
     x, y, z = points.astype(np.float32).T
     more: dict[str, Any] = {"color": palette(dark).accent}
-    if values is not None:
+    if shown is not None:
         i, j, k = cells.astype(int).T
-        shown = values[i, j, k].astype(np.float32)
-        low, high = limits or (float(np.nanmin(shown)), float(np.nanmax(shown)))
-        more = {
-            "intensity": np.concatenate([shown, shown]),
-            "intensitymode": "cell",
-            "cmin": low,
-            "cmax": high,
-            "colorscale": diverging(dark) if signed else SEQUENTIAL,
-            "colorbar": colour_bar(title, dark=dark, len=0.7),
-        }
+        values = shown[1].shade(shown[0])[i, j, k].astype(np.float32)
+        colours = shown[1].colours(dark)
+        bar = {"colorbar": colour_bar(shown[1].title, dark=dark, len=0.7)}
+        more = {"intensity": np.concatenate([values, values]), "intensitymode": "cell", **colours, **bar}
     return go.Mesh3d(
         x=x,
         y=y,
@@ -75,7 +69,7 @@ def voxel_trace(
         i=faces[:, 0].astype(np.int32),
         j=faces[:, 1].astype(np.int32),
         k=faces[:, 2].astype(np.int32),
-        opacity=opacity,
+        opacity=0.25 if shown is None else 1.0,
         flatshading=True,
         hoverinfo="skip",
         name="reach",

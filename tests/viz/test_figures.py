@@ -31,7 +31,6 @@ def result() -> SimulationResult:
 def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
     s, delta = from_si(result.path.s, "mm"), from_si(result.delta, "mm")
     shown = enlarged(result, 10.0)
-    mm = [from_si(v, "mm") for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
     groove = result.groove(0.5 * float(result.path.s[-1]))
     names = [f"joint {i}" for i in range(1, 6)]
     shares = Shares(s, from_si(result.delta_joint[:, :, 1], "mm"), names, delta[:, 1], "y", "mm")
@@ -40,7 +39,7 @@ def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
         "components": components_figure(Components(s, delta, result.path.block, 0.3, "mm"), dark=dark, station=50.0),
         "shares": shares_figure(shares, dark=dark),
         "section": section_figure(section_drawing(groove, "mm"), dark=dark),
-        "surface": surface_figure(*mm, from_si(shown.error, "um"), 300.0, dark=dark),
+        "surface": surface_figure(shown, 0.3e-3, "mm", dark=dark),
     }
 
 

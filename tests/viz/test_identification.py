@@ -18,7 +18,7 @@ from robomill.viz.identification import (
     models_figure,
     residuals_figure,
 )
-from robomill.viz.measured_maps import level_figure
+from robomill.viz.measured_maps import Level, level_figure
 from robomill.viz.theme import figure
 
 SHOWN = Intervals(
@@ -137,17 +137,7 @@ def test_a_level_keeps_its_orientation_and_mask(signed: bool) -> None:
     x, y = np.array([-1.0, 0.0, 1.0]), np.array([0.0, 1.0])
     values = np.array([[1.0, 2.0], [3.0, np.nan], [5.0, 6.0]])
     fig = level_figure(
-        x,
-        y,
-        values,
-        np.zeros((0, 2)),
-        (-6.0, 6.0),
-        "C",
-        "µm/N",
-        signed=signed,
-        length_unit="mm",
-        dark=False,
-        revision="r",
+        Level(x, y, values, np.zeros((0, 2)), (-6.0, 6.0), "C", "µm/N", "mm", signed), dark=False, revision="r"
     )
     z = np.asarray(fig.data[0].z, dtype=float)
     assert z.shape == (2, 3), "rows of a heat map are y"

@@ -173,7 +173,7 @@ def test_voxels_close_their_volume() -> None:
 def test_voxels_carry_the_values_of_their_cells() -> None:
     mask = np.ones((2, 1, 1), bool)
     shown = np.array([1.0, 2.0]).reshape(2, 1, 1)
-    trace = voxel_trace(mask, (np.array([0.0, 1.0]), np.zeros(1), np.zeros(1)), dark=True, values=shown)
+    trace = voxel_trace(mask, (np.array([0.0, 1.0]), np.zeros(1), np.zeros(1)), (shown, Scale("", 1.0, 2.0)), dark=True)
     assert sorted(np.asarray(trace.intensity).tolist()) == [1.0] * 10 + [2.0] * 10
 
 
@@ -244,6 +244,6 @@ def test_gains_and_lines_are_drawn() -> None:
 
 def test_the_lesson_marks_where_the_arm_is() -> None:
     s = np.linspace(0, 1, 5)
-    fig = ray_figure(s, s**2, 1 - s, 3, "r", "det", "soft", dark=True)
+    fig = ray_figure(s, 3, ("r", "det", "soft"), (s**2, 1 - s), dark=True)
     marks = [t for t in fig.data if t.mode == "markers"]
     assert [(t.x[0], t.y[0]) for t in marks] == [(0.75, 0.5625), (0.75, 0.25)]

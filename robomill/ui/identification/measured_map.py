@@ -18,7 +18,7 @@ from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.deviation import both_figure
-from robomill.viz.measured_maps import level_figure
+from robomill.viz.measured_maps import Level, level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
 
@@ -200,17 +200,10 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
         with column, st.container(border=True):
             title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
             st.markdown(f"**{name}**")
+            dots = points if k != 1 else points[:0]
             parts.figure(
                 level_figure(
-                    x,
-                    y,
-                    values,
-                    points if k != 1 else points[:0],
-                    ends,
-                    title_text,
-                    unit_label("um/N"),
-                    signed=both_ways,
-                    length_unit=unit_label(unit),
+                    Level(x, y, values, dots, ends, title_text, unit_label("um/N"), unit_label(unit), both_ways),
                     dark=dark,
                     revision=f"map-{k}",
                 ),

@@ -164,12 +164,9 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     softest = np.asarray(np.linalg.eigvalsh(cartesian_compliance(found.robot, way.theta))[:, -1], dtype=np.float64)
     fig = ray_figure(
         from_si(way.radius, unit),
-        from_si(way.det, what.unit),
-        from_si(softest, "um/N"),
         i,
-        f"distance from the base, {unit_label(unit)}",
-        f"det(J), {unit_label(what.unit)}".rstrip(", "),
-        f"softest, {unit_label('um/N')}",
+        (f"distance from the base, {unit_label(unit)}", what.label, f"softest, {unit_label('um/N')}"),
+        (from_si(way.det, what.unit), from_si(softest, "um/N")),
         dark=shell.dark(),
     )
     parts.figure(

@@ -177,9 +177,7 @@ def _shares(found: PointReport, old: PointReport) -> None:
     shares = from_si(found.shares(), "um/N")
     before = from_si(old.shares().sum(axis=0), "um/N")
     parts.figure(
-        share_bars(
-            names, shares, found.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before, height=388
-        ),
+        share_bars(names, shares, found.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before),
         "point-shares",
         table=lambda: share_columns(found),
         alt="Joint shares of each compliance component at this pose.",

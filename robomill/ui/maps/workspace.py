@@ -298,24 +298,9 @@ def _solid_figure(
     p = palette(dark)
     theta = _standing(robot, view, box)
     fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=dark, height=560, revision="workspace-solid")
-    signed = values is not None and what.colours == "diverging" and bool(np.nanmin(values) < 0 < np.nanmax(values))
-    limits = None
-    if values is not None:
-        top = float(np.nanmax(np.abs(values)))
-        limits = (-top, top) if signed else (float(np.nanmin(values)), float(np.nanmax(values)))
+    shown = None if values is None else (values, Scale.of(what, values, robot.joint_numbers))
     if mask.any():
-        fig.add_trace(
-            voxel_trace(
-                mask,
-                (grid.x, grid.y, grid.z),
-                dark=dark,
-                values=values,
-                limits=limits,
-                signed=signed,
-                title=what.label,
-                opacity=0.25 if values is None else 1.0,
-            )
-        )
+        fig.add_trace(voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark))
     low, high = np.array(box.lower), np.array(box.upper)
     largest = maps_fields.proposed_box(robot, view.A, view.B)
     if largest is not None and view.region != "paper":

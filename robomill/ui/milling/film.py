@@ -68,7 +68,6 @@ class Film:
             shown,
             camera=self.camera,
             dark=self.dark,
-            station=None,
             size=SIZE,
             headroom=4.0 * float(from_si(self.result.setup.cutter.diameter, "mm")),
         )

@@ -14,7 +14,7 @@ from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cache, inputs, parts, render, state
 from robomill.ui.milling import scrubber as linked
-from robomill.units import format_si, format_times, from_si
+from robomill.units import format_si, format_times
 from robomill.viz.picture import CAMERAS, SurfacePicture
 from robomill.viz.posed import posed
 from robomill.viz.surfaces import surface_figure
@@ -68,18 +68,8 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
 
 def turnable(result: SimulationResult, shown: Enlarged, view: state.View, dark: bool, height: int) -> Any:
     """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
-    unit, z = view.length, shown.drawn
-    fig = surface_figure(
-        from_si(z.x, unit),
-        from_si(z.y, unit),
-        from_si(z.z, unit),
-        from_si(shown.error, "um"),
-        float(from_si(result.setup.tolerance, "um")),
-        dark=dark,
-        height=height,
-        unit=unit,
-        revision=f"surface-{view.camera}",
-    )
+    limit, revision = result.setup.tolerance, f"surface-{view.camera}"
+    fig = surface_figure(shown, limit, view.length, dark=dark, height=height, revision=revision)
     ratio = fig.layout.scene.aspectratio
     fig.update_layout(
         scene_camera={**EYES[view.camera], "projection": {"type": "orthographic"}},
@@ -145,7 +135,6 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
         station=station if extras & {"plane", "away"} else None,
         at=station,
         size=SIZE,
-        words=True,
         layout="pair" if pair else "one",
         cutaway="away" in extras,
         ghost="ghost" in extras,

@@ -16,7 +16,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.ui import cache, parts, render, state
-from robomill.units import format_percent, format_si, format_times, from_si
+from robomill.units import format_percent, format_si, format_times
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
@@ -77,9 +77,8 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         shown,
         camera="iso",
         dark=dark,
-        station=None,
         size=(940, round(940 * height / 560)),
-        words=False,
+        captions=(),
     )
     png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
     alt = "The machined groove coloured by its signed error against the ideal one."
@@ -87,19 +86,9 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         with st.container(key="picture-groove"):
             st.image(png, width="stretch", alt=alt)
     else:
-        limit = float(from_si(result.setup.tolerance, "um"))
         unit = view.length
-        figure = surface_figure(
-            from_si(shown.drawn.x, unit),
-            from_si(shown.drawn.y, unit),
-            from_si(shown.drawn.z, unit),
-            from_si(shown.error, "um"),
-            limit,
-            dark=dark,
-            height=height,
-            revision="start-surface",
-            unit=unit,
-        )
+        revision = "start-surface"
+        figure = surface_figure(shown, result.setup.tolerance, unit, dark=dark, height=height, revision=revision)
         parts.figure(figure, "start-surface", alt=alt)
     parts.note(
         f"The groove as milled, displacement shown {format_times(view.exaggeration, 6)}. Colours end at the tolerance, "
