@@ -86,7 +86,7 @@ def confused_with(fit: Fit, parameters: tuple[Parameter, ...], k: int) -> tuple[
     """Labels of the parameters whose effect looks like that of parameter ``k`` at these poses."""
     if not fit.seen[k]:
         together = np.abs(fit.null.T @ fit.null)[k]  # the projector: it does not depend on the basis
-        chosen = together > 1e-3 * max(float(together.max()), 1e-300)
+        chosen = together > 1e-3 * float(together.max())
     else:
         chosen = np.abs(np.nan_to_num(correlation(fit.covariance)[k])) >= ALIKE
     return tuple(p.label for j, p in enumerate(parameters) if chosen[j] and j != k)

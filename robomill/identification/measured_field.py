@@ -155,6 +155,7 @@ class MeasuredField:
     def lines(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
         """The grid's x, y and z coordinates where the points fill a grid, else None."""
         axes = tuple(np.unique(np.round(self.p[:, i] / GRID)) * GRID for i in range(3))
+        axes = tuple(axis if np.ptp(axis) > GRID else axis[:1] for axis in axes)
         return axes if len(axes[0]) * len(axes[1]) * len(axes[2]) == len(self.p) else None  # type: ignore[return-value]
 
     @cached_property
@@ -189,11 +190,6 @@ class MeasuredField:
             at = np.where(np.abs(at - near) <= GRID, near, at)
             call = RegularGridInterpolator(axes, values, bounds_error=False, fill_value=np.nan)
             return np.asarray(call(at), dtype=np.float64)
-        if len(used) == 1:
-            order = np.argsort(self.p[:, used[0]])
-            s, values = self.p[order, used[0]], self.C[order].reshape(-1, 9)
-            columns = [np.interp(p[:, used[0]], s, values[:, k], left=np.nan, right=np.nan) for k in range(9)]
-            return np.stack(columns, axis=-1).reshape(-1, 3, 3)
         try:
             mesh = LinearNDInterpolator(self.p[:, used], self.C.reshape(-1, 9))
         except Exception as exc:  # Qhull's own error type has no sentence a person could use

@@ -1,0 +1,152 @@
+"""Load tests as values: shapes, defaults and refusals by row; poses counted by brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import LoadTestError
+from robomill.identification.load_test import LIMIT_SLACK, JointTests, LoadTests
+
+ROBOT = rm.load_robot("slavkovic_5r")
+RNG = np.random.default_rng(2)
+THETA = RNG.uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (6, 5))
+F = RNG.normal(size=(6, 3)) * 100
+MOVED = RNG.normal(size=(6, 3)) * 1e-4
+
+
+def test_what_is_left_out_is_filled_in():
+    tests = LoadTests(F, MOVED, theta=THETA)
+    np.testing.assert_array_equal(tests.wrench, np.column_stack([F, np.zeros((6, 3))]))
+    np.testing.assert_array_equal(tests.displacement[:, :3], MOVED)
+    assert np.isnan(tests.displacement[:, 3:]).all()
+    np.testing.assert_array_equal(tests.row, range(1, 7))
+    assert not tests.force_point.any()
+    assert tests.measuring_point.shape == (6, 3)
+    assert np.isnan(tests.noise).all()
+    given = LoadTests(F, MOVED, theta=THETA, noise=2e-6, force_point=[0, 0, 0.1], measuring_point=np.ones((6, 3)))
+    np.testing.assert_array_equal(given.noise, [2e-6] * 6)
+    np.testing.assert_array_equal(given.force_point, np.tile([0, 0, 0.1], (6, 1)))
+    full = LoadTests(np.ones((6, 6)), np.ones((6, 6)), theta=THETA)
+    assert (full.wrench == 1).all()
+    assert not full.synthetic
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"wrench": F[:0], "displacement": MOVED[:0], "theta": THETA[:0]}, "no test"),
+        ({"row": [1, 2]}, "6 row numbers"),
+        ({"theta": None}, "one of the two"),
+        ({"x_M": np.zeros((6, 5))}, "one of the two"),
+        ({"theta": THETA[:4]}, "theta: expected one pose for each of the 6"),
+        ({"theta": THETA[0]}, "theta: expected one pose"),
+        ({"theta": None, "x_M": np.zeros((6, 6))}, "x_M: expected one pose"),
+        ({"displacement": MOVED[:3]}, "displacement: expected shape"),
+        ({"wrench": F[:, :2]}, "wrench: expected shape"),
+        ({"wrench": F[0]}, "wrench: expected shape"),
+        ({"force_point": np.zeros((4, 3))}, "force_point: expected shape"),
+        ({"wrench": np.where(np.arange(6)[:, None] == 2, np.nan, F)}, "Row 3, wrench"),
+        ({"theta": np.where(np.arange(6)[:, None] == 4, np.inf, THETA)}, "Row 5, theta"),
+        ({"displacement": np.where(np.arange(6)[:, None] == 1, np.inf, MOVED)}, "Row 2, displacement"),
+        ({"wrench": np.where(np.arange(6)[:, None] == 3, 0.0, F)}, "Row 4: the force is zero"),
+        ({"displacement": np.where(np.arange(6)[:, None] == 5, np.nan, MOVED)}, "Row 6: no displacement"),
+    ],
+)
+def test_refusals_name_the_row(fields, words):
+    with pytest.raises(LoadTestError, match=words):
+        LoadTests(**{"wrench": F, "displacement": MOVED, "theta": THETA, **fields})
+
+
+def test_a_partly_measured_displacement_and_a_pure_moment_are_tests():
+    half = MOVED.copy()
+    half[2, :2] = np.nan
+    LoadTests(F, half, theta=THETA)
+    wrench = np.zeros((6, 6))
+    wrench[:, 4] = 10.0
+    LoadTests(wrench, MOVED, theta=THETA)
+
+
+def test_selecting_joining_and_leaving_out():
+    tests = LoadTests(F, MOVED, theta=THETA, row=np.arange(6) + 10)
+    np.testing.assert_array_equal(tests.without([11, 14]).wrench, tests.wrench[[0, 2, 3, 5]])
+    np.testing.assert_array_equal(tests.without([11, 14]).row, [10, 12, 13, 15])
+    chosen = tests.select([4, 0])
+    np.testing.assert_array_equal(chosen.theta, THETA[[4, 0]])
+    assert chosen.x_M is None
+    both = chosen.joined(tests)
+    np.testing.assert_array_equal(both.displacement[:, :3], MOVED[[4, 0, 0, 1, 2, 3, 4, 5]])
+    np.testing.assert_array_equal(both.row, range(1, 9))
+    world = LoadTests(F, MOVED, x_M=np.tile([0, -1.3, 0, 0, 0], (6, 1)))
+    for one, other in ((tests, world), (world, tests)):
+        with pytest.raises(LoadTestError, match="cannot be joined"):
+            one.joined(other)
+    with pytest.raises(LoadTestError, match="with_joints"):
+        world.tool_poses(ROBOT)
+    np.testing.assert_allclose(tests.tool_poses(ROBOT), rm.tool_pose(ROBOT, THETA))
+
+
+def test_poses_are_counted_as_by_comparing_each_with_each():
+    theta = THETA[[0, 3, 0, 1, 3, 2, 0]]
+    theta[2] += 3e-10
+    theta[6] += 1e-6
+    tests = LoadTests(np.ones((7, 3)), np.ones((7, 3)), theta=theta)
+    index = tests.pose_index()
+    same = np.abs(theta[:, None] - theta).max(axis=-1) < 1e-9
+    np.testing.assert_array_equal(index[:, None] == index, same)
+    np.testing.assert_array_equal(np.unique(index), range(5))
+    zero = LoadTests(np.ones((2, 3)), np.ones((2, 3)), x_M=[[0.0, -1.3, 0, 0, 0], [-0.0, -1.3, -1e-12, 0, 0]])
+    np.testing.assert_array_equal(zero.pose_index(), [0, 0])
+
+
+def test_world_poses_are_solved_once_each_and_said():
+    x_M = np.array([[0.1, -1.3, 0, 0, 0], [0, -1.2, 0.05, 0.1, 0], [0.1, -1.3, 0, 0, 0]])
+    solved = LoadTests(F[:3], MOVED[:3], x_M=x_M).with_joints(ROBOT)
+    assert solved.x_M is None
+    np.testing.assert_allclose(rm.world_from_pose(rm.tool_pose(ROBOT, solved.theta)), x_M, atol=1e-9)
+    assert [(f.level, f.code) for f in solved.findings] == [("info", "joints-solved")]
+    six = rm.load_robot("kuka_kr500")
+    home = rm.world_from_pose(rm.tool_pose(six, six.home))
+    found = LoadTests(F[:1], MOVED[:1], x_M=home[None]).with_joints(six).findings
+    assert [(f.level, f.code) for f in found] == [("warning", "turn-about-the-tool")]
+    far = x_M.copy()
+    far[1, 1] = -9.0
+    with pytest.raises(LoadTestError, match=r"Row 2: the pose X, Y, Z = 0\.0 mm, −9000\.0 mm, 50\.0 mm is not reached"):
+        LoadTests(F[:3], MOVED[:3], x_M=far).with_joints(ROBOT)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_limits_hold_but_for_the_rounding_of_a_written_angle(side):
+    theta = THETA.copy()
+    outwards = (-1, 1)[side]
+    theta[3, 2] = ROBOT.limits[2, side] + outwards * 0.9 * LIMIT_SLACK
+    tests = LoadTests(F, MOVED, theta=theta)
+    assert tests.with_joints(ROBOT) is tests
+    theta[3, 2] = ROBOT.limits[2, side] + outwards * 1.1 * LIMIT_SLACK
+    with pytest.raises(LoadTestError, match="Row 4, theta3"):
+        LoadTests(F, MOVED, theta=theta).with_joints(ROBOT)
+    with pytest.raises(LoadTestError, match="4 joint columns for a robot of 5"):
+        LoadTests(F, MOVED, theta=theta[:, :4]).with_joints(ROBOT)
+    assert LIMIT_SLACK == pytest.approx(np.radians(0.0005), rel=0.2), "half of the third decimal of a degree"
+
+
+def test_joint_tests_are_checked_row_by_row():
+    joint, torque = np.array([1, 2, 3]), np.array([10.0, -20, 30])
+    tests = JointTests(joint, torque, torque * 1e-6, row=np.array([4, 5, 6]))
+    assert len(tests) == 3
+    assert np.isnan(tests.noise).all()
+    np.testing.assert_array_equal(JointTests(joint, torque, torque, noise=1e-6).noise, [1e-6] * 3)
+    np.testing.assert_array_equal(JointTests(joint, torque, torque).row, [1, 2, 3])
+    left = tests.without([5])
+    np.testing.assert_array_equal(left.joint, [1, 3])
+    np.testing.assert_array_equal(left.torque, [10, 30])
+    np.testing.assert_allclose(left.angle, [1e-5, 3e-5])
+    np.testing.assert_array_equal(left.row, [4, 6])
+    with pytest.raises(LoadTestError, match="no test"):
+        JointTests(joint[:0], torque[:0], torque[:0])
+    with pytest.raises(LoadTestError, match="Row 2: the torque is zero"):
+        JointTests(joint, np.array([1.0, 0, 1]), torque)
+    for bad in (np.array([1.0, np.nan, 1]), np.ones(2)):
+        with pytest.raises(LoadTestError, match="angle: expected 3 finite"):
+            JointTests(joint, torque, bad)

@@ -1,0 +1,150 @@
+"""What looks wrong before anything is fitted: data spoilt in a known way are told, sound data are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.suspicion import PLAUSIBLE, PLAUSIBLE_JOINT, suspicions
+from robomill.identification.synthesis import simulated_tests, three_directions
+
+ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
+THETA = np.random.default_rng(0).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (8, 5))
+SOUND = simulated_tests(ROBOT, *three_directions(THETA, 250.0), noise=4e-6)
+
+
+def codes(tests, robot=ROBOT):
+    return [finding.code for finding in suspicions(tests, robot)]
+
+
+def moved(tests, displacement):
+    return replace(tests, displacement=displacement)
+
+
+def test_sound_data_rouse_no_suspicion():
+    assert codes(SOUND) == []
+    assert codes(SOUND, None) == []
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_one_flipped_axis_is_named_with_its_count(axis):
+    sign = np.ones(6)
+    sign[axis] = -1
+    (finding,) = suspicions(moved(SOUND, SOUND.displacement * sign), ROBOT)
+    assert finding.code == "sign"
+    name = "xyz"[axis]
+    assert f"d{name} runs against F{name} in 8 of the 8 tests" in finding.message
+    assert f"sign of d{name}" in finding.message
+
+
+def test_all_flipped_is_the_sign_of_the_displacements():
+    (finding,) = suspicions(moved(SOUND, -SOUND.displacement), ROBOT)
+    assert "the sign of the displacements" in finding.message
+
+
+MOSTLY = [(1, 1, False), (1, 2, False), (2, 2, True), (2, 3, True), (2, 4, False), (3, 5, True)]
+
+
+@pytest.mark.parametrize(("against", "loaded", "told"), MOSTLY)
+def test_most_of_at_least_two_tests_along_an_axis_must_run_against(against, loaded, told):
+    F = np.zeros((loaded, 3))
+    F[:, 0] = 100.0
+    F[:, 1] = np.arange(loaded)
+    d = np.column_stack([np.full(loaded, 1e-4), np.zeros(loaded), np.zeros(loaded)])
+    d[:against, 0] *= -1
+    tests = LoadTests(F, d, theta=THETA[:loaded])
+    said = codes(tests, None)
+    assert ("sign" in said) == (told or against > loaded / 2)
+    message = " ".join(finding.message for finding in suspicions(tests))
+    assert ("tests loaded along x" in message) == told
+
+
+@pytest.mark.parametrize(("share", "along"), [(0.88, False), (0.92, True)])
+def test_loaded_along_an_axis_is_nine_tenths_of_the_force(share, along):
+    F = np.tile([share, np.sqrt(1 - share**2), 0.0], (4, 1)) * 100
+    d = np.tile([-1e-4, 1e-3, 0.0], (4, 1))
+    said = codes(LoadTests(F, d, theta=THETA[:4]), None)
+    assert (said == ["sign"]) == along
+
+
+@pytest.mark.parametrize(("against", "told"), [(2, False), (3, True)])
+def test_oblique_forces_are_judged_by_their_work(against, told):
+    F = np.tile([100.0, 100.0, 0.0], (4, 1)) + np.arange(4)[:, None]
+    d = np.tile([1e-4, 1e-4, 0.0], (4, 1))
+    d[:against] *= -1
+    found = suspicions(LoadTests(F, d, theta=THETA[:4]))
+    assert [f.code for f in found] == (["sign"] if told else [])
+    if told:
+        assert "75 % of the tests" in found[0].message
+    d[:, 2] = np.nan
+    assert suspicions(LoadTests(F, d, theta=THETA[:4])) == ()  # work of half a displacement says nothing
+
+
+@pytest.mark.parametrize("factor", [1 / 1000, 1 / 110, 1 / 90, 90, 110, 1000])
+def test_a_wrong_unit_is_a_factor_of_a_hundred_against_the_robots_own(factor):
+    told = not 1 / 100 < factor < 100
+    stiff = ROBOT.replace(C_theta=0.1 * ROBOT.C_theta)
+    found = suspicions(moved(SOUND, 0.1 * factor * SOUND.displacement), stiff)
+    assert [f.code for f in found] == (["unit"] if told else [])
+    if told:
+        times = max(factor, 1 / factor)
+        said = float(found[0].message.split("about ")[1].split(" ")[0])
+        assert said == pytest.approx(times, rel=0.15)
+        assert ("larger" in found[0].message) == (factor > 1)
+        assert "this robot's own" in found[0].message
+
+
+@pytest.mark.parametrize("edge", PLAUSIBLE)
+def test_without_compliances_it_is_a_factor_against_what_any_robot_has(edge):
+    stiff = ROBOT.replace(C_theta=np.zeros(5))
+    F = np.eye(3) * 200.0
+    for factor, told in ((0.9, edge == PLAUSIBLE[0]), (1.1, edge == PLAUSIBLE[1])):
+        tests = LoadTests(F, np.eye(3) * 200.0 * edge * factor, theta=THETA[:3])
+        for robot in (stiff, None):
+            found = suspicions(tests, robot)
+            assert [f.code for f in found] == (["unit"] if told else [])
+            if told:
+                assert f"{max(edge * factor / 1e-6, 1e-6 / (edge * factor)):.3g} times" in found[0].message
+                assert ("larger" in found[0].message) == (edge > 1e-6)
+    assert PLAUSIBLE[0] < 1e-8 < 1e-6 < PLAUSIBLE[1], "a machine tool and a usual robot are plausible"
+
+
+def test_zeros_are_a_gauge_that_was_not_read():
+    tests = LoadTests(np.eye(3) * 100, np.zeros((3, 3)), theta=THETA[:3])
+    assert codes(tests) == ["no-displacement"]
+
+
+def test_repeats_are_named_with_their_rows():
+    row = np.arange(len(SOUND)) + 5
+    tests = replace(SOUND, row=row)
+    again = tests.select([0, 1, 2, 3, 1, 5, 1, 0])
+    (finding,) = suspicions(again, ROBOT)
+    assert finding.code == "repeat"
+    assert (finding.line, finding.count) == (6, 3)
+    assert "Row 6 repeats row 6" in finding.message
+    assert "(and 2 more)" in finding.message
+    one = replace(tests.select([0, 1, 2, 1]), row=np.array([2, 3, 4, 9]))
+    (finding,) = suspicions(one, ROBOT)
+    assert "Row 9 repeats row 3 to the last digit;" in finding.message
+    nearly = SOUND.displacement.copy()
+    nearly[1] = nearly[0]
+    assert codes(moved(SOUND, nearly)) == [], "another force"
+
+
+@pytest.mark.parametrize(("against", "told"), [(2, False), (3, True)])
+def test_angles_against_their_torque(against, told):
+    torque = np.array([100.0, -100, 100, -100])
+    angle = 1e-6 * torque
+    angle[:against] *= -1
+    assert codes(JointTests(np.array([1, 2, 3, 4]), torque, angle)) == (["sign"] if told else [])
+
+
+@pytest.mark.parametrize("edge", PLAUSIBLE_JOINT)
+def test_a_joint_beyond_all_robots(edge):
+    for factor, told in ((0.9, edge == PLAUSIBLE_JOINT[0]), (1.1, edge == PLAUSIBLE_JOINT[1])):
+        tests = JointTests(np.array([1, 2, 3]), np.array([100.0, -50, 20]), np.array([100.0, -50, 20]) * edge * factor)
+        assert codes(tests) == (["unit"] if told else [])
