@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -76,3 +78,76 @@ def test_refusals():
         lab.measure(np.full(5, 3.1), [0, 100.0, 0])
     with pytest.raises(LoadTestError, match="negative"):
         Laboratory(ROBOT, noise=-1.0)
+
+
+def test_points_are_earned_joint_by_joint():
+    """All of a joint's hundred n-th at no error, half at 10 %, none from 40 %, straight lines between."""
+    lab = Laboratory(ROBOT)
+    error = np.array([0.0, 0.05, 0.10, 0.25, 0.40])
+    score = lab.score(lab.reveal() * (1 + error * [1, 1, -1, -1, 1]))
+    np.testing.assert_allclose(score.error, error, atol=1e-12)
+    assert score.points == pytest.approx(20 * (1.0 + 0.75 + 0.5 + 0.25 + 0.0))
+    assert score.sentence == "50 of 100 points: joint 5 is 40 % off."
+    assert np.isnan(score.covered).all()
+    unseen = lab.reveal() * 1.0
+    unseen[1] = np.nan
+    score = lab.score(unseen)
+    assert score.points == pytest.approx(80.0)
+    assert score.sentence == "80 of 100 points: joint 2 was not seen."
+
+
+def test_coverage_is_whether_the_interval_holds_the_truth():
+    lab = Laboratory(ROBOT, seed=2, budget=20).measure(*some(20))
+    result, truth = lab.fit(), lab.reveal()
+    low, high = result.ci95.T
+    np.testing.assert_array_equal(lab.score(result).covered, (low <= truth) & (truth <= high))
+    for ci, covered in (([truth[0] * 1.01, 1.0], 0.0), ([0.0, truth[0] * 0.99], 0.0), ([truth[0], truth[0]], 1.0)):
+        assert lab.score(replace(result, parameter_ci95=np.vstack([ci, result.ci95[1:]]))).covered[0] == covered
+    blind = replace(result, parameter_stderr=np.where(np.arange(5) == 3, np.inf, result.parameter_stderr))
+    np.testing.assert_array_equal(np.isnan(lab.score(blind).covered), np.arange(5) == 3)
+
+
+def test_hidden_compliances_scatter_about_a_third_in_logarithm():
+    logs = [np.log(Laboratory(ROBOT, seed=k).reveal() / ROBOT.C_theta) for k in range(200)]
+    assert np.std(logs) == pytest.approx(0.35, rel=0.08)
+    assert np.mean(logs) == pytest.approx(0.0, abs=0.05)
+    np.testing.assert_array_equal(Laboratory(ROBOT).reveal(), Laboratory(ROBOT, seed=0).reveal())
+
+
+def test_readings_are_those_of_the_hidden_robot_by_its_gauge():
+    theta, F = some(12)
+    lab = Laboratory(ROBOT, seed=4, noise=2e-5, resolution=0.0).measure(theta, F)
+    hidden = ROBOT.replace(C_theta=lab.reveal())
+    exact = np.einsum("mij,mj->mi", rm.cartesian_compliance(hidden, theta), F)
+    off = lab.tests.displacement[:, :3] - exact
+    assert off.std() == pytest.approx(2e-5, rel=0.3)
+    steps = Laboratory(ROBOT, noise=0.0, resolution=1e-5).measure(theta, F).tests.displacement[:, :3] / 1e-5
+    np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
+    default = Laboratory(ROBOT)
+    assert (default.noise, default.resolution, default.budget) == (5e-6, 1e-6, 12)
+    again = lab.measure(theta[0], [0, 250.0, 0]) if lab.budget else lab
+    assert again is lab, "twelve tests use up the budget"
+
+
+def test_each_measurement_has_noise_of_its_own():
+    theta, F = some(1)
+    lab = Laboratory(ROBOT, seed=4, budget=2, resolution=0.0).measure(theta, F).measure(theta, F)
+    assert len(lab.tests) == 2
+    assert lab.budget == 0
+    assert not np.array_equal(lab.tests.displacement[0, :3], lab.tests.displacement[1, :3])
+    one = Laboratory(ROBOT, seed=4).measure(theta[0], np.tile([0, 250.0, 0], (3, 1)))
+    assert one.budget == 9
+
+
+def test_the_edges_of_what_is_allowed():
+    theta, _ = some(1)
+    Laboratory(ROBOT).measure(theta[0], [0, 400.0, 0])
+    with pytest.raises(LoadTestError, match="hung on"):
+        Laboratory(ROBOT).measure(theta[0], [0, 400.001, 0])
+    Laboratory(ROBOT, budget=0, noise=0.0, resolution=0.0)
+    for bad in ({"budget": -1}, {"noise": -1e-9}, {"resolution": -1e-9}):
+        with pytest.raises(LoadTestError, match="negative"):
+            Laboratory(ROBOT, **bad)
+    both = Laboratory(ROBOT, seed=7).measure_at([[0, -1.3, 0, 0, 0], [0.1, -1.2, 0, 0, 0]], [0, 250.0, 0])
+    p = rm.tool_pose(ROBOT, both.tests.theta)[:, :3, 3]
+    np.testing.assert_allclose(p, [[0, -1.3, 0], [0.1, -1.2, 0]], atol=1e-9)

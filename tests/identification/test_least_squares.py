@@ -89,6 +89,9 @@ def test_without_a_spare_equation_there_is_no_interval_unless_the_noise_is_given
     more = np.vstack([A, A[:1]]), np.append(b, b[0] + 1.0)
     assert fitted(*more, given=0.3).sigma == pytest.approx(np.sqrt(0.5))  # one spare equation: estimated, not given
     assert fitted(*more).dof == 1
+    one_spare = fitted(*more).interval(np.ones(4, dtype=bool))
+    half = stats.t.ppf(0.975, 1) * fitted(*more).stderr
+    np.testing.assert_allclose(np.ptp(one_spare, axis=1), 2 * half, rtol=1e-9)
     exact = fitted(np.vstack([A, A]), np.append(b, b))
     np.testing.assert_allclose(np.ptp(exact.interval(np.ones(4, dtype=bool)), axis=1), 0.0, atol=1e-9)
 

@@ -96,6 +96,11 @@ def test_poses_are_counted_as_by_comparing_each_with_each():
     same = np.abs(theta[:, None] - theta).max(axis=-1) < 1e-9
     np.testing.assert_array_equal(index[:, None] == index, same)
     np.testing.assert_array_equal(np.unique(index), range(5))
+    for column in range(5):
+        theta = np.repeat(THETA[:1], 4, axis=0)
+        theta[[1, 3], column] += 0.1
+        index = LoadTests(np.ones((4, 3)), np.ones((4, 3)), theta=theta).pose_index()
+        np.testing.assert_array_equal(index[:, None] == index, np.abs(theta[:, None] - theta).max(axis=-1) < 1e-9)
     zero = LoadTests(np.ones((2, 3)), np.ones((2, 3)), x_M=[[0.0, -1.3, 0, 0, 0], [-0.0, -1.3, -1e-12, 0, 0]])
     np.testing.assert_array_equal(zero.pose_index(), [0, 0])
 
@@ -136,6 +141,7 @@ def test_joint_tests_are_checked_row_by_row():
     tests = JointTests(joint, torque, torque * 1e-6, row=np.array([4, 5, 6]))
     assert len(tests) == 3
     assert np.isnan(tests.noise).all()
+    assert not tests.synthetic
     np.testing.assert_array_equal(JointTests(joint, torque, torque, noise=1e-6).noise, [1e-6] * 3)
     np.testing.assert_array_equal(JointTests(joint, torque, torque).row, [1, 2, 3])
     left = tests.without([5])
@@ -146,7 +152,7 @@ def test_joint_tests_are_checked_row_by_row():
     with pytest.raises(LoadTestError, match="no test"):
         JointTests(joint[:0], torque[:0], torque[:0])
     with pytest.raises(LoadTestError, match="Row 2: the torque is zero"):
-        JointTests(joint, np.array([1.0, 0, 1]), torque)
+        JointTests(joint, np.array([2.0, 0, 2]), torque)
     for bad in (np.array([1.0, np.nan, 1]), np.ones(2)):
         with pytest.raises(LoadTestError, match="angle: expected 3 finite"):
             JointTests(joint, torque, bad)

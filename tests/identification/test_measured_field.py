@@ -7,6 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
+from robomill.identification.load_test import LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.synthesis import simulated_tests, three_directions
 from robomill.io.load_tests import read_measured_map
@@ -140,3 +141,125 @@ def test_refusals():
     diagonal = np.array([[0, 0, 0], [0.1, 0.1, 0], [0.3, 0.3, 0.0]])
     with pytest.raises(LoadTestError, match="one line"):
         MeasuredField(diagonal, np.ones((3, 3, 3))).compliance([0.05, 0.05, 0])
+
+
+def test_matrices_are_the_columns_of_what_each_force_moves():
+    """Forces in any three directions; more than three are averaged by least squares."""
+    rng = np.random.default_rng(6)
+    p = grid_points(2, 1, 1)
+    theta, C = theta_at(p), linear_field(p)
+    F = rng.normal(size=(8, 3)) * 100
+    moved = np.einsum("mij,mj->mi", np.repeat(C, 4, axis=0), F) + 1e-6 * rng.normal(size=(8, 3))
+    tests = LoadTests(F, moved, theta=np.repeat(theta, 4, axis=0), source="by hand", synthetic=True)
+    field = MeasuredField.from_tests(ROBOT, tests)
+    order = np.argsort(field.p[:, 0])
+    for k, rows in zip(order, (slice(0, 4), slice(4, 8)), strict=True):
+        expected = [np.linalg.lstsq(F[rows], moved[rows, i], rcond=None)[0] for i in range(3)]
+        np.testing.assert_allclose(field.C[k], expected, rtol=1e-9)
+    np.testing.assert_allclose(field.p[order], p, atol=1e-9)
+    assert field.source == "by hand"
+    assert field.synthetic
+    world = LoadTests(F, moved, x_M=np.repeat(np.column_stack([p, [[0.1, 0.2]] * 2]), 4, axis=0))
+    np.testing.assert_allclose(np.sort(MeasuredField.from_tests(ROBOT, world).AB[0]), [0.1, 0.2])
+    assert MeasuredField.from_tests(ROBOT, tests, reach=0.7).reach == 0.7
+    flat = F * [1.0, 1.0, 1e-7]
+    with pytest.raises(LoadTestError, match="not fully measured"):
+        MeasuredField.from_tests(ROBOT, LoadTests(flat, moved, theta=tests.theta))
+    shallow = F * [1.0, 1.0, 1e-3]
+    MeasuredField.from_tests(ROBOT, LoadTests(shallow, moved, theta=tests.theta))
+    moved[2, 1] = np.nan
+    with pytest.raises(LoadTestError, match="Row 1: this pose"):
+        MeasuredField.from_tests(ROBOT, LoadTests(F, moved, theta=tests.theta))
+
+
+def test_symmetric_is_the_mean_with_its_mirror():
+    p = grid_points(2, 2, 1)
+    C = np.random.default_rng(1).normal(size=(4, 3, 3))
+    field = MeasuredField(p, C, np.full((4, 2), 0.1), 0.4, "words")
+    mended = field.symmetric()
+    np.testing.assert_allclose(mended.C, (C + np.swapaxes(C, 1, 2)) / 2)
+    np.testing.assert_array_equal(mended.AB, field.AB)
+    assert (mended.reach, mended.source) == (0.4, "words")
+    np.testing.assert_allclose(mended.asymmetry, 0.0, atol=1e-15)
+    size = [np.sqrt((c**2).sum()) for c in C]
+    skewed = [np.sqrt(((c - c.T) ** 2).sum()) / s for c, s in zip(C, size, strict=True)]
+    np.testing.assert_allclose(field.asymmetry, skewed)
+    lowest = [min(v @ (c + c.T) / 2 @ v for v in directions()) for c in C]
+    np.testing.assert_allclose(field.smallest, lowest, atol=0.01)
+    assert MeasuredField(p, np.zeros((4, 3, 3))).asymmetry.tolist() == [0.0] * 4
+
+
+def directions(count=20000):
+    v = np.random.default_rng(0).normal(size=(count, 3))
+    return v / np.linalg.norm(v, axis=1)[:, None]
+
+
+@pytest.mark.parametrize(("crooked", "told"), [(0.14, False), (0.16, True)])
+def test_a_matrix_is_named_from_fifteen_percent_of_asymmetry(crooked, told):
+    skew = np.array([[0, 1.0, 0], [-1.0, 0, 0], [0, 0, 0]])
+    # |C - C^T| / |C| with C = I + a S: sqrt(8) a / sqrt(3 + 2 a^2)
+    a = crooked * np.sqrt(3 / (8 - 2 * crooked**2))
+    field = MeasuredField(grid_points(1, 1, 1), (np.eye(3) + a * skew)[None])
+    assert field.asymmetry[0] == pytest.approx(crooked)
+    assert [f.code for f in field.findings] == (["not-symmetric"] if told else [])
+
+
+def test_findings_count_their_points_and_name_the_worst():
+    p = grid_points(3, 1, 1)
+    C = np.tile(np.eye(3), (3, 1, 1))
+    C[1, 0, 1], C[2, 0, 1] = 0.6, 0.9
+    C[0, 2, 2], C[1, 1, 1] = 0.0, 1.0
+    found = {f.code: f for f in MeasuredField(p, C).findings}
+    assert set(found) == {"not-symmetric", "not-positive"}
+    assert [f.line for f in found.values()] == [0, 0]
+    assert found["not-symmetric"].count == 2
+    assert found["not-positive"].count == 1
+    assert "(600 mm, −1600 mm, −400 mm)" in found["not-symmetric"].message
+    worst = 100 * 0.9 * np.sqrt(2) / np.sqrt(3 + 0.81)
+    assert f"worst {worst:.0f} %" in found["not-symmetric"].message
+    assert "(−600 mm, −1600 mm, −400 mm)" in found["not-positive"].message
+    for turn, told in ((0.5e-6, []), (2e-6, ["orientations"])):
+        AB = np.array([[0, 0], [0, turn], [0, 0]])
+        assert [f.code for f in MeasuredField(p, np.tile(np.eye(3), (3, 1, 1)), AB).findings] == told
+
+
+def test_reach_is_half_the_diagonal_of_the_coarsest_cell():
+    assert MeasuredField(np.zeros((1, 3)), np.eye(3)[None]).reach == 0.05
+    x, y = np.array([0.0, 0.1, 0.4]), np.array([0.0, 0.2])
+    p = np.stack(np.meshgrid(x, y, [0.0], indexing="ij"), axis=-1).reshape(-1, 3)
+    grid = MeasuredField(p, np.zeros((6, 3, 3)))
+    assert grid.reach == pytest.approx(0.505 * np.sqrt(0.3**2 + 0.2**2 + 0.1**2))
+    np.testing.assert_allclose(grid.lines[0], x, atol=1e-9)
+    assert [len(line) for line in grid.lines] == [3, 2, 1]
+    loose = np.array([[0.0, 0, 0], [0.1, 0, 0], [0, 0.3, 0], [0.5, 0.4, 0]])
+    nearest = [np.delete(np.linalg.norm(loose - loose[k], axis=1), k).min() for k in range(4)]
+    assert MeasuredField(loose, np.zeros((4, 3, 3))).reach == pytest.approx(1.5 * max(nearest))
+    for bad in (-1.0, 0.0):
+        assert MeasuredField(p, np.zeros((6, 3, 3)), reach=bad).reach == grid.reach
+
+
+def test_beyond_the_reach_of_a_point_the_map_is_silent():
+    p = np.array([[0.0, 0, 0], [1.0, 0, 0]])
+    C = np.stack([np.eye(3), 3 * np.eye(3)])
+    near, far = MeasuredField(p, C, reach=0.3), MeasuredField(p, C, reach=0.6)
+    at = np.array([[0.29, 0, 0], [0.31, 0, 0], [0.5, 0, 0], [0.75, 0, 0], [-0.1, 0, 0]])
+    np.testing.assert_array_equal(near.inside(at), [True, False, False, True, False])
+    np.testing.assert_allclose(far.compliance(at)[:4, 1, 1], 1 + 2 * at[:4, 0])
+    np.testing.assert_allclose(near.distance(at), [0.29, 0.31, 0.5, 0.25, 0.1])
+    np.testing.assert_allclose(far.deflection([0.5, 0, 0], [1.0, 0, 4.0]), [2.0, 0, 8.0])
+    line = np.array([[0.2, -1.3, 0.0], [-0.1, -1.3, 0.0], [0.05, -1.3, 0.0]])
+    along = MeasuredField(line, linear_field(line))
+    np.testing.assert_allclose(along.compliance([0.0, -1.3, 0.0]), linear_field(np.array([0.0, -1.3, 0.0])), rtol=1e-9)
+    for edge, answers in ((0.9e-6, True), (2.1e-6, False)):
+        assert along.inside([0.2 + edge, -1.3, 0.0]) == answers, "a micrometre of rounding is no outside"
+    with pytest.raises(LoadTestError, match="twice"):
+        MeasuredField(np.array([[0, 0, 0], [0.4e-6, 0, 0]]), C)
+    MeasuredField(np.array([[0, 0, 0], [1.6e-6, 0, 0]]), C)
+    with pytest.raises(LoadTestError, match="no point"):
+        MeasuredField(np.zeros((0, 3)), np.zeros((0, 3, 3)))
+
+
+def test_one_point_answers_for_its_surroundings():
+    field = MeasuredField(np.array([[0, -1.3, 0]]), np.eye(3)[None] * 2e-6)
+    assert field.compliance([0.0, -1.3, 0.04])[0, 0] == 2e-6
+    assert not field.inside([0.0, -1.3, 0.06])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy import stats
 
 import robomill as rm
 from robomill.errors import LoadTestError
@@ -114,3 +117,131 @@ def test_refusals():
         next_best(ROBOT, TESTS, RESULT, candidates, goal=9)
     with pytest.raises(LoadTestError, match="goal"):
         next_best(ROBOT, TESTS, RESULT, candidates, goal="best")
+
+
+# ---- brute force: the information itself, in SI and without scaling ------------------------------------------------
+def information(tests, result):
+    """The inverse of the covariance that plain least squares gives, one row a reading."""
+    J_v = rm.geometric_jacobian(ROBOT, tests.theta)[:, :3]
+    A = (J_v * np.einsum("mci,mc->mi", J_v, tests.wrench[:, :3])[:, None, :]).reshape(-1, 5)
+    return A.T @ A / result.noise**2
+
+
+def brute(candidates, result, goodness, count):
+    """Greedy choice of the candidates whose added rows make ``goodness`` of the covariance smallest."""
+    M, left, picked = information(TESTS, result), list(range(len(candidates.F))), []
+    J_v = rm.geometric_jacobian(ROBOT, candidates.theta)[:, :3]
+    rows = J_v * np.einsum("mci,mc->mi", J_v, candidates.F)[:, None, :] / result.noise
+    scale = np.sqrt(np.diag(M))
+    for _ in range(count):
+        value = []
+        for k in left:
+            N = (M + rows[k].T @ rows[k]) / np.outer(scale, scale)
+            value.append(goodness(np.linalg.inv(N) / np.outer(scale, scale)))
+        best = left.pop(int(np.argmin(value)))
+        picked.append(best)
+        M = M + rows[best].T @ rows[best]
+    P = np.linalg.inv(M / np.outer(scale, scale)) / np.outer(scale, scale)
+    return picked, P
+
+
+PATH_THETA = rm.inverse_kinematics(ROBOT, rm.pose_from_world([[x, -1.3, 0, 0.1, 0] for x in (-0.2, 0.0, 0.2)])).theta
+PATH = PathLoad(PATH_THETA, np.array([[0, 100.0, 0], [20.0, 80.0, -10], [0, 100.0, 30.0]]))
+
+
+def path_variance(P):
+    J_v = rm.geometric_jacobian(ROBOT, PATH.theta)[:, :3]
+    D = J_v * np.einsum("mci,mc->mi", J_v, PATH.F)[:, None, :]
+    return np.mean([np.trace(d @ P @ d.T) for d in D])
+
+
+@pytest.mark.parametrize(
+    ("goal", "goodness"),
+    [
+        ("all", lambda P: np.linalg.slogdet(P * 1e14)[1]),
+        (2, lambda P: P[1, 1]),
+        (4, lambda P: P[3, 3]),
+        (PATH, path_variance),
+    ],
+    ids=["all", "joint 2", "joint 4", "path"],
+)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_plans_are_those_of_brute_force(goal, goodness, seed):
+    candidates = box_candidates(ROBOT, *BOX, poses=25, seed=seed)
+    plan = next_best(ROBOT, TESTS, RESULT, candidates, goal=goal)
+    picked, P = brute(candidates, RESULT, goodness, 3)
+    np.testing.assert_array_equal(plan.theta, candidates.theta[picked])
+    np.testing.assert_array_equal(plan.F, candidates.F[picked])
+    np.testing.assert_allclose(plan.after, np.sqrt(np.diag(P)), rtol=1e-4)
+    np.testing.assert_allclose(plan.before, RESULT.stderr, rtol=1e-6)
+    np.testing.assert_allclose(plan.half_before, stats.t.ppf(0.975, 76) * RESULT.stderr, rtol=1e-6)
+    np.testing.assert_allclose(plan.half_after, stats.t.ppf(0.975, 76 + 9) * np.sqrt(np.diag(P)), rtol=1e-4)
+    np.testing.assert_allclose(plan.x_M, rm.world_from_pose(rm.tool_pose(ROBOT, plan.theta)))
+    if goal is PATH:
+        assert plan.path_after == pytest.approx(np.sqrt(path_variance(P)), rel=1e-4)
+        assert plan.path_before == pytest.approx(np.sqrt(path_variance(RESULT.covariance)), rel=1e-6)
+        assert plan.goal == "this path's deviation"
+    else:
+        assert np.isnan(plan.path_before)
+        assert np.isnan(plan.path_after)
+
+
+def test_rows_and_sentence_are_the_gain_of_the_intervals():
+    plan = next_best(ROBOT, TESTS, RESULT, box_candidates(ROBOT, *BOX, poses=25), goal=4)
+    gain = 1 - plan.half_after / plan.half_before
+    assert plan.goal == "joint 4"
+    rows = plan.rows()
+    np.testing.assert_allclose([row["gain"] for row in rows], gain)
+    np.testing.assert_array_equal([row["stderr_after"] for row in rows], plan.after)
+    np.testing.assert_array_equal([row["half_before"] for row in rows], plan.half_before)
+    best = int(np.argmax(gain))
+    promise = f"3 more tests should narrow the interval of joint {best + 1} by {100 * gain[best]:.0f} %."
+    assert promise in plan.sentence()
+    known = replace(plan, half_before=np.where(np.arange(5) == best, 0.0, plan.half_before))
+    assert known.rows()[best]["gain"] == 0.0
+    assert f"joint {best + 1} " not in known.sentence()
+    unknown = replace(plan, half_before=np.where(np.arange(5) == 1, np.inf, plan.half_before))
+    assert "interval of joint 2 by 100 %" in unknown.sentence()
+    aimed = replace(plan, path_before=3.2e-6, path_after=1.1e-6)
+    assert "from ±3.2 µm to ±1.1 µm (one standard deviation)." in aimed.sentence()
+    sheet = plan.as_tests()
+    np.testing.assert_array_equal(sheet.wrench[:, :3], plan.F)
+    np.testing.assert_array_equal(sheet.theta, plan.theta)
+    assert not sheet.displacement[:, :3].any()
+
+
+def test_candidates_fill_the_box_and_are_loaded_three_ways():
+    low, high = np.array([-0.1, -1.4, -0.05]), np.array([0.1, -1.2, 0.05])
+    found = box_candidates(ROBOT, low, high)
+    assert len(found.F) == 3 * 300, "all of this box is in reach"
+    np.testing.assert_array_equal(found.F[:3], 250.0 * np.eye(3))
+    x_M = rm.world_from_pose(rm.tool_pose(ROBOT, found.theta))
+    for i, (a, b) in enumerate(zip([*low, -np.pi / 6, -np.pi / 6], [*high, np.pi / 6, np.pi / 6], strict=True)):
+        assert a - 1e-9 <= x_M[:, i].min() < a + 0.02 * (b - a)
+        assert b - 0.02 * (b - a) < x_M[:, i].max() <= b + 1e-9
+    assert len(box_candidates(ROBOT, low, low, tilt=0.0, poses=4).F) == 12
+    with pytest.raises(LoadTestError, match="upper corner"):
+        box_candidates(ROBOT, low, high, tilt=-0.1)
+
+
+def test_noise_and_what_is_counted_with_another_shape_a_plan():
+    stated = replace(TESTS, noise=np.where(np.arange(27) % 2, 2e-6, 8e-6))
+    result = identify(ROBOT, stated)
+    candidates = box_candidates(ROBOT, *BOX, poses=25)
+    plan = next_best(ROBOT, stated, result, candidates, count=1)
+    np.testing.assert_allclose(plan.before, result.stderr, rtol=1e-6)
+    for bad in (0.0, float("nan")):
+        with pytest.raises(LoadTestError, match="noise is not known"):
+            next_best(ROBOT, TESTS, replace(RESULT, noise=bad), candidates)
+    tilted = rm.read_load_tests(samples_dir() / "load_tests" / "tilted_bending_tool.csv")
+    rich = identify(ROBOT, tilted, "joints+bending+tool")
+    (lumped,) = rich.lumped
+    k = [p.label for p in rich.labels].index(lumped)
+    planned = next_best(ROBOT, tilted, rich, candidates, count=2)
+    live = np.arange(len(rich.labels)) != k
+    assert (planned.after[live] < planned.before[live]).all()
+    with pytest.raises(LoadTestError, match="no point of the path"):
+        next_best(ROBOT, TESTS, RESULT, candidates, goal=PathLoad(np.full((2, 5), np.nan), PATH.F[:2]))
+    holes = PathLoad(np.vstack([PATH.theta, np.full((1, 5), np.nan)]), np.vstack([PATH.F, PATH.F[:1]]))
+    with_holes, whole = (next_best(ROBOT, TESTS, RESULT, candidates, goal=g) for g in (holes, PATH))
+    assert with_holes.path_after == whole.path_after

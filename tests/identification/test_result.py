@@ -1,0 +1,100 @@
+"""What a result says: read off its own parameters by other means."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.springs import JointBending, SpindleSpring
+from robomill.errors import LoadTestError
+from robomill.identification.load_test import LoadTests
+from robomill.identification.result import identification_report
+from robomill.identification.synthesis import simulated_tests, three_directions
+
+ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
+THETA = np.random.default_rng(0).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (15, 5))
+TESTS = simulated_tests(ROBOT, *three_directions(THETA, 250.0), noise=4e-6)
+RESULT = rm.identify(ROBOT, TESTS)
+
+
+def test_joints_are_the_first_parameters():
+    rich = rm.identify(ROBOT, TESTS, "joints+tool")
+    np.testing.assert_array_equal(rich.C_theta, rich.parameters[:5])
+    np.testing.assert_array_equal(rich.stderr, rich.parameter_stderr[:5])
+    np.testing.assert_array_equal(rich.ci95, rich.parameter_ci95[:5])
+    blind = replace(rich, parameter_stderr=np.where(np.arange(7) == 2, np.inf, rich.parameter_stderr))
+    np.testing.assert_array_equal(np.isnan(blind.C_theta), np.arange(5) == 2)
+    constant = rm.identify(ROBOT, TESTS, "constant")
+    assert np.isnan(constant.C_theta).all()
+    assert np.isinf(constant.stderr).all()
+    assert constant.ci95.shape == (5, 2)
+    assert np.isnan(constant.ci95).all()
+    for refused in (lambda: constant.weakest_joint, lambda: constant.applied_to(ROBOT)):
+        with pytest.raises(LoadTestError, match="constant model"):
+            refused()
+
+
+def test_the_weakest_joint_has_the_widest_interval_for_its_size():
+    relative = RESULT.stderr / RESULT.C_theta
+    assert RESULT.weakest_joint == 1 + int(np.argmax(relative))
+    held = replace(RESULT, parameters=np.where(np.arange(5) == 1, 0.0, RESULT.parameters))
+    assert held.weakest_joint == 2
+    assert RESULT.explain(RESULT.weakest_joint) == RESULT.explanations[RESULT.weakest_joint - 1]
+    with pytest.raises(LoadTestError, match="Joint 9"):
+        RESULT.explain(9)
+
+
+def test_springs_are_those_of_the_parameters():
+    rich = rm.identify(ROBOT, TESTS, "joints+bending+tool")
+    values = np.array([*RESULT.C_theta, 1e-7, 0, 0, 2e-7, 3e-8, 4e-8])
+    made = replace(rich, parameters=values).springs(ROBOT)
+    assert [type(s) for s in made] == [JointBending, JointBending, SpindleSpring]
+    assert [(s.joint, s.C_x, s.C_y) for s in made[:2]] == [(2, 1e-7, 0.0), (3, 0.0, 2e-7)]
+    assert (made[2].lateral, made[2].axial) == (3e-8, 4e-8)
+    for across, along in ((3e-8, 0.0), (0.0, 4e-8)):
+        (one,) = replace(rich, parameters=np.array([*RESULT.C_theta, 0, 0, 0, 0, across, along])).springs(ROBOT)
+        assert (one.lateral, one.axial) == (across, along)
+    assert RESULT.springs(ROBOT) == ()
+    with_axis_1_blocked = ROBOT.replace(blocked=np.array([0.0, np.nan, np.nan, np.nan, np.nan]))
+    shifted = replace(rich, parameters=values).springs(with_axis_1_blocked)
+    assert [s.joint for s in shifted[:2]] == [1, 2], "springs count the free joints, labels the robot's own numbers"
+
+
+def test_joints_that_were_not_seen_keep_the_robots_own_values():
+    soft = ROBOT.replace(C_theta=ROBOT.C_theta * 2)
+    blind = replace(RESULT, parameter_stderr=np.where(np.arange(5) == 2, np.inf, RESULT.parameter_stderr))
+    arm = blind.applied_to(soft)
+    np.testing.assert_array_equal(arm.C_theta, np.where(np.arange(5) == 2, soft.C_theta, RESULT.parameters))
+    assert arm.compliance_set == "identified"
+    np.testing.assert_array_equal(arm.compliance_sets["identified"], arm.C_theta)
+    assert "joint 3 not seen" in arm.provenance["compliance.identified"].source
+    assert "not seen" not in RESULT.applied_to(soft).provenance["compliance.identified"].source
+    assert set(ROBOT.compliance_sets) < set(arm.compliance_sets)
+
+
+def test_residuals_are_measured_minus_predicted():
+    predicted = np.einsum(
+        "mij,mj->mi", rm.cartesian_compliance(RESULT.applied_to(ROBOT), TESTS.theta), TESTS.wrench[:, :3]
+    )
+    left = TESTS.displacement[:, :3] - predicted
+    np.testing.assert_allclose(RESULT.residual, left, atol=1e-15)
+    assert RESULT.residual_rms == pytest.approx(np.sqrt(np.mean(left**2)))
+    assert RESULT.noise == pytest.approx(np.sqrt((left**2).sum() / (left.size - 5)))
+    share = np.linalg.norm(left, axis=1) / np.linalg.norm(TESTS.displacement[:, :3], axis=1)
+    np.testing.assert_allclose(RESULT.residual_share, share)
+    assert (RESULT.equations, RESULT.dof) == (135, 130)
+
+
+def test_the_report_is_the_result_in_plain_numbers():
+    report = identification_report(RESULT)
+    np.testing.assert_array_equal(report["C_theta"], RESULT.C_theta)
+    np.testing.assert_array_equal(report["ci95"], RESULT.ci95)
+    np.testing.assert_array_equal(report["correlation"], RESULT.correlation)
+    assert report["residual_rms_mm"] == pytest.approx(RESULT.residual_rms * 1e3)
+    assert report["condition"] == pytest.approx(RESULT.condition[1])
+    assert report["condition_before_scaling"] == pytest.approx(RESULT.condition[0])
+    down = LoadTests(np.tile([0, 0, -250.0], (15, 1)), TESTS.displacement[2::3, :3], theta=THETA)
+    assert identification_report(rm.identify(ROBOT, down))["C_theta"][0] is None
