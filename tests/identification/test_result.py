@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.compliance.springs import JointBending, SpindleSpring
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.result import identification_report
