@@ -1,0 +1,193 @@
+"""What a run says of itself, recomputed by loops over its samples and by runs of other set-ups."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import shapely
+
+import robomill as rm
+from robomill.compliance.springs import SpindleSpring
+from robomill.cutting.force import PathForce
+from robomill.io.samples import samples_dir
+from robomill.io.workpiece import part_frame
+from robomill.toolpath.source import GCodeSource
+
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=4e-4)
+PROCESS = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4)
+STOCK = SETUP.stock
+
+
+def program(*lines, **changes):
+    return rm.simulate(SETUP.replace(source=GCodeSource("\n".join(["G21 G90 S12000 M3", *lines, "M2", ""])), **changes))
+
+
+def mm(*values):
+    return " ".join(f"{a}{v:.10g}" for a, v in zip("XYZ", values, strict=False))
+
+
+def test_what_counts_is_at_feed_and_within_the_block():
+    """Around corners and sides of the block, a nanometre or a micrometre inside and outside the cutter's reach."""
+    R, (x, y, _), (X, Y, top) = 4.0, STOCK.lower * 1e3, STOCK.upper * 1e3
+    diagonal = R / np.sqrt(2)
+    places = [
+        (mx, my, top + dz)
+        for d in (-1e-3, 1e-3)
+        for mx, my in (
+            (X + R + d, 0),
+            (x - R - d, 0),
+            (0, Y + R + d),
+            (0, y - R - d),
+            (X + diagonal + d, Y + diagonal + d),
+            (x - diagonal - d, y - diagonal - d),
+        )
+        for dz in (-2.0, -1e-3, 1e-3)
+    ]
+    lines = [f"G1 {mm(*place)} F1800" for place in places]
+    found = program("G0 X0 Y0 Z5", *lines, "G0 Z9", T_MW=part_frame([-0.0, -1.25, 0.0]), step=1.0)
+    block = shapely.box(*STOCK.lower[:2], *STOCK.upper[:2])
+    for i, p in enumerate(found.path.p):
+        over = shapely.distance(block, shapely.Point(p[:2])) < 0.004 - 1e-9 and p[2] < STOCK.upper[2] - 1e-9
+        assert found.over_stock[i] == over, p
+        assert found.judged[i] == (over and found.path.cutting[i] and found.reached[i])
+    assert found.judged.sum() > 10
+    touching = program(f"G0 {mm(X + R, 0, 5)}", "G1 Z-2 F900", "G1 Y5", "G0 Z9", step=1.0)
+    assert not touching.judged.any()
+
+
+@pytest.fixture(scope="module")
+def bent():
+    """Two cuts under all three forces, with a rapid between, sampled unevenly."""
+    force = PathForce(feed=-30.0, feed_normal=100.0, axial=-20.0)
+    lines = ("G0 X-40 Y-8 Z-2", "G1 X-10 F1800", "G0 Z9", "G0 X20 Y8", "G0 Z-1", "G1 X50 Y14 F900")
+    return program(*lines, force=force, step=7e-3)
+
+
+def test_size_and_worst_by_loops(bent):
+    sizes = [sum(v * v for v in d) ** 0.5 for d in bent.delta]
+    judged = [i for i in range(len(sizes)) if bent.judged[i]]
+    assert bent.deviation == pytest.approx(sizes)
+    assert bent.worst == max(judged, key=lambda i: sizes[i])
+    assert bent.max_deviation == sizes[bent.worst]
+    length = {i: float(np.linalg.norm(bent.path.p[i] - bent.path.p[i - 1])) for i in judged}
+    squares = sum(length[i] * sizes[i] ** 2 for i in judged) / sum(length.values())
+    assert bent.rms_deviation == pytest.approx(squares**0.5, rel=1e-12)
+    assert bent.worst_block == bent.path.block[bent.worst]
+    assert bent.answered.all()
+
+
+def test_each_force_component_alone_bends_its_part(bent):
+    for c, name in enumerate(("feed", "feed_normal", "axial")):
+        alone = rm.simulate(bent.setup.replace(force=PathForce(**{name: getattr(bent.setup.force, name)})))
+        np.testing.assert_allclose(bent.delta_component[:, c], alone.delta, atol=1e-12)
+    np.testing.assert_allclose(bent.delta_component.sum(axis=1), bent.delta, atol=1e-15)
+    at_feed = bent.path.cutting & (bent.path.step_length > 0)
+    expected = np.tile([-30.0, 100.0, -20.0], (int(at_feed.sum()), 1))
+    np.testing.assert_allclose(bent.force_components[at_feed], expected, atol=1e-9)
+
+
+def test_the_machined_path_is_the_commanded_one_moved(bent):
+    R = bent.setup.T_MW[:3, :3]
+    for i in range(len(bent.path)):
+        j = i + 1 if not bent.path.cutting[i] and i + 1 < len(bent.path) and bent.path.cutting[i + 1] else i
+        np.testing.assert_allclose(bent.p_machined[i], bent.path.p[i] + R.T @ bent.delta[j], atol=1e-15)
+
+
+def test_stations_and_sections(bent):
+    total = sum(np.linalg.norm(np.diff(bent.path.p, axis=0), axis=1)[bent.path.cutting[1:]])
+    np.testing.assert_allclose(bent.stations, [0.1 * n * total for n in range(1, 10)])
+    assert [section.station for section in bent.sections] == bent.stations.tolist()
+    one = bent.groove(float(bent.stations[3]))
+    assert (one.width, one.centre_offset) == (bent.sections[3].width, bent.sections[3].centre_offset)
+    np.testing.assert_array_equal(one.z_machined, bent.sections[3].z_machined)
+
+
+def test_what_is_not_reached_is_not_cut():
+    found = program("G0 X0 Y0 Z-2", "G1 X50 F1800", "G1 Y-3000", "G1 Y0", step=10e-3)
+    for i in range(1, len(found.path)):
+        expected = found.path.cutting[i] and found.reached[i] and found.reached[i - 1]
+        assert found.removes[i] == expected
+    assert not found.removes[0]
+    assert found.removes.sum() > 5
+    np.testing.assert_array_equal(found.p_machined[~found.reached], found.path.p[~found.reached])
+
+
+@pytest.mark.parametrize(
+    ("share", "level", "red"),
+    [(0.5, "ok", False), (0.799, "ok", False), (0.801, "tight", False), (0.999, "tight", False), (1.001, "out", True)],
+)
+def test_the_verdict_follows_the_share_of_the_tolerance(bent, share, level, red):
+    judged = rm.simulate(bent.setup.replace(tolerance=bent.max_deviation / share)).verdict
+    assert (judged.level, judged.red) == (level, red)
+    assert judged.share == pytest.approx(share)
+    assert f"{100 * share:.0f} %" in judged.sentence
+
+
+def test_what_uses_the_whole_tolerance_is_tight_and_just_four_fifths_too(bent):
+    exact = dataclasses.replace(bent, setup=bent.setup.replace(tolerance=bent.max_deviation))
+    assert exact.verdict.level == "tight"
+    assert exact.verdict.share == 1.0
+    odd = dataclasses.replace(bent, delta=np.where(np.arange(3) == 0, 0.8, np.zeros_like(bent.delta)))
+    assert dataclasses.replace(odd, setup=bent.setup.replace(tolerance=1.0)).verdict.level == "tight"
+
+
+def test_a_verdict_names_three_lines_that_are_not_reached():
+    far = ["G0 X0 Y0 Z-2", "G1 X50 F1800", *(f"G1 Y-{3000 + n}" for n in range(4))]
+    found = program(*far, step=0.5)
+    verdict = found.verdict
+    missed = [i for i in range(len(found.path)) if not found.reached[i]]
+    lines = sorted({int(found.path.block[i]) for i in missed})
+    assert len(lines) == 4
+    named = ", ".join(map(str, lines[:3]))
+    assert verdict.level == "unreached"
+    assert verdict.sentence.startswith(f"{len(missed)} of {len(found.path)} points cannot be reached (line {named} and")
+    assert verdict.share == pytest.approx(found.max_deviation / SETUP.tolerance)
+    three = program(*far[:-1], step=0.5)
+    assert " and more" not in three.verdict.sentence
+
+
+def test_levels_where_nothing_is_cut():
+    assert program("G0 X0 Y90 Z-2", "G1 X50 F1800").verdict.level == "missed"
+    nowhere = rm.simulate(SETUP.replace(T_MW=part_frame([9.0, 0, 0])))
+    assert nowhere.verdict.level == "unreached"
+    assert "No point of the cut can be reached" in nowhere.verdict.sentence
+    assert np.isnan(nowhere.verdict.share)
+    assert np.isnan(nowhere.rms_deviation)
+    assert nowhere.worst_block == 0
+    mapped = rm.load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
+    outside = rm.simulate(mapped.replace(T_MW=part_frame([0.7, -1.3, 0.002])))
+    assert outside.reached.all()
+    assert outside.verdict.level == "unreached"
+    assert "inside the measured map" in outside.verdict.sentence
+
+
+def test_notes_say_what_the_numbers_rest_on():
+    mapped = rm.load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
+    said = "The measured map holds whatever gives"
+    assert not any(said in note for note in rm.simulate(mapped).notes)
+    springs = (SpindleSpring(1e-7),)
+    assert any(said in note for note in rm.simulate(mapped.replace(springs=springs)).notes)
+    assert not any(said in note for note in rm.simulate(SETUP.replace(springs=springs)).notes)
+    slot = "that of a full slot everywhere"
+    assert not any(slot in note for note in rm.simulate(PROCESS).notes)
+    assert any(slot in note for note in rm.simulate(PROCESS.replace(engagement=False)).notes)
+    assert not any(slot in note for note in rm.simulate(SETUP).notes)
+
+
+def test_the_error_is_that_of_both_surfaces(bent):
+    np.testing.assert_array_equal(bent.error.height_error, bent.machined.z - bent.ideal.z)
+    assert bent.error.excess_volume > 0
+
+
+def test_rapids_through_material_are_named_once_in_order():
+    cut_through = ("G0 X-40 Y-15 Z-2", "G0 X40", "G0 Y-5", "G0 X-40", "G0 Z5", "G0 X40 Y15")
+    found = program("G0 Z9", "G0 X-40 Y0", "G1 Z-2 F300", "G1 X40", "G0 Z9", *cut_through, "G0 Z9")
+    # down into the part, across it, aside, back and up again; flying above is not
+    assert found.surface_notes[-1].startswith("Line 7, 8, 9, 10, 11: a rapid runs through material")
+    more = program("G0 Z9", "G0 X-40 Y0", "G1 Z-2 F300", "G1 X40", *(f"G0 Y{4 * n} Z-2" for n in range(-1, -8, -1)))
+    assert found.surface_notes != more.surface_notes
+    assert " and more: a rapid" in more.surface_notes[-1]
+    clear = program("G0 Z9", "G0 X-40 Y0", "G1 Z-2 F300", "G1 X40", "G0 X-40", "G0 Z9", "G0 X90 Y90", "G0 Z-2")
+    assert clear.surface_notes == ()  # back through the groove it has cut, and beside the stock

@@ -1,0 +1,121 @@
+"""What gives, by which share, held against other ways to the same number: twisted joints, beams, potential energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.gravity import LinkMasses
+from robomill.compliance.springs import SpindleSpring, ToolBending
+from robomill.cutting.force import ConstantForce
+from robomill.io.samples import samples_dir
+from robomill.kinematics.forward import joint_frames
+from robomill.surface.engagement import engage
+
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=10e-3, cell=4e-4)
+PROCESS = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4)
+FORCE = np.array([40.0, 100.0, -30.0])
+TOOL = ToolBending(0.008, 0.04)
+SPINDLE = SpindleSpring(2e-7, 5e-8)
+
+
+def twisted(robot, theta, C_theta, F):
+    """Where the tip goes when each joint turns by its compliance times the torque of F, by differences of poses."""
+    h, still = 1e-6, rm.tool_pose(robot, theta)[:3, 3]
+    J = np.array(
+        [
+            (rm.tool_pose(robot, theta + h * e)[:3, 3] - rm.tool_pose(robot, theta - h * e)[:3, 3]) / (2 * h)
+            for e in np.eye(len(theta))
+        ]
+    ).T
+    small = 1e-3  # the model is linear: a small force, so that the arm stays where it is
+    return (rm.tool_pose(robot, theta + C_theta * (J.T @ F) * small)[:3, 3] - still) / small
+
+
+def test_joints_and_springs_add_up():
+    """Joints twisted by their torques, the cutter as a beam, the spindle as springs; nothing is taken off."""
+    run = rm.simulate(SETUP.replace(force=ConstantForce(FORCE), springs=(TOOL, SPINDLE)))
+    second_moment = np.pi / 64 * (0.8 * 0.008) ** 4
+    beam = 0.04**3 / (3 * 600e9 * second_moment)
+    for i in np.flatnonzero(run.path.cutting):
+        axis = rm.tool_pose(run.setup.robot, run.theta[i])[:3, 2]
+        along = (FORCE @ axis) * axis
+        tool, spindle = beam * (FORCE - along), 2e-7 * (FORCE - along) + 5e-8 * along
+        joints = twisted(run.setup.robot, run.theta[i], run.setup.robot.C_theta, FORCE)
+        np.testing.assert_allclose(run.delta_spring[i], [tool, spindle], atol=1e-12)
+        np.testing.assert_allclose(run.delta_joint[i].sum(axis=0), joints, rtol=2e-5, atol=1e-9)
+        np.testing.assert_allclose(run.delta[i], joints + tool + spindle, rtol=2e-5, atol=1e-9)
+        np.testing.assert_allclose(run.C[i] @ FORCE, run.delta[i], atol=1e-15)
+        assert run.delta[i] @ FORCE > joints @ FORCE > 0.0  # what gives, gives the force's way
+
+
+def test_sag_is_added_only_when_asked():
+    """Each joint turns by its compliance times the fall of the potential energy, found by differences."""
+    rng = np.random.default_rng(2)
+    links = LinkMasses(rng.uniform(5, 40, 5), rng.uniform(-0.2, 0.2, (5, 3)))
+    plain, told, added = (
+        rm.simulate(SETUP.replace(**more)) for more in ({}, {"links": links}, {"links": links, "add_sag": True})
+    )
+    np.testing.assert_array_equal(told.delta, plain.delta)
+    robot = SETUP.robot
+
+    def energy(theta):
+        frames = joint_frames(robot, theta)[1:]
+        centres = np.einsum("nij,nj->ni", frames[:, :3, :3], links.centre) + frames[:, :3, 3]
+        return 9.80665 * float(links.mass @ centres[:, 2])
+
+    h = 1e-5
+    for i in (1, len(plain.path) // 2):
+        theta = plain.theta[i]
+        torque = np.array([-(energy(theta + h * e) - energy(theta - h * e)) / (2 * h) for e in np.eye(5)])
+        fall = rm.geometric_jacobian(robot, theta)[:3] @ (robot.C_theta * torque)
+        np.testing.assert_allclose(added.delta[i] - plain.delta[i], fall, rtol=1e-3, atol=1e-7)
+        np.testing.assert_allclose(told.sag[i].sum(axis=0), fall, rtol=1e-3, atol=1e-7)
+
+
+@pytest.mark.parametrize("sag", [False, True])
+def test_coupled_runs_agree_with_themselves(sag):
+    """The deflected path meets the material that the force was computed from, and bends by just that force."""
+    links = LinkMasses([30.0, 20.0, 15.0, 5.0, 5.0], np.zeros((5, 3)))
+    changes = {"links": links, "add_sag": True} if sag else {}
+    run = rm.simulate(PROCESS.replace(coupling=True, **changes))
+    single = rm.simulate(PROCESS.replace(**changes))
+    assert single.coupling is None
+    assert run.coupling.converged
+    found = engage(run.setup.stock_block, 4e-4, run.setup.cutter, run.p_machined, run.path.k, run.path.cutting)
+    cutting = run.path.cutting & (run.path.step_length > 0)
+    np.testing.assert_allclose(run.conditions.a_p[cutting], found.a_p[cutting], atol=1e-7)
+    assert np.abs(run.conditions.a_p - single.conditions.a_p)[cutting].max() > 1e-5
+    offset = run.sag.sum(axis=1) if sag else 0.0
+    np.testing.assert_allclose(run.delta, np.einsum("mij,mj->mi", run.C, run.F) + offset, atol=1e-15)
+    np.testing.assert_allclose(run.coupling.value, run.delta, atol=1e-7)
+    np.testing.assert_allclose(run.coupling.one_pass, single.delta, atol=1e-15)
+
+
+def test_off_the_cut_a_measured_map_is_not_asked():
+    mapped = rm.load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
+    run = rm.simulate(mapped)
+    shares = run.C_joint.sum(axis=1) + run.C_spring.sum(axis=1)
+    off = ~run.path.cutting
+    np.testing.assert_array_equal(run.C[off], shares[off])
+    assert np.abs(run.C - shares)[run.path.cutting].max() > 1e-8
+    assert np.isfinite(run.delta).all()
+
+
+def test_depth_of_a_full_slot_is_measured_from_the_stocks_top():
+    run = rm.simulate(SETUP)
+    top = run.setup.stock_block.upper[2]
+    np.testing.assert_allclose(run.conditions.a_p, np.maximum(top - run.path.p[:, 2], 0.0))
+
+
+def test_a_step_of_no_length_takes_what_the_next_step_has():
+    """A cut that begins where it stands: force and engagement of its first sample are those of its first step."""
+    run = rm.simulate(PROCESS)
+    still = np.flatnonzero(run.path.cutting & (run.path.step_length == 0.0))
+    assert len(still)
+    for i in still:
+        np.testing.assert_array_equal(run.R_MF[i], run.R_MF[i + 1])
+        assert run.conditions.a_p[i] == run.conditions.a_p[i + 1]
+        assert run.conditions.phi_ex[i] == run.conditions.phi_ex[i + 1]
+        np.testing.assert_array_equal(run.F[i], run.F[i + 1])
