@@ -1,7 +1,10 @@
 """Engagement against geometry: air, entry, slot, half immersion, earlier passes, exit."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+import shapely
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.engagement import engage
@@ -123,3 +126,100 @@ def test_unreached_steps_do_not_engage():
     found = run(p)
     assert found.a_p[40] == found.a_p[41] == 0
     assert found.a_p[39] > 0
+
+
+def in_material(material, stock, points):
+    return shapely.contains_xy(material, points[:, 0], points[:, 1]) & shapely.contains_xy(
+        shapely.box(*stock.lower[:2], *stock.upper[:2]), points[:, 0], points[:, 1]
+    )
+
+
+def test_engaged_width_against_shapes():
+    """A flat mill on a level walk: what stands ahead of its rim is the block less the capsules of the steps before."""
+    rng = np.random.default_rng(6)
+    corners = np.column_stack([rng.uniform(0.0, 0.04, 7), rng.uniform(-0.02, 0.02, 7), np.full(7, -0.002)])
+    p = np.vstack([line(a, b, 1.7e-3) for a, b in pairwise(corners)])
+    p = p[np.append(True, np.linalg.norm(np.diff(p, axis=0), axis=1) > 0)]
+    cell = 5e-5
+    found = engage(STOCK, cell, FLAT, p)
+    material = shapely.box(*STOCK.lower[:2], *STOCK.upper[:2])
+    phi = (np.arange(3600) + 0.5) * np.pi / 3600
+    widths, depths = [], []
+    for a, b in pairwise(p[:, :2]):
+        feed = (b - a) / np.linalg.norm(b - a)
+        left = np.array([-feed[1], feed[0]])
+        rim = (a + b) / 2 + (R + 1.5 * cell) * (np.sin(phi)[:, None] * feed + np.cos(phi)[:, None] * left)
+        touched = in_material(material, STOCK, rim)
+        widths.append(R * np.sin(phi)[touched].sum() * np.pi / 3600)
+        span = np.flatnonzero(touched)
+        depths.append(0.002 * len(span) / (span[-1] + 1 - span[0]) if len(span) else 0.0)
+        material = material.difference(shapely.LineString([a, b]).buffer(R, quad_segs=200))
+    assert np.abs(found.a_e[1:] - widths).max() < 8 * cell
+    assert np.median(np.abs(found.a_e[1:] - widths)) < 1.5 * cell
+    assert np.median(np.abs(found.a_p[1:] - depths)) < 2e-5
+    assert 0.1 < np.mean(np.array(widths) > 0.5 * R) < 0.95
+
+
+@pytest.mark.parametrize("lean", [0.1, -0.2])
+def test_a_leaning_mill_meets_more_along_its_axis(lean):
+    """Leaning across the feed, in uncut material: the depth along the axis is on average the depth over its cosine."""
+    k = np.array([0.0, np.sin(lean), np.cos(lean)])
+    stock = Stock((0.0, -0.02, -0.01), (0.04, 0.02, 0.0))
+    found = engage(stock, CELL, FLAT, np.array([[0.02, 0.0, -0.003], [0.0203, 0.0, -0.003]]), k)
+    assert np.degrees([found.phi_st[1], found.phi_ex[1]]) == pytest.approx([0.0, 180.0])
+    assert found.a_p[1] == pytest.approx(0.003 / np.cos(lean), rel=1e-3)
+    assert found.a_e[1] == pytest.approx(2 * R, rel=1e-3)
+
+
+@pytest.mark.parametrize("lean", [0.1, -0.2])
+def test_a_leaning_mill_cuts_what_it_meets(lean):
+    """Back through its own slot next to nothing is left (material is looked up straight above the tip plane, not along
+    the axis); one radius aside, towards either hand, half a slot is."""
+    k = np.array([0.0, np.sin(lean), np.cos(lean)])
+    p = line([-0.01, 0.0, -0.003], [0.05, 0.0, -0.003], 2e-3)
+    back = engage(STOCK, 2 * CELL, FLAT, np.vstack([p, p[::-1]]), k)
+    assert back.a_p[: len(p)].max() > 0.002
+    assert (back.a_p[len(p) + 1 :] < 0.15 * back.a_p.max()).all()
+    for aside, low, high in ((R, 0.0, 90.0), (-R, 90.0, 180.0)):
+        both = np.vstack([p, p + np.array([0.0, aside, 0.0])])
+        found = engage(STOCK, 2 * CELL, FLAT, both, k, np.arange(len(both)) != len(p))
+        n = len(p) + len(p) // 2
+        assert np.degrees([found.phi_st[n], found.phi_ex[n]]) == pytest.approx([low, high], abs=12)
+
+
+@pytest.mark.parametrize(
+    ("cutter", "radius"),
+    [
+        (Cutter("bull", 2 * R, corner_radius=0.002), lambda h: 0.002 + np.sqrt(0.002**2 - (0.002 - h) ** 2)),
+        (Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0), tip_diameter=0.002), lambda h: 0.001 + h),
+        (Cutter("ball", 2 * R), lambda h: np.sqrt(R**2 - (R - h) ** 2)),
+    ],
+    ids=["bull", "chamfer", "ball"],
+)
+def test_a_shaped_cutter_is_as_wide_as_at_the_materials_top(cutter, radius):
+    depth = 0.0012
+    p = line([-0.01, 0.0, -depth], [0.05, 0.0, -depth])
+    found = engage(STOCK, CELL, cutter, p)
+    n = len(p) // 2
+    assert found.a_e[n] == pytest.approx(2 * radius(0.98 * depth), rel=2e-3)
+    assert found.a_p[n] == pytest.approx(depth, rel=1e-9)
+    assert np.degrees([found.phi_st[n], found.phi_ex[n]]) == pytest.approx([0.0, 180.0])
+
+
+def test_steep_steps_have_no_arc_and_shallow_ones_have():
+    """Along the axis by more than 0.98 of its length a step is a plunge."""
+    for slope, arc in ((4.5, True), (6.0, False)):
+        p = np.array([[0.02, 0.0, 0.0], [0.0202, 0.0, -0.0002 * slope]])
+        found = engage(STOCK, CELL, FLAT, p)
+        assert (found.phi_ex[1] > 0) == arc
+    still = engage(STOCK, CELL, FLAT, np.array([[0.02, 0.0, -0.002], [0.02, 0.0, -0.002]]))
+    assert still.a_p[1] == 0.0
+
+
+def test_below_the_stock_there_is_nothing():
+    """A cutter under the block's lower face meets the whole block, and what is cut away is gone."""
+    p = line([-0.01, 0.0, -0.015], [0.05, 0.0, -0.015])
+    found = engage(STOCK, CELL, FLAT, np.vstack([p, p[::-1]]))
+    n = len(p) // 2
+    assert found.a_p[n] == pytest.approx(0.01)
+    assert (found.a_p[len(p) + 1 :] == 0).all()
