@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 import robomill as rm
-from robomill.compliance.springs import SpindleSpring
-from robomill.cutting.force import PathForce
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.cutting.forces.along_path import PathForce
 from robomill.io.samples import samples_dir
 from robomill.io.workpiece import part_frame
 from robomill.toolpath.source import GCodeSource

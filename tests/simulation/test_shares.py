@@ -7,8 +7,9 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.gravity import LinkMasses
-from robomill.compliance.springs import SpindleSpring, ToolBending
-from robomill.cutting.force import ConstantForce
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.forces.constant import ConstantForce
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import joint_frames
 from robomill.surface.engagement import engage

@@ -126,3 +126,17 @@ def test_rows_of_the_alloy_are_runs_of_their_own():
         assert offsets[row] == pytest.approx([offset + aside, aside], abs=1e-12)
         if row == 1:
             assert offsets[row, 0] == pytest.approx(other.groove(middle).centre_offset, abs=5e-6)
+
+
+def test_only_forces_from_a_material_have_rows_and_a_peak():
+    from robomill.simulation.spread import peak_force
+
+    stated, computed = rm.simulate(SETUP), rm.simulate(PROCESS)
+    assert alloy_spread(stated) is None
+    assert peak_force(stated) is None
+    peak, i = peak_force(computed), computed.worst
+    mean = computed.force_components[i]
+    assert np.hypot(*peak.at_peak[i][:2]) >= np.hypot(*mean[:2])
+    spread = alloy_spread(computed)
+    assert [m.name for m in spread.materials][0] == PROCESS.force.material.name
+    assert (spread.F[:, ~computed.conditions.cutting] == 0.0).all()
