@@ -10,6 +10,7 @@ from robomill.errors import CuttingError, RobomillError
 from robomill.io.declared import read_quantity, write_quantity
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, toml_value
+from robomill.io.texts import read_text
 from robomill.quantities import quantities
 
 WORDS = ("name", "title", "alloy")
@@ -33,11 +34,7 @@ def load_material(name_or_path: str | Path) -> Material:
         if not path.is_file():
             known = ", ".join(material_names())
             raise CuttingError(f"Material {str(name_or_path)!r} is not known: give a .toml file or one of {known}.")
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as exc:
-        raise CuttingError(f"{path.name}: the file cannot be read as text ({exc.__class__.__name__}).") from exc
-    return material_from_toml(text, path.name)
+    return material_from_toml(*read_text(path, CuttingError, "a material row (.toml)"))
 
 
 def material_from_toml(text: str, where: str = "material") -> Material:

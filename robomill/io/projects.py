@@ -19,6 +19,7 @@ from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_t
 from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
+from robomill.io.texts import read_text
 from robomill.io.workpiece import (
     part_from_table,
     part_to_table,
@@ -50,14 +51,7 @@ def load_setup(path: str | Path) -> SimulationSetup:
             f"{file}: this is a program, not a set-up; read it with 'robomill gcode', or cut it with "
             "'robomill simulate SETUP.toml --program'."
         )
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise ProjectError(f"{file}: there is no such file; give the path of a set-up (.toml).") from None
-    except (OSError, UnicodeDecodeError) as exc:
-        raise ProjectError(
-            f"{file}: cannot be read as text ({exc.__class__.__name__}); expected a set-up (.toml)."
-        ) from None
+    text, _ = read_text(file, ProjectError, "a set-up (.toml)")
     return setup_from_toml(text, where=file.name, folder=file.parent)
 
 

@@ -115,11 +115,11 @@ def test_refused_files(text, sentence):
 def test_refused_names_and_unreadable_files(tmp_path):
     with pytest.raises(CuttingError, match=r"'unobtainium' is not known: give a .toml file or one of al"):
         load_material("unobtainium")
-    with pytest.raises(CuttingError, match="cannot be read as text"):
+    with pytest.raises(CuttingError, match="cannot be opened"):
         load_material(tmp_path / "missing.toml")
     binary = tmp_path / "binary.toml"
-    binary.write_bytes(b"\xff\xfe\x00\x01")
-    with pytest.raises(CuttingError, match="cannot be read as text"):
+    binary.write_bytes(b"\x89PNG\x00\x01")
+    with pytest.raises(CuttingError, match="this is not a text file; expected a material row"):
         load_material(binary)
 
 

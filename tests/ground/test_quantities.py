@@ -16,6 +16,7 @@ from robomill.errors import CuttingError
 from robomill.quantities import (
     choice,
     declared_types,
+    described,
     file_suffix,
     quantities,
     quantity,
@@ -137,7 +138,20 @@ def test_a_class_is_asked_for_its_numbers() -> None:
     assert (found["teeth"].step, found["teeth"].digits) == (1.0, 0)
     assert found["hand"].options == {"l": "left", "r": "right"}
     assert found["width"].hint == "Across."
+    assert found["width"].boxed
     assert declared_types(Sample) == {"source": CuttingError}
+
+
+def test_a_value_says_its_numbers_in_words() -> None:
+    said = described(made(turn=math.pi / 2, push=[1.0, -2.5, 3.0], on=True))
+    assert said == (
+        "Width 1 mm, Turn 90°, Ratio 0.5, Left −1 N, Right −1 N, Free 0 N, Push (1, −2.5, 3) N, Teeth 2, Any 0, On on, "
+        "Hand right"
+    )
+    assert "Reach 2 mm" in described(made(reach=2e-3))
+    assert "On off" in described(made())
+    shapes = choice("Shape", {"a": "A", "b": "B", "c": "C"}).metadata["quantity"]
+    assert shapes.expected == "a, b or c"
 
 
 def test_keys_in_files() -> None:

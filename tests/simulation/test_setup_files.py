@@ -119,7 +119,7 @@ def test_programs_in_other_encodings_are_read(encoding: str) -> None:
 
 
 def test_a_missing_setup_is_named() -> None:
-    with pytest.raises(ProjectError, match="nowhere.toml: there is no such file"):
+    with pytest.raises(ProjectError, match="nowhere.toml: cannot be opened"):
         load_setup("nowhere.toml")
 
 

@@ -15,6 +15,7 @@ from robomill.cutting.materials import Material
 from robomill.cutting.materials import alternatives as others_of
 from robomill.errors import CuttingError
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
+from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.ui import inputs, parts, state
@@ -133,17 +134,12 @@ def _copy(material: Material, name: str, alloy: str, source: str) -> None:
     inputs.attempt("material:add", None, put)
 
 
-def _from_file(file: object) -> None:
+def _from_file(file: Any) -> None:
     if file is None:
         return
 
     def put() -> None:
-        name = str(getattr(file, "name", "material"))
-        try:
-            text = file.getvalue().decode("utf-8")  # type: ignore[attr-defined]
-        except UnicodeDecodeError:
-            raise CuttingError(f"{name}: this is not a text file; expected a material row (.toml).") from None
-        _keep(material_from_toml(text, name))
+        _keep(material_from_toml(*read_text(file.getvalue(), CuttingError, "a material row (.toml)", file.name)))
 
     inputs.attempt("material:add", None, put)
 
