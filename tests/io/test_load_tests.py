@@ -11,10 +11,10 @@ import pytest
 import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
-from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.load_test import JointTests
 from robomill.identification.synthesis import simulated_tests, three_directions
-from robomill.io.load_test_sheets import load_test_template, load_tests_to_csv
-from robomill.io.load_tests import read_findings, read_load_tests
+from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.load_tests import read_findings, read_load_tests, read_measured_map
 
 ROBOT = rm.load_robot("slavkovic_5r")
 JOINTS = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg"
@@ -195,6 +195,75 @@ def test_poses_in_the_wrong_unit_are_suspected():
     assert not any(f.level == "suspicious" for f in read_load_tests(HEADER + ROW).findings)
 
 
+@pytest.mark.parametrize(
+    ("header", "cells", "suspected"),
+    [
+        (JOINTS, "6.29,-1,1,1,1", "No theta1_deg is larger than 6.29: are these poses in rad?"),
+        (JOINTS, "1,-6.31,1,1,1", ""),
+        (JOINTS, "0,0,0,0,0", ""),
+        (JOINTS.replace("deg", "rad"), "0.5,0.5,0.5,0.5,0.5", ""),
+        ("X_mm,Y_mm,Z_mm,A_deg,B_deg", "9.9,-1300,0,0,0", "No X_mm is larger than 9.9: are these poses in m?"),
+        ("X_mm,Y_mm,Z_mm,A_deg,B_deg", "10.1,-1300,0,0,0", ""),
+        ("X_mm,Y_mm,Z_mm,A_deg,B_deg", "0,-9.9,0,0,0", "No Y_mm is larger than 9.9: are these poses in m?"),
+        ("X_m,Y_m,Z_m,A_deg,B_deg", "0.1,-1.3,0,0,0", ""),
+        ("X_mm,Y_mm,Z_mm,A_deg,B_deg", "1,-2,0,0,0", "No X_mm is larger than 1: are these poses in m?"),
+    ],
+)
+def test_where_the_suspicion_begins(header, cells, suspected):
+    tests = read_load_tests(f"{header},{LOADS}\n{cells},0,250,0,0,0.5,0\n")
+    assert [f.message for f in tests.findings if f.level == "suspicious"] == ([suspected] if suspected else [])
+
+
+def test_loads_and_joint_numbers_at_the_edge_of_what_is_allowed():
+    world = "X_mm,Y_mm,Z_mm,A_deg,B_deg"
+    for load in ("0", "-1"):
+        with pytest.raises(LoadTestError, match="Row 2, column load_N: expected a load above zero"):
+            read_load_tests(f"{world},load_N,Cyy_um_N\n0,-1300,0,0,0,{load},2.3\n")
+    half = read_load_tests(f"{world},load_N,Cyy_um_N\n0,-1300,0,0,0,0.5,2\n")
+    np.testing.assert_allclose((half.wrench[0, :3], half.displacement[0, :3]), [[0, 0.5, 0], [np.nan, 1e-6, np.nan]])
+    single = read_load_tests("joint,torque_kNm,angle_mrad,noise_urad\n1,0.3,0.2,5\n")
+    assert (single.joint[0], single.torque[0]) == (1, 300)
+    assert single.noise[0] == pytest.approx(5e-6)
+    with pytest.raises(LoadTestError, match="Row 3, column joint: found 0, expected a joint number from 1"):
+        read_load_tests("joint,torque_Nm,angle_mrad\n1,300,0.2\n0,300,0.2\n")
+    with pytest.raises(LoadTestError, match="column torque_Nm is missing; one joint at a time"):
+        read_load_tests("joint,angle_mrad\n1,300\n")
+
+
+def test_moments_and_rotations_alone_are_tests_too():
+    tests = read_load_tests(f"{JOINTS},Mx_Nm,My_Nm,Mz_Nm,rx_mrad,ry_mrad,rz_mrad\n0,0,0,0,0,1,2,3,4,5,6\n")
+    np.testing.assert_allclose(tests.wrench, [[0, 0, 0, 1, 2, 3]])
+    np.testing.assert_allclose(tests.displacement, [[np.nan, np.nan, np.nan, 4e-3, 5e-3, 6e-3]])
+
+
+def test_each_compliance_goes_to_its_place_and_keeps_its_row_and_noise():
+    world = "X_mm,Y_mm,Z_mm,A_deg,B_deg"
+    text = f"{world},load_N,noise_um,Cxz_um_N,Cyx_mm_N\n0,-1300,0,0,0,100,3,2,4\n9,-1300,0,0,0,200,7,1,5\n"
+    tests = read_load_tests(text)
+    assert tests.row.tolist() == [2, 2, 3, 3]
+    np.testing.assert_allclose(tests.wrench[:, :3], [[100, 0, 0], [0, 0, 100], [200, 0, 0], [0, 0, 200]])
+    nan = np.nan
+    moved = [[nan, 0.4, nan], [2e-4, nan, nan], [nan, 1.0, nan], [2e-4, nan, nan]]
+    np.testing.assert_allclose(tests.displacement[:, :3], moved)
+    np.testing.assert_allclose(tests.noise, [3e-6, 3e-6, 7e-6, 7e-6])
+    np.testing.assert_allclose(tests.x_M[:, 0], [0, 0, 9e-3, 9e-3])
+
+
+def test_files_name_themselves_and_their_remarks(tmp_path):
+    file = tmp_path / "monday.csv"
+    file.write_text("# cell 4\n" + HEADER + ROW, encoding="utf-8-sig")
+    assert read_load_tests(file).source == "monday.csv\ncell 4"
+    assert read_load_tests(HEADER + ROW).source == "pasted cells"
+    file.write_text(HEADER + ROW.replace("0.5", "half"))
+    with pytest.raises(LoadTestError, match="^monday.csv, row 2, column dy_mm: found 'half'"):
+        read_load_tests(file)
+
+
+def test_a_measured_map_needs_poses():
+    with pytest.raises(LoadTestError, match="found tests of single joints; give compliances"):
+        read_measured_map("joint,torque_Nm,angle_mrad\n1,300,0.2\n", ROBOT)
+
+
 def test_copies_are_named():
     tests = read_load_tests(HEADER + ROW + ROW_2 + ROW + ROW)
     found = [f for f in read_findings(tests) if f.level == "warning"]
@@ -208,28 +277,6 @@ def test_unknown_columns_are_passed_over_aloud():
     assert [f.message for f in tests.findings if f.level == "ignored"] == [
         "Column 'operator' is not one of ours and is passed over."
     ]
-
-
-@pytest.mark.parametrize("protocol", ["joints", "world", "joint by joint", "compliances"])
-def test_templates_can_be_read(protocol):
-    assert len(read_load_tests(load_test_template(protocol)))
-
-
-def test_template_refuses_what_it_does_not_know():
-    with pytest.raises(LoadTestError, match="expected one of"):
-        load_test_template("gossip")
-
-
-def test_written_tests_read_back():
-    rng = np.random.default_rng(2)
-    wrench, moved = rng.normal(size=(2, 9, 6)) * [[[100] * 3 + [10] * 3], [[1e-4] * 3 + [1e-5] * 3]]
-    tests = LoadTests(wrench, moved, theta=rng.normal(size=(9, 5)), force_point=[0, 0, -0.05])
-    back = read_load_tests(load_tests_to_csv(tests, "two\nremarks", digits=9))
-    np.testing.assert_allclose(back.theta, tests.theta, atol=1e-8)
-    np.testing.assert_allclose(back.wrench, tests.wrench, atol=6e-4)
-    np.testing.assert_allclose(back.displacement, tests.displacement, atol=1e-12)
-    np.testing.assert_allclose(back.force_point, tests.force_point)
-    assert "two\nremarks" in back.source
 
 
 def test_a_hundred_thousand_rows_are_read_in_two_seconds():

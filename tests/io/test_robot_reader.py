@@ -176,3 +176,8 @@ def test_the_first_set_is_in_force_unless_one_is_named():
 def test_stiffness_reads_as_compliance():
     robot = rm.load_robot("kuka_kr500")
     np.testing.assert_allclose(1 / robot.C_theta, [6.5e6, 7.6e6, 3.08e6, 5e5, 6e5, 4e5], rtol=1e-14)
+
+
+def test_any_stiffness_above_zero_is_one():
+    soft = SAMPLE.replace('"C_theta_1e-7_rad_per_Nm" = [7.14, 10.12', "k_theta_Nm_per_rad = [0.25, 2.0", 1)
+    np.testing.assert_array_equal(robot_from_toml(soft).C_theta[:2], [4.0, 0.5])
