@@ -8,10 +8,12 @@ from scipy.spatial.transform import Rotation
 
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
-from robomill.compliance.spring import extra_contributions
+from robomill.compliance.spring import TYPED, extra_contributions
+from robomill.compliance.springs import SPRINGS as KINDS
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
 from robomill.io.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
@@ -150,3 +152,26 @@ def test_refusals(build, sentence):
     with pytest.raises(RobotError) as refusal:
         build()
     assert sentence in str(refusal.value)
+
+
+def test_edited_springs_say_who_typed_them_and_a_tool_follows_the_cutter():
+    spindle = SpindleSpring(1e-7, 2e-7).edited(axial=3e-7)
+    assert (spindle.lateral, spindle.axial, spindle.provenance) == (1e-7, 3e-7, TYPED)
+    cutter = Cutter("flat", 10e-3, stick_out=25e-3)
+    tool = ToolBending.first(Cutter("flat", 8e-3))
+    assert (tool.diameter, tool.stick_out) == (8e-3, pytest.approx(32e-3))
+    assert ToolBending.first(cutter).stick_out == 25e-3
+    assert tool.edited(core=0.7).provenance.kind == "user"
+    assert tool.edited(stick_out=20e-3).provenance == tool.provenance
+    assert tool.fitted(cutter) == ToolBending(10e-3, tool.stick_out)
+    assert spindle.fitted(cutter) is spindle
+    by_hand = 0.032**3 / (3 * 600e9 * math.pi * (0.8 * 8e-3) ** 4 / 64)
+    assert tool.facts == f"Ø 8.0 mm: {by_hand * 1e6:.4f} µm/N across the axis"
+    assert SpindleSpring.first(cutter).facts.startswith("20 N/µm across and 50 N/µm along")
+    assert 1 / SpindleSpring.first(cutter).lateral == pytest.approx(20e6)
+    assert 1 / SpindleSpring.first(cutter).axial == pytest.approx(50e6)
+
+
+def test_springs_are_found_in_their_order():
+    assert list(KINDS) == ["tool_bending", "spindle", "joint_bending"]
+    assert [kind.each_joint for kind in KINDS.values()] == [False, False, True]

@@ -138,5 +138,5 @@ def test_only_forces_from_a_material_have_rows_and_a_peak():
     mean = computed.force_components[i]
     assert np.hypot(*peak.at_peak[i][:2]) >= np.hypot(*mean[:2])
     spread = alloy_spread(computed)
-    assert [m.name for m in spread.materials][0] == PROCESS.force.material.name
+    assert spread.materials[0].name == PROCESS.force.material.name
     assert (spread.F[:, ~computed.conditions.cutting] == 0.0).all()

@@ -1,0 +1,78 @@
+"""What force models say of themselves, and what a cutter of another shape or another kind of model starts from."""
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import MeanForce
+from robomill.cutting.forces import FORCES
+from robomill.cutting.forces.along_path import PathForce
+from robomill.cutting.forces.constant import ConstantForce
+from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.tool import SHAPES, Cutter
+from robomill.io.materials import load_material
+
+MILL = Cutter("flat", 8e-3, flutes=3)
+ROW = load_material("al7075_t6_carbide_ref190")
+SLOT = CutConditions.steady(0.03, 200.0, [2e-3, 1e-3])
+
+
+def test_models_are_found_in_their_order_and_say_what_they_follow():
+    assert list(FORCES) == ["path", "constant", "mechanistic", "kienzle", "measured"]
+    assert [m.follows_cut for m in FORCES.values()] == [False, False, True, True, False]
+    assert [m.ends_with_material for m in FORCES.values()] == [True, True, False, False, False]
+    assert [m.stated for m in FORCES.values()] == [True, True, False, False, False]
+
+
+def test_another_model_starts_from_the_force_that_pushed():
+    mean = MeanForce(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0]))
+    np.testing.assert_array_equal(ConstantForce(**ConstantForce.first(mean)).components(SLOT), [[1, 2, 3]] * 2)
+    np.testing.assert_array_equal(PathForce(**PathForce.first(mean)).components(SLOT), [[4, 5, 6]] * 2)
+    assert MechanisticForce.first(mean) == {}
+
+
+def test_words_for_the_report():
+    assert PathForce(1.0, -110.5).numbers == "Feed 1 N, Feed-normal −110.5 N, Axial 0 N"
+    assert ConstantForce([0, 100, -3]).numbers == "F (0, 100, −3) N in {M}"
+    assert MechanisticForce(MILL, ROW).numbers == ROW.title
+    assert MechanisticForce(MILL, ROW, axial=False).numbers == f"{ROW.title}, axial force left out"
+
+
+def test_the_start_of_a_record_has_the_unit_of_its_axis():
+    F = np.zeros((4, 3))
+    time, path = (MeasuredForce(ForceRecord(np.arange(4.0), F, axis)) for axis in ("time", "path"))
+    assert (time.unit_of("start"), path.unit_of("start"), path.unit_of("cutoff")) == ("s", "mm", "Hz")
+    assert time.numbers == "measured force, low-pass 50 Hz, zero phase"
+
+
+def test_only_a_process_force_changes_with_the_cutter_and_knows_peak_and_rows():
+    other = MILL.replace(flutes=2)
+    force = MechanisticForce(MILL, ROW, (load_material("al6061_t6_carbide_ref160"),))
+    assert force.cut_by(MILL) is force
+    assert force.cut_by(other).cutter == other
+    np.testing.assert_allclose(force.cut_by(other).components(SLOT)[:, 1] < force.components(SLOT)[:, 1], True)
+    assert [row.knows_axial for row, _ in force.by_material(SLOT)] == [True, False]
+    stated = PathForce(1.0)
+    assert stated.cut_by(other) is stated
+    assert stated.peak(SLOT) is None
+    assert stated.by_material(SLOT) == []
+
+
+def test_the_axial_force_alone_is_left_out():
+    whole, without = MechanisticForce(MILL, ROW), MechanisticForce(MILL, ROW, axial=False)
+    np.testing.assert_array_equal(without.components(SLOT), whole.components(SLOT) * [1, 1, 0])
+    np.testing.assert_array_equal(without.peak(SLOT).high, whole.peak(SLOT).high * [1, 1, 0])
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
+    for start in SHAPES:
+        cutter = Cutter("flat", 8e-3, flutes=3, stick_out=30e-3).reshaped(start).reshaped(kind)
+        assert (cutter.kind, cutter.diameter, cutter.flutes, cutter.stick_out) == (kind, 8e-3, 3, 30e-3)
+        expected = {"flat": 0.0, "ball": 4e-3, "bull": 1e-3, "chamfer": 0.0}[kind]
+        assert cutter.corner_radius == pytest.approx(expected)
+        assert cutter.half_angle == pytest.approx(math.pi / 4 if kind == "chamfer" else 0.0)
+        assert cutter.conical == (kind == "chamfer")
