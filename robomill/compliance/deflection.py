@@ -19,12 +19,6 @@ def deflection(C_joint: ArrayLike, F: ArrayLike) -> FloatArray:
     return np.einsum("...nij,...j->...ni", C_joint, F)
 
 
-def joint_torques(J_v: ArrayLike, F: ArrayLike) -> FloatArray:
-    """tau (..., n) N m: the joint torques J_v^T F that a force on the tool causes. J_v (..., 3, n), F (..., 3)."""
-    J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
-    return np.einsum("...in,...i->...n", J_v, as_floats(F, "F", (3,), error=KinematicsError, finite=False))
-
-
 def soft_direction(C: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """(values (..., 3) m/N ascending, axes (..., 3, 3) as columns): the principal compliances of C (..., 3, 3).
 

@@ -89,23 +89,6 @@ def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:
     return np.where(finite[..., 0], values, np.nan)
 
 
-def smallest_singular_value(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """(...,) zero at a singular configuration."""
-    return singular_values(robot, theta)[..., -1]
-
-
-def inverse_condition(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """(...,) smallest over largest singular value: 1 is equally able in every direction, 0 is singular."""
-    values = singular_values(robot, theta)
-    return values[..., -1] / values[..., 0]
-
-
-def condition_number(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """(...,) largest over smallest singular value; infinite at a singular configuration."""
-    with np.errstate(divide="ignore"):
-        return 1.0 / inverse_condition(robot, theta)
-
-
 def limit_distance(robot: Robot, theta: ArrayLike) -> FloatArray:
     """(...,) distance of the nearest joint to its limit as a share of its half range: 1 mid-range, 0 at a limit.
 

@@ -89,16 +89,6 @@ def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
     return None if corners is None else Box(frozen(corners[0]), frozen(corners[1]))
 
 
-def machining_box(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> Box:
-    """The largest box inside the reach over ``grid`` for all ``tilts``. Raises WorkspaceError if there is none."""
-    box = largest_box(reach(robot, grid, tilts), grid)
-    if box is None:
-        raise WorkspaceError(
-            f"{robot.name} reaches no point of this grid at this tilt; move the grid to the arm or change the tilt."
-        )
-    return box
-
-
 def against_paper(box: Box) -> dict[str, float | bool]:
     """The box beside the paper's 1200 x 600 x 500 mm: whether that fits inside, and the ratio of the volumes."""
     return {"holds_paper_box": box.holds(PAPER_BOX_SIZE), "volume_ratio": box.volume / float(np.prod(PAPER_BOX_SIZE))}

@@ -44,8 +44,8 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    *("C_X", "det_J_unit", "gives_most", "joint_torques", "smallest_singular_value", "condition_number"),
-    *("residual_angle", "with_convention", "with_blocked", "modelled", "machining_box"),
+    *("C_X", "det_J_unit", "gives_most"),
+    *("residual_angle", "with_convention", "with_blocked", "modelled"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
     *("closed", "reset"),
 }

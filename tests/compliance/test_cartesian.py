@@ -5,7 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.cartesian import full_compliance, pose_jacobian_compliance
-from robomill.compliance.deflection import deflection, joint_torques, soft_direction
+from robomill.compliance.deflection import deflection, soft_direction
 from robomill.errors import KinematicsError
 from tests.kinematics.oracles import numeric_jacobian, pose
 
@@ -35,7 +35,7 @@ def test_a_force_twists_each_joint_by_its_torque_and_the_arm_follows(name):
     theta, F = rng.uniform(-1, 1, robot.n), rng.normal(size=3)
     J_v = rm.geometric_jacobian(robot, theta)[:3]
     shares = deflection(rm.joint_contributions(J_v, robot.C_theta), F)
-    torques = joint_torques(J_v, F)
+    torques = J_v.T @ F
     for i in range(robot.n):
         # The torque is the work of the force in a small turn of the joint.
         step = 1e-6 * np.eye(robot.n)[i]
@@ -66,7 +66,6 @@ def test_contributions_of_many_at_once():
             column = J_v[index][:, i]
             np.testing.assert_allclose(C_joint[index][i], C_theta[i] * np.outer(column, column))
             np.testing.assert_allclose(delta[index][i], C_theta[i] * column * (column @ F[index[1]]))
-        np.testing.assert_allclose(joint_torques(J_v, F)[index], J_v[index].T @ F[index[1]])
 
 
 def test_the_softest_direction_is_the_last():
@@ -86,8 +85,6 @@ def test_the_softest_direction_is_the_last():
         (rm.joint_contributions, (np.zeros((3, 5)), np.full(5, np.nan)), "C_theta: expected finite numbers"),
         (deflection, (np.zeros((5, 3, 2)), np.zeros(3)), "C_joint: expected shape"),
         (deflection, (np.zeros((5, 3, 3)), np.zeros(2)), "F: expected shape"),
-        (joint_torques, (np.zeros((2, 5)), np.zeros(3)), "J_v: expected shape"),
-        (joint_torques, (np.zeros((3, 5)), np.zeros(4)), "F: expected shape"),
         (soft_direction, (np.zeros((2, 2)),), "C: expected shape"),
     ],
 )
@@ -100,4 +97,3 @@ def test_what_is_not_reached_stays_nan():
     nan = np.full((2, 3, 5), np.nan)
     assert np.isnan(rm.joint_contributions(nan, np.ones(5))).all()
     assert np.isnan(deflection(np.full((5, 3, 3), np.nan), np.ones(3))).all()
-    assert np.isnan(joint_torques(nan, np.ones(3))).all()

@@ -30,18 +30,13 @@ def test_measures_agree_with_each_other(name):
     values = dexterity.singular_values(robot, theta)
     np.testing.assert_allclose(np.abs(det), dexterity.manipulability(robot, theta), atol=1e-7)
     np.testing.assert_allclose(np.abs(det), values.prod(axis=-1), atol=1e-12)
-    np.testing.assert_allclose(dexterity.inverse_condition(robot, theta), values[..., -1] / values[..., 0])
-    np.testing.assert_allclose(
-        dexterity.condition_number(robot, theta) * dexterity.inverse_condition(robot, theta), 1.0, rtol=1e-12
-    )
 
 
 def test_singular_configurations_show():
     straight = [0.3, 0.0]
     robot = rm.load_robot("planar_2r")
     assert dexterity.determinant(robot, straight) == pytest.approx(0, abs=1e-15)
-    assert dexterity.smallest_singular_value(robot, straight) == pytest.approx(0, abs=1e-15)
-    assert dexterity.condition_number(robot, straight) > 1e12
+    assert dexterity.singular_values(robot, straight)[-1] == pytest.approx(0, abs=1e-15)
 
 
 def test_limit_distance():

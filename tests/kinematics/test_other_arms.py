@@ -67,8 +67,7 @@ def test_what_is_not_reached_is_nan_in_every_law():
         rm.cartesian_compliance,
         dexterity.determinant,
         dexterity.manipulability,
-        dexterity.inverse_condition,
-        dexterity.smallest_singular_value,
+        dexterity.singular_values,
         dexterity.limit_distance,
     )
     for law in laws:
@@ -86,3 +85,24 @@ def test_a_planar_arm_keeps_its_elbow_side_over_a_map():
     mirrored = other[:, 0] + 2 * np.arctan2(0.4 * np.sin(other[:, 1]), 0.5 + 0.4 * np.cos(other[:, 1]))
     mirrored = (mirrored + np.pi) % (2 * np.pi) - np.pi
     assert (np.abs(mirrored) > robot.limits[0, 1] - 1e-9).all()
+
+
+@pytest.mark.parametrize("lead", [(40,), (2, 20)])
+def test_an_arm_without_closed_form_follows_each_path_from_pose_to_pose(lead):
+    robot = rm.load_robot("planar_3r")
+    s = np.linspace(0, 1, np.prod(lead)).reshape(lead)
+    theta = np.stack([0.2 + 0.5 * s, 0.6 - 0.3 * s, 0.3 + 0.2 * s], axis=-1)
+    T_MT = rm.tool_pose(robot, theta)
+    result = rm.inverse_kinematics(robot, T_MT, near="path")
+    assert result.reached.all()
+    assert result.branch_names == ("numerical",)
+    np.testing.assert_allclose(rm.tool_pose(robot, result.theta)[..., :3, 3], T_MT[..., :3, 3], atol=1e-9)
+    assert np.abs(np.diff(result.theta, axis=-2)).max() < 0.1
+    # A pose out of reach in the middle is left out; the path goes on from where it was.
+    broken = T_MT.copy()
+    broken[..., 5, :3, 3] *= 20.0
+    bridged = rm.inverse_kinematics(robot, broken, near="path")
+    assert bridged.reached.sum() == bridged.reached.size - np.prod(lead[:-1], dtype=int)
+    assert np.isnan(bridged.theta[..., 5, :]).all()
+    after = np.delete(bridged.theta, 5, axis=-2)
+    assert np.abs(np.diff(after, axis=-2)).max() < 0.2

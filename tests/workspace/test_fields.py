@@ -13,8 +13,8 @@ from robomill.workspace.quantities import quantities, quantity
 MEASURES = {
     "det_J": dexterity.determinant,
     "manipulability": dexterity.manipulability,
-    "inverse_condition": dexterity.inverse_condition,
-    "smallest_singular_value": dexterity.smallest_singular_value,
+    "inverse_condition": lambda robot, theta: np.divide(*dexterity.singular_values(robot, theta)[[-1, 0]]),
+    "smallest_singular_value": lambda robot, theta: dexterity.singular_values(robot, theta)[-1],
     "limit_distance": dexterity.limit_distance,
 }
 

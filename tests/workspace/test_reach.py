@@ -9,7 +9,7 @@ import robomill as rm
 from robomill.errors import WorkspaceError
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
-from robomill.workspace.reach import against_paper, largest_box, machining_box, reach
+from robomill.workspace.reach import Box, against_paper, largest_box, reach
 
 
 def brute_force(mask, grid):
@@ -48,17 +48,12 @@ def test_largest_box_against_brute_force(seed):
 def test_the_paper_box_is_inside_the_reach():
     robot = rm.load_robot("slavkovic_5r")
     assert reach(robot, box_grid(*PAPER_BOX, 0.1)).all()
-    box = machining_box(robot, box_grid([-1.5, -2.3, -1.0], [1.5, 0.0, 1.5], 0.1))
+    grid = box_grid([-1.5, -2.3, -1.0], [1.5, 0.0, 1.5], 0.1)
+    box = largest_box(reach(robot, grid), grid)
     assert against_paper(box)["holds_paper_box"]
     assert against_paper(box)["volume_ratio"] > 1
-    tilted = machining_box(robot, box_grid([-1.5, -2.3, -1.0], [1.5, 0.0, 1.5], 0.1), [(0, 0), (0.5, 0), (0, 0.5)])
+    tilted = largest_box(reach(robot, grid, [(0, 0), (0.5, 0), (0, 0.5)]), grid)
     assert tilted.volume < box.volume
-
-
-def test_a_grid_out_of_reach_is_refused_with_a_reason():
-    robot = rm.load_robot("slavkovic_5r")
-    with pytest.raises(WorkspaceError, match="reaches no point"):
-        machining_box(robot, box_grid([5, 5, 5], [6, 6, 6], 0.5))
 
 
 def test_fig_8_lines():
@@ -85,3 +80,65 @@ def test_lines_out_of_reach_are_nan():
         line_deviation(robot, [0, -1.5, 0], [0, -1.5, 0])
     with pytest.raises(WorkspaceError, match="along the tool axis"):
         line_deviation(robot, [0, -1.5, 0], [0, -1.5, 0.1])
+
+
+@pytest.mark.parametrize("robot", ["slavkovic_5r", "kuka_kr500"])
+def test_reach_is_every_tilt_at_every_point(robot):
+    robot = rm.load_robot(robot)
+    low, high = ([-1.8, -2.6, -0.6], [1.8, 0.4, 0.6]) if robot.n == 5 else ([0.4, -2.0, -0.2], [3.2, 2.0, 0.8])
+    grid, tilts = box_grid(low, high, 0.6), [(0.0, 0.0), (0.4, -0.2)]
+    mask = reach(robot, grid, tilts)
+    assert 0 < mask.sum() < mask.size
+    for index in np.ndindex(mask.shape):
+        poses = [rm.pose_from_world([*grid.points()[index], A, B]) for A, B in tilts]
+        assert mask[index] == all(bool(rm.inverse_kinematics(robot, T).reached) for T in poses)
+    with pytest.raises(WorkspaceError, match="at least one tool tilt"):
+        reach(robot, grid, [])
+
+
+def test_boxes_hold_what_fits():
+    box = Box(np.array([0.0, 0.0, 0.0]), np.array([1.2, 0.6, 0.5]))
+    assert box.volume == pytest.approx(0.36)
+    assert against_paper(box) == {"holds_paper_box": True, "volume_ratio": pytest.approx(1.0)}
+    assert not box.holds(np.array([1.2, 0.6, 0.5001]))
+    assert not box.holds(np.array([1.2001, 0.6, 0.5]))
+    assert against_paper(Box(box.lower, box.upper * [2, 1, 1]))["volume_ratio"] == pytest.approx(2.0)
+
+
+def test_a_line_is_a_row_of_poses():
+    """Each point of a tilted line by itself: pose, force to the left of the feed, push times compliance."""
+    robot = rm.load_robot("slavkovic_5r")
+    start, end, A, B = np.array([-0.2, -1.4, 0.0]), np.array([0.3, -1.2, 0.05]), 0.1, 0.2
+    line = line_deviation(robot, start, end, 80.0, 5, A, B, name="tilted")
+    k = np.array([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)])
+    feed = (end - start) / np.linalg.norm(end - start)
+    left = np.cross(k, feed) / np.linalg.norm(np.cross(k, feed))
+    np.testing.assert_allclose(line.feed, feed)
+    np.testing.assert_allclose(line.normal, left)
+    np.testing.assert_allclose(line.F, 80.0 * left)
+    np.testing.assert_allclose(line.s, np.linspace(0, np.linalg.norm(end - start), 5), atol=1e-15)
+    for i, t in enumerate(np.linspace(0, 1, 5)):
+        p = start + t * (end - start)
+        np.testing.assert_allclose(line.p[i], p, atol=1e-15)
+        T = rm.tool_pose(robot, line.theta[i])
+        np.testing.assert_allclose(T[:3, 3], p, atol=1e-9)
+        np.testing.assert_allclose(T[:3, 2], k, atol=1e-9)
+        delta = rm.cartesian_compliance(robot, line.theta[i]) @ (80.0 * left)
+        np.testing.assert_allclose(line.delta[i], delta, atol=1e-12)
+        assert line.along_normal()[i].sum() == pytest.approx(delta @ left)
+    assert len(line_deviation(robot, start, end, points=2).p) == 2
+    with pytest.raises(WorkspaceError, match="at least two points"):
+        line_deviation(robot, start, end, points=1)
+
+
+def test_six_lines_on_borders_and_middle():
+    robot = rm.load_robot("slavkovic_5r")
+    lines = border_and_middle_lines(robot, [-0.4, -1.5], [0.2, -1.1], z=-0.1, force=50.0, points=3)
+    ends = [(tuple(line.p[0]), tuple(line.p[-1])) for line in lines]
+    across = [((-0.4, y, -0.1), (0.2, y, -0.1)) for y in (-1.5, -1.3, -1.1)]
+    along = [((x, -1.5, -0.1), (x, -1.1, -0.1)) for x in (-0.4, -0.1, 0.2)]
+    np.testing.assert_allclose(ends, across + along, atol=1e-12)
+    assert [np.linalg.norm(line.F) for line in lines] == pytest.approx([50.0] * 6)
+    assert [len(line.p) for line in lines] == [3] * 6
+    assert lines[0].name == "along X_M at Y_M = −1500 mm"
+    assert lines[5].name == "along Y_M at X_M = 200 mm"
