@@ -5,13 +5,13 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
+from robomill.ui import session
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import workspace as panel
-from robomill.ui.maps.state import maps
 
 project = ui.begin("Workspace")
 robot, unit = project.setup.robot, project.view.length
-view = maps(robot)
+view = session.maps()
 
 box = ui.attempt(maps_fields.region, robot, view)
 known = None

@@ -6,16 +6,16 @@ import streamlit as st
 
 from robomill import ui
 from robomill.improve.sensitivity import stiffened
+from robomill.ui import session
 from robomill.ui.maps import compliance as panel
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps import point as point_panel
 from robomill.ui.maps import sheets
-from robomill.ui.maps.state import factors, maps
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length
-view = maps(robot)
+view = session.maps()
 title = f"Compliance · {robot.title or robot.name}"
 
 box = ui.attempt(maps_fields.region, robot, view)
@@ -31,7 +31,7 @@ if box is None or known is None:
 now = panel.fields(robot, view, known)
 point = point_panel.default_point(view, box, known)
 old = point_panel.report(robot, point, view.A, view.B)
-found = point_panel.report(stiffened(robot, factors(view, robot)), point, view.A, view.B)
+found = point_panel.report(stiffened(robot, view.stiffening(robot)), point, view.A, view.B)
 
 ui.headline(title, point_panel.headline(found, unit))
 ui.tiles(panel.tiles(found, old, now, known, view, unit))

@@ -1,57 +1,103 @@
-"""Inputs bound to fields of the project: seeded from it, writing a replaced project back, in the units of the screen.
+"""Inputs: one number box, one choice, one switch, one slider, one upload, one table.
 
-A value that is refused stays in its box with the sentence beneath it; the project keeps the last good value.
+Each is seeded from what is in force and hands what was typed to the project. Input that is refused stays where it was
+typed with the sentence beneath it; the project keeps the last good value. Keys read "page.thing".
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
 
+import pandas as pd
 import streamlit as st
 
-from robomill.errors import RobomillError
-from robomill.ui import fields, state
-from robomill.units import UNITS, from_si, to_si, unit_label
+from robomill.errors import ProjectError, RobomillError
+from robomill.ui import session
+from robomill.ui.box import Box, declared
+from robomill.ui.project import read_field, with_field
 
 
-def number(
-    label: str,
-    path: str,
-    unit: str = "1",
-    *,
-    step: float | None = None,
-    digits: int | None = None,
-    hint: str | None = None,
-    disabled: bool = False,
-) -> None:
-    """A number box for the set-up's field at ``path`` (see ``fields``), shown in ``unit``."""
-    key = f"in:{path}:{unit}"
-    shown = _rounded(from_si(float(fields.read(state.project().setup, path)), unit))
+@dataclass(frozen=True)
+class Look:
+    """How an input is shown: as a list instead of a row, without its label, with a hint, or greyed."""
 
-    def take() -> None:
-        typed = st.session_state[key]
-        attempt(key, typed, lambda: _put(path, to_si(float(typed), unit), key))
+    listed: bool = False
+    hidden: bool = False
+    hint: str | None = None
+    disabled: bool = False
 
-    seed(key, shown)
-    decimals = UNITS[unit].digits if digits is None else digits
-    name = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
-    st.number_input(name, key=key, step=step, format=f"%.{decimals}f", on_change=take, help=hint, disabled=disabled)
-    sentence(key)
+    @property
+    def label_visibility(self) -> Literal["visible", "collapsed"]:
+        """As Streamlit says it."""
+        return "collapsed" if self.hidden else "visible"
 
 
-def whole(label: str, path: str, *, hint: str | None = None) -> None:
-    """A box for a whole number of the set-up."""
-    key = f"in:{path}"
-    seed(key, int(fields.read(state.project().setup, path)))
+PLAIN, LISTED, HIDDEN = Look(), Look(listed=True), Look(hidden=True)
+
+
+@dataclass(frozen=True)
+class Span:
+    """From where to where a slider goes and in which steps, in display units; ``form`` is how it says its value."""
+
+    low: float
+    high: float
+    step: float
+    form: str | None = None
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """How a table is edited: its columns, those ``locked``, whether rows can be added, its height in pixels."""
+
+    columns: Mapping[str, Any] | None = None
+    locked: tuple[str, ...] = ()
+    dynamic: bool = False
+    height: int | Literal["auto"] = "auto"
+
+
+def number(path: str, **shown: Any) -> None:
+    """The number box of the set-up's field at ``path`` ("cutter.diameter"), as the field declares it.
+
+    ``shown`` are fields of ``Box`` that are to be otherwise; a field that is not declared needs a ``label``.
+    """
+    setup = session.project().setup
+    box = declared(setup, path, **shown)
+    name = path.partition(".")[0].partition("[")[0]
+    key = _key(path, box)
+
+    def write(new: float | None) -> None:
+        changed = with_field(session.project().setup, path, new)
+        session.change(label=key, **{name: getattr(changed, name)})
+
+    value(path, box, read_field(setup, path), write)
+
+
+def value(name: str, box: Box, current: float | None, write: Callable[[Any], None]) -> None:
+    """A number box for any value in SI; ``write`` gets what was typed, in SI."""
+    key = _key(name, box)
+    seed(key, box.shown(current))
+    # Its own default is what it shows: a box that moves to another column while a run is broken off comes up with its
+    # default and answers with it. Only a box without one can be emptied.
+    default = None if box.optional else st.session_state[key]
     st.number_input(
-        label,
+        box.title,
+        value=default,
         key=key,
-        step=1,
-        help=hint,
-        on_change=lambda: attempt(key, st.session_state[key], lambda: _put(path, int(st.session_state[key]), key)),
+        step=1 if box.whole else box.step,
+        format=box.form,
+        on_change=lambda: submit(key, st.session_state[key], lambda: write(box.typed(st.session_state[key]))),
+        help=box.hint,
+        disabled=box.disabled,
+        placeholder=box.placeholder,
+        label_visibility="collapsed" if box.hidden else "visible",
     )
     sentence(key)
+
+
+def _key(name: str, box: Box) -> str:
+    return name if box.unit == "1" else f"{name}:{box.unit}"
 
 
 def choice(
@@ -60,123 +106,237 @@ def choice(
     options: Mapping[Any, str],
     current: Any,
     write: Callable[[Any], None],
-    *,
-    horizontal: bool = True,
-    hint: str | None = None,
-    label_visibility: Any = "visible",
+    look: Look = PLAIN,
 ) -> None:
-    """A choice between a few (``horizontal``) or many options; ``write`` gets the chosen key."""
+    """A choice between a few options in a row, or many in a list; ``write`` gets the chosen key."""
     seed(key, current)
 
     def take() -> None:
         picked = st.session_state[key]
         if picked is not None:
-            attempt(key, picked, lambda: write(picked))
+            submit(key, picked, lambda: write(picked))
 
-    if horizontal:
-        st.segmented_control(
-            label,
-            list(options),
-            key=key,
-            format_func=lambda k: options[k],
-            on_change=take,
-            help=hint,
-            label_visibility=label_visibility,
-            required=True,
-            width="stretch",
-        )
+    common: dict[str, Any] = {
+        "key": key,
+        "format_func": lambda k: options[k],
+        "on_change": take,
+        "help": look.hint,
+        "disabled": look.disabled,
+        "label_visibility": look.label_visibility,
+    }
+    if look.listed:
+        st.selectbox(label, list(options), **common)
     else:
-        st.selectbox(
-            label,
-            list(options),
-            key=key,
-            format_func=lambda k: options[k],
-            on_change=take,
-            help=hint,
-            label_visibility=label_visibility,
-        )
+        st.segmented_control(label, list(options), required=True, width="stretch", **common)
     sentence(key)
 
 
-def slider(
+def pick(label: str, key: str, options: Mapping[Any, str], otherwise: Any = None, look: Look = PLAIN) -> Any:
+    """A choice kept in the session under ``key``: returns what is chosen, at first ``otherwise`` or the first option.
+
+    What is kept but no option now is shown as the first choice and comes back when it is one again.
+    """
+    first = next(iter(options)) if otherwise is None else otherwise
+    current = session.kept(key, first)
+    choice(label, key, options, current if current in options else first, lambda v: session.keep(key, v), look)
+    current = session.kept(key, first)
+    return current if current in options else first
+
+
+def several(
     label: str,
     key: str,
-    low: float,
-    high: float,
-    current: float,
-    write: Callable[[float], None],
-    *,
-    step: float,
-    form: str | None = None,
-    hint: str | None = None,
-    label_visibility: Any = "visible",
+    options: Mapping[Any, str],
+    current: Sequence[Any],
+    write: Callable[[list[Any]], None],
+    **shown: Any,
 ) -> None:
-    """A slider over a number of the view or the set-up, in display units."""
-    seed(key, float(min(max(current, low), high)))
-    st.slider(
+    """A choice of any number of options; ``write`` gets the list of those chosen, ``shown`` goes to Streamlit."""
+    seed(key, list(current))
+    st.multiselect(
         label,
-        float(low),
-        float(high),
+        list(options),
         key=key,
-        step=step,
-        format=form,
-        help=hint,
-        label_visibility=label_visibility,
-        on_change=lambda: attempt(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
+        format_func=lambda k: options[k],
+        on_change=lambda: submit(key, st.session_state[key], lambda: write(list(st.session_state[key]))),
+        **shown,
     )
     sentence(key)
 
 
-def seed(key: str, value: Any) -> None:
-    """Show ``value`` in the widget ``key``, unless something refused is waiting there to be mended."""
-    kept = state.store()
-    waiting = kept.refused.get(key)
-    known = key in st.session_state and key in kept.seeded
+def switch(label: str, key: str, current: bool, write: Callable[[bool], None], look: Look = PLAIN) -> None:
+    """An on/off switch; ``write`` gets the new state."""
+    seed(key, bool(current))
+    st.toggle(
+        label,
+        key=key,
+        help=look.hint,
+        disabled=look.disabled,
+        on_change=lambda: submit(key, st.session_state[key], lambda: write(bool(st.session_state[key]))),
+    )
+    sentence(key)
+
+
+def slider(
+    label: str, key: str, span: Span, current: float, write: Callable[[float], None], look: Look = PLAIN
+) -> None:
+    """A slider over a number of the view or the set-up, in display units."""
+    low, high = float(span.low), float(span.high)
+    seed(key, float(min(max(current, low), high)))
+    st.slider(
+        label,
+        low,
+        high,
+        key=key,
+        step=span.step,
+        format=span.form,
+        help=look.hint,
+        disabled=look.disabled,
+        label_visibility=look.label_visibility,
+        on_change=lambda: submit(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
+    )
+    sentence(key)
+
+
+def text(label: str, key: str, current: str, write: Callable[[str], None], *, lines: int = 1, **shown: Any) -> None:
+    """A line of text, or several; ``write`` gets what was typed, ``shown`` goes to Streamlit."""
+    seed(key, current)
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(st.session_state[key]))
+
+    if lines == 1:
+        st.text_input(label, key=key, on_change=take, **shown)
+    else:
+        st.text_area(label, key=key, on_change=take, **shown)
+    sentence(key)
+
+
+def upload(
+    label: str,
+    key: str,
+    take: Callable[[bytes, str], None],
+    *,
+    most_MB: int,
+    look: Look = PLAIN,
+    fresh: Any = 0,
+) -> None:
+    """A file to be read: ``take`` gets its bytes and its name, and may refuse them. A new ``fresh`` empties the box.
+
+    Any name is let in and judged by ``take``, so that an odd ending gets a sentence and not a grey refusal.
+    """
+    box = f"{key}:{fresh}"
+
+    def taken() -> None:
+        file: Any = st.session_state.get(box)
+        if file is None:
+            accept(key)
+        else:
+            submit(key, None, lambda: take(file.getvalue(), file.name))
+
+    st.file_uploader(label, key=box, max_upload_size=most_MB, on_change=taken, help=look.hint)
+    sentence(key)
+
+
+def decoded(data: bytes, name: str, expected: str) -> str:
+    """The text of a file. Raises ProjectError where it is none."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ProjectError(f"{name}: this is not a text file; expected {expected}.") from None
+
+
+def table(
+    name: str, base: Callable[[], pd.DataFrame], write: Callable[[pd.DataFrame], None], sheet: Sheet | None = None
+) -> None:
+    """A table whose edits go to ``write`` (which changes the project, ``from_editor=True``, or raises its refusal).
+
+    The table starts from ``base()`` and keeps what was typed until the project changes from outside (undo, preset,
+    another input) or the page is left.
+    """
+    sheet = sheet or Sheet()
+    held = session.store()
+    key = f"{name}:{held.revision}"
+    waiting = held.refused.get(name)
+    if key not in st.session_state or key not in held.frames:
+        for old in [k for k in held.frames if k.startswith(f"{name}:")]:
+            del held.frames[old]
+        # A refused table comes back as it was typed when its page is entered again.
+        held.frames[key] = waiting[0] if waiting is not None and waiting[0] is not None else base()
+    start = held.frames[key]
+
+    def take() -> None:
+        frame = edited(start, st.session_state[key])
+        submit(name, frame, lambda: write(frame))
+
+    st.data_editor(
+        start,
+        key=key,
+        column_config=dict(sheet.columns) if sheet.columns else None,
+        disabled=list(sheet.locked),
+        hide_index=True,
+        on_change=take,
+        num_rows="dynamic" if sheet.dynamic else "fixed",
+        height=sheet.height,
+        width="stretch",
+    )
+    sentence(name)
+
+
+def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
+    """``base`` with what ``st.data_editor`` says was changed (edited, added and deleted rows)."""
+    frame = base.copy()
+    for row, cells in changes.get("edited_rows", {}).items():
+        for column, new in cells.items():
+            frame.loc[frame.index[int(row)], column] = new
+    frame = frame.drop(index=[frame.index[i] for i in changes.get("deleted_rows", [])])
+    added = [{c: r.get(c) for c in frame.columns} for r in changes.get("added_rows", [])]
+    if added:
+        frame = pd.concat([frame, pd.DataFrame(added)], ignore_index=True)
+    return frame
+
+
+def empty(cell: Any) -> bool:
+    """Whether a cell of an edited table holds nothing."""
+    return cell is None or cell is pd.NA or (isinstance(cell, float) and cell != cell)
+
+
+def seed(key: str, current: Any) -> None:
+    """Show ``current`` in the widget ``key``, unless something refused is waiting there to be mended."""
+    held = session.store()
+    waiting = held.refused.get(key)
+    known = key in st.session_state and key in held.seeded
     if waiting is not None and known:
         return
-    shown = waiting[0] if waiting is not None else value
+    shown = waiting[0] if waiting is not None else current
     # Written only where it differs: a slider that is being dragged would jump otherwise.
     if not known or st.session_state[key] != shown:
         st.session_state[key] = shown
-        kept.seeded.add(key)
+        held.seeded.add(key)
 
 
 def sentence(key: str) -> None:
     """The reason why the input at ``key`` was refused, if it was."""
-    waiting = state.store().refused.get(key)
+    waiting = session.store().refused.get(key)
     if waiting is not None:
         st.error(waiting[1], icon=":material/error:")
 
 
 def refuse(key: str, typed: Any, reason: str) -> None:
     """Keep refused input and its reason, to be shown under the widget ``key``."""
-    state.store().refused[key] = (typed, reason)
+    session.store().refused[key] = (typed, reason)
 
 
 def accept(key: str) -> None:
     """Forget an earlier refusal at ``key``."""
-    state.store().refused.pop(key, None)
+    session.store().refused.pop(key, None)
 
 
-def _put(path: str, value: Any, label: str) -> None:
-    name, _, _ = path.partition(".")
-    name = name.partition("[")[0]
-    changed = fields.write(state.project().setup, path, value)
-    state.change(label=label, **{name: getattr(changed, name)})
-
-
-def attempt(key: str, typed: Any, action: Callable[[], None]) -> None:
+def submit(key: str, typed: Any, action: Callable[[], None]) -> None:
     """Do ``action``; a refusal keeps ``typed`` and its sentence at ``key``, success forgets an earlier one."""
     try:
         action()
     except RobomillError as exc:
         refuse(key, typed, str(exc))
-    except TypeError:
-        refuse(key, typed, "The box is empty: type a number.")
     else:
         accept(key)
-
-
-def _rounded(value: float) -> float:
-    """Without the last bits that a unit conversion leaves behind."""
-    return float(f"{value:.12g}")

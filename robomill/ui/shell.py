@@ -3,43 +3,66 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from pathlib import Path
 
 import streamlit as st
 
 from robomill import compiled
-from robomill.errors import RobomillError
-from robomill.ui import inputs, render, state, uncertainty
-from robomill.ui.files import SUFFIX, project_to_toml
-from robomill.ui.parts import error
-from robomill.ui.style import CSS, LOGO
-from robomill.ui.theme_watch import theme_watch
+from robomill.errors import ProjectError, RobomillError
+from robomill.ui import cached, inputs, session
+from robomill.ui.pieces import error
+from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
 UNIT_CHOICES = {"mm": "mm", "in": "inch"}
+CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
+LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
+<g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">
+<path d="M6 30 L10 11 L25 8 L28 20"/></g>
+<g fill="{accent}"><circle cx="10" cy="11" r="3.6"/><circle cx="25" cy="8" r="3.2"/>
+<path d="M25.6 20 h4.8 v7 l-2.4 3 -2.4 -3 z"/></g>
+<text x="42" y="25" font-family="Source Sans, Source Sans Pro, Helvetica, Arial, sans-serif" font-size="22"
+ font-weight="600" letter-spacing="-0.4" fill="{text}">robomill</text></svg>"""
+# What the page looks like is read off the page: the figures must match what is seen. A change asks for one rerun,
+# and the rerun carries the new theme. Nothing is sent while nothing changes.
+THEME_WATCH = """
+export default function (component) {
+  const { setTriggerValue } = component;
+  const page = document.querySelector('[data-testid="stApp"]');
+  if (!page) return;
+  const look = () => getComputedStyle(page).backgroundColor;
+  let seen = look();
+  const timer = setInterval(() => {
+    const now = look();
+    if (now !== seen) { seen = now; setTriggerValue('changed', now); }
+  }, 400);
+  return () => clearInterval(timer);
+}
+"""
+_watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css="i { display: none }", js=THEME_WATCH)
 JOINT_UNITS = {"1e-7 rad/(N m)": "×10⁻⁷ rad/(N m)", "kN m/rad": "kN m/rad"}
 
 
-def begin(title: str) -> state.Project:
+def begin(title: str) -> Project:
     """Start a page: the first call of every page. Returns the project of this session."""
     st.set_page_config(page_title=f"{title} · robomill", page_icon=":material/precision_manufacturing:", layout="wide")
     st.html(CSS)
-    render.worker()
+    cached.worker()
     if compiled.missing():
         with st.spinner(f"{compiled.WORDS} ..."):
             compiled.build()
     p = palette(dark())
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:
-        state.enter(title)
+        session.enter(title)
     except RobomillError as exc:
         error(exc)
         st.stop()
     with st.sidebar:
         _sidebar()
-        theme_watch()
-    return state.project()
+        _watch(key="theme.watch", on_changed_change=lambda: None, height=1)  # takes no room
+    return session.project()
 
 
 def dark() -> bool:
@@ -48,57 +71,61 @@ def dark() -> bool:
 
 
 def _sidebar() -> None:
-    kept = state.store()
+    held = session.store()
     with st.container(horizontal=True, gap="small"):
         st.button(
-            "Undo", icon=":material/undo:", disabled=not kept.past, on_click=state.undo, width="stretch", key="undo"
+            "Undo", icon=":material/undo:", disabled=not held.past, on_click=session.undo, width="stretch", key="undo"
         )
         st.button(
-            "Redo", icon=":material/redo:", disabled=not kept.future, on_click=state.redo, width="stretch", key="redo"
+            "Redo", icon=":material/redo:", disabled=not held.future, on_click=session.redo, width="stretch", key="redo"
         )
-    _preset()
-    view = kept.project.view
-    inputs.choice("Lengths", "view.units", UNIT_CHOICES, view.units, lambda v: state.look(units=v))
+    _preset(held.project)
+    view = held.project.view
+    inputs.choice("Lengths", "view.units", UNIT_CHOICES, view.units, lambda v: session.look(units=v))
     inputs.choice(
         "Joint compliance",
         "view.joint_unit",
         JOINT_UNITS,
         view.joint_unit,
-        lambda v: state.look(joint_unit=v),
-        horizontal=False,
+        lambda v: session.look(joint_unit=v),
+        inputs.LISTED,
     )
-    _project(kept)
+    _files(held)
 
 
-def _preset() -> None:
-    names = state.presets()
-    current = state.project().preset
+def _preset(project: Project) -> None:
+    names, current = presets(), project.preset
     titles = {name: name.replace("_", " ").capitalize() for name in names}
     if current not in titles:
         titles = {current: "Your file", **titles}
-    inputs.choice("Preset", "project.preset", titles, current, state.open_preset, horizontal=False)
-    if current in names and state.project().setup.digest() != state.preset_setup(current).digest():
+    inputs.choice("Preset", "project.preset", titles, current, session.open_preset, inputs.LISTED)
+    if current in names and project.setup.digest() != preset_setup(current).digest():
         st.button(
             "Back to preset",
             icon=":material/restart_alt:",
             key="back",
             width="stretch",
             type="tertiary",
-            on_click=state.open_preset,
+            on_click=session.open_preset,
             args=(current,),
         )
 
 
-def _project(kept: state.Store) -> None:
-    project = kept.project
+def _files(held: session.Store) -> None:
+    project = held.project
     st.caption("Project")
-    known = uncertainty.to_table(project.setup)  # here, since a download's callable runs outside the session
     with st.container(horizontal=True, gap="small"):
         with st.popover("Open", icon=":material/folder_open:", width="stretch", key="open"):
-            _open(kept)
+            inputs.upload(
+                "A project or set-up file (.toml)",
+                "project.file",
+                _open,
+                most_MB=MAX_PROJECT_MB,
+                fresh=held.revision,
+            )
         st.download_button(
             "Save",
-            data=lambda: project_to_toml(project, known),
+            data=lambda: project_to_toml(project),
             file_name=_file_name(project.setup.name),
             mime="application/toml",
             icon=":material/save:",
@@ -106,35 +133,15 @@ def _project(kept: state.Store) -> None:
             width="stretch",
             key="save",
         )
-    waiting = kept.refused.get("open")
+    waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])
 
 
-def _open(kept: state.Store) -> None:
-    key = f"open:{kept.revision}"
-    st.file_uploader(
-        "A project or set-up file (.toml)",
-        key=key,
-        type=["toml"],
-        max_upload_size=MAX_PROJECT_MB,
-        on_change=lambda: _take(st.session_state.get(key)),
-    )
-    inputs.sentence("open")  # here as well: the open popover lies over the sentence in the side bar
-
-
-def _take(file: Any) -> None:
-    if file is None:
-        inputs.accept("open")
-        return
-    try:
-        text = file.getvalue().decode("utf-8")
-    except UnicodeDecodeError:
-        inputs.refuse("open", None, f"{file.name}: this is not a text file; expected a project saved by robomill.")
-        return
-    reason = state.open_text(text)
+def _open(data: bytes, name: str) -> None:
+    reason = session.open_text(inputs.decoded(data, name, "a project saved by robomill"))
     if reason:
-        inputs.refuse("open", None, f"{file.name} was not opened. {reason} Your project is as it was.")
+        raise ProjectError(f"{name} was not opened. {reason} Your project is as it was.")
 
 
 def _file_name(name: str) -> str:

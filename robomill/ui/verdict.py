@@ -8,8 +8,8 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import groove_error, one_groove, place_at
-from robomill.ui import cache, state, uncertainty
-from robomill.ui.parts import Tile
+from robomill.ui import cached, session, uncertainty
+from robomill.ui.pieces import Tile
 from robomill.units import format_percent, format_si
 
 WORDS = {
@@ -80,13 +80,13 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
 
 def previous(result: SimulationResult) -> SimulationResult | None:
     """The result before the last change of the project, if it is a different one of the same path."""
-    old = state.before()
+    old = session.before()
     if old is None or old.setup.digest() == result.setup.digest():
         return None
     if digest(old.setup.source) != digest(result.setup.source):
         return None  # two different parts are not before and after
     try:
-        return cache.result(old.setup)
+        return cached.result(old.setup)
     except RobomillError:
         return None
 

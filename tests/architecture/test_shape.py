@@ -25,8 +25,6 @@ MANY_PARAMETERS = 38
 LONG = {
     "inverse_kinematics",
 }
-# Modules that import each other inside functions, to be untied.
-CIRCLES = {frozenset({"robomill.ui.files", "robomill.ui.state"})}
 # What keeps a state while it runs: the session, and whoever reads a program line by line.
 RUNNING = ("robomill/ui/", "robomill/toolpath/gcode/", "robomill/toolpath/apt.py")
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
@@ -87,8 +85,6 @@ def imports(module: str, *, inside_functions: bool) -> set[str]:
 @pytest.mark.parametrize("inside_functions", [False, True], ids=["at the top", "inside functions too"])
 def test_no_circle_among_imports(inside_functions: bool) -> None:
     graph = {module: imports(module, inside_functions=inside_functions) for module in MODULES}
-    for one, other in (sorted(pair) for pair in CIRCLES if inside_functions):
-        graph[one].discard(other)
     try:
         graphlib.TopologicalSorter(graph).prepare()
     except graphlib.CycleError as exc:

@@ -8,8 +8,8 @@ import pytest
 from streamlit.testing.v1 import AppTest
 
 from robomill.errors import RenderError
-from robomill.ui import render
-from robomill.ui.state import KEY, Store
+from robomill.ui import cached
+from robomill.ui.session import KEY, Store
 from robomill.viz.worker import RenderWorker
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,7 +30,7 @@ class NoPictures(RenderWorker):
 def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
     """The start page, run once."""
     worker = NoPictures()
-    monkeypatch.setattr(render, "worker", lambda: worker)
+    monkeypatch.setattr(cached, "worker", lambda: worker)
     return AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()
 
 

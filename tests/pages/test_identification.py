@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.errors import LoadTestError, ProjectError
 from robomill.identification.estimate import identify
-from robomill.identification.knowledge import Knowledge, compliance_digest
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
 from robomill.identification.synthesis import simulated_tests
@@ -21,11 +22,12 @@ from robomill.io.projects import load_setup
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.simulation.run import simulate
-from robomill.ui import uncertainty
+from robomill.ui import session, uncertainty
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import KEY, SAMPLES, Bench, decoded, sample_text
 from robomill.ui.identification.inputs import adopted
-from robomill.ui.state import KEY as PROJECT
+from robomill.ui.project import Project, project_from_toml, project_to_toml
+from robomill.ui.session import KEY as PROJECT
 
 PAGE = Path(__file__).resolve().parents[2] / "pages" / "4_Identification.py"
 HEADER = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm"
@@ -282,7 +284,7 @@ def test_a_refused_plan_number_stays_with_its_bounds(page: AppTest, key: str, va
 # ---- use in the project, and the band ------------------------------------------------------------------------------
 def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) -> None:
     before = page.session_state[PROJECT].project.setup
-    assert compliance_digest(before.robot, before.springs) not in page.session_state[uncertainty.KEY]
+    assert page.session_state[PROJECT].project.known is None
     click(page, "ident:use")
     assert not page.exception
     setup = page.session_state[PROJECT].project.setup
@@ -291,12 +293,17 @@ def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) 
     assert setup.robot.compliance_set == "identified"
     assert setup.robot.provenance["compliance.identified"].kind == "computed"
     assert "27 load tests (nine_points.csv)" in setup.robot.provenance["compliance.identified"].source
-    known = page.session_state[uncertainty.KEY][compliance_digest(setup.robot, setup.springs)]
+    known = page.session_state[PROJECT].project.known
     np.testing.assert_allclose(known.covariance, fit.covariance)
     assert page.button(key="ident:use").disabled
     page.button(key="undo").click().run()
     assert page.session_state[PROJECT].project.setup.digest() == before.digest()
+    assert page.session_state[PROJECT].project.known is None, "undo takes the band along"
     assert not page.button(key="ident:use").disabled
+    page.button(key="redo").click().run()
+    again = page.session_state[PROJECT].project.known
+    assert again is not None, "and redo brings it back"
+    np.testing.assert_array_equal(again.covariance, known.covariance)
 
 
 def test_springs_come_along_and_give_way_to_the_next_identification() -> None:
@@ -316,19 +323,20 @@ def test_bands_are_laid_into_the_path_plot_only_where_something_is_known(monkeyp
 
     from robomill.viz.theme import figure
 
-    monkeypatch.setattr(st, "session_state", {})
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    monkeypatch.setattr(st, "session_state", {PROJECT: session.Store(Project(setup))})
     fit = identify(setup.robot, read_load_tests(sample_text("nine_points"), setup.robot))
     used = adopted(setup, setup.robot, fit, "a.csv")
     result = simulate(used)
     fig = figure(dark=False, height=200)
     assert not uncertainty.banded(fig, result, "mm", dark=False)
-    uncertainty.keep(used, Knowledge.of(fit, setup.robot, "from 27 load tests"))
+    session.change(robot=used.robot, springs=used.springs)
+    session.know(Knowledge.of(fit, setup.robot, "from 27 load tests"))
     assert uncertainty.banded(fig, result, "mm", dark=False)
     assert len(fig.data) == 4
     assert uncertainty.band_caption(used) == "Shaded: 95 % band, from 27 load tests."
-    assert uncertainty.known(used.replace(tolerance=1e-4)) is not None, "another tolerance changes no compliance"
-    assert uncertainty.known(setup) is None
+    assert session.known(used.replace(tolerance=1e-4)) is not None, "another tolerance changes no compliance"
+    assert session.known(setup) is None
 
 
 @pytest.mark.parametrize(("units", "joint_unit"), [("in", "kN m/rad"), ("in", "1e-7 rad/(N m)")])
@@ -345,30 +353,26 @@ def test_every_section_runs_in_every_unit(page: AppTest, units: str, joint_unit:
         assert not page.error
 
 
-def test_what_is_known_goes_through_the_project_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    import tomllib
-
-    import streamlit as st
-    import tomli_w
-
-    monkeypatch.setattr(st, "session_state", {})
+def test_what_is_known_goes_through_the_project_file() -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
     robot = setup.robot
     fit = identify(robot, read_load_tests(sample_text("tilted_bending_tool"), robot), "joints+bending")
     used = adopted(setup, robot, fit, "a.csv")
-    assert uncertainty.to_table(used) is None
     known = Knowledge.of(fit, robot, "from 72 load tests").widened(robot, force=3.0, length=1e-3)
-    uncertainty.keep(used, known)
-    before = uncertainty.tile_text(simulate(used))
-    table = tomllib.loads(tomli_w.dumps({"uncertainty": uncertainty.to_table(used)}))["uncertainty"]
-    st.session_state.clear()
-    assert uncertainty.tile_text(simulate(used)) == ""
-    uncertainty.from_table(used, table)
-    assert uncertainty.tile_text(simulate(used)) == before
-    assert "±" in before
-    for broken in ("x", {}, {**table, "model": "rubber"}, {**table, "covariance": [[1.0]]}):
+    project = Project(used, knowledge=known.held_by(used.robot, used.springs))
+    text = project_to_toml(project)
+    again = project_from_toml(text).known
+    assert again is not None
+    np.testing.assert_array_equal(again.covariance, known.covariance)
+    np.testing.assert_array_equal(again.F, np.diag([9.0, 9.0, 9.0]))
+    np.testing.assert_array_equal(again.lengths, np.full(2 * robot.rows, 1e-3))
+    assert "[uncertainty]" not in project_to_toml(project.replace(setup=setup)), "known of other compliances"
+    assert project_from_toml(project_to_toml(Project(used))).known is None
+    for broken in ('model = "rubber"', "dof = []"):
+        name = broken.partition(" ")[0]
+        damaged = re.sub(rf"^{name} = .*$", broken, text[text.index("[uncertainty]") :], flags=re.M)
         with pytest.raises(ProjectError, match="remove it or save the project again"):
-            uncertainty.from_table(used, broken)
+            project_from_toml(text[: text.index("[uncertainty]")] + damaged)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from streamlit.testing.v1 import AppTest
 from robomill.io.robots import load_robot
 from robomill.robot.model import Robot
 from robomill.ui.maps.sheets import SHEETS
-from robomill.ui.maps.state import KEY, MapView
+from robomill.ui.project import MapView
 
 WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
 
@@ -25,12 +25,13 @@ def put(app: AppTest, robot: Robot) -> None:
 
 
 def view(app: AppTest) -> MapView:
-    return app.session_state[KEY]  # type: ignore[no-any-return]
+    now = store(app).project
+    return now.maps.of(now.setup.robot)
 
 
 def look(app: AppTest, **fields: object) -> AppTest:
     """Change what the map pages look at, and run."""
-    app.session_state[KEY] = dataclasses.replace(view(app), **fields)
+    store(app).project = store(app).project.replace(maps=dataclasses.replace(view(app), **fields))
     return app.run()
 
 

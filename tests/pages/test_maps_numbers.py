@@ -15,7 +15,7 @@ from robomill.ui.learn.lesson import compliance_table, went
 from robomill.ui.learn.mathematics import component, product
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps.point import PointReport, headline, place, report, share_columns
-from robomill.ui.maps.state import MapView
+from robomill.ui.project import MapView
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
 from robomill.workspace.quantities import COMPONENTS

@@ -7,7 +7,7 @@ from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import state
+from robomill.ui.project import Project
 
 
 def test_it_runs_with_every_figure(app: AppTest) -> None:
@@ -102,7 +102,7 @@ def test_the_papers_test_is_shown_beside_the_papers_path_alone(app: AppTest) -> 
     assert "The paper's test, and ours" in [s.value for s in app.subheader]
     kept = store(app)
     setup = kept.project.setup.replace(source=GCodeSource("G21 G90\nG0 X-20 Y0 Z-2\nG1 X20 F1200\n", "mine.nc"))
-    kept.project = state.Project(setup, kept.project.view, kept.project.preset)
+    kept.project = Project(setup, kept.project.view, kept.project.preset)
     app.run()
     assert not app.exception
     assert "The paper's test, and ours" not in [s.value for s in app.subheader]

@@ -7,7 +7,9 @@ import pytest
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.ui import state, tables
+from robomill.ui import session
+from robomill.ui.project import Project
+from robomill.ui.robot import tables
 from robomill.units import to_si
 
 
@@ -18,7 +20,7 @@ def halve_joint_5(app: AppTest) -> None:
     frame = tables.compliance_frame(robot, "1e-7 rad/(N m)")
     frame.loc[4, "value"] = "45.675"
     new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame, "1e-7 rad/(N m)"))
-    kept.past, kept.project = [kept.project], state.Project(new, kept.project.view, kept.project.preset)
+    kept.past, kept.project = [kept.project], Project(new, kept.project.view, kept.project.preset)
 
 
 def test_it_runs_and_shows_the_compliance_at_the_cut(app: AppTest) -> None:
@@ -80,7 +82,7 @@ def test_every_robot_of_the_samples_opens(app: AppTest) -> None:
 
 def test_edited_blocks_become_the_users_own(app: AppTest) -> None:
     go(app, "1_Robot")
-    app.number_input(key="in:robot.T_tool[2,3]:mm").set_value(5.0).run()
+    app.number_input(key="robot.T_tool[2,3]:mm").set_value(5.0).run()
     robot = store(app).project.setup.robot
     assert robot.T_tool[2, 3] == 0.005
     assert robot.provenance["tool"].kind == "user"
@@ -91,8 +93,8 @@ def test_edited_blocks_become_the_users_own(app: AppTest) -> None:
 
 def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
     go(app, "1_Robot")
-    monkeypatch.setattr(state, "ONE_GESTURE_S", 0.0)
+    monkeypatch.setattr(session, "ONE_GESTURE_S", 0.0)
     for value in (5.0, 6.0):
-        app.number_input(key="in:robot.T_tool[2,3]:mm").set_value(value).run()
+        app.number_input(key="robot.T_tool[2,3]:mm").set_value(value).run()
     app.button(key="undo").click().run()
     assert store(app).project.setup.robot.T_tool[2, 3] == 0.005

@@ -105,7 +105,7 @@ def test_an_empty_sketch_leaves_the_board(sketching: AppTest) -> None:
 
 
 def test_sketches_survive_the_project_file(sketching: AppTest) -> None:
-    from robomill.ui.files import project_from_toml, project_to_toml
+    from robomill.ui.project import project_from_toml, project_to_toml
 
     project = store(sketching).project
     again = project_from_toml(project_to_toml(project))

@@ -8,19 +8,19 @@ import pytest
 from robomill.errors import CuttingError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.ui import fields
+from robomill.ui.project import read_field, with_field
 
 
 def test_read_and_write() -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
-    assert fields.read(setup, "cutter.diameter") == 0.008
-    assert fields.read(setup, "T_MW[1,3]") == -1.3
-    changed = fields.write(setup, "T_MW[1,3]", -1.25)
+    assert read_field(setup, "cutter.diameter") == 0.008
+    assert read_field(setup, "T_MW[1,3]") == -1.3
+    changed = with_field(setup, "T_MW[1,3]", -1.25)
     assert changed.T_MW[1, 3] == -1.25
     assert setup.T_MW[1, 3] == -1.3
-    assert fields.write(setup, "cutter.flutes", 2).cutter.flutes == 2
-    np.testing.assert_array_equal(fields.write(setup, "stock.upper[2]", 0.001).stock.upper, [0.064, 0.02, 0.001])
+    assert with_field(setup, "cutter.flutes", 2).cutter.flutes == 2
+    np.testing.assert_array_equal(with_field(setup, "stock.upper[2]", 0.001).stock.upper, [0.064, 0.02, 0.001])
     with pytest.raises(CuttingError):
-        fields.write(setup, "cutter.diameter", -1.0)
+        with_field(setup, "cutter.diameter", -1.0)
     with pytest.raises(KeyError):
-        fields.read(setup, "cutter.(diameter)")
+        read_field(setup, "cutter.(diameter)")

@@ -9,8 +9,7 @@ import pytest
 from robomill.errors import ProjectError
 from robomill.io.projects import load_setup, setup_to_toml
 from robomill.io.samples import samples_dir
-from robomill.ui.files import project_from_toml, project_to_toml
-from robomill.ui.state import Project, View
+from robomill.ui.project import Project, View, project_from_toml, project_to_toml
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from robomill.io.load_tests import read_load_tests, read_measured_map
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.robot.model import Robot
-from robomill.ui import state
+from robomill.ui import session
 
 Value = TypeVar("Value")
 
@@ -102,7 +102,7 @@ def bench() -> Bench:
         new.take_map(sample_text("grid_45x6"), "grid_45x6.csv", "grid_45x6")
         st.session_state[KEY] = new
     kept: Bench = st.session_state[KEY]
-    if kept.sample and kept.seen_robot != state.project().setup.robot.name:
+    if kept.sample and kept.seen_robot != session.project().setup.robot.name:
         _sample_robot(kept)
     return kept
 
@@ -114,7 +114,7 @@ def take_sample(kept: Bench, sample: str) -> None:
 
 
 def _sample_robot(kept: Bench) -> None:
-    kept.seen_robot = state.project().setup.robot.name
+    kept.seen_robot = session.project().setup.robot.name
     kept.robot_name = "" if kept.seen_robot == SAMPLE_ROBOT else SAMPLE_ROBOT
 
 
@@ -151,7 +151,7 @@ def _body(text: str) -> list[str]:
 
 def robot_of(kept: Bench) -> Robot:
     """The robot that was measured: the project's, or a preset."""
-    return load_robot(kept.robot_name) if kept.robot_name else state.project().setup.robot
+    return load_robot(kept.robot_name) if kept.robot_name else session.project().setup.robot
 
 
 def tests_of(kept: Bench, robot: Robot) -> LoadTests | JointTests:

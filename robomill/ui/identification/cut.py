@@ -14,7 +14,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cache, inputs, parts, state, uncertainty
+from robomill.ui import cached, inputs, pieces, session, uncertainty
 from robomill.ui.identification.bench import Bench
 from robomill.ui.identification.inputs import adopted, field, knowledge
 from robomill.units import format_si, from_si
@@ -23,8 +23,8 @@ from robomill.viz.deviation import BandCurve, band_figure
 
 def cut_of(robot: Robot) -> SimulationResult:
     """The project's cut by ``robot``. Raises the refusal of the simulation."""
-    setup = state.project().setup
-    return cache.result(setup if setup.robot == robot else setup.replace(robot=robot))
+    setup = session.project().setup
+    return cached.result(setup if setup.robot == robot else setup.replace(robot=robot))
 
 
 def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
@@ -43,7 +43,7 @@ def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str)
         return "not known", "no residuals to judge the noise by"
     digits = uncertainty.band_digits(half, unit)
     text = uncertainty.band_text(found.max_deviation, half, unit)
-    setup = state.project().setup
+    setup = session.project().setup
     if known.held_by(found.setup.robot, found.setup.springs).holds_for(setup.robot, setup.springs):
         return text, "95 % band; in force in the project"
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
@@ -51,16 +51,16 @@ def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str)
 
 def predicted(kept: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:
     """The project's cut with the compliances found, and how unsure they, force and lengths are."""
-    found = cache.result(adopted(state.project().setup, robot, result, kept.name))
+    found = cached.result(adopted(session.project().setup, robot, result, kept.name))
     return found, knowledge(kept, robot, result)
 
 
 def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """The deviation along the project's path with its band, and what the band is made of."""
     if not result.has_joints:
-        parts.note("One constant matrix has no joint compliances; choose a model with joint springs.")
+        pieces.note("One constant matrix has no joint compliances; choose a model with joint springs.")
         return
-    first, second, third = parts.split([1.5, 1, 1], "cut", gap="small")
+    first, second, third = pieces.split([1.5, 1, 1], "cut", gap="small")
     with first:
         axis = _component()
     with second:
@@ -71,12 +71,12 @@ def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: st
         found, known = predicted(kept, robot, result)
         now = cut_of(robot)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
         return
     st.markdown(f"**{uncertainty.sentence(found, known, unit)}**")
     s, value, half, before = (from_si(v, unit) for v in _curves(found, now, known, axis))
     with st.container(border=True):
-        parts.figure(
+        pieces.figure(
             band_figure(BandCurve(s, value, half, before, axis, unit), dark=dark),
             "ident-band",
             name="deviation-band",
@@ -84,7 +84,7 @@ def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: st
             caption="Shaded: 95 % band by linear propagation. Dashed: the compliances of the project now.",
             alt="Deviation along the path with its 95 % band.",
         )
-    parts.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
+    pieces.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
 
 
 def _component() -> str:

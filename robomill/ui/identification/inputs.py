@@ -18,7 +18,7 @@ from robomill.io.robots import robot_names
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import inputs, parts, state, uncertainty
+from robomill.ui import inputs, pieces, session
 from robomill.ui.identification.bench import SAMPLES, Bench, decoded, take_sample
 from robomill.ui.identification.words import MODEL_TITLES, summary
 from robomill.units import from_si, to_si, unit_label
@@ -51,7 +51,7 @@ def choose(key: str, options: dict[str, str]) -> str:
     def take(picked: str) -> None:
         st.session_state[kept] = picked
 
-    inputs.choice(key.capitalize(), f"ident:{key}", options, current, take, label_visibility="collapsed")
+    inputs.choice(key.capitalize(), f"ident:{key}", options, current, take, inputs.HIDDEN)
     return str(st.session_state.get(kept, current))
 
 
@@ -64,12 +64,12 @@ def source(kept: Bench, robot: Robot) -> None:
         samples,
         kept.sample or OWN,
         lambda name: None if name == OWN else take_sample(kept, name),
-        horizontal=False,
+        inputs.LISTED,
     )
     upload("Your load tests (CSV)", "ident:file", kept.take, kept.revision)
     _templates(robot)
     if len(kept.text) > EDITABLE:
-        parts.note(f"{kept.name}: {len(kept.text.splitlines()):,} lines; files of this size are edited outside.")
+        pieces.note(f"{kept.name}: {len(kept.text.splitlines()):,} lines; files of this size are edited outside.")
         return
     with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=not kept.sample):
         box = "ident:text"
@@ -80,7 +80,7 @@ def source(kept: Bench, robot: Robot) -> None:
             height=220,
             on_change=lambda: kept.take(st.session_state[box], "pasted rows"),
         )
-        parts.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
+        pieces.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
 
 
 def upload(label: str, key: str, take: Callable[[str, str], None], revision: int) -> None:
@@ -93,7 +93,7 @@ def upload(label: str, key: str, take: Callable[[str, str], None], revision: int
     def taken() -> None:
         file: Any = st.session_state.get(box)
         if file is not None:
-            inputs.attempt(key, None, lambda: take(decoded(file.getvalue(), file.name), file.name))
+            inputs.submit(key, None, lambda: take(decoded(file.getvalue(), file.name), file.name))
 
     st.file_uploader(label, key=box, max_upload_size=MAX_MB, on_change=taken)
     inputs.sentence(key)
@@ -101,21 +101,21 @@ def upload(label: str, key: str, take: Callable[[str, str], None], revision: int
 
 def _templates(robot: Robot) -> None:
     with st.popover("Templates", icon=":material/download:", width="stretch"):
-        parts.note("Empty measuring sheets with their units in the header.")
+        pieces.note("Empty measuring sheets with their units in the header.")
         for protocol, label in TEMPLATES.items():
             name = f"load-tests-{protocol.replace(' ', '-')}.csv"
             sheet = load_test_template(protocol, robot.n)
-            parts.download(label, sheet, name, "text/csv", key=f"ident:template:{protocol}")
+            pieces.download(label, sheet, name, "text/csv", key=f"ident:template:{protocol}")
 
 
 def robot_choice(kept: Bench) -> None:
     """Which robot was measured: the project's, or a preset."""
-    titles = {"": f"The project's: {state.project().setup.robot.name}", **{n: n for n in robot_names()}}
+    titles = {"": f"The project's: {session.project().setup.robot.name}", **{n: n for n in robot_names()}}
 
     def take(name: str) -> None:
         kept.robot_name = name
 
-    inputs.choice("Robot measured", "ident:robot", titles, kept.robot_name, take, horizontal=False)
+    inputs.choice("Robot measured", "ident:robot", titles, kept.robot_name, take, inputs.LISTED)
 
 
 def model_choice(kept: Bench, robot: Robot) -> None:
@@ -125,7 +125,7 @@ def model_choice(kept: Bench, robot: Robot) -> None:
         kept.model = name
 
     inputs.choice(
-        "What gives", "ident:model", {m: MODEL_TITLES[m] for m in MODELS}, kept.model, take_model, horizontal=False
+        "What gives", "ident:model", {m: MODEL_TITLES[m] for m in MODELS}, kept.model, take_model, inputs.LISTED
     )
     if Model(kept.model).has("bending"):
         key = "ident:bending"
@@ -148,15 +148,15 @@ def model_choice(kept: Bench, robot: Robot) -> None:
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
     """The refusal, or what was read and everything the reader and the fit noticed, worst first."""
     if refusal is not None:
-        parts.error(refusal)
+        pieces.error(refusal)
     if tests is None:
         return
-    parts.note(summary(tests) + (" " + parts.badge("computed", "synthetic") if tests.synthetic else ""))
+    pieces.note(summary(tests) + (" " + pieces.badge("computed", "synthetic") if tests.synthetic else ""))
     loud = [f for f in found if f.level in ("error", "suspicious", "warning")]
     for finding in loud[:4]:
         st.warning(finding.message, icon=":material/visibility:" if finding.level == "suspicious" else None)
     for finding in [f for f in found if f not in loud][:4] + loud[4:]:
-        parts.note(finding.message)
+        pieces.note(finding.message)
 
 
 def findings(
@@ -172,14 +172,14 @@ def findings(
 def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
     """The button that puts the compliances in force, with their uncertainty."""
     if not result.has_joints:
-        parts.note("One constant matrix has no joints to give to the project; choose a model with joint springs.")
+        pieces.note("One constant matrix has no joints to give to the project; choose a model with joint springs.")
         return
-    setup = state.project().setup
+    setup = session.project().setup
     fitted = adopted(setup, robot, result, kept.name)
-    known = uncertainty.known(setup)
+    known = session.known(setup)
     in_force = known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
-        uncertainty.keep(setup, knowledge(kept, robot, result))  # force and lengths may have been stated since
+        session.know(knowledge(kept, robot, result))  # force and lengths may have been stated since
     st.button(
         "In force in the project" if in_force else "Use these compliances in the project",
         type="primary",
@@ -191,10 +191,10 @@ def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
         args=(kept, fitted, robot, result),
     )
     if in_force:
-        parts.note("Every page counts with them now, and shows its deviation with a band. Undo leads back.")
+        pieces.note("Every page counts with them now, and shows its deviation with a band. Undo leads back.")
     else:
         springs = len(result.springs(robot))
-        parts.note(
+        pieces.note(
             "Sets the joint compliances"
             + (f" and {springs} springs beside the joints" if springs else "")
             + " of the project's robot; their uncertainty goes along as bands."
@@ -221,11 +221,11 @@ def knowledge(kept: Bench, robot: Robot, result: IdentificationResult) -> Knowle
 def _use(kept: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     def put() -> None:
         known = knowledge(kept, robot, result)
-        state.change(robot=fitted.robot, springs=fitted.springs)
-        uncertainty.keep(fitted, known)
+        session.change(robot=fitted.robot, springs=fitted.springs)
+        session.know(known)
         kept.robot_name = ""
 
-    inputs.attempt("ident:use", None, put)
+    inputs.submit("ident:use", None, put)
 
 
 def field(label: str, kept: Bench, name: str, unit: str, low: float, high: float, step: float, digits: int) -> None:
@@ -246,6 +246,6 @@ def field(label: str, kept: Bench, name: str, unit: str, low: float, high: float
         key=key,
         step=float(step),
         format=f"%.{digits}f",
-        on_change=lambda: inputs.attempt(key, st.session_state[key], put),
+        on_change=lambda: inputs.submit(key, st.session_state[key], put),
     )
     inputs.sentence(key)

@@ -17,9 +17,10 @@ from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import SAMPLE_ROBOT, Bench, robot_of
+from robomill.ui.project import View
 from robomill.units import format_number, format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
@@ -30,7 +31,7 @@ START: dict[str, Any] = {"pose": (0.0, -1.3, 0.0, 0.0, 0.0), "push": "Y", "load"
 BUDGET, NOISE, SEED = 12, 5e-6, 1
 
 
-def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
+def page(kept: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: what is left (its sentence at the ``top``), the pose, the readings, the fit, the score."""
     robot = robot_of(kept)
     if kept.laboratory is None or kept.laboratory.robot.name != robot.name:
@@ -43,9 +44,9 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
         "The compliances of this robot's joints are hidden. Hang weights on the tool, read the dial gauge, find them."
     )
     with top:
-        parts.headline("Virtual laboratory", title(lab, done, result, kept.handed_in), "" if done else task)
-    parts.tiles(tiles(lab, done, result, kept.handed_in))
-    left, right = parts.split([1, 1.9], "laboratory", gap="large")
+        pieces.headline("Virtual laboratory", title(lab, done, result, kept.handed_in), "" if done else task)
+    pieces.tiles(tiles(lab, done, result, kept.handed_in))
+    left, right = pieces.split([1, 1.9], "laboratory", gap="large")
     with left:
         _rules(kept, robot, lab)
         _measure(kept, robot, lab)
@@ -56,7 +57,7 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
             truth = lab.reveal() if kept.handed_in else None
             with st.container(border=True):
                 for k, drawn in enumerate(words.intervals(result, _bare(robot), view.joint_unit, truth)):
-                    parts.figure(
+                    pieces.figure(
                         intervals_figure(drawn, dark=dark),
                         f"lab-intervals-{k}",
                         name="laboratory",
@@ -83,28 +84,28 @@ def title(lab: Laboratory, done: int, result: IdentificationResult | None, hande
     return f"{done} readings, {lab.budget} left: {label} is {known}."
 
 
-def tiles(lab: Laboratory, done: int, result: IdentificationResult | None, handed_in: bool) -> list[parts.Tile]:
+def tiles(lab: Laboratory, done: int, result: IdentificationResult | None, handed_in: bool) -> list[pieces.Tile]:
     """Readings left, the gauge, the weakest joint, the score."""
     weakest = words.weakest(result) if result is not None else None
     if weakest is None:
-        least = parts.Tile("Least known", "everything", "measure first")
+        least = pieces.Tile("Least known", "everything", "measure first")
     else:
         label, half = weakest
         known = f"± {format_percent(half)}" if np.isfinite(half) else "not seen"
-        least = parts.Tile("Least known", label.capitalize(), known)
+        least = pieces.Tile("Least known", label.capitalize(), known)
     score = lab.score(result) if handed_in and result is not None else None
     covered = int(np.nansum(score.covered)) if score else 0
     tone = "" if score is None else "ok" if score.points >= 80 else "tight" if score.points >= 50 else "out"
     return [
-        parts.Tile("Readings left", f"{lab.budget}", f"{done} taken"),
-        parts.Tile(
+        pieces.Tile("Readings left", f"{lab.budget}", f"{done} taken"),
+        pieces.Tile(
             "Dial gauge",
             f"± {format_si(lab.noise, 'um', 1)}",
             f"one standard deviation; reads to {format_si(lab.resolution, 'um', 0)}",
             kind="assumed",
         ),
         least,
-        parts.Tile(
+        pieces.Tile(
             "Score",
             f"{format_number(score.points, 0)} of 100" if score else "not handed in",
             f"{covered} of {lab.robot.n} intervals hold the truth" if score else "up to 100, shared by joints",
@@ -126,7 +127,7 @@ def _open(kept: Bench, robot: Robot, seed: int, noise: float, budget: int) -> No
 def _rules(kept: Bench, robot: Robot, lab: Laboratory) -> None:
     """Number of the hidden robot, noise and budget; a new exercise begins with the button."""
     with st.expander(f"Hidden robot no. {lab.seed}", icon=":material/science:"):
-        parts.note("The same number hides the same robot from everyone in the class.")
+        pieces.note("The same number hides the same robot from everyone in the class.")
         first, second, third = st.columns(3)
         done = 0 if lab.tests is None else len(lab.tests)
         values = {"seed": lab.seed, "noise": round(float(from_si(lab.noise, "um")), 6), "budget": lab.budget + done}
@@ -196,7 +197,7 @@ def _measure(kept: Bench, robot: Robot, lab: Laboratory) -> None:
     )
     inputs.sentence("lab:measure")
     if spent and not kept.handed_in:
-        parts.note("The budget is spent: hand in what you have.")
+        pieces.note("The budget is spent: hand in what you have.")
 
 
 def _take_pose(i: int, key: str, unit: str) -> None:
@@ -218,7 +219,7 @@ def _take_load() -> None:
             raise LoadTestError(f"Load: found {found}, expected more than 0 and at most {MAX_LOAD:g} N.")
         st.session_state[KEPT]["load"] = float(typed)
 
-    inputs.attempt("lab:measure", None, put)
+    inputs.submit("lab:measure", None, put)
 
 
 def _push(kept: Bench, three: bool) -> None:
@@ -229,7 +230,7 @@ def _push(kept: Bench, three: bool) -> None:
         chosen = F if three else F["XYZ".index(choice["push"])]
         kept.laboratory = kept.laboratory.measure_at(np.array(choice["pose"]), chosen)
 
-    inputs.attempt("lab:measure", None, put)
+    inputs.submit("lab:measure", None, put)
 
 
 def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
@@ -247,7 +248,7 @@ def _arm(robot: Robot, dark: bool, height: int) -> None:
         return
     force = np.eye(3)["XYZ".index(choice["push"])] * choice["load"]
     scene = ArmScene(frames=joint_frames(robot, solved.theta), force=force, force_label=f"{choice['load']:g} N")
-    parts.figure(
+    pieces.figure(
         arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9),
         "lab-arm",
         caption="The pose to be measured and the weight on the tool.",
@@ -263,15 +264,15 @@ def _hand_in(kept: Bench, lab: Laboratory, result: IdentificationResult) -> None
             icon=":material/flag:",
             on_click=lambda: setattr(kept, "handed_in", True),
         )
-        parts.note(result.explain(result.weakest_joint))
+        pieces.note(result.explain(result.weakest_joint))
         return
     score = lab.score(result)
     rows = [
         (f"Joint {number}", _off(error), "inside its interval" if held else "outside its interval" if held == 0 else "")
         for number, error, held in zip(lab.robot.joint_numbers, score.error, score.covered, strict=True)
     ]
-    parts.facts(rows)
-    parts.note("Begin anew under Hidden robot for another try; the interval is 95 %, so one in twenty may miss.")
+    pieces.facts(rows)
+    pieces.note("Begin anew under Hidden robot for another try; the interval is 95 %, so one in twenty may miss.")
 
 
 def _off(error: float) -> str:
@@ -292,7 +293,7 @@ def _readings(tests: LoadTests | None) -> None:
             columns[f"d{axis}, mm"] = np.round(from_si(tests.displacement[:, i], "mm"), 4)
         st.dataframe(columns, hide_index=True, height=min(36 * (len(tests) + 1) + 3, 320))
         remark = "Readings of a virtual laboratory: synthetic, no measurement of a real robot."
-        parts.download("CSV", lambda: load_tests_to_csv(tests, remark), "laboratory.csv", "text/csv", key="lab:csv")
+        pieces.download("CSV", lambda: load_tests_to_csv(tests, remark), "laboratory.csv", "text/csv", key="lab:csv")
 
 
 def _bare(robot: Robot) -> Robot:

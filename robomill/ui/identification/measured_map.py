@@ -12,10 +12,11 @@ from robomill.errors import LoadTestError, RobomillError
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces, session
 from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
+from robomill.ui.project import View
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.deviation import both_figure
 from robomill.viz.measured_maps import Level, level_figure
@@ -27,7 +28,7 @@ CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
 
 
-def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
+def page(kept: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
     robot = robot_of(kept)
     field, refusal = None, None
@@ -40,12 +41,12 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
         cut = None
     sentence = "These measurements do not make a map yet." if field is None else title(field, robot)
     with top:
-        parts.headline(f"Measured map · {kept.map_name}", sentence)
+        pieces.headline(f"Measured map · {kept.map_name}", sentence)
     if field is not None:
-        parts.tiles(tiles(field, robot, cut, view.length))
+        pieces.tiles(tiles(field, robot, cut, view.length))
     chosen = _inputs(kept, field, view.length)
     if refusal is not None:
-        parts.error(refusal)
+        pieces.error(refusal)
     if field is not None:
         for finding in field.findings:
             st.warning(finding.message, icon=":material/visibility:")
@@ -56,7 +57,7 @@ def page(kept: Bench, view: state.View, dark: bool, top: Any) -> None:
 
 def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
     samples = {**MAP_SAMPLES, OWN: kept.map_name} if not kept.map_sample else MAP_SAMPLES
-    first, second, third = parts.split([1, 1.1, 1], "map-inputs", gap="large")
+    first, second, third = pieces.split([1, 1.1, 1], "map-inputs", gap="large")
     with first:
         inputs.choice(
             "Measured compliances",
@@ -64,12 +65,12 @@ def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, f
             samples,
             kept.map_sample or OWN,
             lambda n: None if n == OWN else kept.take_map(sample_text(n), f"{n}.csv", n),
-            horizontal=False,
+            inputs.LISTED,
         )
         robot_choice(kept)
     with second:
         upload("Your measured map (CSV)", "ident:map:file", kept.take_map, kept.map_revision)
-        parts.note("Compliances at poses, or displacements under forces in three directions at each.")
+        pieces.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
         component = _kept_choice("component", {c: c.replace("_", " ") for c in COMPONENTS}, "C_yy")
         z = 0.0
@@ -89,7 +90,7 @@ def _kept_choice(name: str, options: dict[Any, str], start: Any) -> Any:
         st.session_state[kept] = value
 
     label = {"component": "Component", "level": "Level Z in {M}"}[name]
-    inputs.choice(label, f"ident:map:{name}", options, current, take, horizontal=False)
+    inputs.choice(label, f"ident:map:{name}", options, current, take, inputs.LISTED)
     return current
 
 
@@ -124,7 +125,7 @@ def _sizes(C: FloatArray) -> FloatArray:
     return np.linalg.norm(C, axis=(-1, -2))
 
 
-def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit: str) -> list[parts.Tile]:
+def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit: str) -> list[pieces.Tile]:
     """Points, difference to the joint model, symmetry, and the cut by both methods."""
     gap = gap_at_points(field, robot)
     lines = field.lines
@@ -135,14 +136,14 @@ def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit
     where = format_many(field.p[worst], unit, digits, with_unit=False)
     text, note = cut_words(field, cut, unit)
     return [
-        parts.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
-        parts.Tile(
+        pieces.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
+        pieces.Tile(
             "Off the joint model",
             format_percent(np.nanmean(gap), 1) if seen else NOT_REACHED,
             f"most at ({where}) {unit_label(unit)}: {format_percent(gap[worst])}",
         ),
-        parts.Tile("Asymmetry", format_percent(field.asymmetry.mean(), 1), "of |C|, on average"),
-        parts.Tile("The cut by the map", text, note),
+        pieces.Tile("Asymmetry", format_percent(field.asymmetry.mean(), 1), "of |C|, on average"),
+        pieces.Tile("The cut by the map", text, note),
     ]
 
 
@@ -183,7 +184,7 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
     sizes = [from_si(v, "um/N") for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
     both = np.concatenate([sizes[0].ravel(), sizes[1].ravel()])
     if not np.isfinite(both).any():
-        parts.note("Nothing was measured at this level.")
+        pieces.note("Nothing was measured at this level.")
         return
     signed = component[-1] != component[-2]
     top = float(np.nanmax(np.abs(both)))
@@ -195,13 +196,13 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
         ("Measured − joint model", sizes[2], (-far, far), True),
     )
     for k, (column, (name, values, ends, both_ways)) in enumerate(
-        zip(parts.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
+        zip(pieces.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
     ):
         with column, st.container(border=True):
             title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
             st.markdown(f"**{name}**")
             dots = points if k != 1 else points[:0]
-            parts.figure(
+            pieces.figure(
                 level_figure(
                     Level(x, y, values, dots, ends, title_text, unit_label("um/N"), unit_label(unit), both_ways),
                     dark=dark,
@@ -211,8 +212,8 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
                 alt=f"{name} of {component} at this level.",
             )
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
-        parts.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
-        parts.table_twin(lambda: _columns(grid, sizes, component), "measured-map")
+        pieces.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
+        pieces.table_twin(lambda: _columns(grid, sizes, component), "measured-map")
 
 
 def level_grid(field: MeasuredField, z: float) -> Grid:
@@ -240,16 +241,16 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
         return
     mapped = along_cut(field, cut)
     if not np.isfinite(mapped[cut.judged]).any():
-        parts.note("The project's cut lies outside the measured region: the map does not answer there.")
+        pieces.note("The project's cut lies outside the measured region: the map does not answer there.")
         return
-    left, right = parts.split([1.5, 1], "map-cut")
+    left, right = pieces.split([1.5, 1], "map-cut")
     blank = np.where(cut.judged, 1.0, np.nan)
     s = from_si(cut.path.s, unit)
     by_map = from_si(np.linalg.norm(mapped, axis=1) * blank, unit)
     by_joints = from_si(cut.deviation * blank, unit)
     with left, st.container(border=True, height="stretch"):
         st.markdown("**The project's cut by both**")
-        parts.figure(
+        pieces.figure(
             both_figure(s, by_map, by_joints, unit, dark=dark),
             "ident-both",
             name="cut-by-map",
@@ -264,25 +265,25 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
             (axis.upper(), format_si(float(a), unit, digits, sign=True), format_si(float(b), unit, digits, sign=True))
             for axis, a, b in zip("xyz", mapped[cut.worst], cut.delta[cut.worst], strict=True)
         ]
-        head = f"map {parts.badge(kind_of(field))}", f"joints {parts.badge('computed')}"
+        head = f"map {pieces.badge(kind_of(field))}", f"joints {pieces.badge('computed')}"
         body = "".join(f'<tr><td>{q}</td><td class="n">{a}</td><td class="n">{b}</td></tr>' for q, a, b in rows)
         st.html(
             f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
             f"{body}</table>"
         )
         if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
-            parts.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
+            pieces.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
 
 
 def _use(field: MeasuredField) -> None:
     """Let the simulation run from the map instead of the joint model, or go back to the joints."""
-    setup = state.project().setup
+    setup = session.project().setup
     in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
     if in_force:
         st.button(
             "Go back to the joint model",
             key="map:drop",
-            on_click=state.change,
+            on_click=session.change,
             kwargs={"measured_map": None},
             help="The simulation runs from this map now.",
         )
@@ -291,7 +292,7 @@ def _use(field: MeasuredField) -> None:
         "Simulate from this map",
         key="map:use",
         type="primary",
-        on_click=state.change,
+        on_click=session.change,
         kwargs={"measured_map": field},
         help="Deflections then come from the measured map; the joints' shares are still shown.",
     )

@@ -12,10 +12,10 @@ from robomill.errors import RobomillError
 from robomill.identification.comparison import OVERFIT, Comparison, in_sample
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import parts
+from robomill.ui import pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench, comparison_of
-from robomill.ui.tables import PRISMATIC_UNITS
+from robomill.ui.project import PRISMATIC_UNITS
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import models_figure
 
@@ -34,7 +34,7 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     best = compared.simplest_good
     st.markdown(f"**{_judgement(compared)}**")
     with st.container(border=True):
-        parts.figure(
+        pieces.figure(
             models_figure(
                 names,
                 np.array([from_si(in_sample(r), "%") for r in results]),
@@ -52,7 +52,7 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     if absorbed:
         st.info(absorbed, icon=":material/lightbulb:")
     for name, reason in compared.refused.items():
-        parts.note(f"{words.MODEL_TITLES[name]}: {html.escape(reason)}")
+        pieces.note(f"{words.MODEL_TITLES[name]}: {html.escape(reason)}")
     _side_by_side(results, rows, robot, joint_unit)
     if kept.model != best.model:
         st.button(
@@ -103,4 +103,4 @@ def _side_by_side(
     st.html(
         f'<div style="overflow-x:auto"><table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table></div>'
     )
-    parts.note(f"Joint values in {unit_label(joint_unit)}; – where a model has none or the tests do not see it.")
+    pieces.note(f"Joint values in {unit_label(joint_unit)}; – where a model has none or the tests do not see it.")

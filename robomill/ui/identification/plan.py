@@ -15,7 +15,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import load_tests_to_csv
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces, session
 from robomill.ui.identification.bench import Bench, appended, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import field, upload
@@ -35,7 +35,7 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
     try:
         plan = plan_of(kept, robot, result)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
         return
     st.markdown(f"**{plan.sentence()}**")
     with st.container(border=True):
@@ -43,7 +43,7 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
         live = [k for k, p in enumerate(plan.labels) if p.label not in result.lumped and result.parameters[k] > 0]
         with np.errstate(invalid="ignore", divide="ignore"):
             before, after = (100.0 * h / np.abs(result.parameters) for h in (plan.half_before, plan.half_after))
-        parts.figure(
+        pieces.figure(
             gain_figure([names[k] for k in live], before[live], after[live], dark=dark),
             "ident-gain",
             name="plan-intervals",
@@ -54,14 +54,14 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
     columns = plan_columns(plan, unit)
     st.dataframe(columns, hide_index=True)
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        parts.download(
+        pieces.download(
             "Measuring sheet (CSV)",
             lambda: measuring_sheet(plan, kept.name),
             "measuring-sheet.csv",
             "text/csv",
             key="ident:sheet",
         )
-        parts.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
+        pieces.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
     upload(
         "Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name), kept.revision
     )
@@ -74,21 +74,21 @@ def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> Non
 
         return put
 
-    first, second, third, fourth, fifth = parts.split([1.5, 1.1, 1, 1, 1], "goal", gap="small")
+    first, second, third, fourth, fifth = pieces.split([1.5, 1.1, 1, 1, 1], "goal", gap="small")
     with first:
-        inputs.choice("Make more certain", "ident:goal", GOALS, kept.goal, take("goal"), horizontal=False)
+        inputs.choice("Make more certain", "ident:goal", GOALS, kept.goal, take("goal"), inputs.LISTED)
     if kept.goal == "joint":
         joints = {j: f"Joint {j}" for j in robot.joint_numbers}
         now = _joint(kept, robot, result)
         with second:
-            inputs.choice("Joint", "ident:goal_joint", joints, now, take("goal_joint"), horizontal=False)
+            inputs.choice("Joint", "ident:goal_joint", joints, now, take("goal_joint"), inputs.LISTED)
     with third:
         field("More tests", kept, "count", "1", 1, 30, 1, 0)
     with fourth:
         field("Load", kept, "load", "N", 1, 5000, 50, 0)
     with fifth:
         field("Tilt up to", kept, "tilt", "deg", 0, 90, 5, 0)
-    parts.note(
+    pieces.note(
         "Chosen among 300 poses within the joint limits and "
         f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."
     )
@@ -117,7 +117,7 @@ def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
         "plan",
         id(result),
         kept.goal,
-        goal if isinstance(goal, int) else state.project().setup.digest(),
+        goal if isinstance(goal, int) else session.project().setup.digest(),
         kept.count,
         kept.load,
         kept.tilt,

@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts
+from robomill.ui import inputs, pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench
 from robomill.units import format_number, format_si, from_si, unit_label
@@ -27,7 +27,7 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
     with st.container(border=True):
         for k, drawn in enumerate(words.intervals(result, robot, joint_unit)):
             first = k == 0
-            parts.figure(
+            pieces.figure(
                 intervals_figure(drawn, dark=dark),
                 f"ident-intervals-{k}",
                 name="compliances",
@@ -37,12 +37,12 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
             )
     unseen(result)
     few = len(result.labels) <= 8
-    left, right = parts.split([1, 1.3], "fit") if few else (st.container(), st.container())
+    left, right = pieces.split([1, 1.3], "fit") if few else (st.container(), st.container())
     with left, st.container(border=True, height="stretch"):
         st.markdown("**Which are confused with which**")
         if np.isfinite(result.correlation).any():
             names = [words.pretty(p).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
-            parts.figure(
+            pieces.figure(
                 correlation_figure(names, result.correlation, dark=dark),
                 "ident-correlation",
                 table=lambda: {"": names, **{n: result.correlation[:, i] for i, n in enumerate(names)}},
@@ -50,12 +50,12 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
                 alt="Correlations of the fitted compliances.",
             )
         else:
-            parts.note("Without residuals to judge the noise by, there are no correlations.")
+            pieces.note("Without residuals to judge the noise by, there are no correlations.")
     with right, st.container(border=True, height="stretch"):
         st.markdown("**The numbers**")
         _table(result, robot, joint_unit)
         before, after = result.condition
-        parts.note(
+        pieces.note(
             f"Condition number {format_number(before, 0)} as measured, {format_number(after, 1)} after scaling the "
             f"columns. One reading is good to {_noise(result)} by the residuals; {result.dof:,} equations to spare."
         )
@@ -104,12 +104,12 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
         cells += [words.number(columns[c][k], unit) for c in references]
         own = "" if unit == common else f" <small>{html.escape(unit_label(unit))}</small>"
         row = "".join(f'<td class="n">{c}</td>' for c in cells)
-        body.append(f'<tr><td style="white-space:nowrap">{parts.subscripts(parameter.label)}{own}</td>{row}</tr>')
+        body.append(f'<tr><td style="white-space:nowrap">{pieces.subscripts(parameter.label)}{own}</td>{row}</tr>')
     top = "".join(f'<th class="{"n" if i else ""}">{html.escape(h)}</th>' for i, h in enumerate(head))
     st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table></div>')
     sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
-    said = [f"{parts.badge(source.kind)} {title}" for title, source in sources if source and title in references]
-    parts.note(f"In {unit_label(common)}. {' '.join(said)}")
+    said = [f"{pieces.badge(source.kind)} {title}" for title, source in sources if source and title in references]
+    pieces.note(f"In {unit_label(common)}. {' '.join(said)}")
 
 
 FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
@@ -128,7 +128,7 @@ def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
             drawn = from_si(result.residual, picked)
         odd = np.isin(result.row, [o.row for o in result.outliers])
         note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
-        parts.figure(
+        pieces.figure(
             residuals_figure(result.row, drawn, odd, picked, dark=dark),
             f"ident-residuals-{picked}",
             name="residuals",
@@ -147,7 +147,7 @@ def _residual_unit(single: bool) -> str:
     def take(unit: str) -> None:
         st.session_state["identification:residual"] = unit
 
-    inputs.choice("Residuals", "ident:residual", options, current, take, label_visibility="collapsed")
+    inputs.choice("Residuals", "ident:residual", options, current, take, inputs.HIDDEN)
     return str(st.session_state.get("identification:residual", current)) if current in options else current
 
 
@@ -168,7 +168,7 @@ def _outliers(kept: Bench, result: IdentificationResult) -> None:
             icon=":material/flag:",
         )
         if len(rows) > 0.1 * len(result.row):
-            parts.note("So many at once speak against the model rather than against the readings: compare the models.")
+            pieces.note("So many at once speak against the model rather than against the readings: compare the models.")
     key = "ident:excluded"
     inputs.seed(key, list(kept.excluded))
     st.multiselect(

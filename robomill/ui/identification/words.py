@@ -12,8 +12,8 @@ from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS, Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui.parts import Tile
-from robomill.ui.tables import PRISMATIC_UNITS, is_stiffness
+from robomill.ui.pieces import Tile
+from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import format_percent, format_si, format_value, from_si, unit_label
 from robomill.viz.identification import Intervals
 

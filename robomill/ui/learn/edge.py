@@ -17,7 +17,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.ui import cache, inputs, parts, shell, state
+from robomill.ui import cached, inputs, pieces, session, shell
 from robomill.ui.learn.lesson import SIDE, lesson
 from robomill.ui.learn.lesson import go as step_on
 from robomill.ui.maps import fields as maps_fields
@@ -94,10 +94,10 @@ def edge(found: PointReport) -> None:
     """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it."""
     st.html('<p class="rm-ask">Now drag the arm to the edge of its workspace.</p>')
     way = ray(found)
-    unit = state.project().view.length
+    unit = session.project().view.length
     radius = from_si(way.radius, unit)
     if len(way.p) < 3:
-        parts.note("This pose is the only one in reach on its ray; choose another robot or point.")
+        pieces.note("This pose is the only one in reach on its ray; choose another robot or point.")
         return
     now = lesson()
     i = way.start if now.out is None else int(np.abs(way.radius - now.out).argmin())
@@ -111,7 +111,7 @@ def edge(found: PointReport) -> None:
         on_change=lambda: step_on(out=float(way.radius[st.session_state[key]])),
     )
     here = report(found.robot, tuple(map(float, way.p[i])), 0.0, 0.0)  # type: ignore[arg-type]
-    left, right = parts.split([1.35, 1], "edge", gap="large")
+    left, right = pieces.split([1.35, 1], "edge", gap="large")
     with left, st.container(border=True):
         _stretch(found, here, way, i)
     with right:
@@ -120,7 +120,7 @@ def edge(found: PointReport) -> None:
 
 def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     if here.frames is None or found.frames is None:
-        parts.note(html.escape(here.reason))
+        pieces.note(html.escape(here.reason))
         return
     dark = shell.dark()
     frames = here.frames
@@ -135,9 +135,9 @@ def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         widen(fig, low, high, room=2.6)
         return fig.update_layout(scene_camera=SIDE)
 
-    fig = cache.kept_figure("learn-edge", (found.robot.digest(), digest(here.theta), way.start, dark), draw)
+    fig = cached.kept_figure("learn-edge", (found.robot.digest(), digest(here.theta), way.start, dark), draw)
     grown = format_times(times / FORCE)
-    parts.figure(
+    pieces.figure(
         fig,
         "learn-edge",
         alt="The arm with its compliance ellipsoid at the chosen distance.",
@@ -160,7 +160,7 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         f'<p class="rm-note">{near}</p>'
         f'<p class="rm-note">softest direction</p><div class="rm-det">{format_si(soft, "um/N", 2)}</div>'
     )
-    unit = state.project().view.length
+    unit = session.project().view.length
     softest = np.asarray(np.linalg.eigvalsh(cartesian_compliance(found.robot, way.theta))[:, -1], dtype=np.float64)
     fig = ray_figure(
         from_si(way.radius, unit),
@@ -169,7 +169,7 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
         (from_si(way.det, what.unit), from_si(softest, "um/N")),
         dark=shell.dark(),
     )
-    parts.figure(
+    pieces.figure(
         fig,
         "learn-ray",
         alt="det(J) and the largest compliance against the distance from the base.",

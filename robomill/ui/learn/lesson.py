@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
 from robomill.robot.model import Robot
-from robomill.ui import cache, inputs, parts, shell, state
+from robomill.ui import cached, inputs, pieces, session, shell
 from robomill.ui.learn.style import BIG
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import sheets as compliance_sheets
 from robomill.ui.maps.point import FORCE, PointReport, default_point, report
-from robomill.ui.maps.state import maps
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 
-KEY = "robomill.learn"
+KEPT = "learn.lesson"
 ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
@@ -40,18 +39,17 @@ class Lesson:
 
 def lesson() -> Lesson:
     """The lesson of this session."""
-    kept = st.session_state.get(KEY)
-    return kept if isinstance(kept, Lesson) else Lesson()
+    return cast(Lesson, session.kept(KEPT, Lesson()))
 
 
 def go(**fields: Any) -> None:
     """Another step in the lesson."""
-    st.session_state[KEY] = dataclasses.replace(lesson(), **fields)
+    session.keep(KEPT, dataclasses.replace(lesson(), **fields))
 
 
 def stand(robot: Robot) -> PointReport:
     """Where the lesson stands: the point in hand of the maps, tool vertical."""
-    view = dataclasses.replace(maps(robot), A=0.0, B=0.0, point=None)
+    view = dataclasses.replace(session.maps(), A=0.0, B=0.0, point=None)
     box = maps_fields.region(robot, view)
     known = compliance_sheets.overview(robot, view, box)
     return report(robot, default_point(view, box, known), 0.0, 0.0)
@@ -62,7 +60,7 @@ def question(found: PointReport) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
     st.html(BIG + '<p class="rm-ask">Push the tool along Y. Where does the tip go?</p>')
     now = lesson()
-    left, right = parts.split([1.35, 1], "ask", gap="large")
+    left, right = pieces.split([1.35, 1], "ask", gap="large")
     with right:
         _answers(now)
         st.button(
@@ -99,16 +97,16 @@ def _answer(found: PointReport, now: Lesson) -> None:
         return
     delta = FORCE * found.C[:, 1]
     truth = went(delta)
-    unit = state.project().view.length
+    unit = session.project().view.length
     st.html(f'<p class="rm-say">100 N along Y move the tip {_moves(delta, unit)}.</p>')
     if now.answer is not None:
         judged = "Right." if now.answer == truth else "Look again:"
         said = (
             f"You said: {ANSWERS[now.answer].lower()}. {judged} the second column of C says where a push along Y leads."
         )
-        parts.note(said)
+        pieces.note(said)
     st.html(compliance_table(found.C))
-    parts.note(
+    pieces.note(
         f"C in {unit_label('um/N')}. Blue: along the push. Orange, outlined: the off-diagonal terms, where the "
         f"push leads aside."
     )
@@ -151,7 +149,7 @@ def compliance_table(C: FloatArray) -> str:
 def _push(found: PointReport, revealed: bool) -> None:
     assert found.frames is not None
     delta = FORCE * found.C[:, 1]
-    unit, dark = state.project().view.length, shell.dark()
+    unit, dark = session.project().view.length, shell.dark()
     scene = ArmScene(
         frames=found.frames,
         force=np.array([0.0, FORCE, 0.0]),
@@ -161,13 +159,13 @@ def _push(found: PointReport, revealed: bool) -> None:
     )
     key = (found.robot.digest(), digest(found.theta), revealed, unit, dark)
     more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
-    fig = cache.kept_figure(
+    fig = cached.kept_figure(
         "learn-push",
         key,
         lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
     )
     drawn = format_times(displacement_scale(delta, found.frames))
-    parts.figure(
+    pieces.figure(
         fig,
         "learn-push",
         alt="The arm seen from the side with a force of 100 N along Y on the tool.",

@@ -16,8 +16,9 @@ from robomill.io.samples import samples_dir
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
-from robomill.ui import cache, parts, state
+from robomill.ui import cached, pieces
 from robomill.ui.maps.point import FORCE, PointReport
+from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.units import from_si, unit_label
 
 TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not computed": "computed"}
@@ -28,21 +29,21 @@ SMALL = 5e-4
 def equations(found: PointReport) -> None:
     """Eqs. (13), (14) and (15) with this robot's numbers at this pose."""
     st.subheader("The mathematics, with the numbers of now")
-    left, right = parts.split([1, 1], "mathematics", gap="large")
+    left, right = pieces.split([1, 1], "mathematics", gap="large")
     with left:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
-        parts.note(
+        pieces.note(
             "Every joint gives in its own direction J<sub>i</sub>; the tip gives by the sum. Along Y, with "
             "C<sub>θ</sub> in "
             "10⁻⁶ rad/(N m) and J in m/rad:"
         )
         st.latex(r"\large " + component(found, 1, 1))
-        parts.note("and from Y into Z, the reason for the sideways answer:")
+        pieces.note("and from Y into Z, the reason for the sideways answer:")
         st.latex(r"\large " + component(found, 2, 1))
     with right:
         st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
         st.latex(r"\large " + product(found.C))
-        parts.note(f"C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot's frame {{M}}.")
+        pieces.note(f"C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot's frame {{M}}.")
 
 
 def component(found: PointReport, row: int, column: int) -> str:
@@ -87,34 +88,34 @@ def rows() -> list[Row]:
 
 def evidence() -> Evidence:
     """The samples the table is computed from."""
-    setup = state.preset_setup(state.DEFAULT_PRESET)
+    setup = preset_setup(DEFAULT_PRESET)
     robot = load_robot("slavkovic_5r")
     folder = samples_dir() / "load_tests"
     nine, single = (
         identify(robot, read_load_tests(folder / name)) for name in ("nine_points.csv", "one_joint_at_a_time.csv")
     )
     other = setup.replace(robot=setup.robot.with_compliance_set("table_3"))
-    return Evidence(robot, cache.result(setup), cache.result(other), nine, single, tuple(sample_materials()))
+    return Evidence(robot, cached.result(setup), cached.result(other), nine, single, tuple(sample_materials()))
 
 
 def reproduced() -> None:
     """The table, with what did not come out and why."""
     st.subheader("The paper, reproduced")
     found = rows()
-    parts.note(html.escape(summary(found)))
+    pieces.note(html.escape(summary(found)))
     head = "".join(
         f"<th>{name}</th>" for name in ("Of the paper", "What it gives", "What robomill finds", "", "Reason")
     )
     body = "".join(
         f"<tr><td><b>{html.escape(r.statement.where)}</b></td><td>{_given(r.statement)}</td>"
         f"<td>{html.escape(r.found)}</td>"
-        f"<td>{parts.badge(TONE[r.statement.status], SHORT[r.statement.status])}</td>"
+        f"<td>{pieces.badge(TONE[r.statement.status], SHORT[r.statement.status])}</td>"
         f"<td>{html.escape(r.reason)}</td></tr>"
         for r in found
     )
     table = f'<table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table>'
     st.html(f'<div style="overflow-x:auto">{table}</div>')
-    parts.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
+    pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
 
 
 def _given(statement: Statement) -> str:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError, WorkspaceError
 from robomill.io.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import inputs, parts
+from robomill.ui import inputs, pieces, session
 from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps.state import MapView, factors, see
+from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
 from robomill.viz.maps import Map, Scale, symmetric_limit
 from robomill.workspace.fields import ComplianceField
@@ -27,7 +26,7 @@ def candidates(robot: Robot, view: MapView) -> dict[str, str]:
     found = {f"set:{name}": name.replace("_", " ").capitalize() for name in robot.compliance_sets}
     if robot.compliance_set == USER_SET:
         found["now"] = "As edited"
-    if (factors(view, robot) != 1.0).any():
+    if (view.stiffening(robot) != 1.0).any():
         found["what-if"] = "What if"
     found |= {f"robot:{name}": name.replace("_", " ") for name in robot_names() if name != robot.name}
     return found
@@ -42,20 +41,13 @@ def chosen(robot: Robot, view: MapView) -> list[str]:
 
 def controls(robot: Robot, view: MapView) -> None:
     """The list to choose from."""
-    known = candidates(robot, view)
-    key = "maps:against"
-    inputs.seed(key, chosen(robot, view))
-
-    def take() -> None:
-        see(against=tuple(st.session_state[key]))
-
-    st.multiselect(
+    inputs.several(
         "Compare up to three",
-        list(known),
-        key=key,
-        format_func=lambda k: known[k],
+        "maps.against",
+        candidates(robot, view),
+        chosen(robot, view),
+        lambda keys: session.see(against=tuple(keys)),
         max_selections=MOST,
-        on_change=take,
         label_visibility="collapsed",
         placeholder="Robots or compliance sets",
     )
@@ -72,7 +64,7 @@ def panels(
         try:
             values[key] = from_si(_field(key, robot, view, known).values(name), UM).squeeze(axis="xyz".index(normal))
         except RobomillError as exc:
-            parts.error(exc)
+            pieces.error(exc)
     keys = list(values)
     if not keys:
         raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
@@ -105,7 +97,7 @@ def _field(key: str, robot: Robot, view: MapView, known: ComplianceField) -> Com
     if key == "now":
         return known
     if key == "what-if":
-        return maps_fields.stiffer(known, factors(view, robot))
+        return maps_fields.stiffer(known, view.stiffening(robot))
     kind, _, name = key.partition(":")
     other = robot.with_compliance_set(name) if kind == "set" else load_robot(name)
     return maps_fields.field(other, known.grid, view.A, view.B)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import streamlit as st
 
@@ -10,11 +12,11 @@ from robomill.errors import RobomillError
 from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, parts, shell, state
+from robomill.ui import inputs, pieces, session, shell
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps.point import PointReport, place
-from robomill.ui.maps.state import MapView, factors, see
+from robomill.ui.project import MapView, Project
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceField
@@ -26,7 +28,7 @@ WORDS = {c: f"C_{c}" for c in COMPONENTS}
 
 def tiles(
     found: PointReport, old: PointReport, now: ComplianceField, before: ComplianceField, view: MapView, unit: str
-) -> list[parts.Tile]:
+) -> list[pieces.Tile]:
     """The component at the point, the softest direction there, the softest place, where stiffness pays."""
     component = view.component
     point = place(found.point, unit)
@@ -38,26 +40,26 @@ def tiles(
     worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if known else None
     where = tuple(float(axis[i]) for axis, i in zip((now.grid.x, now.grid.y, now.grid.z), worst)) if worst else None
     return [
-        parts.Tile(
+        pieces.Tile(
             f"C_{component} at the point",
             _um(found.component(component)) if found.reached else "not reached",
             f"at {point}",
             _um(old.component(component)) if old.reached else "",
             kind="computed",
         ),
-        parts.Tile(
+        pieces.Tile(
             "Softest direction there",
             _um(_softest(found)) if found.reached else "not reached",
             "what 1 N moves the tip at most",
             _um(_softest(old)) if old.reached else "",
         ),
-        parts.Tile(
+        pieces.Tile(
             "Softest place of the region",
             _um(float(soft[worst])) if worst else "not reached",
             f"at {place(where, unit)}" if where else "",  # type: ignore[arg-type]
             _um(float(np.nanmax(before.values("C_soft")))) if known else "",
         ),
-        parts.Tile(
+        pieces.Tile(
             "Stiffness pays most in",
             f"joint {found.robot.joint_numbers[best]}" if known else "nothing reached",
             f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else "",
@@ -81,8 +83,8 @@ def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None
         "maps:component",
         WORDS,
         view.component,
-        lambda c: see(component=c),
-        horizontal=False,
+        lambda c: session.see(component=c),
+        inputs.LISTED,
     )
     st.markdown("**The point in hand**")
     for i, column in enumerate(st.columns(3)):
@@ -100,25 +102,25 @@ def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None
         "maps:common",
         {True: "One scale", False: "Direct and cross apart"},
         view.common,
-        lambda c: see(common=c),
+        lambda c: session.see(common=c),
     )
 
 
 def _put(found: PointReport, i: int, value: float) -> None:
     point = list(found.point)
     point[i] = value
-    see(point=tuple(point))
+    session.see(point=tuple(point))
 
 
 def what_if(robot: Robot, view: MapView) -> None:
     """A factor on each joint's stiffness; the old result stays as ghost until they are 1 or put into the robot."""
-    scale = factors(view, robot)
+    scale = view.stiffening(robot)
     changed = bool((scale != 1.0).any())
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         st.markdown("**What if a joint were stiffer?**")
         st.button(
             "All × 1",
-            on_click=see,
+            on_click=session.see,
             kwargs={"factors": None},
             type="tertiary",
             disabled=not changed,
@@ -132,13 +134,10 @@ def what_if(robot: Robot, view: MapView) -> None:
             inputs.slider(
                 f"Joint {number}, times its stiffness",
                 f"maps:factor:{i}",
-                0.5,
-                4.0,
+                inputs.Span(0.5, 4.0, 0.05, "%.2f"),
                 float(scale[i]),
-                lambda v, i=i: _factor(robot, i, v),  # type: ignore[misc]
-                step=0.05,
-                form="%.2f",
-                label_visibility="collapsed",
+                partial(_factor, robot, i),
+                inputs.HIDDEN,
             )
     st.button(
         "Put these joints into the robot",
@@ -153,18 +152,16 @@ def what_if(robot: Robot, view: MapView) -> None:
 
 
 def _factor(robot: Robot, i: int, value: float) -> None:
-    from robomill.ui.maps.state import maps
 
-    scale = factors(maps(robot), robot)
+    scale = session.maps().stiffening(robot)
     scale[i] = value
-    see(factors=None if (scale == 1.0).all() else tuple(scale.tolist()))
+    session.see(factors=None if (scale == 1.0).all() else tuple(scale.tolist()))
 
 
 def _adopt(robot: Robot) -> None:
-    from robomill.ui.maps.state import maps
 
-    state.change(robot=stiffened(robot, factors(maps(robot), robot)))
-    see(factors=None)
+    session.change(robot=stiffened(robot, session.maps().stiffening(robot)))
+    session.see(factors=None)
 
 
 def where_it_pays(
@@ -186,10 +183,10 @@ def where_it_pays(
             (f"|C<sub>{view.component}</sub>| over the region", from_si(_mean(over), UM), f"{unit_label(UM)}, mean")
         )
     if not groups:
-        parts.note("Nothing is reached here, so nothing can be ranked.")
+        pieces.note("Nothing is reached here, so nothing can be ranked.")
         return
     with st.container(border=True):
-        parts.figure(
+        pieces.figure(
             gain_bars(groups, joints, dark=shell.dark(), height=88 + 34 * len(joints)),
             "gains",
             table=lambda: {"joint": list(map(str, joints)), **{f"{_plain(t)}, {u}": g for t, g, u in groups}},
@@ -214,22 +211,22 @@ def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) ->
     judged = result.judged
     if not judged.any():
         return None
-    delta_joint = result.delta_joint[judged] / factors(view, robot)[None, :, None]
+    delta_joint = result.delta_joint[judged] / view.stiffening(robot)[None, :, None]
     if not np.isfinite(delta_joint).all():
         return None
     return deflection_sensitivity(delta_joint, joint_numbers=robot.joint_numbers)
 
 
-def quiet_result(project: state.Project) -> SimulationResult | None:
+def quiet_result(project: Project) -> SimulationResult | None:
     """The milling result of the project, or None where it is refused: this page works without one."""
-    from robomill.ui import cache
+    from robomill.ui import cached
 
     try:
-        return cache.result(project.setup)
+        return cached.result(project.setup)
     except RobomillError:
         return None
 
 
 def fields(robot: Robot, view: MapView, known: ComplianceField) -> ComplianceField:
     """The region with the what-if factors in force."""
-    return maps_fields.stiffer(known, factors(view, robot))
+    return maps_fields.stiffer(known, view.stiffening(robot))

@@ -12,7 +12,7 @@ from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
 from robomill.robot.model import Robot
-from robomill.ui.maps.state import MapView
+from robomill.ui.project import MapView
 from robomill.units import format_si
 from robomill.workspace.fields import ComplianceField, compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid

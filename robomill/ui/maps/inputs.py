@@ -8,9 +8,9 @@ import streamlit as st
 
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts
+from robomill.ui import inputs, pieces, session
 from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps.state import MapView, see
+from robomill.ui.project import MapView
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
 from robomill.workspace.reach import Box
 
@@ -32,7 +32,7 @@ def value(
         key=key,
         step=step,
         format=f"%.{min(UNITS[unit].digits, 2)}f",
-        on_change=lambda: inputs.attempt(
+        on_change=lambda: inputs.submit(
             key, st.session_state[key], lambda: write(to_si(float(st.session_state[key]), unit))
         ),
     )
@@ -42,21 +42,21 @@ def value(
 def where(robot: Robot, view: MapView, unit: str) -> None:
     """Region, tilt and plane."""
     inputs.choice(
-        "Region", "maps:region", REGIONS, view.region, lambda kind: _take_region(kind, robot, view), horizontal=False
+        "Region", "maps:region", REGIONS, view.region, lambda kind: _take_region(kind, robot, view), inputs.LISTED
     )
     if view.region == "own":
         _corners(view, unit)
     left, right = st.columns(2)
     with left:
-        value("Tilt A", "maps:A", view.A, "deg", lambda v: see(A=v, point=None), 5.0)
+        value("Tilt A", "maps:A", view.A, "deg", lambda v: session.see(A=v, point=None), 5.0)
     with right:
-        value("Tilt B", "maps:B", view.B, "deg", lambda v: see(B=v, point=None), 5.0)
+        value("Tilt B", "maps:B", view.B, "deg", lambda v: session.see(B=v, point=None), 5.0)
     known = maps_fields.normals(robot)
     if len(known) == 1:
-        parts.note(f"This arm moves in one plane: only {next(iter(known.values()))} can be shown.")
+        pieces.note(f"This arm moves in one plane: only {next(iter(known.values()))} can be shown.")
     else:
         normal = view.normal if view.normal in known else "z"
-        inputs.choice("Plane", "maps:normal", known, normal, lambda n: see(normal=n, at=None))
+        inputs.choice("Plane", "maps:normal", known, normal, lambda n: session.see(normal=n, at=None))
 
 
 def tilt_note(robot: Robot) -> str:
@@ -72,18 +72,15 @@ def plane_slider(robot: Robot, box: Box, normal: str, at: float, unit: str) -> N
     low, high = (float(from_si(float(v), unit)) for v in (box.lower[i], box.upper[i]))
     name = f"{normal.upper()}ₘ, {unit_label(unit)}"
     if high - low < 1e-9:
-        parts.note(f"{name}: {format_si(at, unit, 1)}; the region has no depth here.")
+        pieces.note(f"{name}: {format_si(at, unit, 1)}; the region has no depth here.")
         return
     step = float(f"{(high - low) / 50:.1g}")
     inputs.slider(
         name,
         f"maps:at:{normal}:{unit}",
-        round(low, 3),
-        round(high, 3),
+        inputs.Span(round(low, 3), round(high, 3), step, "%.0f" if unit == "mm" else "%.2f"),
         round(float(from_si(at, unit)), 3),
-        lambda v: see(at=to_si(v, unit), normal=normal),
-        step=step,
-        form="%.0f" if unit == "mm" else "%.2f",
+        lambda v: session.see(at=to_si(v, unit), normal=normal),
     )
 
 
@@ -103,11 +100,11 @@ def _take_region(kind: str, robot: Robot, view: MapView) -> None:
         try:
             box = maps_fields.region(robot, view)
         except WorkspaceError:
-            see(region=kind, at=None)
+            session.see(region=kind, at=None)
             return
-        see(region=kind, at=None, lower=tuple(map(float, box.lower)), upper=tuple(map(float, box.upper)))
+        session.see(region=kind, at=None, lower=tuple(map(float, box.lower)), upper=tuple(map(float, box.upper)))
     else:
-        see(region=kind, at=None, point=None)
+        session.see(region=kind, at=None, point=None)
 
 
 def _corners(view: MapView, unit: str) -> None:
@@ -126,12 +123,12 @@ def _corners(view: MapView, unit: str) -> None:
 
 
 def _put_corner(side: str, i: int, value_SI: float) -> None:
-    current = list(getattr(st.session_state["robomill.maps"], side))
+    current = list(getattr(session.maps(), side))
     current[i] = value_SI
-    see(**{side: tuple(current)}, at=None)
+    session.see(**{side: tuple(current)}, at=None)
 
 
 def _put_step(step: float) -> None:
     if step < 0:
         raise WorkspaceError("Step: found a number below zero; type 0 to let robomill choose, or a spacing above 0.")
-    see(step=step or None)
+    session.see(step=step or None)

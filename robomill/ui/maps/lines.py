@@ -9,11 +9,10 @@ import streamlit as st
 
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
-from robomill.ui import shell
+from robomill.ui import pieces, session, shell
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.maps import table as maps_table
-from robomill.ui.maps.state import MapView, factors, maps
+from robomill.ui.project import MapView
 from robomill.units import format_significant, from_si, unit_label
 from robomill.viz.shares import LinePanel, line_panels
 from robomill.workspace.reach import Box
@@ -29,9 +28,9 @@ def show(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         else ("z", min(max(0.0, box.lower[2]), box.upper[2]))
     )
     maps_inputs.plane_slider(robot, box, "z", at, unit)
-    _, at = maps_fields.plane_at(robot, maps(robot), box) if view.normal == "z" else ("z", at)
+    _, at = maps_fields.plane_at(robot, session.maps(), box) if view.normal == "z" else ("z", at)
     found = maps_fields.lines(robot, box, at)
-    scale = factors(view, robot)
+    scale = view.stiffening(robot)
     changed = bool((scale != 1.0).any())
     panels = []
     for line in found:
@@ -53,11 +52,12 @@ def show(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         st.info("None of the six lines is reached in this plane: move the slider or change the region.")
         return
     titles = [f"{'X' if abs(line.feed[0]) > 0.5 else 'Y'}<sub>M</sub>, {unit_label(unit)}" for line in found]
-    maps_table.figure(
+    pieces.figure(
         line_panels(panels, robot.joint_numbers, titles, unit_label(unit), dark=shell.dark()),
         "lines",
         name="path-lines",
         table=lambda: _line_columns(panels, robot),
+        lazy=True,
         alt="Deviation along six straight lines, total and by joint.",
         caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
         "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",

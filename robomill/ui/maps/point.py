@@ -19,17 +19,9 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.ui import cache, parts, shell
-from robomill.ui.maps.state import MapView, Point
-from robomill.units import (
-    format_number,
-    format_percent,
-    format_si,
-    format_times,
-    format_value,
-    from_si,
-    unit_label,
-)
+from robomill.ui import cached, pieces, shell
+from robomill.ui.project import MapView, Point
+from robomill.units import format_number, format_percent, format_si, format_times, format_value, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
@@ -122,14 +114,14 @@ def show(found: PointReport, old: PointReport, component: str, unit: str) -> Non
     """The report: arm and ellipsoid, shares, C; tables beneath."""
     st.subheader(f"The pose at {place(found.point, unit)}")
     if not found.reached or found.frames is None:
-        parts.note(f"Not reached: {html.escape(found.reason)}. Click a coloured cell of a map.")
+        pieces.note(f"Not reached: {html.escape(found.reason)}. Click a coloured cell of a map.")
         return
-    left, right = parts.split([1, 1.05], "point")
+    left, right = pieces.split([1, 1.05], "point")
     with left, st.container(border=True, height="stretch"):
         _arm(found, component, unit)
     with right, st.container(border=True, height="stretch"):
         _shares(found, old)
-    one, two, three = parts.split([1, 1.15, 1.6], "point-tables", gap="large")
+    one, two, three = pieces.split([1, 1.15, 1.6], "point-tables", gap="large")
     with one:
         _joints(found)
     with two:
@@ -160,9 +152,9 @@ def _arm(found: PointReport, component: str, unit: str) -> None:
         tip = frames[-1][:3, 3]
         return fig.add_traces(ellipsoid_traces(found.C, tip, times, dark=dark, width=0.0065 * size, away=delta))
 
-    fig = cache.kept_figure("point-arm", (found.robot.digest(), digest(found.theta), component, unit, dark), draw)
+    fig = cached.kept_figure("point-arm", (found.robot.digest(), digest(found.theta), component, unit, dark), draw)
     drawn = format_times(displacement_scale(delta, frames))
-    parts.figure(
+    pieces.figure(
         fig,
         "point-arm",
         alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
@@ -176,7 +168,7 @@ def _shares(found: PointReport, old: PointReport) -> None:
     names = [f"C<sub>{c}</sub>" for c in COMPONENTS]
     shares = from_si(found.shares(), "um/N")
     before = from_si(old.shares().sum(axis=0), "um/N")
-    parts.figure(
+    pieces.figure(
         share_bars(names, shares, found.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before),
         "point-shares",
         table=lambda: share_columns(found),
@@ -208,18 +200,18 @@ def _joints(found: PointReport) -> None:
         ("det(J)", format_si(det, what.unit, 3), ""),
         ("to the limits", format_percent(limit_distance(robot, found.theta)), ""),
     ]
-    parts.facts(rows)
+    pieces.facts(rows)
 
 
 def _matrix(found: PointReport, old: PointReport) -> None:
     st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    parts.matrix(_numbers(from_si(found.C, "um/N")), list(AXES))
+    pieces.matrix(_numbers(from_si(found.C, "um/N")), list(AXES))
     change = from_si(found.C - old.C, "um/N")
     if np.abs(change).max() > 5e-4:
-        parts.note("Change by the factors:")
-        parts.matrix(_numbers(change, sign=True), list(AXES))
+        pieces.note("Change by the factors:")
+        pieces.matrix(_numbers(change, sign=True), list(AXES))
     values, axes = soft_direction(found.C)
-    parts.note("Principal compliances and their directions:")
+    pieces.note("Principal compliances and their directions:")
     shown = [
         [format_si(values[i], "um/N", with_unit=False), *(format_number(v, 2) for v in _forward(axes[:, i]))]
         for i in (2, 1, 0)
@@ -243,13 +235,13 @@ def _six(found: PointReport) -> None:
         ["δx", "δy", "δz", "φx", "φy", "φz"],
         ["Fx", "Fy", "Fz", "Mx", "My", "Mz"],
     )
-    parts.note("δ per F in µm/N, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
+    pieces.note("δ per F in µm/N, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
     grid(
         _numbers(found.J),
         ["vx", "vy", "vz", "ωx", "ωy", "ωz"],
         [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in found.robot.joint_numbers],
     )
-    parts.note("J in m/rad and rad/rad, columns by joint, rows in {M}.")
+    pieces.note("J in m/rad and rad/rad, columns by joint, rows in {M}.")
 
 
 def grid(rows: Sequence[Sequence[str]], row_names: Sequence[str], column_names: Sequence[str]) -> None:

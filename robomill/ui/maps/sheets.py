@@ -11,14 +11,13 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts, shell, state
+from robomill.ui import inputs, pieces, session, shell
 from robomill.ui.maps import compare as compare_panel
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps import lines as lines_panel
-from robomill.ui.maps import table as maps_table
 from robomill.ui.maps.point import default_point
-from robomill.ui.maps.state import MapView, factors, maps, see
+from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
@@ -42,11 +41,11 @@ UM = "um/N"
 @st.fragment
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone, a click opens the point's report."""
-    project = state.project()
+    project = session.project()
     robot, unit = project.setup.robot, project.view.length
-    view = maps(robot)
-    inputs.choice("Picture", "maps:sheet", SHEETS, view.sheet, lambda s: see(sheet=s), label_visibility="collapsed")
-    view = maps(robot)
+    view = session.maps()
+    inputs.choice("Picture", "maps:sheet", SHEETS, view.sheet, lambda s: session.see(sheet=s), inputs.HIDDEN)
+    view = session.maps()
     try:
         box = maps_fields.region(robot, view)
         if view.sheet == "lines":
@@ -54,7 +53,7 @@ def picture() -> None:
             return
         normal, at = maps_fields.plane_at(robot, view, box)
         maps_inputs.plane_slider(robot, box, normal, at, unit)
-        normal, at = maps_fields.plane_at(robot, maps(robot), box)
+        normal, at = maps_fields.plane_at(robot, session.maps(), box)
         grid = maps_fields.plane(robot, view, box, normal, at)
         known = maps_fields.field(robot, grid, view.A, view.B)
         if view.sheet != "compare" and not known.reached.any():
@@ -62,7 +61,7 @@ def picture() -> None:
             return
         _SHEETS[view.sheet](robot, view, box, known, normal, at, unit)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
 
 
 def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
@@ -117,7 +116,9 @@ def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, captio
         if found is not None:
             st.session_state["maps:clicked"] = (normal, at, found)
 
-    maps_table.figure(fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take)
+    pieces.figure(
+        fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take, lazy=True
+    )
     clicked = st.session_state.pop("maps:clicked", None)
     if clicked is not None:
         _open(clicked)
@@ -125,11 +126,11 @@ def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, captio
 
 def _open(clicked: tuple[str, float, tuple[float, float]]) -> None:
     normal, at, (u, v) = clicked
-    unit = state.project().view.length
+    unit = session.project().view.length
     point = {normal: at}
     for name, shown in zip((a for a in "xyz" if a != normal), (u, v), strict=True):
         point[name] = float(to_si(shown, unit))
-    see(point=(point["x"], point["y"], point["z"]))
+    session.see(point=(point["x"], point["y"], point["z"]))
     st.rerun(scope="app")
 
 
@@ -140,7 +141,7 @@ def _columns(known: ComplianceField, names: list[str]) -> Any:
 
 
 def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    scale = factors(view, robot)
+    scale = view.stiffening(robot)
     now = maps_fields.stiffer(known, scale)
     whole = from_si(overview(robot, view, box).total, UM)
     direct, cross = whole[..., :3], whole[..., 3:]
@@ -198,11 +199,9 @@ def _moved(change: FloatArray) -> str:
 
 
 def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    inputs.choice(
-        "Components", "maps:shares", SHARES, view.shares, lambda s: see(shares=s), label_visibility="collapsed"
-    )
-    kind = maps(robot).shares
-    now = maps_fields.stiffer(known, factors(view, robot))
+    inputs.choice("Components", "maps:shares", SHARES, view.shares, lambda s: session.see(shares=s), inputs.HIDDEN)
+    kind = session.maps().shares
+    now = maps_fields.stiffer(known, view.stiffening(robot))
     index = [COMPONENTS.index(c) for c in ROWS[kind]]
     whole = from_si(overview(robot, view, box).shares[..., index], UM)
     top = symmetric_limit([whole])
@@ -240,7 +239,7 @@ def _mean(values: FloatArray) -> str:
 
 
 def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    now = maps_fields.stiffer(known, factors(view, robot))
+    now = maps_fields.stiffer(known, view.stiffening(robot))
 
     def panel(title: str, name: str) -> Map:
         return Map(title, slab(now.values(name), normal))
@@ -267,7 +266,7 @@ def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, nor
 
 def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
     compare_panel.controls(robot, view)
-    view = maps(robot)
+    view = session.maps()
     rows, scales, rows_of_text, columns = compare_panel.panels(robot, view, known, normal)
     draw(
         sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
@@ -279,7 +278,7 @@ def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, norm
         "The same compliance of up to three robots or compliance sets, and the differences.",
         lambda: columns,
     )
-    parts.facts(rows_of_text)
+    pieces.facts(rows_of_text)
 
 
 _SHEETS = {"nine": _nine, "shares": _shares, "dominant": _dominant, "compare": _compare}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from functools import partial
 
 import numpy as np
 import streamlit as st
@@ -13,11 +14,10 @@ from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
-from robomill.ui import inputs, parts, shell, state
+from robomill.ui import inputs, pieces, session, shell
 from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.maps import table as maps_table
-from robomill.ui.maps.state import MapView, maps, see
+from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
     format_many,
@@ -41,7 +41,7 @@ from robomill.workspace.reach import Box, against_paper
 PICTURES = {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}
 
 
-def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[parts.Tile]:
+def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[pieces.Tile]:
     """Share in reach, least determinant, nearest limit, largest box."""
     share = float(known.reached.mean())
     det = np.abs(known.det_J[known.reached])
@@ -54,19 +54,19 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
     return [
-        parts.Tile(
+        pieces.Tile(
             "Region in reach",
             format_percent(share),
             f"of {box_size(box.size, unit)} {unit_label(unit)}",
             tone="ok" if share > 0.999 else "tight" if share > 0 else "out",
         ),
-        parts.Tile(
+        pieces.Tile(
             "Least |det(J)|",
             least,
             "a singularity is near" if singular else "no singularity in this region" if len(det) else "",
         ),
-        parts.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
-        parts.Tile("Largest box in reach", size, note, kind="computed"),
+        pieces.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
+        pieces.Tile("Largest box in reach", size, note, kind="computed"),
     ]
 
 
@@ -114,11 +114,11 @@ def _why(known: ComplianceField) -> str:
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
     names = {what.name: what.title for what in quantities(robot).values() if what.rests_on == "geometry"}
-    inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: see(quantity=q), horizontal=False)
+    inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
     what = quantity(robot, view.quantity)
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
     maps_inputs.where(robot, view, unit)
-    parts.note(maps_inputs.tilt_note(robot))
+    pieces.note(maps_inputs.tilt_note(robot))
 
 
 def formula_html(formula: str) -> str:
@@ -138,41 +138,39 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
         if box is None or (flat and kind == "paper"):
             continue
         corner = format_many(box.lower, unit, digits, with_unit=False)
-        mark = parts.badge(kind) + (" place in Y " + parts.badge("assumed") if kind == "paper" else "")
+        mark = pieces.badge(kind) + (" place in Y " + pieces.badge("assumed") if kind == "paper" else "")
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
-    parts.facts(rows)
+    pieces.facts(rows)
     if largest is not None and view.region != "largest":
         st.button(
             "Show the largest box",
-            on_click=see,
+            on_click=session.see,
             kwargs={"region": "largest", "at": None, "point": None},
             icon=":material/crop_free:",
             key="maps:largest",
         )
-    parts.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
+    pieces.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
 
 
 @st.fragment
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone."""
-    project = state.project()
+    project = session.project()
     robot, unit = project.setup.robot, project.view.length
-    view = maps(robot)
-    inputs.choice(
-        "Picture", "maps:picture", PICTURES, view.picture, lambda p: see(picture=p), label_visibility="collapsed"
-    )
-    view = maps(robot)
+    view = session.maps()
+    inputs.choice("Picture", "maps:picture", PICTURES, view.picture, lambda p: session.see(picture=p), inputs.HIDDEN)
+    view = session.maps()
     try:
         box = maps_fields.region(robot, view)
         {"plane": _plane, "pair": _pair, "solid": _solid}[view.picture](robot, view, box, unit)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
 
 
 def _plane(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     normal, at = maps_fields.plane_at(robot, view, box)
     maps_inputs.plane_slider(robot, box, normal, at, unit)
-    normal, at = maps_fields.plane_at(robot, maps(robot), box)
+    normal, at = maps_fields.plane_at(robot, session.maps(), box)
     _sheet(robot, view, box, normal, [at], unit, "plane")
 
 
@@ -182,7 +180,7 @@ def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     low, high = float(box.lower[i]), float(box.upper[i])
     if high - low < 1e-9:
         _sheet(robot, view, box, normal, [low], unit, "pair")
-        parts.note("The region has no depth: there is only one plane.")
+        pieces.note("The region has no depth: there is only one plane.")
         return
     first, second = view.pair if view.pair and low <= min(view.pair) and max(view.pair) <= high else (low, high)
     left, right = st.columns(2, gap="large")
@@ -191,21 +189,19 @@ def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
         with column:
             ends = [float(from_si(v, unit)) for v in (low, high, at)]
             inputs.slider(
-                f"{name} {'left' if k == 0 else 'right'}, {unit_label(unit)}",
+                f"{name} {('left' if k == 0 else 'right')}, {unit_label(unit)}",
                 f"maps:pair:{k}:{normal}:{unit}",
-                ends[0],
-                ends[1],
+                inputs.Span(ends[0], ends[1], float(from_si(step, unit)), "%.0f" if unit == "mm" else "%.2f"),
                 ends[2],
-                lambda v, k=k: _put_pair(k, to_si(v, unit), (first, second)),  # type: ignore[misc]
-                step=float(from_si(step, unit)),
-                form="%.0f" if unit == "mm" else "%.2f",
+                partial(_put_pair, k, unit, (first, second)),
             )
-    first, second = maps(robot).pair or (first, second)
+    first, second = session.maps().pair or (first, second)
     _sheet(robot, view, box, normal, [first, second], unit, "pair")
 
 
-def _put_pair(k: int, at: float, now: tuple[float, float]) -> None:
-    see(pair=(at, now[1]) if k == 0 else (now[0], at))
+def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None:
+    at = to_si(shown, unit)
+    session.see(pair=(at, now[1]) if k == 0 else (now[0], at))
 
 
 def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float], unit: str, key: str) -> None:
@@ -228,12 +224,13 @@ def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float],
     width = 760 if len(ats) == 1 else 370
     height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
     fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
-    maps_table.figure(
+    pieces.figure(
         fig,
         f"workspace-{key}",
         name=f"workspace-{what.name}",
         alt=f"{what.title} over a plane of the workspace.",
         table=lambda: plane_columns(robot, view, grid, what),
+        lazy=True,
         caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
     )
 
@@ -260,7 +257,7 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     grid = maps_fields.solid(robot, box)
     known = maps_fields.field(robot, grid, view.A, view.B)
     if not known.reached.any():
-        parts.note(sentence(robot, known))
+        pieces.note(sentence(robot, known))
         return
     values = None if what.colours == "reach" else from_si(known.values(what.name), what.unit)
     mask = known.reached
@@ -280,7 +277,7 @@ def _level(low: float, high: float, view: MapView, unit: str) -> float:
     key = "maps:level"
     lowest, highest = format_significant(low, 3), format_significant(high, 3)
     label = f"Cells from the lowest value, {lowest}, up to the highest, {highest} {unit}"
-    inputs.slider(label, key, 0.0, 1.0, view.level, lambda v: see(level=v), step=0.02, form="percent")
+    inputs.slider(label, key, inputs.Span(0.0, 1.0, 0.02, "percent"), view.level, lambda v: session.see(level=v))
     return float(st.session_state.get(key, view.level))
 
 
@@ -309,13 +306,14 @@ def _solid_figure(
         fig.add_traces(wire_box(*PAPER_BOX, p.warm, "the paper's box"))
         low, high = np.minimum(low, PAPER_BOX[0]), np.maximum(high, PAPER_BOX[1])
     widen(fig, low, high)
-    maps_table.figure(
+    pieces.figure(
         fig,
         "workspace-solid",
         name=f"workspace-{what.name}",
         caption=caption,
         alt="The arm with the cells of its workspace as voxels.",
         table=lambda: plane_columns(robot, view, grid, what),
+        lazy=True,
     )
 
 

@@ -10,7 +10,7 @@ from robomill.cutting.conditions import cut_warnings
 from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
-from robomill.ui import cache, inputs, parts, state
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view
 from robomill.ui.milling import force as force_panel
@@ -19,7 +19,7 @@ from robomill.ui.milling import pictures as picture_panel
 from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
-from robomill.ui.parts import Tile
+from robomill.ui.pieces import Tile
 from robomill.ui.start import evidence as evidence_panel
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
@@ -38,7 +38,7 @@ def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread
 
 def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:
     """The page's tiles with the band of the alloy beside the verdict."""
-    unit = state.project().view.length
+    unit = session.project().view.length
     band = linked.band_words(spread_of(result)[0], result, unit)
     return [*made[:-1], dataclasses.replace(made[-1], note=f"{made[-1].note} · {band}")] if band else made
 
@@ -64,7 +64,7 @@ def _land(result: SimulationResult) -> None:
 
 def inputs_column(result: SimulationResult | None) -> None:
     """Force, cutter, stock, what else gives, tolerance."""
-    setup = state.project().setup
+    setup = session.project().setup
     with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
         force_panel.inputs_panel()
         if result is not None and result.coupling is not None and not result.coupling.converged:
@@ -87,17 +87,17 @@ def inputs_column(result: SimulationResult | None) -> None:
 @st.fragment
 def workbench(digest: str, dark: bool) -> None:
     """Everything below the tiles. Runs alone while the scrubber moves; a changed set-up runs the whole page."""
-    project = state.project()
+    project = session.project()
     if project.setup.digest() != digest:
         st.rerun()
-    result = cache.result(project.setup)
+    result = cached.result(project.setup)
     spread, peak = spread_of(result)
-    left, right = parts.thirds()
+    left, right = pieces.thirds()
     with left:
         inputs_column(result)
     with right:
         current = st.session_state.get(QUESTION, "part")
-        inputs.choice("Question", "milling.ask", QUESTIONS, current, _ask, label_visibility="collapsed")
+        inputs.choice("Question", "milling.ask", QUESTIONS, current, _ask, inputs.HIDDEN)
         question = st.session_state.get(QUESTION, "part")
         with st.container(border=True):
             i = linked.scrubber(result)
@@ -132,7 +132,7 @@ def _ask(question: str) -> None:
 
 
 def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:
-    code, arm = parts.split([1, 1.15], "code-arm")
+    code, arm = pieces.split([1, 1.15], "code-arm")
     with code, st.container(border=True, height="stretch"):
         st.markdown("**Program**")
         station_views.code(result, i)
@@ -143,7 +143,7 @@ def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:
 def _engaged(
     result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool
 ) -> None:
-    dial, along = parts.split([1, 1.35], "force-engagement")
+    dial, along = pieces.split([1, 1.35], "force-engagement")
     with dial, st.container(border=True, height="stretch"):
         station_views.dial(result, i, spread, peak, dark)
     with along, st.container(border=True, height="stretch"):
@@ -152,12 +152,12 @@ def _engaged(
 
 
 def _tip(result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool) -> None:
-    dial, section = parts.split([1, 1.9], "dial-section")
+    dial, section = pieces.split([1, 1.9], "dial-section")
     with dial, st.container(border=True, height="stretch"):
         station_views.dial(result, i, spread, peak, dark)
     with section, st.container(border=True, height="stretch"):
         station_views.section(result, i, dark)
-    shares, lines = parts.split([1.3, 1], "shares-lines")
+    shares, lines = pieces.split([1.3, 1], "shares-lines")
     with shares, st.container(border=True, height="stretch"):
         station_views.shares(result, i, dark)
     with lines, st.container(border=True, height="stretch"):
@@ -166,17 +166,17 @@ def _tip(result: SimulationResult, i: int, spread: AlloySpread | None, peak: For
 
 
 def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
-    along, spread_over = parts.split([1, 1], "profile-histogram")
+    along, spread_over = pieces.split([1, 1], "profile-histogram")
     with along, st.container(border=True, height="stretch"):
         st.markdown("**Along the groove**")
         metrology_panel.profile_panel(result, spread, dark)
     with spread_over, st.container(border=True, height="stretch"):
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)
-    if evidence_panel.is_papers_path(state.project()):
+    if evidence_panel.is_papers_path(session.project()):
         st.subheader("The paper's test, and ours")
         with st.container(border=True):
-            evidence_panel.panel(state.project(), dark)
+            evidence_panel.panel(session.project(), dark)
     st.subheader("Take it away")
     picture_panel.downloads(result, i)
     with st.expander("Film of the cut", icon=":material/movie:", key="milling.open.film"):

@@ -10,7 +10,7 @@ import streamlit as st
 from robomill.cutting.tool import SHAPES
 from robomill.io.meshes import read_stl_stock
 from robomill.surface.stock import Stock
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces, session
 from robomill.ui.milling.numbers import box
 from robomill.units import format_count, format_many
 
@@ -22,9 +22,9 @@ MAX_STL_MB = 80
 
 def cutter_inputs() -> None:
     """Kind, size, teeth, helix and lengths."""
-    cutter = state.project().setup.cutter
+    cutter = session.project().setup.cutter
     kinds = {kind: shape.short for kind, shape in SHAPES.items()}
-    inputs.choice("Kind", "cutter.kind", kinds, cutter.kind, _switch, label_visibility="collapsed")
+    inputs.choice("Kind", "cutter.kind", kinds, cutter.kind, _switch, inputs.HIDDEN)
     _rows(["diameter", "flutes"], list(cutter.shape.needs), ["stick_out", "flute_length"], ["helix", "helix_angle"])
 
 
@@ -36,39 +36,39 @@ def _rows(*rows: list[str]) -> None:
 
 
 def _switch(kind: Any) -> None:
-    state.change(cutter=state.project().setup.cutter.reshaped(kind))
+    session.change(cutter=session.project().setup.cutter.reshaped(kind))
 
 
 def stock_inputs() -> None:
     """Around the path, a block, or a solid from an STL file."""
-    setup = state.project().setup
+    setup = session.project().setup
     stock = setup.stock
     given = "path" if stock is None else "stl" if stock.triangles is not None else "block"
     # Asked for, but no file yet; any change of the project makes an end of the wait.
     current = "stl" if st.session_state.get(PENDING) == setup.digest() else given
-    inputs.choice("Stock", "stock.kind", STOCKS, current, _switch_stock, label_visibility="collapsed")
+    inputs.choice("Stock", "stock.kind", STOCKS, current, _switch_stock, inputs.HIDDEN)
     if current == "stl":
         _stl(stock if given == "stl" else None)
     elif stock is None:
-        parts.note(f"{parts.badge('computed')} {_size(setup.stock_block)} around the feed moves")
+        pieces.note(f"{pieces.badge('computed')} {_size(setup.stock_block)} around the feed moves")
     else:
         box("stock.lower")
         box("stock.upper")
 
 
 def _size(stock: Stock) -> str:
-    unit = state.project().view.length
+    unit = session.project().view.length
     return format_many(stock.upper - stock.lower, unit, 1, " × ")
 
 
 def _switch_stock(kind: str) -> None:
     st.session_state.pop(PENDING, None)
-    setup = state.project().setup
+    setup = session.project().setup
     if kind == "path":
-        state.change(stock=None)
+        session.change(stock=None)
     elif kind == "block":
         block = setup.stock_block
-        state.change(stock=Stock(np.round(block.lower, 9), np.round(block.upper, 9)))
+        session.change(stock=Stock(np.round(block.lower, 9), np.round(block.upper, 9)))
     elif setup.stock is None or setup.stock.triangles is None:
         st.session_state[PENDING] = setup.digest()
 
@@ -80,7 +80,7 @@ def _stl(stock: Stock | None) -> None:
         STL_UNITS,
         st.session_state.get("milling.stock.unit", "mm"),
         _unit,
-        hint="STL carries no unit.",
+        inputs.Look(hint="STL carries no unit."),
     )
     key = "stock:file"
     st.file_uploader(
@@ -94,9 +94,9 @@ def _stl(stock: Stock | None) -> None:
         st.warning(words, icon=":material/straighten:")
     if stock is not None:
         count = 0 if stock.triangles is None else len(stock.triangles)
-        parts.note(f"{parts.badge('user')} solid of {format_count(count, 'triangle')}, {_size(stock)}")
-    elif not state.store().refused.get("stock:file"):
-        parts.note("Until a file is given, the stock stays as it was.")
+        pieces.note(f"{pieces.badge('user')} solid of {format_count(count, 'triangle')}, {_size(stock)}")
+    elif not session.store().refused.get("stock:file"):
+        pieces.note("Until a file is given, the stock stays as it was.")
 
 
 def _unit(unit: str) -> None:
@@ -118,11 +118,11 @@ def _read() -> None:
 
     def put() -> None:
         stock, odd = read_stl_stock(data, unit=st.session_state.get("milling.stock.unit", "mm"), name=name)
-        state.change(stock=stock)
+        session.change(stock=stock)
         st.session_state[ODD] = odd
         st.session_state.pop(PENDING, None)
 
-    inputs.attempt("stock:file", None, put)
+    inputs.submit("stock:file", None, put)
 
 
 def judgement_inputs() -> None:

@@ -10,7 +10,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cache, parts, state
+from robomill.ui import cached, pieces, session
 from robomill.units import format_times, from_si
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
 from robomill.viz.picture import Camera
@@ -62,7 +62,7 @@ class Film:
             self.done.set()
 
     def _make(self, worker: RenderWorker) -> None:
-        shown = cache.pictured(self.result.setup, self.times)
+        shown = cached.pictured(self.result.setup, self.times)
         picture = surface_picture(
             self.result,
             shown,
@@ -96,7 +96,7 @@ def give_up() -> None:
 
 def panel(result: SimulationResult, dark: bool) -> None:
     """Choose, make, watch, take away."""
-    view = state.project().view
+    view = session.project().view
     kind, frames, make = st.columns([1, 2, 1.2], vertical_alignment="bottom")
     with kind:
         chosen: Any = st.segmented_control(
@@ -130,7 +130,7 @@ def _begin(film: Film) -> None:
 def _progress() -> None:
     film = current()
     if film is None:
-        parts.note("The cut from its first to its last move, in the camera and the exaggeration of the picture above.")
+        pieces.note("The cut from its first to its last move, in the camera and the exaggeration of the picture above.")
     elif film.done.is_set():
         _finished(film)
     else:
@@ -155,15 +155,15 @@ def _finished(film: Film) -> None:
     if film.bug is not None:
         raise film.bug
     if film.error is not None:
-        parts.error(film.error)
+        pieces.error(film.error)
         return
-    if film.digest != state.project().setup.digest():
-        parts.note("The film shows the set-up before the last change; make it again for this one.")
+    if film.digest != session.project().setup.digest():
+        pieces.note("The film shows the set-up before the last change; make it again for this one.")
     if film.kind == "gif":
         st.image(film.data, width="stretch")
     else:
         st.video(film.data, autoplay=True, loop=True, muted=True)
-    parts.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="get:film")
-    parts.note(
+    pieces.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="get:film")
+    pieces.note(
         f"{film.frames} pictures, {len(film.data) / 1e6:.1f} MB, displacement shown {format_times(film.times, 6)}."
     )

@@ -17,7 +17,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
 from robomill.quantities import declared_types, quantities
-from robomill.ui import cache, inputs, parts, state
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import materials as material_panel
 from robomill.ui.milling.numbers import boxes_of, draw
 from robomill.units import format_count
@@ -29,7 +29,7 @@ MAX_FORCE_MB = 60
 
 def inputs_panel() -> None:
     """Model, numbers, engagement, coupling."""
-    setup = state.project().setup
+    setup = session.project().setup
     force: ForceModel | None = setup.force
     current = setup.force.kind
     # Asked for, but what it needs is not there yet; any change of the project makes an end of the wait.
@@ -37,45 +37,45 @@ def inputs_panel() -> None:
     if digest == setup.digest() and wanted != current:
         force, current = None, wanted
     titles = {kind: model.title for kind, model in FORCES.items()}
-    inputs.choice("Model", "force.kind", titles, current, _switch, horizontal=False)
+    inputs.choice("Model", "force.kind", titles, current, _switch, inputs.LISTED)
     for kind in declared_types(FORCES[current]).values():
         if kind in EDITORS:
             EDITORS[kind](force)
     if force is not None:
         boxes_of(force, "force", _write, force.unit_of)
         if force.hint:
-            parts.note(force.hint)
+            pieces.note(force.hint)
         if force.stated:
             provenance = setup.provenance.get("force", force.provenance)
-            parts.note(f"{parts.badge(provenance.kind)} {parts.subscripts(provenance.source)}")
+            pieces.note(f"{pieces.badge(provenance.kind)} {pieces.subscripts(provenance.source)}")
     _process_switches(force is not None and force.follows_cut)
 
 
 def _write(name: str, value: Any) -> None:
-    state.change(label=f"force.{name}", force=replace(state.project().setup.force, **{name: value}))  # type: ignore[type-var]
+    session.change(label=f"force.{name}", force=replace(session.project().setup.force, **{name: value}))  # type: ignore[type-var]
 
 
 def _process_switches(process: bool) -> None:
-    setup = state.project().setup
+    setup = session.project().setup
     said = quantities(type(setup))
     draw(
         said["engagement"],
         "setup.engagement",
         setup.engagement,
-        lambda on: state.change(engagement=on, coupling=setup.coupling and on),
+        lambda on: session.change(engagement=on, coupling=setup.coupling and on),
     )
     draw(
         said["coupling"],
         "setup.coupling",
         setup.coupling,
-        lambda on: state.change(coupling=on),
+        lambda on: session.change(coupling=on),
         disabled=not (setup.engagement and process),
     )
 
 
 def _switch(kind: str) -> None:
     """Another model, with what its fields start from; one that needs what is not there yet waits for it."""
-    setup = state.project().setup
+    setup = session.project().setup
     st.session_state.pop(PENDING, None)
     if kind == setup.force.kind:
         return
@@ -92,7 +92,7 @@ def _switch(kind: str) -> None:
             st.session_state[PENDING] = (setup.digest(), kind)
             return
     follows = model.follows_cut
-    state.change(
+    session.change(
         force=model(**model.first(_mean_force()), **given),
         engagement=setup.engagement or follows,
         coupling=setup.coupling and follows,
@@ -102,7 +102,7 @@ def _switch(kind: str) -> None:
 def _mean_force() -> MeanForce:
     """The force at the worst point in {M} and along the path, so that switching changes as little as can be."""
     try:
-        result = cache.result(state.project().setup)
+        result = cached.result(session.project().setup)
     except RobomillError:
         result = None
     if result is None or result.worst < 0:
@@ -113,7 +113,7 @@ def _mean_force() -> MeanForce:
 
 def _record(force: Any) -> None:
     """The file of a measured force, and what was read from it."""
-    key = f"force:file:{state.store().revision if force is None else 'kept'}"
+    key = f"force:file:{session.store().revision if force is None else 'kept'}"
     st.file_uploader(
         "Force record (.csv): t_s or s_mm, then F_feed_N, F_feed_normal_N, F_axial_N, or F_x_N, F_y_N, F_z_N",
         key=key,
@@ -138,11 +138,11 @@ def _record(force: Any) -> None:
     )
     inputs.sentence("force:file")
     if force is None:
-        if not state.store().refused.get("force:file"):
-            parts.note("Until a record is given, the force stays as it was.")
+        if not session.store().refused.get("force:file"):
+            pieces.note("Until a record is given, the force stays as it was.")
         return
     samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
-    parts.note(f"{parts.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
+    pieces.note(f"{pieces.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
 
 
 def _take(file: Any) -> None:
@@ -162,15 +162,15 @@ def _again() -> None:
     def read() -> None:
         on = st.session_state.get("force:on", "tool")
         record = read_forces(data, on=on, source=name, trust_units=bool(st.session_state.get("force:trust")))
-        old = state.project().setup.force
+        old = session.project().setup.force
         given = {name: getattr(old, name) for name in ("cutoff", "start")} if old.kind == MeasuredForce.kind else {}
         force = MeasuredForce(record, **given)
         # What cannot be laid on this path is refused here, with the file, and not on the page.
-        force.components(cache.result(state.project().setup).conditions)
-        state.change(force=force, coupling=False)
+        force.components(cached.result(session.project().setup).conditions)
+        session.change(force=force, coupling=False)
         st.session_state.pop(PENDING, None)
 
-    inputs.attempt("force:file", None, read)
+    inputs.submit("force:file", None, read)
 
 
 #: What draws a field that is no number, by its type; it gets the model, or None while the field is waited for.

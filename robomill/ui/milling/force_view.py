@@ -12,7 +12,7 @@ from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
-from robomill.ui import parts, state
+from robomill.ui import pieces, session
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_significant, from_si
 from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
@@ -29,7 +29,7 @@ def force_plot(
     height: int = 360,
 ) -> None:
     """Mean force by component along the cut; shaded: the alloy's rows; dotted: the extremes of a revolution."""
-    unit = state.project().view.length
+    unit = session.project().view.length
     s = from_si(result.path.s, unit)
     curves = ForceCurves(
         s,
@@ -39,7 +39,7 @@ def force_plot(
         alloy=_band(result, spread),
     )
     words = "Mean force on the tool; feed-normal is the left of the feed, axial positive out of the part."
-    parts.figure(
+    pieces.figure(
         force_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
         "force",
         name="force",
@@ -99,7 +99,7 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
                 f"{format_si(float(c.n_s[i]), '1/min')}, {format_si(float(c.v_f[i]), 'mm/min')}",
             )
         )
-    parts.facts(rows)
+    pieces.facts(rows)
 
 
 def _three(force: FloatArray) -> str:
@@ -108,14 +108,14 @@ def _three(force: FloatArray) -> str:
 
 def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 300) -> None:
     """Arc and depth along the path."""
-    unit, c = state.project().view.length, result.conditions
+    unit, c = session.project().view.length, result.conditions
     engaged = c.engaged[:, None]
     arc = np.where(engaged, np.stack([c.phi_st, c.phi_ex], axis=1), np.nan)
     s = from_si(result.path.s, unit)
     depth = np.where(result.path.cutting, from_si(c.a_p, unit), np.nan)
     curves = ArcCurves(s, from_si(arc[:, 0], "deg"), from_si(arc[:, 1], "deg"), depth, unit)
     source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
-    parts.figure(
+    pieces.figure(
         engagement_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
         "engagement",
         name="engagement",
@@ -128,9 +128,9 @@ def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 
 def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     """Every coefficient row of the alloy: its force at the station and the deviation it leads to."""
     if spread is None or i < 0:
-        parts.note("A band comes with a force from the material: the other rows of the same alloy.")
+        pieces.note("A band comes with a force from the material: the other rows of the same alloy.")
         return
-    unit = state.project().view.length
+    unit = session.project().view.length
     F, largest = force_components(result, spread)[:, i], largest_deviations(result, spread)
     body = ""
     for row, (material, known) in enumerate(zip(spread.materials, spread.axial, strict=True)):
@@ -141,13 +141,13 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         body += (
             f"<tr{strong}><td>{html.escape(material.title)}</td>{cells}<td class='n'>{axial}</td>"
             f"<td class='n'>{format_si(float(largest[row]), unit)}</td>"
-            f"<td>{parts.badge(material.provenance.kind)}{' in force' if row == 0 else ''}</td></tr>"
+            f"<td>{pieces.badge(material.provenance.kind)}{' in force' if row == 0 else ''}</td></tr>"
         )
     head = "".join(f'<th class="n">{name}, N</th>' for name in NAMES)
     st.html(
         f'<table class="rm-facts"><tr><th>Row</th>{head}<th class="n">tip off, max</th><th></th></tr>{body}</table>'
     )
-    parts.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
+    pieces.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
 
 
 def coupling_facts(result: SimulationResult) -> None:
@@ -159,7 +159,7 @@ def coupling_facts(result: SimulationResult) -> None:
         return  # said beside its switch
     known = not np.isnan(coupling.contraction)
     rate = f"each change {format_significant(coupling.contraction, 2)} of the last" if known else "one step sufficed"
-    parts.facts(
+    pieces.facts(
         [
             ("Coupling", f"{coupling.iterations} iterations", rate),
             ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
@@ -171,4 +171,4 @@ def worth_knowing(result: SimulationResult) -> None:
     """Notes on force, stock and cutter."""
     for words in result.notes:
         if result.coupling is None or words != result.coupling.sentence:
-            parts.note(f"• {html.escape(words)}")
+            pieces.note(f"• {html.escape(words)}")

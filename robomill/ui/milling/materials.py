@@ -18,8 +18,7 @@ from robomill.io.materials import material_from_toml, material_to_toml, sample_m
 from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
-from robomill.ui import inputs, parts, state
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
 from robomill.units import from_si, to_si, unit_label
 
 OWN = "milling.materials"
@@ -33,7 +32,7 @@ def _samples() -> tuple[Material, ...]:
 def rows(kind: str) -> dict[str, Material]:
     """Every row of a kind ("mechanistic", "kienzle"): the samples, those of this session, the one a project brings."""
     every = [*_samples(), *st.session_state.get(OWN, {}).values()]
-    brought = getattr(state.project().setup.force, "material", None)
+    brought = getattr(session.project().setup.force, "material", None)
     return {m.name: m for m in (*every, *([brought] if brought is not None else [])) if m.kind == kind}
 
 
@@ -44,7 +43,7 @@ def others(material: Material) -> tuple[Material, ...]:
 
 def _use(material: Material, from_editor: bool = False) -> None:
     """Put a row in force: in the present model, or in the one that takes rows of its kind."""
-    setup = state.project().setup
+    setup = session.project().setup
     given = {"material": material, "alternatives": others(material)}
     force: Any = setup.force
     if force.takes == material.kind:
@@ -52,7 +51,7 @@ def _use(material: Material, from_editor: bool = False) -> None:
     else:
         model: Any = next(model for model in FORCES.values() if model.takes == material.kind)
         force = model(cutter=setup.cutter, **given)
-    state.change(force=force, from_editor=from_editor)
+    session.change(force=force, from_editor=from_editor)
 
 
 def picker(force: Any) -> None:
@@ -65,12 +64,12 @@ def picker(force: Any) -> None:
         {m.name: m.title for m in found.values()},
         material.name,
         lambda name: _use(found[name]),
-        horizontal=False,
+        inputs.LISTED,
     )
     count = len(others(material))
     words = f" The band comes from {count} other rows of {material.alloy}." if count else " No other row: no band."
     source = material.provenance.source
-    parts.note(f"{parts.badge(material.provenance.kind)} {source}.{words}")
+    pieces.note(f"{pieces.badge(material.provenance.kind)} {source}.{words}")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
         _coefficients(material)
@@ -80,15 +79,16 @@ def picker(force: Any) -> None:
 
 def _coefficients(material: Material) -> None:
     st.markdown(f"**{material.title}**")
-    table_editor(
+    inputs.table(
         f"material:{material.name}",
         lambda: coefficient_frame(material),
         lambda frame: _keep(with_coefficients(material, frame), from_editor=True),
-        columns={"value": st.column_config.NumberColumn("value", format="%.6g")},
-        locked=("coefficient", "unit"),
+        inputs.Sheet(
+            columns={"value": st.column_config.NumberColumn("value", format="%.6g")}, locked=("coefficient", "unit")
+        ),
     )
-    parts.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
-    parts.download(
+    pieces.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
+    pieces.download(
         "Row as TOML",
         lambda: material_to_toml(material),
         f"{material.name}.toml",
@@ -131,7 +131,7 @@ def _copy(material: Material, name: str, alloy: str, source: str) -> None:
             )
         )
 
-    inputs.attempt("material:add", None, put)
+    inputs.submit("material:add", None, put)
 
 
 def _from_file(file: Any) -> None:
@@ -141,7 +141,7 @@ def _from_file(file: Any) -> None:
     def put() -> None:
         _keep(material_from_toml(*read_text(file.getvalue(), CuttingError, "a material row (.toml)", file.name)))
 
-    inputs.attempt("material:add", None, put)
+    inputs.submit("material:add", None, put)
 
 
 def _keep(material: Material, from_editor: bool = False) -> None:

@@ -15,7 +15,7 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import is_straight, offset_band
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces, session
 from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
@@ -42,7 +42,7 @@ def section_facts(groove: GrooveSection | None) -> None:
     """The dimensions of the section, as a measuring report lists them."""
     if groove is None or not len(groove.w):
         return
-    unit = state.project().view.length
+    unit = session.project().view.length
 
     def length(value: float, sign: bool = False) -> str:
         return format_si(value, unit, sign=sign) if np.isfinite(value) else "open"
@@ -55,7 +55,7 @@ def section_facts(groove: GrooveSection | None) -> None:
         return f"{side.capitalize()} wall", angle, f"straight within {form}"
 
     if groove.note:
-        parts.note(f"{groove.note.capitalize()}.")
+        pieces.note(f"{groove.note.capitalize()}.")
         sides = [
             (f"{side.capitalize()} wall off", length(off, True), "its ideal place, positive to the left of the feed")
             for side, off in (
@@ -65,7 +65,7 @@ def section_facts(groove: GrooveSection | None) -> None:
         ]
     else:
         sides = [("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed")]
-    parts.facts(
+    pieces.facts(
         [
             ("Width", length(groove.width), ""),
             ("Depth", length(groove.depth), ""),
@@ -79,7 +79,7 @@ def section_facts(groove: GrooveSection | None) -> None:
 
 def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool, height: int = 320) -> None:
     """Centre offset and floor along the groove, best fit, and a measured profile over it."""
-    unit = state.project().view.length
+    unit = session.project().view.length
     found, block = profile(result)
     measured = st.session_state.get(MEASURED)
     fit = None
@@ -96,7 +96,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
     )
     missing = f" {found.missing} of {len(found.station)} stations have no groove to measure." if found.missing else ""
-    parts.figure(
+    pieces.figure(
         profile_figure(curves, dark=dark, height=height, station=float(from_si(station_m(result), unit)), block=block),
         "profile",
         name="groove-profile",
@@ -106,7 +106,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     )
     if fit is not None:
         side, floor = fit.side, fit.floor
-        parts.facts(
+        pieces.facts(
             [
                 ("Shift", f"{format_si(side.offset, unit, sign=True)}", "zeroing the part again would take it out"),
                 ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
@@ -118,7 +118,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
             ]
         )
     else:
-        parts.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
+        pieces.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
     _overlay(found, measured, unit)
 
 
@@ -142,7 +142,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
             max_upload_size=MAX_PROFILE_MB,
             on_change=lambda: _take(st.session_state.get("profile:file")),
         )
-        parts.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
+        pieces.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
         if measured is not None:
             st.button(
                 "Take it away",
@@ -158,10 +158,10 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
     try:
         against = compare_profile(found, measured.station, measured.offset)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
         return
     outside = f"; {against.outside} measured stations lie outside" if against.outside else ""
-    parts.facts(
+    pieces.facts(
         [
             (
                 measured.name,
@@ -191,7 +191,7 @@ def _take(file: Any) -> None:
         # Without a line break the text could be taken for the name of a file.
         st.session_state[MEASURED] = read_profile(text + "\n", name=file.name)
 
-    inputs.attempt("profile:file", None, read)
+    inputs.submit("profile:file", None, read)
 
 
 def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> None:
@@ -200,13 +200,13 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
     try:
         error = result.error
     except RobomillError:
-        parts.note("There is no surface to measure: the reason stands beside the picture.")
+        pieces.note("There is no surface to measure: the reason stands beside the picture.")
         return
     largest = float(np.abs(error.worst).max())
     limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)
     edges, area = error.histogram(48, limit)
     share = 100.0 * area / error.cut_area if error.cut_area else area
-    parts.figure(
+    pieces.figure(
         histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), "µm", dark=dark, height=height),
         "histogram",
         name="error-histogram",
@@ -220,7 +220,7 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
         alt="Histogram of the signed error over the cut area.",
     )
     out, out_share = error.area_out(tolerance)
-    parts.facts(
+    pieces.facts(
         [
             ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
             ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),

@@ -9,19 +9,20 @@ import numpy as np
 import streamlit as st
 
 from robomill.quantities import Quantity, quantities
-from robomill.ui import boxes, fields, inputs, state
+from robomill.ui import inputs, session
+from robomill.ui.project import read_field, with_field
 
 
 def box(path: str, **changed: Any) -> None:
     """The box (switch, choice, row of boxes) of the set-up's declared field at ``path``, e.g. ``"cutter.diameter"``."""
-    setup = state.project().setup
+    setup = session.project().setup
     owner_path, _, name = path.rpartition(".")
     root = path.partition(".")[0]
 
     def write(value: Any) -> None:
-        state.change(label=path, **{root: getattr(fields.write(setup, path, value), root)})
+        session.change(label=path, **{root: getattr(with_field(setup, path, value), root)})
 
-    owner = fields.read(setup, owner_path) if owner_path else setup
+    owner = read_field(setup, owner_path) if owner_path else setup
     draw(quantities(type(owner))[name], path, getattr(owner, name), write, **changed)
 
 
@@ -58,9 +59,9 @@ def draw(
 ) -> None:
     """The widget that the declaration asks for; ``write`` gets the new value in SI."""
     if declared.kind == "switch":
-        boxes.switch(declared.label, key, current, write, hint=declared.hint, disabled=disabled)
+        inputs.switch(declared.label, key, current, write, inputs.Look(hint=declared.hint, disabled=disabled))
     elif declared.kind == "choice":
-        inputs.choice(declared.label, key, declared.options, current, write, hint=declared.hint)
+        inputs.choice(declared.label, key, declared.options, current, write, inputs.Look(hint=declared.hint))
     elif declared.kind == "array":
         for i, (column, axis) in enumerate(zip(st.columns(len(declared.axes)), declared.axes, strict=True)):
             with column:
@@ -78,16 +79,18 @@ def _number(
     axis: str = "",
 ) -> None:
     shown = shown_in(unit or declared.unit)
-    boxes.number_box(
-        declared.label + axis,
-        f"{key}:{shown}" if shown != "1" else key,
+    inputs.value(
+        key,
+        inputs.Box(
+            declared.label + axis,
+            shown,
+            step=declared.step_in(shown),
+            digits=declared.digits_in(shown),
+            hint=declared.hint,
+            optional=declared.optional,
+        ),
         current,
-        shown,
         write,
-        optional=declared.optional,
-        step=declared.step_in(shown),
-        digits=declared.digits_in(shown),
-        hint=declared.hint,
     )
 
 
@@ -102,4 +105,4 @@ def _entry_writer(current: Any, i: int, write: Callable[[Any], None]) -> Callabl
 
 def shown_in(unit: str) -> str:
     """Lengths are shown in the unit of the view."""
-    return state.project().view.length if unit == "mm" else unit
+    return session.project().view.length if unit == "mm" else unit

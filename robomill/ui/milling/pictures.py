@@ -12,8 +12,9 @@ from robomill.io.meshes import FORMATS, mesh_bytes
 from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cache, inputs, parts, render, state
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import scrubber as linked
+from robomill.ui.project import View
 from robomill.units import format_si, format_times
 from robomill.viz.picture import CAMERAS, SurfacePicture
 from robomill.viz.posed import posed
@@ -44,15 +45,15 @@ SIZE = (1360, 720)
 def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
     """The picture with its controls."""
     how = _controls()
-    view = state.project().view
-    shown = parts.attempt(cache.pictured, result.setup, view.exaggeration)
+    view = session.project().view
+    shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
     if shown is None:
         return
     png = _rendered(result, i, dark) if how != "turn" else None
     if png is not None:
         st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
     else:
-        parts.figure(
+        pieces.figure(
             turnable(result, shown, view, dark, height),
             "surface",
             alt="The machined surface, to be turned with the mouse.",
@@ -60,13 +61,13 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     times = (
         "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
     )
-    parts.note(
+    pieces.note(
         f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
     )
 
 
-def turnable(result: SimulationResult, shown: Enlarged, view: state.View, dark: bool, height: int) -> Any:
+def turnable(result: SimulationResult, shown: Enlarged, view: View, dark: bool, height: int) -> Any:
     """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
     limit, revision = result.setup.tolerance, f"surface-{view.camera}"
     fig = surface_figure(shown, limit, view.length, dark=dark, height=height, revision=revision)
@@ -79,14 +80,14 @@ def turnable(result: SimulationResult, shown: Enlarged, view: state.View, dark: 
 
 
 def _controls() -> str:
-    view = state.project().view
+    view = session.project().view
     how = st.session_state.get(HOW_KEY, "one")
-    first, camera, times = parts.split([2.1, 1.3, 0.9], "picture", gap="small")
+    first, camera, times = pieces.split([2.1, 1.3, 0.9], "picture", gap="small")
     with first:
         inputs.choice("View", "picture.how", HOW, how, lambda v: st.session_state.update({HOW_KEY: v}))
     how = st.session_state.get(HOW_KEY, "one")
     with camera:
-        inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: state.look(camera=c), horizontal=False)
+        inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: session.look(camera=c), inputs.LISTED)
     with times:
         known = view.exaggeration in EXAGGERATIONS
         options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: format_times(view.exaggeration, 6)}
@@ -95,8 +96,8 @@ def _controls() -> str:
             "view.exaggeration",
             options,
             view.exaggeration,
-            lambda v: state.look(exaggeration=float(v)),
-            horizontal=False,
+            lambda v: session.look(exaggeration=float(v)),
+            inputs.LISTED,
         )
     if how != "turn":
         chosen = st.session_state.get(EXTRAS_KEY, ["plane"])
@@ -119,10 +120,10 @@ def _take_extras() -> None:
 
 def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
     """What is drawn, and the key it is kept under: all that it depends on."""
-    view = state.project().view
+    view = session.project().view
     extras = frozenset(st.session_state.get(EXTRAS_KEY, ["plane"]))
     pair = st.session_state.get(HOW_KEY, "one") == "pair"
-    shown = cache.pictured(result.setup, view.exaggeration)
+    shown = cached.pictured(result.setup, view.exaggeration)
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
     camera: Any = view.camera
@@ -146,28 +147,28 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
 
 
 def _rendered(result: SimulationResult, i: int, dark: bool) -> bytes | None:
-    return render.picture(*scene(result, i, dark))
+    return cached.picture(*scene(result, i, dark))
 
 
 def downloads(result: SimulationResult, i: int) -> None:
     """Deviation as CSV, picture as PNG, the surface in the formats people ask for."""
     setup = result.setup
     with st.container(horizontal=True, gap="small"):
-        parts.download(
+        pieces.download(
             "Deviation CSV",
             lambda: csv_text(deviation_columns(result)),
             "deviation.csv",
             "text/csv",
             key="get:deviation",
         )
-        parts.download(
+        pieces.download(
             "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="get:png"
         )
         for kind in FORMATS:
-            parts.download(
+            pieces.download(
                 f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"get:{kind}"
             )
-    parts.note(
+    pieces.note(
         f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
         "VTP carries the signed error."
     )

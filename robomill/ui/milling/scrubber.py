@@ -12,7 +12,7 @@ from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
-from robomill.ui import inputs, parts, state, uncertainty
+from robomill.ui import inputs, pieces, session, uncertainty
 from robomill.units import format_many, format_si, from_si
 from robomill.viz.along import add_picks, add_point, shade
 from robomill.viz.deviation import Components, components_figure
@@ -23,30 +23,27 @@ MAX_HOVERED = 100_000
 
 def station_m(result: SimulationResult) -> float:
     """The station, m of length cut."""
-    return state.project().view.station * float(result.path.s[-1])
+    return session.project().view.station * float(result.path.s[-1])
 
 
 def go_to(result: SimulationResult, i: int) -> None:
     """Move the scrubber to sample ``i``."""
     total = float(result.path.s[-1])
     if i >= 0 and total > 0:
-        state.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
+        session.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
 
 
 def scrubber(result: SimulationResult) -> int:
     """The slider over the length cut, with steps from line to line; returns the sample it points at."""
-    view, unit = state.project().view, state.project().view.length
+    view, unit = session.project().view, session.project().view.length
     top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
     i = nearest_judged(result, station_m(result))
     inputs.slider(
         f"Station: {unit} of cut",
         "view.station",
-        0.0,
-        round(top, 3),
+        inputs.Span(0.0, round(top, 3), round(top / 200, 4) or 0.001, "%.2f"),
         round(view.station * top, 3),
-        lambda v: state.look(station=min(max(v / top, 0.0), 1.0)),
-        step=round(top / 200, 4) or 0.001,
-        form="%.2f",
+        lambda v: session.look(station=min(max(v / top, 0.0), 1.0)),
     )
     lines = cut_lines(result)
     place = int(np.searchsorted(lines, result.path.block[i])) if i >= 0 else 0
@@ -85,9 +82,9 @@ def _to_line(result: SimulationResult, lines: FloatArray, number: int) -> None:
 
 def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     """One line: program line, place, deviation, force."""
-    unit = state.project().view.length
+    unit = session.project().view.length
     if i < 0:
-        parts.note("Nothing of this cut can be reached.")
+        pieces.note("Nothing of this cut can be reached.")
         return
     point = format_many(result.path.p[i], unit, 2, with_unit=False)
     words = [
@@ -108,7 +105,7 @@ def _range(spread: AlloySpread | None, i: int, unit: str) -> str:
 
 def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool, height: int = 330) -> None:
     """Deviation by component with its band; a click on the curve moves the scrubber there."""
-    unit = state.project().view.length
+    unit = session.project().view.length
     s = from_si(result.path.s, unit)
     delta = from_si(at_feed(result, result.delta), unit)
     drawn = Components(s, delta, result.path.block, float(from_si(result.setup.tolerance, unit)), unit)
@@ -134,7 +131,7 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     )
     add_picks(fig, s, size, words)
     key = "linked-deviation"
-    parts.figure(
+    pieces.figure(
         fig,
         key,
         name="deviation",
@@ -146,14 +143,14 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
 
 
 def _picker(result: SimulationResult, key: str) -> Callable[[], None]:
-    unit = state.project().view.length
+    unit = session.project().view.length
 
     def take() -> None:
         picked = st.session_state.get(key)
         points = picked["selection"]["points"] if picked else []
         if points:
             total = float(from_si(float(result.path.s[-1]), unit))
-            state.look(station=min(max(float(points[0]["x"]) / total, 0.0), 1.0))
+            session.look(station=min(max(float(points[0]["x"]) / total, 0.0), 1.0))
 
     return take
 

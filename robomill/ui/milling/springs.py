@@ -17,8 +17,7 @@ from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
-from robomill.ui import boxes, parts, state
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
 from robomill.ui.milling.numbers import box, boxes_of
 from robomill.units import format_si, from_si, to_si, unit_label
 
@@ -28,7 +27,7 @@ SWITCHED = "milling.springs."  # + kind: a table of joints is open though nothin
 
 def title() -> str:
     """What is switched on, in a few words."""
-    setup = state.project().setup
+    setup = session.project().setup
     words = []
     for kind in SPRINGS.values():
         found = _find(kind)
@@ -50,21 +49,25 @@ def inputs_panel() -> None:
 
 
 def _find(kind: type[Spring]) -> list[Any]:
-    return [spring for spring in state.project().setup.springs if spring.kind == kind.kind]
+    return [spring for spring in session.project().setup.springs if spring.kind == kind.kind]
 
 
 def _put(kind: type[Spring], *new: Spring, from_editor: bool = False) -> None:
     """Replace every spring of ``kind`` by ``new``."""
-    kept = tuple(spring for spring in state.project().setup.springs if spring.kind != kind.kind)
-    state.change(springs=(*kept, *new), from_editor=from_editor)
+    kept = tuple(spring for spring in session.project().setup.springs if spring.kind != kind.kind)
+    session.change(springs=(*kept, *new), from_editor=from_editor)
 
 
 def _one(kind: type[Spring]) -> None:
     """The switch of a spring at the tool, its numbers, and what it says of itself."""
-    cutter, key = state.project().setup.cutter, f"springs.{kind.kind}"
+    cutter, key = session.project().setup.cutter, f"springs.{kind.kind}"
     found = _find(kind)
-    boxes.switch(
-        kind.title, key, bool(found), lambda on: _put(kind, *([kind.first(cutter)] if on else [])), hint=kind.hint
+    inputs.switch(
+        kind.title,
+        key,
+        bool(found),
+        lambda on: _put(kind, *([kind.first(cutter)] if on else [])),
+        inputs.Look(hint=kind.hint),
     )
     if not found:
         return
@@ -80,34 +83,35 @@ def _one(kind: type[Spring]) -> None:
             type="tertiary",
             icon=":material/sync:",
         )
-    parts.note(f"{parts.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
+    pieces.note(f"{pieces.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
 
 
 def _each_joint(kind: type[Spring]) -> None:
     """The switch of a spring that each joint can have, and their table."""
-    n, key = state.project().setup.robot.n, f"springs.{kind.kind}"
+    n, key = session.project().setup.robot.n, f"springs.{kind.kind}"
     springs = {spring.joint: spring for spring in _find(kind)}
     on = bool(springs) or st.session_state.get(SWITCHED + kind.kind, False)
-    boxes.switch(kind.title, key, on, lambda on: _switch_table(kind, on), hint=kind.hint)
+    inputs.switch(kind.title, key, on, lambda on: _switch_table(kind, on), inputs.Look(hint=kind.hint))
     if not on:
         return
     columns = joint_columns(kind)
-    table_editor(
+    inputs.table(
         key,
         lambda: joint_frame(kind, n, springs),
         lambda frame: _put(kind, *joint_springs(kind, frame), from_editor=True),
-        locked=("joint",),
-        columns={q.label: st.column_config.NumberColumn(q.label, format="%.4g") for q in columns},
+        inputs.Sheet(
+            columns={q.label: st.column_config.NumberColumn(q.label, format="%.4g") for q in columns}, locked=("joint",)
+        ),
     )
     units = ", ".join(dict.fromkeys(unit_label(q.unit) for q in columns))
-    parts.note(f"{parts.badge('user')} {units}; 0 is rigid, which is what the paper assumes.")
+    pieces.note(f"{pieces.badge('user')} {units}; 0 is rigid, which is what the paper assumes.")
 
 
 def _switch_table(kind: type[Spring], on: bool) -> None:
     st.session_state[SWITCHED + kind.kind] = on
     if not on:
         _put(kind)
-    state.store().revision += 1
+    session.store().revision += 1
 
 
 def joint_columns(kind: type[Spring]) -> list[Quantity]:
@@ -138,27 +142,31 @@ def _cell(value: Any) -> float:
 
 
 def _weight() -> None:
-    setup = state.project().setup
+    setup = session.project().setup
     links = setup.links
-    boxes.switch(
+    inputs.switch(
         "Weight of the arm",
         "springs.weight",
         links is not None or st.session_state.get(WEIGHT_ON, False),
         _switch_weight,
-        hint="Sag under the masses of the links and the payload.",
+        inputs.Look(hint="Sag under the masses of the links and the payload."),
     )
     if links is None and not st.session_state.get(WEIGHT_ON):
         return
-    table_editor(
+    inputs.table(
         "springs.weight",
         lambda: weight_frame(setup.robot.n, links),
         lambda frame: _take_weight(frame),
-        locked=("joint",),
-        columns={"joint": st.column_config.TextColumn("joint", width=44)}
-        | {c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS},
+        inputs.Sheet(
+            columns=(
+                {"joint": st.column_config.TextColumn("joint", width=44)}
+                | {c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS}
+            ),
+            locked=("joint",),
+        ),
     )
     if links is None:
-        parts.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
+        pieces.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
     box("add_sag")
 
@@ -169,14 +177,14 @@ WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
 def _switch_weight(on: bool) -> None:
     st.session_state[WEIGHT_ON] = on
     if not on:
-        state.change(links=None, add_sag=False)
-    state.store().revision += 1
+        session.change(links=None, add_sag=False)
+    session.store().revision += 1
 
 
 def _take_weight(frame: pd.DataFrame) -> None:
     links = weight_from(frame)
-    add_sag = state.project().setup.add_sag and links is not None
-    state.change(links=links, add_sag=add_sag, from_editor=True)
+    add_sag = session.project().setup.add_sag and links is not None
+    session.change(links=links, add_sag=add_sag, from_editor=True)
 
 
 def weight_frame(n: int, links: LinkMasses | None) -> pd.DataFrame:
@@ -230,14 +238,14 @@ def lines_table(result: SimulationResult, i: int) -> None:
         cells = "".join(f'<td class="n">{_number(float(v), unit)}</td>' for v in share)
         remark = "" if counts else " shown, not added"
         strong = ' style="font-weight:600"' if name == "together" else ""
-        body += f"<tr{strong}><td>{html.escape(name)}</td>{cells}<td>{parts.badge(kind)}{remark}</td></tr>"
+        body += f"<tr{strong}><td>{html.escape(name)}</td>{cells}<td>{pieces.badge(kind)}{remark}</td></tr>"
     head = "".join(f'<th class="n">δ<sub>{a}</sub>, {unit}</th>' for a in "XYZ")
     st.html(f'<table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table>')
 
 
 def result_unit() -> str:
     """The unit of deviations."""
-    return state.project().view.length
+    return session.project().view.length
 
 
 def _number(value: float, unit: str) -> str:

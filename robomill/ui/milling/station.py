@@ -12,7 +12,7 @@ from robomill.report.tables import deviation_columns, section_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
-from robomill.ui import cache, inputs, parts, state
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import at_feed, station_m
 from robomill.units import format_si, format_times, from_si
@@ -54,7 +54,7 @@ def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None
         return
     scene = arm_scene(result, i)
     drawn = displacement_scale(result.delta[i], scene.frames)
-    parts.figure(
+    pieces.figure(
         arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86),
         "linked-arm",
         alt="The arm at the station with force and displacement.",
@@ -68,7 +68,7 @@ def dial(
     """Engagement and force at the station, seen from the spindle."""
     if i < 0:
         return
-    c, unit = result.conditions, state.project().view.length
+    c, unit = result.conditions, session.project().view.length
     across = np.hypot(result.force_components[:, 0], result.force_components[:, 1])
     top = float(np.nanmax(np.where(result.judged, across, 0.0), initial=0.0))
     others = None
@@ -99,7 +99,7 @@ def dial(
     words += ", pale blue: the peak of a turn" if worst_turn is not None else ""
     words += ", rings: the alloy's other rows" if others is not None else ""
     assumed = "" if result.setup.engagement else " The arc is a full slot, as assumed."
-    parts.figure(
+    pieces.figure(
         fig,
         "linked-dial",
         caption=words + "." + assumed,
@@ -109,14 +109,14 @@ def dial(
 
 def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> Any:
     """The dimensioned section at the station; returns it."""
-    unit = state.project().view.length
-    groove = parts.attempt(cache.groove, result.setup, station_m(result))
+    unit = session.project().view.length
+    groove = pieces.attempt(cached.groove, result.setup, station_m(result))
     if groove is None:
         return None
     if not len(groove.w):
-        parts.note(f"No section here: {groove.note}.")
+        pieces.note(f"No section here: {groove.note}.")
         return groove
-    parts.figure(
+    pieces.figure(
         section_figure(section_drawing(groove, unit), dark=dark, height=height),
         "linked-section",
         name="groove-sections",
@@ -130,7 +130,7 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
 
 def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> None:
     """Which joint or spring gives, stacked along the path."""
-    view, unit = state.project().view, state.project().view.length
+    view, unit = session.project().view, session.project().view.length
     title, pick = st.columns([1, 1.2], vertical_alignment="center")
     title.markdown("**What gives**")
     with pick:
@@ -139,17 +139,17 @@ def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> N
             "view.share_axis",
             {a: f"in {a.upper()}" for a in "xyz"},
             view.share_axis,
-            lambda a: state.look(share_axis=a),
-            label_visibility="collapsed",
+            lambda a: session.look(share_axis=a),
+            inputs.HIDDEN,
         )
-    axis = state.project().view.share_axis
+    axis = session.project().view.share_axis
     column = "xyz".index(axis)
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
     s = from_si(result.path.s, unit)
     total = from_si(at_feed(result, result.delta), unit)[:, column]
     drawn = Shares(s, from_si(at_feed(result, every), unit), names, total, axis, unit)
-    parts.figure(
+    pieces.figure(
         shares_figure(drawn, dark=dark, station=float(s[i]) if i >= 0 else None, height=height),
         f"shares-{axis}",
         name=f"joint-shares-{axis}",
@@ -164,4 +164,4 @@ def lines_of(result: SimulationResult, i: int) -> None:
     if i >= 0:
         springs_panel.lines_table(result, i)
         if result.setup.links is not None and not result.setup.add_sag:
-            parts.note("The sag is a constant offset that zeroing the part takes out; it is shown, not added.")
+            pieces.note("The sag is a constant offset that zeroing the part takes out; it is shown, not added.")

@@ -11,8 +11,9 @@ from robomill.compliance.cartesian import joint_contributions
 from robomill.io.robots import load_robot, robot_names
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import inputs, parts, state, tables
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
+from robomill.ui.project import Project, is_stiffness
+from robomill.ui.robot import tables
 from robomill.ui.robot.pose import PoseNumbers
 from robomill.units import format_number, format_percent, format_si, unit_label
 from robomill.viz.theme import joint_colours
@@ -20,7 +21,7 @@ from robomill.viz.theme import joint_colours
 SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
 
 
-def editors(project: state.Project) -> None:
+def editors(project: Project) -> None:
     """Compliances, geometry, limits and tool, each in its own tab."""
     robot = project.setup.robot
     _which_robot(robot)
@@ -28,35 +29,39 @@ def editors(project: state.Project) -> None:
     with compliance:
         _compliances(robot, project.view.joint_unit)
     with geometry:
-        table_editor(
+        inputs.table(
             "geometry",
-            lambda: tables.geometry_frame(state.project().setup.robot),
+            lambda: tables.geometry_frame(session.project().setup.robot),
             _write_geometry,
-            columns={
-                "joint": st.column_config.TextColumn("#", width=34),
-                **{
-                    label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
-                    for label in tables.GEOMETRY.values()
+            inputs.Sheet(
+                columns={
+                    "joint": st.column_config.TextColumn("#", width=34),
+                    **{
+                        label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
+                        for label in tables.GEOMETRY.values()
+                    },
                 },
-            },
-            locked=("joint",),
+                locked=("joint",),
+            ),
         )
-        parts.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
+        pieces.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
         _said(robot, "geometry")
         _said(robot, "lengths")
     with limits:
         prismatic = bool(tables.slides(robot).any())
         unit = "° (mm where it slides)" if prismatic else "°"
-        table_editor(
+        inputs.table(
             "limits",
-            lambda: tables.limits_frame(state.project().setup.robot),
+            lambda: tables.limits_frame(session.project().setup.robot),
             _write_limits,
-            columns={
-                "joint": st.column_config.TextColumn("Joint", width="small"),
-                "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
-                "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g"),
-            },
-            locked=("joint",),
+            inputs.Sheet(
+                columns={
+                    "joint": st.column_config.TextColumn("Joint", width="small"),
+                    "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
+                    "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g"),
+                },
+                locked=("joint",),
+            ),
         )
         _said(robot, "limits")
     with tool:
@@ -67,7 +72,7 @@ def _which_robot(robot: Robot) -> None:
     names = {name: _title(name) for name in robot_names()}
     if robot.name not in names:
         names = {robot.name: robot.name, **names}
-    inputs.choice("Robot", "robot.name", names, robot.name, _take_robot, horizontal=False)
+    inputs.choice("Robot", "robot.name", names, robot.name, _take_robot, inputs.LISTED)
 
 
 @st.cache_resource(max_entries=64, show_spinner=False)
@@ -76,8 +81,8 @@ def _title(name: str) -> str:
 
 
 def _take_robot(name: str) -> None:
-    state.change(robot=load_robot(name))
-    state.look(theta=None)
+    session.change(robot=load_robot(name))
+    session.look(theta=None)
 
 
 def _compliances(robot: Robot, unit: str) -> None:
@@ -91,42 +96,46 @@ def _compliances(robot: Robot, unit: str) -> None:
             sets,
             robot.compliance_set,
             lambda name: (
-                None if name == USER_SET else state.change(robot=state.project().setup.robot.with_compliance_set(name))
+                None
+                if name == USER_SET
+                else session.change(robot=session.project().setup.robot.with_compliance_set(name))
             ),
         )
-    stiff = tables.is_stiffness(unit)
+    stiff = is_stiffness(unit)
     heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
-    table_editor(
+    inputs.table(
         f"compliance:{unit}",
-        lambda: tables.compliance_frame(state.project().setup.robot, unit),
+        lambda: tables.compliance_frame(session.project().setup.robot, unit),
         lambda frame: _write_compliance(frame, unit),
-        columns={
-            "joint": st.column_config.TextColumn("Joint", width="small"),
-            "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS),
-        },
-        locked=("joint",),
+        inputs.Sheet(
+            columns={
+                "joint": st.column_config.TextColumn("Joint", width="small"),
+                "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS),
+            },
+            locked=("joint",),
+        ),
     )
     if robot.compliance_set == USER_SET:
-        parts.note(f"{parts.badge('user')} entered in the app")
+        pieces.note(f"{pieces.badge('user')} entered in the app")
     else:
         _said(robot, f"compliance.{robot.compliance_set}")
 
 
 def _write_compliance(frame: pd.DataFrame, unit: str) -> None:
-    robot = tables.with_compliance(state.project().setup.robot, frame, unit)
+    robot = tables.with_compliance(session.project().setup.robot, frame, unit)
     # What was typed in SI comes back in the column's unit, so that the cell agrees with its heading.
-    spelled = not tables.is_stiffness(unit) and any(map(tables.is_si_text, frame["value"]))
-    state.change(robot=robot, from_editor=not spelled)
+    spelled = not is_stiffness(unit) and any(map(tables.is_si_text, frame["value"]))
+    session.change(robot=robot, from_editor=not spelled)
 
 
 def _write_geometry(frame: pd.DataFrame) -> None:
-    robot = tables.with_geometry(state.project().setup.robot, frame)
-    state.change(robot=robot, from_editor=True)
+    robot = tables.with_geometry(session.project().setup.robot, frame)
+    session.change(robot=robot, from_editor=True)
 
 
 def _write_limits(frame: pd.DataFrame) -> None:
-    robot = tables.with_limits(state.project().setup.robot, frame)
-    state.change(robot=robot, from_editor=True)
+    robot = tables.with_limits(session.project().setup.robot, frame)
+    session.change(robot=robot, from_editor=True)
 
 
 def _tool(robot: Robot) -> None:
@@ -134,24 +143,24 @@ def _tool(robot: Robot) -> None:
     columns = st.columns(3)
     for i, (axis, column) in enumerate(zip("xyz", columns, strict=True)):
         with column:
-            inputs.number(axis, f"robot.T_tool[{i},3]", "mm", step=1.0, digits=2)
+            inputs.number(f"robot.T_tool[{i},3]", label=axis, unit="mm", step=1.0, digits=2)
     _said(robot, "tool")
 
 
 def _said(robot: Robot, block: str) -> None:
     found = robot.provenance.get(block)
     if found is not None:
-        parts.note(f"{parts.badge(found.kind)} {parts.subscripts(found.source)}")
+        pieces.note(f"{pieces.badge(found.kind)} {pieces.subscripts(found.source)}")
 
 
 def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
     """C at the pose in um/N, and how it changed."""
     st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    parts.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in now.C], ["X", "Y", "Z"])
-    parts.note("Row: where the tip goes. Column: where you push.")
+    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in now.C], ["X", "Y", "Z"])
+    pieces.note("Row: where the tip goes. Column: where you push.")
     if old is not None:
         st.markdown("**Before the last change**")
-        parts.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in old.C], ["X", "Y", "Z"])
+        pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in old.C], ["X", "Y", "Z"])
 
 
 def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:

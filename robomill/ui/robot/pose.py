@@ -13,8 +13,9 @@ from robomill.kinematics.dexterity import determinant
 from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, state
-from robomill.ui.tables import slides
+from robomill.ui import inputs, session
+from robomill.ui.project import Project
+from robomill.ui.robot.tables import slides
 from robomill.units import format_si, from_si, to_si
 
 
@@ -34,7 +35,7 @@ def pose_numbers(robot: Robot, theta: FloatArray, moved: bool = False) -> PoseNu
     return PoseNumbers(joint_frames(robot, theta), cartesian_compliance(robot, theta), det, moved)
 
 
-def pose_now(project: state.Project, result: SimulationResult | None) -> FloatArray:
+def pose_now(project: Project, result: SimulationResult | None) -> FloatArray:
     """(n,) the configuration looked at: the chosen one, or the cut's worst point, or home."""
     robot, chosen = project.setup.robot, project.view.theta
     if chosen is not None and len(chosen) == robot.n:
@@ -47,9 +48,9 @@ def at_cut(result: SimulationResult) -> FloatArray:
     return np.array(result.theta[result.worst])
 
 
-def poses_compared(project: state.Project, theta: FloatArray) -> tuple[PoseNumbers, PoseNumbers | None]:
+def poses_compared(project: Project, theta: FloatArray) -> tuple[PoseNumbers, PoseNumbers | None]:
     """The numbers now and, where the last change altered the robot, those before it at the same joint angles."""
-    robot, before = project.setup.robot, state.before()
+    robot, before = project.setup.robot, session.before()
     now = pose_numbers(robot, theta)
     if before is None or before.setup.robot == robot or before.setup.robot.n != robot.n:
         return now, None
@@ -58,14 +59,14 @@ def poses_compared(project: state.Project, theta: FloatArray) -> tuple[PoseNumbe
     return now, PoseNumbers(old.frames, old.C, old.det, moved)
 
 
-def pose_sliders(project: state.Project, theta: FloatArray, result: SimulationResult | None) -> None:
+def pose_sliders(project: Project, theta: FloatArray, result: SimulationResult | None) -> None:
     """A slider and a number box a joint; both show the same angle."""
     robot = project.setup.robot
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         st.markdown("**Joint angles**")
         st.button(
             "At the cut",
-            on_click=lambda: state.look(theta=None),
+            on_click=lambda: session.look(theta=None),
             type="tertiary",
             key="pose:cut",
             icon=":material/my_location:",
@@ -73,7 +74,7 @@ def pose_sliders(project: state.Project, theta: FloatArray, result: SimulationRe
         )
         st.button(
             "Home",
-            on_click=lambda: state.look(theta=tuple(robot.home.tolist())),
+            on_click=lambda: session.look(theta=tuple(robot.home.tolist())),
             type="tertiary",
             key="pose:home",
             icon=":material/home:",
@@ -91,7 +92,7 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
     def take(key: str) -> None:
         new = np.array(theta)
         new[i] = to_si(float(st.session_state[key]), unit)
-        state.look(theta=tuple(new.tolist()))
+        session.look(theta=tuple(new.tolist()))
 
     for key in keys:
         inputs.seed(key, min(max(shown, low), high))

@@ -14,7 +14,8 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
 from robomill.simulation.stations import offset_by_row
-from robomill.ui import cache, parts, state
+from robomill.ui import cached, pieces
+from robomill.ui.project import Project, preset_setup
 from robomill.ui.start.story import PAPER
 from robomill.units import from_si
 from robomill.viz.evidence import Claim, evidence_figure
@@ -25,17 +26,17 @@ def _process_setup() -> SimulationSetup:
     return load_setup(samples_dir() / PAPER / "setup_process.toml")
 
 
-def is_papers_path(project: state.Project) -> bool:
+def is_papers_path(project: Project) -> bool:
     """Whether the project cuts the paper's slot, by the text of its program: beside another part the chart misleads."""
-    source, paper = project.setup.source, state.preset_setup(PAPER).source
+    source, paper = project.setup.source, preset_setup(PAPER).source
     if source.kind == "program" and paper.kind == "program":
         return source.text == paper.text
     return source == paper
 
 
-def claims(project: state.Project) -> list[Claim]:
+def claims(project: Project) -> list[Claim]:
     """Every number of the paper's slot in m, the paper's first; computed ones with the band of the alloy's rows."""
-    plain, process = state.preset_setup(PAPER), _process_setup()
+    plain, process = preset_setup(PAPER), _process_setup()
     third = plain.robot.with_compliance_set("table_3")
     about = f"about {from_si(SLOT.measured, 'mm'):g} mm"
     rows = [
@@ -53,7 +54,7 @@ def claims(project: state.Project) -> list[Claim]:
 
 
 def _computed(label: str, setup: SimulationSetup) -> Claim:
-    result = cache.result(setup)
+    result = cached.result(setup)
     value, low, high = sideways(result)
     return Claim(label, "computed", value, low, high, note="middle of the groove")
 
@@ -69,17 +70,17 @@ def sideways(result: SimulationResult) -> tuple[float, float, float]:
     return offset, float(np.min(every)), float(np.max(every))
 
 
-def panel(project: state.Project, dark: bool) -> None:
+def panel(project: Project, dark: bool) -> None:
     """The chart with its caption and its table."""
     unit = project.view.length
-    found = parts.attempt(claims, project)
+    found = pieces.attempt(claims, project)
     if found is None:
         return
     lengths = ("value", "low", "high")
     shown = [
         Claim(c.label, c.kind, _shown(c.value, unit), _shown(c.low, unit), _shown(c.high, unit), c.note) for c in found
     ]
-    parts.figure(
+    pieces.figure(
         evidence_figure(shown, unit, dark=dark),
         "evidence",
         name="paper-evidence",

@@ -15,7 +15,8 @@ from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.ui import cache, parts, render, state
+from robomill.ui import cached, pieces
+from robomill.ui.project import Project, View, preset_setup
 from robomill.units import format_percent, format_si, format_times
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
@@ -65,12 +66,12 @@ def cause(result: SimulationResult, unit: str) -> str:
     return f"{force} on the tool move the tip by {moved}. Most of it comes from {blame}."
 
 
-def groove_picture(result: SimulationResult, view: state.View, height: int, dark: bool) -> None:
+def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
     """The machined groove as a rendered picture, or turnable where nothing can be rendered."""
     try:
-        shown = cache.pictured(result.setup, view.exaggeration)
+        shown = cached.pictured(result.setup, view.exaggeration)
     except RobomillError as exc:
-        parts.error(exc)
+        pieces.error(exc)
         return
     scene = surface_picture(
         result,
@@ -80,7 +81,7 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         size=(940, round(940 * height / 560)),
         captions=(),
     )
-    png = render.picture((result.setup.digest(), view.exaggeration, "start"), scene)
+    png = cached.picture((result.setup.digest(), view.exaggeration, "start"), scene)
     alt = "The machined groove coloured by its signed error against the ideal one."
     if png is not None:
         with st.container(key="picture-groove"):
@@ -89,8 +90,8 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
         unit = view.length
         revision = "start-surface"
         figure = surface_figure(shown, result.setup.tolerance, unit, dark=dark, height=height, revision=revision)
-        parts.figure(figure, "start-surface", alt=alt)
-    parts.note(
+        pieces.figure(figure, "start-surface", alt=alt)
+    pieces.note(
         f"The groove as milled, displacement shown {format_times(view.exaggeration, 6)}. Colours end at the tolerance, "
         f"± {format_si(result.setup.tolerance, 'um', 0)}."
     )
@@ -99,7 +100,11 @@ def groove_picture(result: SimulationResult, view: state.View, height: int, dark
 def where_from(setup: SimulationSetup) -> None:
     """Each block of numbers with its badge and its source."""
     rows = [
-        (s.what, parts.subscripts(s.value), f"{parts.badge(s.provenance.kind)} {parts.subscripts(s.provenance.source)}")
+        (
+            s.what,
+            pieces.subscripts(s.value),
+            f"{pieces.badge(s.provenance.kind)} {pieces.subscripts(s.provenance.source)}",
+        )
         for s in sources(setup)
     ]
     body = "".join(
@@ -108,12 +113,12 @@ def where_from(setup: SimulationSetup) -> None:
     st.html(f'<table class="rm-facts">{body}</table>')
 
 
-def evidence(project: state.Project) -> None:
+def evidence(project: Project) -> None:
     """The paper's numbers beside those of robomill, for the paper's own cut; never forced to match."""
     if project.preset != PAPER:
-        parts.note("The paper's numbers are shown beside robomill's when its milling test is open.")
+        pieces.note("The paper's numbers are shown beside robomill's when its milling test is open.")
         return
-    preset = state.preset_setup(PAPER)
+    preset = preset_setup(PAPER)
     rows: list[tuple[str, float, str]] = []
     for label, setup in (
         ("robomill, as edited" if project.setup.digest() != preset.digest() else "", project.setup),
@@ -121,14 +126,14 @@ def evidence(project: state.Project) -> None:
         ("robomill, Table 3", preset.replace(robot=preset.robot.with_compliance_set("table_3"))),
     ):
         if label:
-            rows.append((label, _aside(cache.result(setup)), "computed"))
+            rows.append((label, _aside(cached.result(setup)), "computed"))
     rows[-1:-1] = [("paper, predicted from Table 2", SLOT.from_table_2, "paper")]
     rows += [
         ("paper, predicted from its measured map", SLOT.from_map, "paper"),
         ("paper, measured on the part (about)", SLOT.measured, "measured"),
     ]
     bars(rows, project.view.length)
-    parts.note(
+    pieces.note(
         f"Sideways error of the groove. {format_si(SLOT.from_map, 'mm', 2)} is read off a map whose raw data are "
         "not printed; Table 3 alone cannot give it, and nothing here is tuned to match."
     )
@@ -141,7 +146,7 @@ def bars(rows: list[tuple[str, float, str]], unit: str) -> None:
     body = "".join(
         f'<tr><td>{html.escape(label)}</td><td class="rm-barcell"><span class="rm-bar rm-{kind}" '
         f'style="width:{abs(value) / top * 100:.1f}%"></span></td>'
-        f'<td class="n">{format_si(value, unit, digits)}</td><td>{parts.badge(kind)}</td></tr>'
+        f'<td class="n">{format_si(value, unit, digits)}</td><td>{pieces.badge(kind)}</td></tr>'
         for label, value, kind in rows
     )
     st.html(f'<table class="rm-facts">{body}</table>')
@@ -149,7 +154,7 @@ def bars(rows: list[tuple[str, float, str]], unit: str) -> None:
 
 def doors() -> None:
     """Three cards, one for each kind of visitor."""
-    for column, (title, text, page, label) in zip(parts.split([1, 1, 1], "doors"), DOORS, strict=True):
+    for column, (title, text, page, label) in zip(pieces.split([1, 1, 1], "doors"), DOORS, strict=True):
         with column, st.container(border=True):
             st.html(f'<div class="rm-door"><b>{html.escape(title)}</b><p>{html.escape(text)}</p></div>')
             there = (app_dir() / page).is_file()

@@ -15,7 +15,7 @@ from robomill.toolpath.apt import is_apt
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import parts
+from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
@@ -66,7 +66,7 @@ def findings_list(findings: Sequence[Finding]) -> None:
     """What the reader noticed, worst first; a click on a row points at its line."""
     st.markdown("**What was read**")
     if not findings:
-        parts.note("Every word was understood; nothing was skipped or guessed.")
+        pieces.note("Every word was understood; nothing was skipped or guessed.")
         return
     found = worst_first(findings)
     shown = found[:500]
@@ -98,7 +98,7 @@ def findings_list(findings: Sequence[Finding]) -> None:
         },
     )
     hidden = len(found) - len(shown)
-    parts.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
+    pieces.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
 
 
 def path_facts(setup: SimulationSetup, unit: str) -> None:
@@ -199,4 +199,4 @@ def support_table() -> None:
             },
         )
         st.caption("Where reading differs from LinuxCNC: " + " ".join(DIFFERENCES))
-        parts.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")
+        pieces.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")

@@ -2,40 +2,73 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import pandas as pd
 import streamlit as st
 
+from robomill.errors import ToolpathError
 from robomill.toolpath.source import LinesSource
-from robomill.ui import inputs, parts, state, tables
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
+from robomill.ui.inputs import empty
+from robomill.ui.project import View
 from robomill.ui.toolpath.sources import put
-from robomill.units import unit_label
+from robomill.units import from_si, to_si, unit_label
+
+COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
 
 
-def lines_inputs(source: LinesSource, view: state.View) -> None:
+def lines_inputs(source: LinesSource, view: View) -> None:
     """Starts, ends and feeds, and the spindle."""
-    table_editor(
+    inputs.table(
         f"lines:{view.units}",
-        lambda: tables.lines_frame(_source(), view.length, view.feed),
+        lambda: lines_frame(_source(), view.length, view.feed),
         lambda frame: _take(frame, view),
-        dynamic=True,
-        height=min(36 * (len(source.start) + 2) + 2, 400),
-        columns={c: st.column_config.NumberColumn(c, format="%.6g", width=50) for c in tables.LINE_COLUMNS},
+        inputs.Sheet(
+            columns={c: st.column_config.NumberColumn(c, format="%.6g", width=50) for c in COLUMNS},
+            dynamic=True,
+            height=min(36 * (len(source.start) + 2) + 2, 400),
+        ),
     )
-    parts.note(
+    pieces.note(
         f"Start x₀ y₀ z₀ and end x₁ y₁ z₁ of each cut in {{W}} ({unit_label(view.length)}), "
         f"feed ({unit_label(view.feed)}). Lines that do not touch are joined by rapids."
     )
-    inputs.number("Spindle speed", "source.n_s", "1/min", step=500.0)
+    inputs.number("source.n_s", label="Spindle speed", unit="1/min", step=500.0)
 
 
 def _source() -> LinesSource:
-    source = state.project().setup.source
+    source = session.project().setup.source
     assert source.kind == "lines"
     return source
 
 
-def _take(frame: pd.DataFrame, view: state.View) -> None:
-    new = tables.lines_from_frame(frame, view.length, view.feed, _source().n_s)
+def _take(frame: pd.DataFrame, view: View) -> None:
+    new = lines_from_frame(frame, view.length, view.feed, _source().n_s)
     new.read()
     put(new, "table of lines", from_editor=True)
+
+
+def lines_frame(source: LinesSource, unit: str, feed_unit: str) -> pd.DataFrame:
+    """Straight cuts as a table in display units."""
+    values = np.hstack([_clean(source.start, unit), _clean(source.end, unit), _clean(source.v_f, feed_unit)[:, None]])
+    return pd.DataFrame(values, columns=list(COLUMNS))
+
+
+def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float = 0.0) -> LinesSource:
+    """The table's straight cuts as a source. Raises ToolpathError naming row and column of an empty cell."""
+    kept = frame.dropna(how="all")
+    if len(kept) == 0:
+        raise ToolpathError("Table of lines: found no rows; add at least one line.")
+    for row in range(len(kept)):
+        for label in COLUMNS:
+            if empty(kept[label].iloc[row]):
+                raise ToolpathError(f"Row {row + 1}: {label} is missing; type a number.")
+    numbers = kept[list(COLUMNS)].to_numpy(dtype=float)
+    return LinesSource(to_si(numbers[:, :3], unit), to_si(numbers[:, 3:6], unit), to_si(numbers[:, 6], feed_unit), n_s)
+
+
+def _clean(values: Any, unit: str) -> Any:
+    """In ``unit``, without the last bits of the conversion."""
+    return np.round(from_si(np.asarray(values, dtype=float), unit), 9)

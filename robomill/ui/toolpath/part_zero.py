@@ -13,8 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.io.workpiece import part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
-from robomill.ui import inputs, parts, state
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
 from robomill.units import format_si, from_si, to_si, unit_label
 
 WAY, TOUCH = "part.way", "part.touch"
@@ -44,9 +43,9 @@ def part_zero() -> None:
 
 
 def _by_numbers() -> None:
-    unit = state.project().view.length
+    unit = session.project().view.length
     left, right = st.columns(2)
-    T_MW = state.project().setup.T_MW
+    T_MW = session.project().setup.T_MW
     step, digits = (10.0, 2) if unit == "mm" else (1.0, 4)
     for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
         with column:
@@ -58,7 +57,7 @@ def _by_numbers() -> None:
         kept_number("Turn about Z, °", "zero:turn", turn, 5.0, 2, _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
-        parts.note(
+        pieces.note(
             f"The part is tilted by {format_si(tilt, 'deg', 3)} against the robot's base, as its three points say; "
             "a turn typed here sets it upright."
         )
@@ -70,26 +69,26 @@ def kept_number(label: str, name: str, value: float, step: float, digits: int, w
     A box that moves to another column while a run is broken off comes up with its default and answers with it. So the
     value is the default, not an entry of the session, and a new value is a new box: nothing can turn into 0.
     """
-    waiting = state.store().refused.get(name)
+    waiting = session.store().refused.get(name)
     shown = value if waiting is None else waiting[0]
     key = f"{name}={shown}"
 
     def take() -> None:
         typed = st.session_state[key]
-        inputs.attempt(name, typed, lambda: write(float(typed)))
+        inputs.submit(name, typed, lambda: write(float(typed)))
 
     st.number_input(label, value=shown, key=key, step=step, format=f"%.{digits}f", on_change=take)
     inputs.sentence(name)
 
 
 def _move(i: int, unit: str, typed: float) -> None:
-    T_MW = np.array(state.project().setup.T_MW)
+    T_MW = np.array(session.project().setup.T_MW)
     T_MW[i, 3] = to_si(typed, unit)
-    state.change(T_MW=T_MW)
+    session.change(T_MW=T_MW)
 
 
 def _turn(degrees: float) -> None:
-    state.change(T_MW=part_frame(state.project().setup.T_MW[:3, 3], to_si(degrees, "deg")))
+    session.change(T_MW=part_frame(session.project().setup.T_MW[:3, 3], to_si(degrees, "deg")))
 
 
 def tilt_of(T_MW: FloatArray) -> float:
@@ -98,18 +97,19 @@ def tilt_of(T_MW: FloatArray) -> float:
 
 
 def _by_points() -> None:
-    view = state.project().view
+    view = session.project().view
     unit = view.length
-    table_editor(
+    inputs.table(
         f"touch:{unit}",
-        lambda: points_frame(state.project().setup.T_MW, unit),
+        lambda: points_frame(session.project().setup.T_MW, unit),
         lambda frame: _take(frame, unit),
-        locked=("point",),
-        columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"},
+        inputs.Sheet(
+            columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"}, locked=("point",)
+        ),
     )
     touched = st.session_state.get(TOUCH)
     words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
-    if touched is not None and np.array_equal(touched.T_MW, state.project().setup.T_MW):
+    if touched is not None and np.array_equal(touched.T_MW, session.project().setup.T_MW):
         error = touched.tilt(TOUCH_ERROR)
         words += (
             f" Third point at {format_si(touched.angle, 'deg', 1)} to x; if each point is off by "
@@ -117,7 +117,7 @@ def _by_points() -> None:
         )
     else:
         words += " Touch the zero, a point far along +x, and one on the side of +y."
-    parts.note(words)
+    pieces.note(words)
 
 
 def points_frame(T_MW: FloatArray, unit: str) -> pd.DataFrame:
@@ -140,5 +140,5 @@ def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
 
 def _take(frame: pd.DataFrame, unit: str) -> None:
     touched = frame_from_points(*frame_points(frame, unit))
-    state.change(T_MW=touched.T_MW, from_editor=True)
+    session.change(T_MW=touched.T_MW, from_editor=True)
     st.session_state[TOUCH] = touched

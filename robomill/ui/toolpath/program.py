@@ -14,7 +14,7 @@ from robomill.provenance import Finding
 from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import inputs, parts, state
+from robomill.ui import inputs, pieces, session
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
@@ -37,7 +37,7 @@ class Refused:
 
 def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
     """File, dialect and text."""
-    key = f"{FILE}:{state.store().revision}"
+    key = f"{FILE}:{session.store().revision}"
     # Any name is let in and judged here, so that upper case and odd endings get a sentence and not a grey refusal.
     st.file_uploader(
         "Program file",
@@ -57,8 +57,8 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
 
 
 def _dialect(source: GCodeSource) -> None:
-    inputs.choice("Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, horizontal=False)
-    parts.note(dialect_words(source))
+    inputs.choice("Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, inputs.LISTED)
+    pieces.note(dialect_words(source))
 
 
 def dialect_words(source: GCodeSource) -> str:
@@ -70,7 +70,7 @@ def dialect_words(source: GCodeSource) -> str:
 
 def _take_dialect(name: str) -> None:
     assert name == "auto" or name in NAMES
-    source = state.project().setup.source
+    source = session.project().setup.source
     assert source.kind == "program"
     changed = dataclasses.replace(source, dialect=name)
     changed.read()
@@ -108,7 +108,7 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
         height = min(max(22 * len(lines) + 24, 130), 420)
         program_view(source.text, path.findings if path is not None else (), dark, height)
     elif len(source.text) > EDITABLE_CHARACTERS:
-        parts.note(f"{len(lines):,} lines are too many for this box: change them in their own file and drop it here.")
+        pieces.note(f"{len(lines):,} lines are too many for this box: change them in their own file and drop it here.")
     else:
         inputs.seed(TEXT, source.text)
         st.text_area(
@@ -116,7 +116,7 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
             key=TEXT,
             height=420,
             label_visibility="collapsed",
-            on_change=lambda: inputs.attempt(TEXT, st.session_state[TEXT], lambda: _take_text(st.session_state[TEXT])),
+            on_change=lambda: inputs.submit(TEXT, st.session_state[TEXT], lambda: _take_text(st.session_state[TEXT])),
         )
         inputs.sentence(TEXT)
 
@@ -125,7 +125,7 @@ def _take_file(file: object) -> None:
     if file is None:
         return
     name = str(getattr(file, "name", "program"))
-    inputs.attempt(FILE, None, lambda: take_program(file.getvalue(), name))  # type: ignore[attr-defined]
+    inputs.submit(FILE, None, lambda: take_program(file.getvalue(), name))  # type: ignore[attr-defined]
 
 
 def take_program(data: bytes, name: str) -> None:
@@ -158,7 +158,7 @@ def _refuse(source: GCodeSource, exc: RobomillError) -> None:
 
 def _show_refused(refused: Refused, dark: bool) -> None:
     """A program that cannot be read is shown at the line that is at fault; the one before it stays in force."""
-    parts.error(f"{refused.source.name} was not taken. {refused.reason}")
+    pieces.error(f"{refused.source.name} was not taken. {refused.reason}")
     with st.container(horizontal=True, gap="small"):
         st.button(
             "Mend it here",
@@ -184,7 +184,7 @@ def _leave() -> None:
 
 
 def _take_text(text: str) -> None:
-    old = state.project().setup.source
+    old = session.project().setup.source
     if not text.strip():
         raise ToolpathError("The program is empty; type at least one G1 move.")
     source = GCodeSource(text, old.name if old.kind == "program" else "program.nc")

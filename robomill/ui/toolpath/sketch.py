@@ -9,8 +9,7 @@ import streamlit as st
 
 from robomill.toolpath.sketch import SHAPES
 from robomill.toolpath.sketch_presets import PRESETS, preset
-from robomill.ui import inputs, parts, state
-from robomill.ui.editors import table_editor
+from robomill.ui import inputs, pieces, session
 from robomill.ui.toolpath.part_zero import kept_number
 from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.toolpath.sources import put_sketch, sketch_source
@@ -42,14 +41,14 @@ def _draw() -> None:
     name, word = st.session_state[CHOICE], st.session_state.get(WORD, "ROBOMILL")
 
     def draw() -> None:
-        setup = state.project().setup
+        setup = session.project().setup
         put_sketch(preset(name, sketch_source().sketch, setup.cutter.diameter, word), f"ready-made: {PRESETS[name]}")
 
-    inputs.attempt(CHOICE, None, draw)
+    inputs.submit(CHOICE, None, draw)
 
 
 def _settings() -> None:
-    view = state.project().view
+    view = session.project().view
     st.markdown("**New shapes**")
     left, right = st.columns(2)
     with left:
@@ -85,34 +84,36 @@ def _all() -> None:
 
 
 def _table() -> None:
-    view = state.project().view
+    view = session.project().view
     length, feed = view.length, view.feed
 
     def write(frame: pd.DataFrame) -> None:
         put_sketch(sketch_from_frame(frame, sketch_source().sketch, length, feed), from_editor=True)
 
     column = st.column_config
-    table_editor(
+    inputs.table(
         f"sketch:{view.units}",
         lambda: sketch_frame(sketch_source().sketch, length, feed),
         write,
-        columns={
-            "line": column.NumberColumn("no.", width=38, help="The order of the cuts, and the line in the results"),
-            "shape": column.SelectboxColumn("shape", options=list(SHAPES), width=80),
-            "points": column.TextColumn(
-                f"points ({unit_label(length)})",
-                width=122,
-                help="x, y; x, y; … · line: start; end · rectangle: two corners · circle: centre; point on it · "
-                "arc: start; on the way; end · polyline and polygon: any number",
-            ),
-            "depth": column.NumberColumn("depth", format="%.6g", width=68),
-            "feed": column.NumberColumn("feed", format="%.6g", width=58),
-        },
-        locked=("line",),
-        dynamic=True,
-        height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
+        inputs.Sheet(
+            columns={
+                "line": column.NumberColumn("no.", width=38, help="The order of the cuts, and the line in the results"),
+                "shape": column.SelectboxColumn("shape", options=list(SHAPES), width=80),
+                "points": column.TextColumn(
+                    f"points ({unit_label(length)})",
+                    width=122,
+                    help="x, y; x, y; … · line: start; end · rectangle: two corners · circle: centre; point on it · "
+                    "arc: start; on the way; end · polyline and polygon: any number",
+                ),
+                "depth": column.NumberColumn("depth", format="%.6g", width=68),
+                "feed": column.NumberColumn("feed", format="%.6g", width=58),
+            },
+            locked=("line",),
+            dynamic=True,
+            height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
+        ),
     )
-    parts.note(
+    pieces.note(
         f"Points and depth in {unit_label(length)} from the part zero {{W}} on the top face, feed in "
         f"{unit_label(feed)}. Table and board are the same sketch."
     )
@@ -123,11 +124,11 @@ def export() -> None:
     if not sketch_source().sketch.elements:
         return
     # Taken now: when the file is asked for, there is no session to ask for its project.
-    setup = state.project().setup
+    setup = session.project().setup
 
     def text() -> str:
         from robomill.io.gcode_out import write_gcode
 
         return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
 
-    parts.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="sketch.export")
+    pieces.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="sketch.export")

@@ -16,7 +16,8 @@ import streamlit as st
 from robomill.arrays import digest
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
-from robomill.ui import inputs, state
+from robomill.ui import inputs, session
+from robomill.ui.project import Project
 from robomill.ui.toolpath.sketch_table import pad_elements, sketch_from_pad
 from robomill.ui.toolpath.sources import put_sketch
 from robomill.units import UNITS, from_si
@@ -51,7 +52,7 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
 
     ``reach``: x, y, dx, dy of a grid in display units and runs [row, from, to) of cells out of reach.
     """
-    view, kept = state.project().view, state.store()
+    view, kept = session.project().view, session.store()
     memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
     shown = _fingerprint(sketch, view.length)
     if shown != memory.known:
@@ -76,32 +77,32 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
 def _take() -> None:
     sent = st.session_state[KEY].get("sketch")
     memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
-    source = state.project().setup.source
+    source = session.project().setup.source
     # What was drawn on a board that has been overwritten since is not merged into the new one.
     if not sent or sent.get("rev") != memory.rev or source.kind != "sketch":
         return
-    inputs.attempt(KEY, None, lambda: _write(dict(sent), source, memory))
-    if KEY in state.store().refused:
+    inputs.submit(KEY, None, lambda: _write(dict(sent), source, memory))
+    if KEY in session.store().refused:
         memory.known = ""
 
 
 def _write(sent: dict[str, Any], source: SketchSource, memory: PadMemory) -> None:
-    view = state.project().view
+    view = session.project().view
     new = sketch_from_pad(sent, source.sketch, view.length, view.feed)
     put_sketch(new)
     memory.known = _fingerprint(new, view.length)
 
 
 def _history() -> None:
-    asked, kept = st.session_state[KEY].get("history"), state.store()
+    asked, kept = st.session_state[KEY].get("history"), session.store()
     if not asked:
         return
     back = asked.get("way") == "undo"
     if _leads_to_a_sketch(kept.past if back else kept.future):
-        (state.undo if back else state.redo)()
+        (session.undo if back else session.redo)()
 
 
-def _leads_to_a_sketch(steps: list[state.Project]) -> bool:
+def _leads_to_a_sketch(steps: list[Project]) -> bool:
     """The board's own undo stays with the sketch; the one in the sidebar goes on."""
     return bool(steps) and steps[-1].setup.source.kind == "sketch"
 

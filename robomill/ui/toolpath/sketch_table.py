@@ -11,6 +11,7 @@ import pandas as pd
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import SHAPES, Element, Sketch
+from robomill.ui.inputs import empty
 from robomill.units import from_si, parse_number, to_si, unit_label
 
 COLUMNS = ("line", "shape", "points", "depth", "feed")
@@ -33,12 +34,12 @@ def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str, feed_unit:
     kept = frame.dropna(how="all", subset=["shape", "points"])
     found = []
     for row, (_, entry) in enumerate(kept.iterrows(), start=1):
-        old = None if _empty(entry["line"]) else sketch.elements[int(entry["line"]) - 1]
-        shape = "line" if _empty(entry["shape"]) else str(entry["shape"])
+        old = None if empty(entry["line"]) else sketch.elements[int(entry["line"]) - 1]
+        shape = "line" if empty(entry["shape"]) else str(entry["shape"])
         if shape not in SHAPES:
             raise ToolpathError(f"Row {row}: {shape!r} is not a shape; choose one of {', '.join(SHAPES)}.")
-        depth = sketch.depth if _empty(entry["depth"]) else to_si(float(entry["depth"]), unit)
-        v_f = sketch.v_f if _empty(entry["feed"]) else to_si(float(entry["feed"]), feed_unit)
+        depth = sketch.depth if empty(entry["depth"]) else to_si(float(entry["depth"]), unit)
+        v_f = sketch.v_f if empty(entry["feed"]) else to_si(float(entry["feed"]), feed_unit)
         try:
             found.append(Element(shape, _points(entry["points"], old, row, unit), depth, v_f))  # type: ignore[arg-type]
         except ToolpathError as exc:
@@ -86,7 +87,7 @@ def sketch_from_pad(sent: Mapping[str, Any], sketch: Sketch, unit: str, feed_uni
 
 
 def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
-    text = "" if _empty(typed) else str(typed).strip()
+    text = "" if empty(typed) else str(typed).strip()
     if not text:
         raise ToolpathError(f"Row {row}: points are missing; type them as x, y; x, y in {unit_label(unit)}.")
     if _LONG.match(text) and old is not None:
@@ -109,7 +110,3 @@ def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
 def _clean(value: Any, unit: str) -> Any:
     shown = np.round(from_si(np.asarray(value, dtype=float), unit), 6) + 0.0  # no minus before a zero
     return shown if shown.ndim else float(shown)
-
-
-def _empty(value: Any) -> bool:
-    return value is None or value is pd.NA or (isinstance(value, float) and np.isnan(value))

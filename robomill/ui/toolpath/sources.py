@@ -14,7 +14,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
-from robomill.ui import inputs, state
+from robomill.ui import inputs, session
 from robomill.ui.toolpath import program_view
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
@@ -23,26 +23,26 @@ MAX_ROWS = 200
 
 def kind_switch() -> None:
     """The choice between the three."""
-    source = state.project().setup.source
+    source = session.project().setup.source
     inputs.choice("Path from", "source.kind", KINDS, source.kind, switch)
 
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
     """Make ``source`` the project's path; ``words`` say where it comes from. Raises its refusal."""
-    setup = state.project().setup
+    setup = session.project().setup
     provenance = {**setup.provenance, "path": Provenance("user", words)}
     force = setup.provenance.get("force")
     if force is not None and force.kind in ("paper", "measured"):
         # What was measured on one cut is an assumption on another.
         provenance["force"] = Provenance("assumed", f"carried over from {setup.name!r}: {force.source}")
     more.setdefault("name", PurePath(source.name).stem if source.kind == "program" else "Drawn here")
-    state.change(source=source, provenance=provenance, from_editor=from_editor, **more)
+    session.change(source=source, provenance=provenance, from_editor=from_editor, **more)
     program_view.select_line(0)
 
 
 def switch(kind: str) -> None:
     """The same path by other means, as far as that goes; undo leads back."""
-    setup = state.project().setup
+    setup = session.project().setup
     if kind == setup.source.kind:
         return
     if kind == "lines":
@@ -57,12 +57,12 @@ def switch(kind: str) -> None:
 
 
 def _path() -> Toolpath:
-    return state.project().setup.toolpath
+    return session.project().setup.toolpath
 
 
 def _stock_follows() -> dict[str, Any]:
     """A stated block rarely fits what will be drawn: the stock becomes the bounds of the path."""
-    setup = state.project().setup
+    setup = session.project().setup
     if setup.stock is None:
         return {}
     return {"stock": None}
@@ -105,14 +105,14 @@ def sketch_of_path(path: Toolpath) -> Sketch | None:
 
 def sketch_source() -> SketchSource:
     """The project's sketch; only where the path is sketched."""
-    source = state.project().setup.source
+    source = session.project().setup.source
     assert source.kind == "sketch"
     return source
 
 
 def put_sketch(sketch: Sketch, words: str = "sketched by hand", from_editor: bool = False) -> None:
     """Replace the sketch; what only concerns drawing (snap, next feed and depth) is no step to undo."""
-    kept, source = state.store(), sketch_source()
+    kept, source = session.store(), sketch_source()
     changed = dataclasses.replace(source, sketch=sketch)
     setup = kept.project.setup
     if setup.replace(source=changed).digest() == setup.digest():

@@ -13,7 +13,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.ui import cache, parts, state
+from robomill.ui import cached, pieces, session
 from robomill.ui.toolpath.details import duration, finding_words, move_words, worst_first, written_in
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
@@ -49,10 +49,10 @@ def samples(setup: SimulationSetup) -> int:
 def simulated(setup: SimulationSetup) -> SimulationResult | None:
     """The run of this set-up: at once where it is short, on demand where it is long. Raises its refusal."""
     if samples(setup) <= AUTO_SAMPLES and not setup.engagement:
-        return cache.result(setup)
+        return cached.result(setup)
     if st.session_state.get(ASKED) == setup.digest():
         with st.spinner(f"Simulating about {format_short_count(samples(setup))} points …", show_time=True):
-            return cache.result(setup)
+            return cached.result(setup)
     return None
 
 
@@ -64,7 +64,7 @@ def ask_button(setup: SimulationSetup) -> None:
         if st.button("Simulate", icon=":material/play_arrow:", type="primary", key="toolpath.simulate"):
             st.session_state[ASKED] = setup.digest()
             st.rerun()
-        parts.note(f"Not simulated yet: {words}. Until then the path is coloured by reach.")
+        pieces.note(f"Not simulated yet: {words}. Until then the path is coloured by reach.")
 
 
 def headline(
@@ -76,14 +76,14 @@ def headline(
     """
     name, noun = source.name, source.kind
     if path is None:
-        parts.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
+        pieces.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
     size = format_many(summary.high - summary.low, unit, 1 if unit == "mm" else 2, " × ")
     lead = f"{format_count(summary.blocks, NOUNS[noun])} within {size}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
-    parts.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
+    pieces.headline(f"Toolpath · {name}", verdict(reach, result, unit, noun), lead)
 
 
 def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str, noun: str) -> str:
@@ -104,19 +104,19 @@ def tiles(
 ) -> None:
     """Length and time, reach, deviation, findings."""
     if path is None:
-        parts.tiles([parts.Tile(label, "–") for label in ("At feed", "Reach", "Max deviation", "Shapes")])
+        pieces.tiles([pieces.Tile(label, "–") for label in ("At feed", "Reach", "Max deviation", "Shapes")])
         return
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
     found = [
-        parts.Tile(
+        pieces.Tile(
             "At feed",
             format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
             f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
         )
     ]
     if reach is None:
-        found.append(parts.Tile("Reach", "not computed"))
+        found.append(pieces.Tile("Reach", "not computed"))
     else:
         missed, _, lost = missed_blocks(reach)
         blocks = lost.tolist()
@@ -125,28 +125,28 @@ def tiles(
         words = f"out of reach at {PLACES[noun]} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
         found.append(
-            parts.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
+            pieces.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
         )
     found.append(_deviation_tile(result, unit, noun))
     if noun != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
-        found.append(parts.Tile({"sketch": "Shapes", "lines": "Rows"}[noun], f"{summary.blocks:,}", words))
-        parts.tiles(found)
+        found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[noun], f"{summary.blocks:,}", words))
+        pieces.tiles(found)
         return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in path.findings)
     words = finding_words(worst_first(path.findings)[0]) if count else "every word understood"
-    found.append(parts.Tile("Findings", f"{count:,}", words, tone="tight" if alarming else ""))
-    parts.tiles(found)
+    found.append(pieces.Tile("Findings", f"{count:,}", words, tone="tight" if alarming else ""))
+    pieces.tiles(found)
 
 
-def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> parts.Tile:
+def _deviation_tile(result: SimulationResult | None, unit: str, noun: str) -> pieces.Tile:
     if result is None:
-        return parts.Tile("Max deviation", "–", "not simulated yet")
+        return pieces.Tile("Max deviation", "–", "not simulated yet")
     if result.worst < 0:
-        return parts.Tile("Max deviation", "–", "nothing was reached")
+        return pieces.Tile("Max deviation", "–", "nothing was reached")
     tone = {"ok": "ok", "tight": "tight"}.get(result.verdict.level, "out")
-    return parts.Tile(
+    return pieces.Tile(
         "Max deviation",
         format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
         f"{PLACES[noun]} {result.worst_block:,} · {format_percent(result.verdict.share)} of the tolerance",
@@ -203,7 +203,7 @@ def picture(
     elif colour == "limits":
         more = {"value": from_si(reach.room, "deg"), "title": "Room to the nearest limit", "unit": "°", "digits": 1}
     elif colour == "feed":
-        feed = state.project().view.feed
+        feed = session.project().view.feed
         more = {"value": from_si(path.v_f, feed), "title": "Feed", "unit": unit_label(feed), "digits": 1}
     elif colour == "depth":
         z = from_si(path.p[:, 2], unit)
@@ -270,11 +270,11 @@ def stock_note(setup: SimulationSetup) -> None:
     if max(float(beside[:2].max()), below) <= 1e-6:
         return
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        parts.note("The path leaves the stock that is stated: what lies outside cuts air.")
+        pieces.note("The path leaves the stock that is stated: what lies outside cuts air.")
         st.button(
             "Let the stock follow the path",
             key="stock.follow",
             icon=":material/fit_screen:",
             type="tertiary",
-            on_click=lambda: state.change(stock=None),
+            on_click=lambda: session.change(stock=None),
         )

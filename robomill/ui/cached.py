@@ -1,4 +1,4 @@
-"""Results kept by fingerprint: the same set-up is computed once for everyone on the server, and bounded in number."""
+"""Results and pictures kept by fingerprint: computed once for everyone on the server, and bounded in number."""
 
 from __future__ import annotations
 
@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
+from robomill.errors import RenderError
 from robomill.simulation.enlarged import Enlarged, enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
+from robomill.ui import session
+from robomill.viz.picture import SurfacePicture
+from robomill.viz.worker import RenderWorker
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -53,3 +57,32 @@ def kept_figure(name: str, key: Sequence[Any], make: Callable[[], go.Figure]) ->
 @st.cache_resource(max_entries=96, show_spinner=False)
 def _kept_figure(name: str, key: tuple[Any, ...], _make: Callable[[], go.Figure]) -> go.Figure:
     return _make()
+
+
+@st.cache_resource(show_spinner=False)
+def worker() -> RenderWorker:
+    """The drawing process of this server, on its way up."""
+    made = RenderWorker()
+    made.start()
+    return made
+
+
+@st.cache_resource(max_entries=64, show_spinner=False)
+def _png(key: tuple[object, ...], _picture: SurfacePicture) -> bytes:
+    return worker().render(_picture)
+
+
+def picture(key: tuple[object, ...], scene: SurfacePicture) -> bytes | None:
+    """PNG bytes of ``scene``; ``key`` is what it depends on (digests and view). None where nothing can be drawn.
+
+    The reason is said once a session, with the command that mends it.
+    """
+    if worker().down and session.kept("picture.said"):
+        return None
+    try:
+        return _png((*key, scene.dark, scene.camera, scene.size), scene)
+    except RenderError as exc:
+        if not session.kept("picture.said"):
+            session.keep("picture.said", worker().down)
+            st.info(str(exc), icon=":material/info:")
+        return None

@@ -1,36 +1,29 @@
-"""Tables that are edited on the screen, to the model and back: pure functions, in display units."""
+"""The robot's tables as they are edited on the screen, to the model and back: pure functions, in display units."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.errors import RobotError, ToolpathError
+from robomill.errors import RobotError
 from robomill.robot.model import Robot
-from robomill.toolpath.source import LinesSource
+from robomill.ui.inputs import empty
+from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import from_si, parse_number, to_si, unit_label
 
-PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
 GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
 RIGID = "∞"
 SI_BELOW = 1e-3
 _NUMBER = re.compile(r"[+\-−]?(\d+[.,]?\d*|[.,]\d+)([eE][+\-−]?\d+)?")
-LINE_COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
 
 
 def slides(robot: Robot) -> BoolArray:
     """(rows,) True for prismatic joints."""
     return np.asarray(robot.prismatic, dtype=bool)
-
-
-def is_stiffness(unit: str) -> bool:
-    """Whether the joints are shown by stiffness rather than compliance."""
-    return unit in ("kN m/rad", "N/um")
 
 
 def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
@@ -62,7 +55,7 @@ def compliance_from_text(typed: Any, unit: str, where: str) -> float:
     "7.14e-7" is what the column calls 7.14.
     """
     word = "stiffness" if is_stiffness(unit) else "compliance"
-    text = "" if _empty(typed) else str(typed).strip()
+    text = "" if empty(typed) else str(typed).strip()
     if not text:
         raise RobotError(f"{where}: the {word} is missing; type a number in {unit_label(unit)}.")
     if is_stiffness(unit) and text == RIGID:
@@ -82,7 +75,7 @@ def compliance_from_text(typed: Any, unit: str, where: str) -> float:
 
 def is_si_text(typed: Any) -> bool:
     """Whether a compliance is written as a small number with an exponent, so that it is in SI."""
-    text = "" if _empty(typed) else str(typed).strip()
+    text = "" if empty(typed) else str(typed).strip()
     if not _NUMBER.fullmatch(text) or "e" not in text.lower():
         return False
     return abs(parse_number(text)) < SI_BELOW
@@ -116,42 +109,10 @@ def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
     for side, label in enumerate(("lower", "upper")):
         for i in range(robot.rows):
             typed = frame[label].iloc[i]
-            if _empty(typed):
+            if empty(typed):
                 raise RobotError(f"Joint {i + 1}: the {label} limit is missing; type a number.")
             limits[i, side] = to_si(float(typed), "mm" if slides(robot)[i] else "deg")
     return robot.replace(limits_all=limits)
-
-
-def lines_frame(source: LinesSource, unit: str, feed_unit: str) -> pd.DataFrame:
-    """Straight cuts as a table in display units."""
-    values = np.hstack([_clean(source.start, unit), _clean(source.end, unit), _clean(source.v_f, feed_unit)[:, None]])
-    return pd.DataFrame(values, columns=list(LINE_COLUMNS))
-
-
-def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float = 0.0) -> LinesSource:
-    """The table's straight cuts as a source. Raises ToolpathError naming row and column of an empty cell."""
-    kept = frame.dropna(how="all")
-    if len(kept) == 0:
-        raise ToolpathError("Table of lines: found no rows; add at least one line.")
-    for row in range(len(kept)):
-        for label in LINE_COLUMNS:
-            if _empty(kept[label].iloc[row]):
-                raise ToolpathError(f"Row {row + 1}: {label} is missing; type a number.")
-    numbers = kept[list(LINE_COLUMNS)].to_numpy(dtype=float)
-    return LinesSource(to_si(numbers[:, :3], unit), to_si(numbers[:, 3:6], unit), to_si(numbers[:, 6], feed_unit), n_s)
-
-
-def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
-    """``base`` with what ``st.data_editor`` says was changed (edited, added and deleted rows)."""
-    frame = base.copy()
-    for row, cells in changes.get("edited_rows", {}).items():
-        for column, value in cells.items():
-            frame.loc[frame.index[int(row)], column] = value
-    frame = frame.drop(index=[frame.index[i] for i in changes.get("deleted_rows", [])])
-    added = [{c: r.get(c) for c in frame.columns} for r in changes.get("added_rows", [])]
-    if added:
-        frame = pd.concat([frame, pd.DataFrame(added)], ignore_index=True)
-    return frame
 
 
 def _names(robot: Robot) -> list[str]:
@@ -175,14 +136,10 @@ def _clean(values: Any, unit: str) -> Any:
     return np.round(from_si(np.asarray(values, dtype=float), unit), 9)
 
 
-def _empty(value: Any) -> bool:
-    return value is None or (isinstance(value, float) and np.isnan(value)) or value is pd.NA
-
-
 def _column(frame: pd.DataFrame, label: str, unit: str) -> FloatArray:
     numbers = np.empty(len(frame))
     for i, typed in enumerate(frame[label]):
-        if _empty(typed):
+        if empty(typed):
             raise RobotError(f"Joint {i + 1}: {label.partition(',')[0]} is missing; type a number.")
         numbers[i] = to_si(float(typed), unit)
     return numbers

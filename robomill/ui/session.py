@@ -1,7 +1,8 @@
-"""The project: one frozen value under one session key, with its history. Widgets are views of it.
+"""What lives in a session: the project with its history, values that outlive their page, and refused input.
 
-``Project`` is what a person works on: the simulation set-up and how it is looked at. Every change replaces it
-(``change``, ``look``), so undo is a list of earlier values and nothing typed is lost on a page change.
+``Project`` is the whole truth of what a person decided. Every change replaces it (``change``, ``look``), so undo is a
+list of earlier values and nothing typed is lost on a page change. What belongs to no project (a film being made, a
+file waiting to be read, the view of a panel) is kept by name: ``keep("milling.question", "tip")``.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.io.projects import load_setup
-from robomill.io.samples import samples_dir
+from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
+from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
 
 KEY = "robomill"
 EDITED = Provenance("user", "entered in the app")
@@ -40,54 +41,23 @@ ROBOT_BLOCKS = {
     "tool": ("T_tool",),
     "base": ("T_base",),
 }
-DEFAULT_PRESET = "paper_flute"
 MAX_HISTORY = 60
 ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one step back
-
-
-@dataclass(frozen=True)
-class View:
-    """How the project is looked at; saved with it, but not part of the history."""
-
-    units: str = "mm"
-    joint_unit: str = "1e-7 rad/(N m)"
-    exaggeration: float = 10.0
-    station: float = 0.5
-    camera: str = "iso"
-    share_axis: str = "y"
-    theta: tuple[float, ...] | None = None
-
-    @property
-    def length(self) -> str:
-        """Unit of lengths and deviations, a key of ``UNITS``."""
-        return self.units
-
-    @property
-    def feed(self) -> str:
-        """Unit of feed rates."""
-        return "in/min" if self.units == "in" else "mm/min"
-
-
-@dataclass(frozen=True, eq=False)
-class Project:
-    """The set-up, the view on it, and the preset it began with."""
-
-    setup: SimulationSetup
-    view: View = field(default_factory=View)
-    preset: str = DEFAULT_PRESET
 
 
 @dataclass(eq=False)
 class Store:
     """What lives in the session: the project, its history, and input that was refused but is still shown.
 
-    ``revision`` counts changes that came from outside a table editor, so that editors start afresh then. ``seeded`` are
-    the widgets of ``page`` that have been given their value: a widget that returns with its page has lost it.
+    ``values`` are kept by name. ``revision`` counts changes that came from outside a table editor, so that editors
+    start afresh then. ``seeded`` are the widgets of ``page`` that have been given their value: a widget that returns
+    with its page has lost it.
     """
 
     project: Project
     past: list[Project] = field(default_factory=list)
     future: list[Project] = field(default_factory=list)
+    values: dict[str, Any] = field(default_factory=dict)
     revision: int = 0
     refused: dict[str, tuple[Any, str]] = field(default_factory=dict)
     frames: dict[str, Any] = field(default_factory=dict)
@@ -95,18 +65,6 @@ class Store:
     last_time: float = 0.0
     page: str = ""
     seeded: set[str] = field(default_factory=set)
-
-
-def presets() -> dict[str, str]:
-    """Folder name -> folder name of every sample with a set-up, the default first."""
-    names = sorted(path.parent.name for path in samples_dir().glob("*/setup.toml"))
-    return {name: name for name in sorted(names, key=lambda name: (name != DEFAULT_PRESET, name))}
-
-
-@st.cache_resource(max_entries=32, show_spinner=False)
-def preset_setup(name: str) -> SimulationSetup:
-    """The set-up of a sample folder, read once."""
-    return load_setup(samples_dir() / name / "setup.toml")
 
 
 def store() -> Store:
@@ -118,15 +76,36 @@ def store() -> Store:
 
 def enter(page: str) -> None:
     """Say which page is running, so that widgets shared by pages are seeded again after a page change."""
-    kept = store()
-    if kept.page != page:
-        kept.page = page
-        kept.seeded.clear()
+    held = store()
+    if held.page != page:
+        held.page = page
+        held.seeded.clear()
+
+
+def kept(name: str, otherwise: Any = None) -> Any:
+    """The value kept under ``name`` ("page.thing"), for as long as the session lasts."""
+    return store().values.get(name, otherwise)
+
+
+def keep(name: str, value: Any) -> None:
+    """Keep ``value`` under ``name``; it outlives a visit to another page."""
+    store().values[name] = value
+
+
+def drop(name: str) -> Any:
+    """Forget what is kept under ``name``, and return it; None where nothing is."""
+    return store().values.pop(name, None)
 
 
 def project() -> Project:
     """The project of this session."""
     return store().project
+
+
+def maps() -> MapView:
+    """What the maps look at, for the project's robot."""
+    now = project()
+    return now.maps.of(now.setup.robot)
 
 
 def before() -> Project | None:
@@ -140,14 +119,14 @@ def change(*, label: str = "", from_editor: bool = False, **fields: Any) -> None
 
     Raises the RobomillError of the field that refuses; the project then stays as it was.
     """
-    kept = store()
-    given = kept.project.setup
+    held = store()
+    given = held.project.setup
     marked = dict(given.provenance) | {BLOCKS[name]: EDITED for name in fields if name in BLOCKS}
     if isinstance(fields.get("robot"), Robot):
         fields["robot"] = _marked(given.robot, fields["robot"])
-    new = given.replace(**{"provenance": marked, **fields})
-    if new.digest() != given.digest():
-        replace(dataclasses.replace(kept.project, setup=new), label, from_editor)
+    new = held.project.replace(setup=given.replace(**{"provenance": marked, **fields}))
+    if new.digest() != held.project.digest():
+        replace(new, label, from_editor)
 
 
 def _marked(old: Robot, new: Robot) -> Robot:
@@ -164,55 +143,72 @@ def _marked(old: Robot, new: Robot) -> Robot:
 
 def replace(new: Project, label: str = "", from_editor: bool = False) -> None:
     """Put a whole new project in force; the old one can be had back with ``undo``."""
-    kept = store()
+    held = store()
     now = time.monotonic()
-    if not (label and label == kept.last_label and kept.past and now - kept.last_time < ONE_GESTURE_S):
-        kept.past = [*kept.past, kept.project][-MAX_HISTORY:]
-    kept.project, kept.future, kept.last_label, kept.last_time = new, [], label, now
+    if not (label and label == held.last_label and held.past and now - held.last_time < ONE_GESTURE_S):
+        held.past = [*held.past, held.project][-MAX_HISTORY:]
+    held.project, held.future, held.last_label, held.last_time = new, [], label, now
     if not from_editor:
-        kept.revision += 1
+        held.revision += 1
 
 
 def look(**fields: Any) -> None:
     """Replace fields of the view; not part of the history."""
-    kept = store()
-    kept.project = dataclasses.replace(kept.project, view=dataclasses.replace(kept.project.view, **fields))
+    held = store()
+    held.project = held.project.replace(view=dataclasses.replace(held.project.view, **fields))
+
+
+def see(**fields: Any) -> None:
+    """Replace fields of what the maps look at; not part of the history."""
+    held = store()
+    held.project = held.project.replace(maps=dataclasses.replace(maps(), **fields))
+
+
+def know(found: Knowledge) -> None:
+    """Say how sure the compliances in force are, where that has changed; undo leads back with the compliances."""
+    held = store()
+    setup = held.project.setup
+    held.project = held.project.replace(knowledge=found.held_by(setup.robot, setup.springs))
+
+
+def known(setup: SimulationSetup) -> Knowledge | None:
+    """What the project knows of the compliances of ``setup``; None where they did not come from an identification."""
+    now = project()
+    return now.knowledge if now.holds(setup) else None
 
 
 def undo() -> None:
-    """Back to the project before the last change; the view stays."""
-    _step(lambda kept: (kept.past, kept.future))
+    """Back to the project before the last change; the looking stays."""
+    _step(lambda held: (held.past, held.future))
 
 
 def redo() -> None:
     """Forward again after an undo."""
-    _step(lambda kept: (kept.future, kept.past))
+    _step(lambda held: (held.future, held.past))
 
 
 def _step(lists: Callable[[Store], tuple[list[Project], list[Project]]]) -> None:
-    kept = store()
-    source, target = lists(kept)
+    held = store()
+    source, target = lists(held)
     if not source:
         return
-    target.append(kept.project)
-    kept.project = dataclasses.replace(source.pop(), view=kept.project.view)
-    _forget(kept)
+    target.append(held.project)
+    held.project = source.pop().replace(view=held.project.view, maps=held.project.maps)
+    _forget(held)
 
 
 def open_preset(name: str) -> None:
     """Start from a sample; undo leads back."""
-    kept = store()
-    replace(Project(preset_setup(name), kept.project.view, name))
+    held = store()
+    replace(Project(preset_setup(name), held.project.view, name, held.project.maps))
     look(theta=None)
-    _forget(kept)
+    _forget(held)
 
 
 def open_text(text: str) -> str:
     """Open a project file; returns "" or the reason why it was refused (the current project then stays)."""
-    from robomill.ui.files import project_from_toml
-
     try:
-        new = project_from_toml(text, store().project.view)
+        new = project_from_toml(text, project().view, project().maps)
     except RobomillError as exc:
         return str(exc)
     replace(new)
@@ -220,8 +216,8 @@ def open_text(text: str) -> str:
     return ""
 
 
-def _forget(kept: Store) -> None:
-    kept.revision += 1
-    kept.last_label = ""
-    kept.refused.clear()
-    kept.frames.clear()
+def _forget(held: Store) -> None:
+    held.revision += 1
+    held.last_label = ""
+    held.refused.clear()
+    held.frames.clear()

@@ -1,4 +1,4 @@
-"""The pieces pages are made of: tiles, badges, figures with their downloads, refusals."""
+"""The pieces pages are made of: tiles, badges, facts, matrices, figures with their tables and downloads, refusals."""
 
 from __future__ import annotations
 
@@ -87,16 +87,32 @@ def facts(rows: Sequence[tuple[str, str, str]]) -> None:
     st.html(f'<table class="rm-facts">{body}</table>')
 
 
-def matrix(rows: Sequence[Sequence[str]], names: Sequence[str]) -> None:
-    """A small matrix with named rows and columns, the diagonal bold."""
-    head = "".join(f"<th>{html.escape(n)}</th>" for n in names)
+def matrix(rows: Sequence[Sequence[str]], names: Sequence[str], columns: Sequence[str] | None = None) -> None:
+    """A small matrix with named rows and columns; where ``columns`` are named as the rows, the diagonal is bold."""
+    head = "".join(f"<th>{_low(n)}</th>" for n in columns or names)
     body = "".join(
-        f"<tr><th>{html.escape(names[i])}</th>"
-        + "".join(f'<td class="{"d" if i == j else ""}">{html.escape(v)}</td>' for j, v in enumerate(row))
+        f"<tr><th>{_low(name)}</th>"
+        + "".join(
+            f'<td class="{"d" if columns is None and i == j else ""}">{html.escape(v)}</td>' for j, v in enumerate(row)
+        )
         + "</tr>"
-        for i, row in enumerate(rows)
+        for i, (name, row) in enumerate(zip(names, rows, strict=True))
     )
-    st.html(f'<table class="rm-matrix"><tr><th></th>{head}</tr>{body}</table>')
+    table = f'<table class="rm-matrix"><tr><th></th>{head}</tr>{body}</table>'
+    st.html(table if columns is None else f'<div style="overflow-x:auto">{table}</div>')
+
+
+def _low(name: str) -> str:
+    """A one-letter symbol with its index set low; words and units as they are."""
+    return f"{html.escape(name[0])}<sub>{html.escape(name[1:])}</sub>" if len(name) == 2 else html.escape(name)
+
+
+def signed(value: float, plus: bool = False, digits: int = 3) -> str:
+    """A number of a matrix, with a true minus and no negative zero."""
+    text = f"{value:+.{digits}f}" if plus else f"{value:.{digits}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("+-")
+    return text.replace("-", "−")
 
 
 def error(exc: RobomillError | str) -> None:
@@ -134,9 +150,11 @@ def figure(
     caption: str = "",
     alt: str = "",
     on_select: Callable[[], None] | None = None,
+    lazy: bool = False,
 ) -> Any:
     """A plotly figure that keeps its camera, with its table twin and CSV beneath and PNG in its own tool bar.
 
+    A ``lazy`` table is made when it is opened: maps are redrawn at every slider step, their tables are not.
     ``name`` is the file name of what is taken away (default: the key), ``alt`` what a screen reader says,
     ``on_select`` a callback for picked points (the picked points are returned, too).
     """
@@ -165,13 +183,17 @@ def figure(
             if caption:
                 note(caption)
             if table is not None:
-                table_twin(table, file_name)
+                table_twin(table, file_name, key if lazy else "")
     return picked
 
 
-def table_twin(table: Callable[[], Columns], name: str) -> None:
-    """The numbers behind a figure, to read and to take away as CSV."""
-    with st.popover("Table", icon=":material/table:", type="tertiary"):
+def table_twin(table: Callable[[], Columns], name: str, asked: str = "") -> None:
+    """The numbers behind a figure, to read and to take away as CSV; made when opened where ``asked`` names a key."""
+    more: dict[str, Any] = {"key": f"table-of-{asked}", "on_change": "rerun"} if asked else {}
+    popover = st.popover("Table", icon=":material/table:", type="tertiary", **more)
+    if asked and not popover.open:
+        return
+    with popover:
         import pandas as pd
 
         frame = pd.DataFrame(dict(table()))

@@ -1,0 +1,82 @@
+"""What stands on a number box, and what a number typed into it means: no screen is needed for either."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from robomill.errors import ProjectError
+from robomill.quantities import quantities
+from robomill.ui.project import read_field
+from robomill.units import UNITS, from_si, to_si, unit_label
+
+
+@dataclass(frozen=True)
+class Box:
+    """What stands on a number box, in the unit that is shown; an empty one means None where ``optional``.
+
+    ``low`` and ``high`` are refused beyond in a sentence; ``digits`` default to those of the unit.
+    """
+
+    label: str
+    unit: str = "1"
+    step: float | None = None
+    digits: int | None = None
+    hint: str | None = None
+    low: float | None = None
+    high: float | None = None
+    whole: bool = False
+    optional: bool = False
+    disabled: bool = False
+    hidden: bool = False
+    placeholder: str = "not given"
+
+    @property
+    def form(self) -> str | None:
+        """How its number is written, as ``printf`` says it."""
+        return None if self.whole else f"%.{UNITS[self.unit].digits if self.digits is None else self.digits}f"
+
+    @property
+    def title(self) -> str:
+        """The label with its unit."""
+        return f"{self.label}, {unit_label(self.unit)}" if unit_label(self.unit) else self.label
+
+    def shown(self, value: float | None) -> float | None:
+        """A value in SI as the box shows it, without the last bits that a conversion leaves behind."""
+        if value is None or self.whole:
+            return None if value is None else int(value)
+        return float(f"{from_si(float(value), self.unit):.12g}")
+
+    def typed(self, shown: float | None) -> float | None:
+        """What was typed, in SI. Raises ProjectError naming the box where it is empty or beyond its bounds."""
+        if shown is None:
+            if self.optional:
+                return None
+            raise ProjectError("The box is empty: type a number.")
+        low, high = self.low, self.high
+        if (low is not None and shown < low) or (high is not None and shown > high):
+            expected = f"{low:g} or more" if high is None else f"{high:g} or less" if low is None else ""
+            expected = expected or f"{low:g} to {high:g}"
+            named = f"{expected} {unit_label(self.unit)}".strip()
+            raise ProjectError(f"{self.label}: found {shown:g}, expected {named}.")
+        return int(shown) if self.whole else to_si(float(shown), self.unit)
+
+
+def declared(owner: Any, path: str, **shown: Any) -> Box:
+    """The box of the field at ``path`` of ``owner`` as its class declares it; in another ``unit`` its step follows."""
+    above, _, last = path.rpartition(".")
+    holder = read_field(owner, above) if above else owner
+    said = quantities(type(holder)).get(last.partition("[")[0])
+    if said is None:
+        return Box(**shown)
+    unit = shown.get("unit", said.unit)
+    given: dict[str, Any] = {
+        "label": said.label,
+        "unit": unit,
+        "step": said.step_in(unit),
+        "digits": said.digits_in(unit),
+        "hint": said.hint,
+        "whole": said.kind == "whole",
+        "optional": said.optional,
+    }
+    return Box(**{**given, **shown})
