@@ -32,7 +32,6 @@ POINTS: dict[str, tuple[int, int]] = {
     "arc": (3, 3),
     "circle": (2, 2),
 }
-CLOSED = ("polygon", "rectangle", "circle")
 
 APPROACH = 0.5e-3
 SAME = 1e-9
@@ -80,11 +79,6 @@ class Element:
     def replace(self, **changes: Any) -> Element:
         """A changed copy, checked again."""
         return dataclasses.replace(self, **changes)
-
-    @property
-    def closed(self) -> bool:
-        """Whether the cut ends where it begins."""
-        return self.shape in CLOSED
 
     def outline(self) -> FloatArray:
         """(q, 2) m: the corners of the cut in order, arcs as chords within the chord error of the G-code reader."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
 import math
 
 import numpy as np
@@ -205,3 +206,26 @@ def test_tools_and_lines_are_noted() -> None:
     program = ends("G21 F60\nG0 X1\nT3 M6\n\nG0 X2\nG2 X3 I0.5\nT4 M6 G0 X4")
     assert program.tool.tolist() == [0, 3, 3, 4]
     assert program.line.tolist() == [2, 5, 6, 7]
+
+
+@pytest.mark.parametrize("fast", [False, True])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "G93 G1 X1e F1",
+        "G93 G1 X{huge} F1\nG2 X0 I5 F1",
+        "G2 I1 P{huge} F9",
+        "T{huge} M6 G0 X1",
+        "G0 A{huge}\nG1 A-{huge} F9",
+        "F{huge} G1 X5",
+        "G2 X{huge} R{huge} F9",
+        "G10 L2 P1 R{huge}\nG0 X{huge}",
+    ],
+)
+def test_huge_numbers_are_read_or_refused(text: str, fast: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if fast:
+        for name in ("LONG", "LOADED_LONG", "WORTHWHILE"):
+            monkeypatch.setattr(f"robomill.toolpath.gcode.stretches.{name}", 0)
+    for huge in ("9" * 15, "9" * 40, "9" * 308):
+        with contextlib.suppress(GCodeError):
+            ends("G21 F1\n" + text.format(huge=huge))

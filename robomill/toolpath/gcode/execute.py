@@ -8,7 +8,7 @@ from typing import Any
 from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
 from robomill.toolpath.gcode import words as modal
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import set_rates
+from robomill.toolpath.gcode.motion_rules import MOST, set_rates
 from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import Block, g_name
 
@@ -112,7 +112,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
         number = machine.selected
         machine.spindle = 0
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
-    machine.in_spindle = number
+    machine.in_spindle = min(number, MOST)
 
 
 def _execute_g(machine: Machine, block: Block) -> None:

@@ -85,6 +85,8 @@ SPIRAL_SHARE = 1e-3
 RADIUS_INCH = 0.00005
 RADIUS_MM = RADIUS_INCH * 25.4
 """A radius below this is none; half a chord may exceed a given radius by this much."""
+MOST = 2**31 - 1
+"""No column of whole numbers holds more; nobody turns so often, or has so many tools."""
 FULL_TURN = 1e-8
 """rad: an arc that would sweep less than this is a full turn, as an arc back to its start is."""
 
@@ -194,10 +196,9 @@ def to_frame(m, x: float, y: float, z: float, out) -> None:
 # --- straight moves
 def straight_length(p, end) -> float:
     """The length that a feed counts along: of x, y, z, or of the turning axes where only they move."""
-    length = math.sqrt((end[0] - p[0]) ** 2 + (end[1] - p[1]) ** 2 + (end[2] - p[2]) ** 2)
     if abs(end[0] - p[0]) > 1e-7 or abs(end[1] - p[1]) > 1e-7 or abs(end[2] - p[2]) > 1e-7:
-        return length
-    return math.sqrt((end[3] - p[3]) ** 2 + (end[4] - p[4]) ** 2 + (end[5] - p[5]) ** 2)
+        return math.hypot(math.hypot(end[0] - p[0], end[1] - p[1]), end[2] - p[2])
+    return math.hypot(math.hypot(end[3] - p[3], end[4] - p[4]), end[5] - p[5])
 
 
 def write_move(m, kind: int, end, v_f: float, row) -> None:
@@ -316,7 +317,7 @@ def write_arc(m, end, middle, turn: int, v_f: float, row) -> None:
     write_move(m, ARC, end, v_f, row)
     to_frame(m, middle[0], middle[1], middle[2], row.centre)
     first, second, _ = axes(row.plane)
-    row.turns = abs(turn)
+    row.turns = min(abs(turn), MOST)
     row.clockwise = turn < 0
     row.sweep = swept(
         (row.start[first], row.start[second]),
