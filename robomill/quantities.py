@@ -151,11 +151,13 @@ class Quantity:
 def quantity(label: str, unit: str = "1", *, default: Any = MISSING, **said: Any) -> Any:
     """A number (an array, where ``shape`` is given) as a dataclass field; ``said`` are further fields of ``Quantity``.
 
-    An ``optional`` one is None unless it is given, where no other default is stated.
+    An ``optional`` one is None unless it is given, where no other default is stated. ``compare=False`` keeps it out
+    of comparisons and of the digest, as in ``dataclasses.field``.
     """
     if said.get("optional") and default is MISSING:
         default = None
-    return _declared(Quantity(label, unit, "array" if said.get("shape") else "number", **said), default)
+    compare = said.pop("compare", True)
+    return _declared(Quantity(label, unit, "array" if said.get("shape") else "number", **said), default, compare)
 
 
 def whole(label: str, *, default: Any = MISSING, **said: Any) -> Any:
@@ -237,8 +239,8 @@ def round_step(step: float) -> float:
     return float(f"{nearest * power:.1g}")
 
 
-def _declared(declared: Quantity, default: Any) -> Any:
-    return field(default=default, metadata={_KEY: declared})
+def _declared(declared: Quantity, default: Any, compare: bool = True) -> Any:
+    return field(default=default, compare=compare, metadata={_KEY: declared})
 
 
 def _number(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> float:

@@ -180,7 +180,7 @@ def _source_table(source: PathSource) -> dict[str, Any]:
     if source.kind == "program":
         return {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
     if source.kind == "sketch":
-        return {"sketch": sketch_to_table(source.sketch, shown)}
+        return {"sketch": sketch_to_table(source.sketch)}
     rows = np.hstack([source.start, source.end])
     return {
         "lines_mm": [[shown(v, "mm") for v in row] for row in rows],

@@ -15,8 +15,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.arrays import FloatArray, frozen
 from robomill.errors import ToolpathError
+from robomill.quantities import choice, quantities, quantity, settle
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, from_si, to_si
 
@@ -49,17 +50,16 @@ class Element:
     polygon     three or more, closed           circle      centre, a point on it (where the cut begins)
     """
 
-    shape: Shape
-    points: FloatArray
-    depth: float
-    v_f: float
+    shape: Shape = choice("Shape", {shape: shape for shape in SHAPES})
+    points: FloatArray = quantity("Points", "mm", shape=(None, 2))
+    depth: float = quantity("Depth", "mm", above=0.0)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min")
 
     def __post_init__(self) -> None:
-        if self.shape not in POINTS:
-            raise ToolpathError(f"Sketch: {self.shape!r} is not a shape; known are {', '.join(SHAPES)}.")
-        points = tidy(as_floats(self.points, f"Sketch, {self.shape}", (None, 2), error=ToolpathError), "mm")
+        settle(self, ToolpathError, "Sketch")
+        points = tidy(self.points, "mm")
         fewest, most = POINTS[self.shape]
-        if points.ndim != 2 or len(points) < fewest or (most and len(points) > most):
+        if len(points) < fewest or (most and len(points) > most):
             wanted = f"{fewest}" if most == fewest else f"{fewest} or more"
             raise ToolpathError(f"Sketch: a {self.shape} needs {wanted} points, found {len(points)}.")
         if np.abs(points).max() > MAX_COORDINATE:
@@ -67,12 +67,7 @@ class Element:
                 f"Sketch: a point of the {self.shape} is {format_si(float(np.abs(points).max()), 'm', 0)} from the "
                 f"part zero; at most {format_si(MAX_COORDINATE, 'm', 0)} is drawn."
             )
-        for field, name, unit in (("depth", "depth", "mm"), ("v_f", "feed", "mm/min")):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value > 0):
-                found = format_si(value, unit) if math.isfinite(value) else "not a number"
-                raise ToolpathError(f"Sketch: the {self.shape} has {name} {found}; a cut needs more than 0.")
-            object.__setattr__(self, field, float(tidy(value, unit)))
+        _tidy_numbers(self)
         object.__setattr__(self, "points", frozen(points))
         _check_extent(self.shape, points)
 
@@ -110,12 +105,12 @@ class Sketch:
     """
 
     elements: tuple[Element, ...] = ()
-    v_plunge: float = 5e-3
-    clearance: float = 5e-3
-    n_s: float = 0.0
-    v_f: float = dataclasses.field(default=30e-3, compare=False)
-    depth: float = dataclasses.field(default=2e-3, compare=False)
-    grid: float = dataclasses.field(default=5e-3, compare=False)
+    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min")
+    clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH)
+    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min")
+    v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False)
+    depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, compare=False)
+    grid: float = quantity("Snap", "mm", default=5e-3, least=0.0, key="snap_mm", compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))
@@ -125,20 +120,8 @@ class Sketch:
                 f"Sketch: {len(self.elements)} shapes with {count} points; at most {MAX_ELEMENTS} shapes and "
                 f"{MAX_POINTS} points are kept. Write a program for more."
             )
-        for field, name, unit, least in (
-            ("v_plunge", "plunge feed", "mm/min", 1e-9),
-            ("clearance", "clearance", "mm", APPROACH),
-            ("v_f", "feed", "mm/min", 1e-9),
-            ("depth", "depth", "mm", 1e-9),
-            ("n_s", "spindle", "1/min", 0.0),
-            ("grid", "snap", "mm", 0.0),
-        ):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= least):
-                found = format_si(value, unit) if math.isfinite(value) else "not a number"
-                wanted = "more than 0" if 0 < least < 1e-6 else f"at least {format_si(least, unit, 1)}"
-                raise ToolpathError(f"Sketch: the {name} is {found}; expected {wanted}.")
-            object.__setattr__(self, field, float(tidy(value, unit)))
+        settle(self, ToolpathError, "Sketch")
+        _tidy_numbers(self)
 
     def replace(self, **changes: Any) -> Sketch:
         """A changed copy, checked again."""
@@ -188,6 +171,12 @@ class Sketch:
 def tidy(value: Any, unit: str) -> Any:
     """An SI value cut to nine decimals in ``unit``, so that files and the screen read it back exactly."""
     return to_si(np.round(from_si(np.asarray(value, dtype=float), unit), 9), unit)
+
+
+def _tidy_numbers(value: Element | Sketch) -> None:
+    for name, declared in quantities(type(value)).items():
+        if declared.kind == "number":
+            object.__setattr__(value, name, float(tidy(getattr(value, name), declared.unit)))
 
 
 def _check_extent(shape: str, points: FloatArray) -> None:

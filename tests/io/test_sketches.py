@@ -47,10 +47,10 @@ def test_any_shape_is_read_back_bit_by_bit(seed, shape, scale):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"shape": "blob"}, "'blob' is not a shape"),
+        ({"shape": "blob"}, "expected one of line, polyline"),
         ({"points_mm": [[0.0, 0.0]]}, "needs 2 points, found 1"),
         ({"points_mm": [[0.0, 0.0], [1.0]]}, "row 2: expected 2 numbers"),
-        ({"depth_mm": 0.0}, "depth 0.000 mm"),
+        ({"depth_mm": 0.0}, "Depth: found 0 mm"),
         ({"feed_mm_min": float("nan")}, "finite"),
         ({"colour": 1}, "not known here"),
     ],

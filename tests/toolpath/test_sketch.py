@@ -91,7 +91,7 @@ def test_shapes_apart_are_joined_by_rapids_at_clearance():
 @pytest.mark.parametrize(
     ("shape", "points", "depth", "v_f", "words"),
     [
-        ("blob", [[0, 0], [1, 0]], 1e-3, 0.1, "not a shape"),
+        ("blob", [[0, 0], [1, 0]], 1e-3, 0.1, "Sketch, Shape: found 'blob'; expected line, polyline"),
         ("line", [[0, 0]], 1e-3, 0.1, "needs 2 points, found 1"),
         ("line", [[0, 0], [1, 0], [2, 0]], 1e-3, 0.1, "needs 2 points, found 3"),
         ("polygon", [[0, 0], [1, 0]], 1e-3, 0.1, "needs 3 or more"),
@@ -100,9 +100,9 @@ def test_shapes_apart_are_joined_by_rapids_at_clearance():
         ("arc", [[0, 0], [1, 1], [0, 0]], 1e-3, 0.1, "ends where it begins; draw a circle"),
         ("line", [[0, 0], [1, np.nan]], 1e-3, 0.1, "finite"),
         ("line", [[0, 0], [1e4, 0]], 1e-3, 0.1, "from the part zero"),
-        ("line", [[0, 0], [1, 0]], 0.0, 0.1, "depth 0.000 mm; a cut needs more than 0"),
-        ("line", [[0, 0], [1, 0]], 1e-3, -0.1, "feed −6000 mm/min"),
-        ("line", [[0, 0], [1, 0]], math.inf, 0.1, "depth not a number"),
+        ("line", [[0, 0], [1, 0]], 0.0, 0.1, "Sketch, Depth: found 0 mm; expected more than 0 mm"),
+        ("line", [[0, 0], [1, 0]], 1e-3, -0.1, "Feed: found −6000 mm/min"),
+        ("line", [[0, 0], [1, 0]], math.inf, 0.1, "Depth: found inf"),
     ],
 )
 def test_what_cannot_be_cut_is_refused(shape, points, depth, v_f, words):
@@ -113,10 +113,10 @@ def test_what_cannot_be_cut_is_refused(shape, points, depth, v_f, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"clearance": 0.0}, "clearance is 0.000 mm; expected at least 0.5 mm"),
-        ({"v_plunge": 0.0}, "plunge feed"),
-        ({"n_s": -1.0}, "spindle"),
-        ({"grid": math.nan}, "snap is not a number"),
+        ({"clearance": 0.0}, "Clearance: found 0 mm; expected 0.5 mm or more"),
+        ({"v_plunge": 0.0}, "Plunge feed: found 0 mm/min"),
+        ({"n_s": -1.0}, "Spindle: found −60"),
+        ({"grid": math.nan}, "Snap: found nan"),
         ({"elements": (line([0, 0], [1, 0]),) * 5001}, "at most 5000 shapes"),
     ],
 )
