@@ -1,0 +1,34 @@
+"""Improve: what would fix the project's cut? One remedy so far: a stiffer joint."""
+
+from __future__ import annotations
+
+import streamlit as st
+
+from robomill import ui
+from robomill.ui.improve import stiffen
+
+project = ui.begin("Improve")
+setup, unit = project.setup, project.view.length
+joints = setup.robot.joint_numbers
+title = f"Improve · {setup.name}"
+
+result = ui.attempt(ui.result, setup)
+if result is None or result.worst < 0:
+    ui.headline(title, "There is no cut to improve yet.")
+    ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
+    st.stop()
+ranked = ui.attempt(stiffen.found, setup)
+if ranked is None:
+    ui.headline(title, "What would fix it?")
+    stiffen.ask(setup)
+    st.stop()
+
+ui.headline(title, stiffen.sentence(ranked, joints, unit))
+ui.tiles(stiffen.tiles(ranked, joints, setup, unit))
+left, right = ui.split([1, 1.7], "page", gap="large")
+with left, st.container(border=True):
+    st.markdown("**What would fix it?**")
+    stiffen.remedies(ranked, joints, unit)
+with right, st.container(border=True):
+    stiffen.ranking(ranked, joints, unit, ui.dark())
+ui.note("Other remedies (compensating the path, placing the part elsewhere, another cut) are not computed yet.")

@@ -1,0 +1,120 @@
+"""One remedy for the project's cut: a stiffer joint, ranked by what it leaves of the largest deviation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import streamlit as st
+
+from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
+from robomill.simulation.setup import SimulationSetup
+from robomill.ui import cached, pieces, session
+from robomill.units import format_si, from_si, unit_label
+from robomill.viz.shares import gain_bars
+
+AUTO_SAMPLES = 30_000
+ASKED = "improve.asked"
+
+
+def digits(unit: str) -> int:
+    """Decimals of a deviation."""
+    return 4 if unit == "in" else 3
+
+
+def found(setup: SimulationSetup) -> Stiffening | None:
+    """The ranking: at once for a short path, when asked for a long one. Raises the simulation's refusal."""
+    path = setup.toolpath
+    short = len(path) + float(path.s[-1]) / setup.step <= AUTO_SAMPLES and not setup.engagement
+    if not short and session.kept(ASKED) != setup.digest():
+        return None
+    with st.spinner("Cutting once with each joint twice as stiff …", show_time=True):
+        return stiffer_joints(setup, cached.result)
+
+
+def ask(setup: SimulationSetup) -> None:
+    """The button that ranks the joints of a long path."""
+    st.button(
+        "Rank the joints",
+        icon=":material/play_arrow:",
+        type="primary",
+        key="improve.rank",
+        on_click=session.keep,
+        args=(ASKED, setup.digest()),
+    )
+    pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
+
+
+def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
+    """Which joint saves most, in one line."""
+    best = int(ranked.ranking[0])
+    if not ranked.saved[best] > 0:
+        return "No joint twice as stiff would make the largest deviation of this cut smaller."
+    before, after = (format_si(float(v), unit, digits(unit)) for v in (ranked.before, ranked.after[best]))
+    return f"Joint {joints[best]} twice as stiff would bring the largest deviation from {before} to {after}."
+
+
+def tiles(ranked: Stiffening, joints: tuple[int, ...], setup: SimulationSetup, unit: str) -> list[pieces.Tile]:
+    """The deviation now, the best joint, what it leaves, what the tolerance asks."""
+    best = int(ranked.ranking[0])
+    after, saved = float(ranked.after[best]), float(ranked.saved[best])
+    fits = after <= setup.tolerance
+    return [
+        pieces.Tile("Max deviation", format_si(ranked.before, unit, digits(unit)), "as the robot is", kind="computed"),
+        pieces.Tile("Stiffen first", f"joint {joints[best]}", f"saves {format_si(saved, unit, digits(unit))}"),
+        pieces.Tile("Then", format_si(after, unit, digits(unit)), "with that joint twice as stiff", kind="computed"),
+        pieces.Tile(
+            "Tolerance",
+            format_si(setup.tolerance, unit, digits(unit)),
+            "met with that joint" if fits else "not met by any one joint",
+            tone="ok" if fits else "out",
+        ),
+    ]
+
+
+def columns(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> dict[str, list[Any]]:
+    """The ranking as a table, best first, in display units."""
+    order = ranked.ranking
+    return {
+        "joint": [str(joints[i]) for i in order],
+        f"now_{unit}": [float(from_si(ranked.before, unit))] * len(order),
+        f"twice_as_stiff_{unit}": [float(from_si(ranked.after[i], unit)) for i in order],
+        f"saved_{unit}": [float(from_si(ranked.saved[i], unit)) for i in order],
+    }
+
+
+def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) -> None:
+    """The bars with their table."""
+    pieces.figure(
+        gain_bars(
+            [("largest deviation, less", from_si(ranked.saved, unit), unit_label(unit))],
+            joints,
+            dark=dark,
+            height=88 + 34 * len(joints),
+        ),
+        "improve-joints",
+        name="stiffer-joints",
+        table=lambda: columns(ranked, joints, unit),
+        alt="How much smaller the largest deviation becomes with each joint twice as stiff.",
+        caption="Each joint alone twice as stiff, by a run of the same simulation with the same path and cut.",
+    )
+
+
+def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
+    """The joints from best to least, each with its numbers and its button."""
+    for i in map(int, ranked.ranking):
+        words, button = st.columns([2.2, 1], vertical_alignment="center")
+        after, saved = (format_si(float(v), unit, digits(unit)) for v in (ranked.after[i], ranked.saved[i]))
+        words.markdown(f"**Joint {joints[i]}**: {after} left, {saved} saved")
+        button.button(
+            "Use it",
+            key=f"improve.use.{joints[i]}",
+            icon=":material/check:",
+            width="stretch",
+            on_click=_use,
+            args=(i,),
+            help="Halves this joint's compliance in the project; undo leads back.",
+        )
+
+
+def _use(joint: int) -> None:
+    session.change(robot=one_stiffer(session.project().setup.robot, joint))
