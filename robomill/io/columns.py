@@ -142,7 +142,7 @@ def _known(names: list[str], layout: Layout, place: Place) -> tuple[dict[str, Co
         if unit is None:
             what = f"unit {suffix!r} is not known" if suffix else "the unit is missing"
             good = ", ".join("_".join(filter(None, (written[: len(stem)], short))) for short in units)
-            odd.append((quantity, written, place.refuse(f"{what}; write one of {good}.", 0, repr(written))))
+            odd.append((quantity, written, place.refuse(f"{what}; write one of {good}.", column=repr(written))))
         elif quantity in known:
             raise place.refuse(f"{known[quantity].written} and {written} are the same quantity twice; keep one.")
         else:

@@ -149,6 +149,7 @@ def test_anything_else_is_read_or_refused_in_one_sentence(given: str | bytes) ->
         ("1,5;2\n3;4\n5;6", "Row 1: found numbers, expected a header that names columns and units (Fx_N,m_Nm)."),
         ("what,ever\n1,2\n3,4", "Row 1: no column is known among what, ever; expected a header such as Fx_N,m_Nm."),
         ("Fx\n1\n2", "Row 1, column 'Fx': the unit is missing; write one of Fx_N, Fx_kN."),
+        ("\n\nFx\n1\n2", "Row 3, column 'Fx': the unit is missing; write one of Fx_N, Fx_kN."),
         ("Fx_lb\n1\n2", "Row 1, column 'Fx_lb': unit 'lb' is not known; write one of Fx_N, Fx_kN."),
         ("Fx [lb]\n1\n2", "Row 1, column 'Fx [lb]': unit 'lb' is not known; write one of Fx_N, Fx_kN."),
         ("joint_N\n1\n2", "Row 1, column 'joint_N': unit 'N' is not known; write one of joint."),
