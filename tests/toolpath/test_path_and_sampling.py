@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
-from robomill.toolpath.path import toolpath_from_lines
+from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sampling import resample
 
 
@@ -75,3 +75,29 @@ def test_a_cut_and_a_corner_also_have_a_sample_at_their_start() -> None:
     fine = resample(path, 0.005)
     assert fine.step_length[1:] == pytest.approx([0, 0.005, 0.005, 0, 0.005, 0.005])
     assert fine.block.tolist() == [1, 1, 1, 1, 2, 2, 2]
+
+
+def test_only_what_begins_or_turns_has_a_sample_at_its_start() -> None:
+    # x (mm), cutting: on in one line, a rapid in that line, on, a cut of no length, on, gently round, sharply round
+    moves = [
+        (10, 0, 1),
+        (20, 0, 1),
+        (30, 0, 0),
+        (40, 0, 1),
+        (40, 0, 1),
+        (50, 0, 1),
+        (60, 0.1, 1),
+        (60, 9, 1),
+        (60, 20, 1),
+    ]
+    begins = [True, False, False, True, False, True, False, True, False]
+    p = np.array([(0, 0, 0), *((x, y, 0) for x, y, _ in moves)]) * 1e-3
+    cutting = np.array([False, *(bool(cut) for _, _, cut in moves)])
+    line = np.arange(len(p))
+    path = Toolpath(p, np.array([0.0, 0, 1]), np.where(cutting, 0.01, 0.0), cutting, line, np.zeros(1), np.zeros(1))
+    fine = resample(path, 1.0)
+    expected = [0]
+    for i, begin in enumerate(begins, 1):
+        expected += [i, i] if begin else [i]
+    assert fine.block.tolist() == expected
+    assert fine.p[:, 0] * 1e3 == pytest.approx([0, 0, 10, 20, 30, 30, 40, 40, 40, 50, 60, 60, 60, 60], abs=1e-12)
