@@ -205,7 +205,7 @@ def _roots() -> Iterator[Path]:
     if os.environ.get(PLACE):
         yield Path(os.environ[PLACE])
     yield PACKAGE / "__pycache__"
-    yield Path.home() / ".cache" / "robomill"
+    yield Path(os.path.expanduser("~")) / ".cache" / "robomill"  # where Path.home() may refuse
 
 
 def _own(folder: Path) -> bool:
