@@ -29,7 +29,7 @@ class RenderWorker:
     """A handle on the drawing process. Calls from several threads wait for each other.
 
     ``render(picture)`` returns PNG bytes (``picture`` is a dataclass of ``scene.py``). Raises RenderError with a
-    sentence and the command that mends it; after two deaths in a row the worker stays down until ``reset()``.
+    sentence and the command that mends it; after two deaths in a row the worker stays down.
     """
 
     def __init__(self, timeout_s: float = TIMEOUT_S, command: tuple[str, ...] | None = None) -> None:
@@ -43,10 +43,6 @@ class RenderWorker:
     def down(self) -> bool:
         """True when the last two attempts ended the process: this machine cannot draw."""
         return self._deaths >= 2
-
-    def reset(self) -> None:
-        """Forget earlier deaths, so that the next call tries again."""
-        self._deaths = 0
 
     def render(self, picture: Any) -> bytes:
         """PNG bytes of ``picture``; one restart is tried before giving up."""
