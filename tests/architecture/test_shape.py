@@ -45,7 +45,6 @@ DEAD = {
     *("C_X", "det_J_unit", "gives_most"),
     *("residual_angle", "with_convention", "with_blocked", "modelled"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
-    
 }
 
 
