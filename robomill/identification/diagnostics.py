@@ -41,7 +41,7 @@ def twins(system: System) -> dict[int, int]:
         if parameter.kind in ("joint", "entry") or norms[k] == 0:
             continue
         for j in range(k):
-            if j in found or norms[j] == 0:
+            if norms[j] == 0:
                 continue
             gap = A[:, k] / norms[k] - A[:, j] / norms[j]
             if 0.5 * float(gap @ gap) < COLLINEAR:

@@ -47,6 +47,7 @@ def test_a_free_fit_is_that_of_the_textbook():
     assert fit.null.shape == (0, 4)
     norms = np.linalg.norm(A, axis=0)
     np.testing.assert_allclose(fit.condition, [np.linalg.cond(A), np.linalg.cond(A / norms)], rtol=1e-9)
+    np.testing.assert_allclose(fitted(A * 1e-7, b).condition, fit.condition, rtol=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -59,3 +59,56 @@ def test_refusals(point):
         compliance_sensitivity(C_joint, "qq")
     with pytest.raises(KinematicsError, match="other than zero"):
         deflection_sensitivity(C_joint[:, 0], [0, 0, 0])
+
+
+def test_over_a_path_the_ranking_is_by_the_mean_of_brute_force(point):
+    """Each joint stiffened alone, the whole path computed anew; unreached points are left out of means and ranking."""
+    robot = point[0]
+    x_M = [[x, -1.3 + x / 2, 0.05, 0.1, 0.0] for x in (-0.4, -0.1, 0.2, 0.5)]
+    theta = rm.inverse_kinematics(robot, rm.pose_from_world(x_M)).theta
+    F = np.array([[100.0, 0, 0], [0, 100.0, 0], [0, 50.0, 50.0], [30.0, 0, -80.0]])
+
+    def sizes(arm):
+        return np.linalg.norm(np.einsum("mij,mj->mi", rm.cartesian_compliance(arm, theta), F), axis=1)
+
+    shares = rm.deflection(rm.joint_contributions(rm.geometric_jacobian(robot, theta)[:, :3], robot.C_theta), F)
+    with_hole = np.concatenate([shares, np.full((1, 5, 3), np.nan)])
+    for factor in (0.5, 1.1, 3.0):
+        gain = np.stack(
+            [sizes(robot) - sizes(stiffened(robot, np.where(np.arange(5) == j, factor, 1.0))) for j in range(5)], axis=1
+        )
+        found = deflection_sensitivity(with_hole, factor=factor)
+        np.testing.assert_allclose(found.gain[:4], gain, atol=1e-15)
+        np.testing.assert_allclose(found.before[:4], sizes(robot))
+        np.testing.assert_array_equal(found.ranking, np.argsort(-gain.mean(axis=0)))
+        np.testing.assert_allclose(found.relative(), gain.mean(axis=0) / sizes(robot).mean())
+        assert found.factor == factor
+        assert found.joint_numbers == (1, 2, 3, 4, 5)
+    assert deflection_sensitivity(shares).factor == pytest.approx(1.1)
+    nothing = deflection_sensitivity(np.full((3, 5, 3), np.nan))
+    np.testing.assert_array_equal(nothing.ranking, range(5))
+    assert deflection_sensitivity(shares, joint_numbers=(2, 3, 4, 5, 6)).joint_numbers == (2, 3, 4, 5, 6)
+
+
+@pytest.mark.parametrize("component", ["x", "xyz", "xq", "qx", ""])
+def test_a_component_is_two_axes(point, component):
+    with pytest.raises(KinematicsError, match="two of x, y, z"):
+        compliance_sensitivity(point[2], component)
+
+
+def test_one_number_serves_all_joints_and_a_bad_one_is_refused(point):
+    robot, theta, C_joint = point
+    np.testing.assert_allclose(stiffened(robot, 2.0).C_theta, robot.C_theta / 2)
+    along_joints = np.moveaxis(C_joint, 0, 2)
+    np.testing.assert_allclose(
+        scaled_shares(along_joints, [1, 2, 4, 5, 10], 2).sum(axis=2),
+        rm.cartesian_compliance(stiffened(robot, [1, 2, 4, 5, 10]), theta),
+        atol=1e-18,
+    )
+    for bad in (0.0, -2.0):
+        with pytest.raises(KinematicsError, match="above zero"):
+            scaled_shares(C_joint, [1, 1, bad, 1, 1], 0)
+        with pytest.raises(KinematicsError, match="above zero"):
+            compliance_sensitivity(C_joint, "yy", bad)
+    with pytest.raises(KinematicsError, match="above zero"):
+        compliance_sensitivity(C_joint, "yy", float("inf"))
