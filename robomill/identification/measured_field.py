@@ -15,11 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, as_floats, frozen
-from robomill.compliance.cartesian import cartesian_compliance
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
-from robomill.kinematics.inverse import inverse_kinematics
-from robomill.kinematics.transforms import pose_from_world, world_from_pose
+from robomill.kinematics.transforms import world_from_pose
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import format_si
@@ -104,12 +102,6 @@ class MeasuredField:
     def symmetric(self) -> MeasuredField:
         """The same map with (C + C^T) / 2: an elastic arm is symmetric, the rest is error of measurement."""
         return replace(self, C=0.5 * (self.C + np.swapaxes(self.C, -1, -2)))
-
-    def modelled(self, robot: Robot) -> FloatArray:
-        """C (k, 3, 3) m/N of the robot's joint model at the measured poses, for maps side by side and their difference
-        ``field.C - field.modelled(robot)`` (Fig. 13); NaN where the pose is not reached."""
-        solved = inverse_kinematics(robot, pose_from_world(np.concatenate([self.p, self.AB], axis=1)))
-        return cartesian_compliance(robot, solved.theta)
 
     # ---- checks ----------------------------------------------------------------------------------------------------
     @cached_property

@@ -43,7 +43,7 @@ UNUSED = {
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
     *("C_X", "det_J_unit", "gives_most"),
-    *("residual_angle", "with_convention", "with_blocked", "modelled"),
+    *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
 }
 

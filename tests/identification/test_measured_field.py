@@ -108,7 +108,6 @@ def test_the_sample_grid_is_read_as_a_map():
     assert [len(line) for line in field.lines] == [9, 5, 6]
     truth = rm.cartesian_compliance(ROBOT, theta_at(field.p))
     assert np.abs(field.C - truth).max() < 6 * 4e-6 / 250.0  # noise, and a stiff tool spring
-    np.testing.assert_allclose(field.modelled(ROBOT), truth, rtol=1e-12)
     assert field.findings == ()
     assert field.asymmetry.max() < 0.05
     np.testing.assert_allclose(field.symmetric().C, np.swapaxes(field.symmetric().C, 1, 2))
