@@ -5,8 +5,8 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
+from robomill.ui import fields as maps_fields
 from robomill.ui import session
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import workspace as panel
 
 project = ui.begin("Workspace")

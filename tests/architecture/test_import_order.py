@@ -78,3 +78,26 @@ def test_import_robomill_loads_no_screen_and_no_compiler() -> None:
     code = f"import sys, robomill; print([m for m in {heavy!r} if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert found.strip() == "[]", f"import robomill also imports {found}"
+
+
+UI_ROOMS = sorted(path.name for path in (PACKAGE / "ui").iterdir() if (path / "__init__.py").is_file())
+
+
+@pytest.mark.parametrize("room", UI_ROOMS)
+def test_no_room_of_the_screen_knows_another(room: str) -> None:
+    others = tuple(f"robomill.ui.{other}" for other in UI_ROOMS if other != room)
+    for path in (PACKAGE / "ui" / room).rglob("*.py"):
+        for name in imported(path):
+            assert not name.startswith(others), f"{path.relative_to(ROOT)} imports {name}: what is shared is ui's core"
+
+
+def test_the_core_of_the_screen_knows_no_room() -> None:
+    for path in (PACKAGE / "ui").glob("*.py"):
+        for name in imported(path):
+            assert not name.startswith(tuple(f"robomill.ui.{room}" for room in UI_ROOMS)), f"{path.name}: {name}"
+
+
+def test_only_the_screen_imports_streamlit() -> None:
+    for path in MODULES:
+        if room_of(path) != "ui":
+            assert not any(name.split(".")[0] == "streamlit" for name in imported(path)), path.relative_to(ROOT)

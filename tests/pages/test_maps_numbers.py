@@ -10,11 +10,12 @@ import pytest
 import robomill as rm
 from robomill.improve.sensitivity import stiffened
 from robomill.report.tables import Columns
+from robomill.ui import fields as maps_fields
 from robomill.ui.learn.edge import _ray
 from robomill.ui.learn.lesson import compliance_table, went
 from robomill.ui.learn.mathematics import component, product
-from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps.point import PointReport, headline, place, report, share_columns
+from robomill.ui.maps.point import headline, place, share_columns
+from robomill.ui.point import PointReport, report
 from robomill.ui.project import MapView
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid

@@ -18,10 +18,10 @@ from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.ui import cached, inputs, pieces, session, shell
+from robomill.ui import fields as maps_fields
 from robomill.ui.learn.lesson import SIDE, lesson
 from robomill.ui.learn.lesson import go as step_on
-from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps.point import FORCE, PointReport, report
+from robomill.ui.point import FORCE, PointReport, report
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces

@@ -12,10 +12,9 @@ import streamlit as st
 from robomill.arrays import FloatArray, digest
 from robomill.robot.model import Robot
 from robomill.ui import cached, inputs, pieces, session, shell
+from robomill.ui import fields as maps_fields
 from robomill.ui.learn.style import BIG
-from robomill.ui.maps import fields as maps_fields
-from robomill.ui.maps import sheets as compliance_sheets
-from robomill.ui.maps.point import FORCE, PointReport, default_point, report
+from robomill.ui.point import FORCE, PointReport, default_point, report
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 
@@ -51,7 +50,7 @@ def stand(robot: Robot) -> PointReport:
     """Where the lesson stands: the point in hand of the maps, tool vertical."""
     view = dataclasses.replace(session.maps(), A=0.0, B=0.0, point=None)
     box = maps_fields.region(robot, view)
-    known = compliance_sheets.overview(robot, view, box)
+    known = maps_fields.overview(robot, view, box)
     return report(robot, default_point(view, box, known), 0.0, 0.0)
 
 

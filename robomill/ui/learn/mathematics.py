@@ -17,7 +17,7 @@ from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cached, pieces
-from robomill.ui.maps.point import FORCE, PointReport
+from robomill.ui.point import FORCE, PointReport
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.units import from_si, unit_label
 

@@ -10,8 +10,8 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobomillError, WorkspaceError
 from robomill.io.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
+from robomill.ui import fields as maps_fields
 from robomill.ui import inputs, pieces, session
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
 from robomill.viz.maps import Map, Scale, symmetric_limit

@@ -12,10 +12,11 @@ from robomill.errors import RobomillError
 from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
+from robomill.ui import fields as maps_fields
 from robomill.ui import inputs, pieces, session, shell
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.maps.point import PointReport, place
+from robomill.ui.maps.point import place
+from robomill.ui.point import PointReport
 from robomill.ui.project import MapView, Project
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars

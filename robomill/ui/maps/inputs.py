@@ -8,8 +8,8 @@ import streamlit as st
 
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
+from robomill.ui import fields as maps_fields
 from robomill.ui import inputs, pieces, session
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.project import MapView
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
 from robomill.workspace.reach import Box

@@ -9,8 +9,8 @@ import streamlit as st
 
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
+from robomill.ui import fields as maps_fields
 from robomill.ui import pieces, session, shell
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.project import MapView
 from robomill.units import format_significant, from_si, unit_label

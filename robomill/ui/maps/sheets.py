@@ -9,14 +9,13 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.kinematics.decoupled import decoupled
 from robomill.robot.model import Robot
+from robomill.ui import fields as maps_fields
 from robomill.ui import inputs, pieces, session, shell
 from robomill.ui.maps import compare as compare_panel
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.maps import lines as lines_panel
-from robomill.ui.maps.point import default_point
+from robomill.ui.point import default_point
 from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
@@ -62,12 +61,6 @@ def picture() -> None:
         _SHEETS[view.sheet](robot, view, box, known, normal, at, unit)
     except RobomillError as exc:
         pieces.error(exc)
-
-
-def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
-    """A coarse field over the whole region, for scales that stay while the plane moves."""
-    grid = maps_fields.solid(robot, box, 700 if decoupled(robot) is not None else 150)
-    return maps_fields.field(robot, grid, view.A, view.B)
 
 
 def slab(values: FloatArray, normal: str) -> FloatArray:
@@ -143,7 +136,7 @@ def _columns(known: ComplianceField, names: list[str]) -> Any:
 def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
     scale = view.stiffening(robot)
     now = maps_fields.stiffer(known, scale)
-    whole = from_si(overview(robot, view, box).total, UM)
+    whole = from_si(maps_fields.overview(robot, view, box).total, UM)
     direct, cross = whole[..., :3], whole[..., 3:]
     label = f"C, {unit_label(UM)}"
     if view.common:
@@ -203,7 +196,7 @@ def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, norma
     kind = session.maps().shares
     now = maps_fields.stiffer(known, view.stiffening(robot))
     index = [COMPONENTS.index(c) for c in ROWS[kind]]
-    whole = from_si(overview(robot, view, box).shares[..., index], UM)
+    whole = from_si(maps_fields.overview(robot, view, box).shares[..., index], UM)
     top = symmetric_limit([whole])
     label = f"share, {unit_label(UM)}"
     scale = Scale(label, 0.0, top) if kind == "direct" else Scale(label, -top, top, "diverging")

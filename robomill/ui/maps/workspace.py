@@ -14,8 +14,8 @@ from robomill.errors import RobomillError
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
+from robomill.ui import fields as maps_fields
 from robomill.ui import inputs, pieces, session, shell
-from robomill.ui.maps import fields as maps_fields
 from robomill.ui.maps import inputs as maps_inputs
 from robomill.ui.project import MapView
 from robomill.units import (

@@ -11,6 +11,7 @@ from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import evidence as evidence_panel
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view
 from robomill.ui.milling import force as force_panel
@@ -20,7 +21,6 @@ from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.pieces import Tile
-from robomill.ui.start import evidence as evidence_panel
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
 QUESTION = "milling.question"

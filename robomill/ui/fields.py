@@ -113,6 +113,12 @@ def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
     return _field(f"{robot.digest()}/{digest((grid.x, grid.y, grid.z, A, B))}", robot, grid, A, B)
 
 
+def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
+    """A coarse field over the whole region, for scales that stay while the plane moves."""
+    grid = solid(robot, box, 700 if decoupled(robot) is not None else 150)
+    return field(robot, grid, view.A, view.B)
+
+
 def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
     """The same field with stiffer joints: exact, nothing is solved again."""
     if (factors == 1.0).all():

@@ -15,20 +15,19 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread
 from robomill.simulation.stations import offset_by_row
 from robomill.ui import cached, pieces
-from robomill.ui.project import Project, preset_setup
-from robomill.ui.start.story import PAPER
+from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
 from robomill.units import from_si
 from robomill.viz.evidence import Claim, evidence_figure
 
 
 @st.cache_resource(show_spinner=False)
 def _process_setup() -> SimulationSetup:
-    return load_setup(samples_dir() / PAPER / "setup_process.toml")
+    return load_setup(samples_dir() / DEFAULT_PRESET / "setup_process.toml")
 
 
 def is_papers_path(project: Project) -> bool:
     """Whether the project cuts the paper's slot, by the text of its program: beside another part the chart misleads."""
-    source, paper = project.setup.source, preset_setup(PAPER).source
+    source, paper = project.setup.source, preset_setup(DEFAULT_PRESET).source
     if source.kind == "program" and paper.kind == "program":
         return source.text == paper.text
     return source == paper
@@ -36,7 +35,7 @@ def is_papers_path(project: Project) -> bool:
 
 def claims(project: Project) -> list[Claim]:
     """Every number of the paper's slot in m, the paper's first; computed ones with the band of the alloy's rows."""
-    plain, process = preset_setup(PAPER), _process_setup()
+    plain, process = preset_setup(DEFAULT_PRESET), _process_setup()
     third = plain.robot.with_compliance_set("table_3")
     about = f"about {from_si(SLOT.measured, 'mm'):g} mm"
     rows = [
