@@ -99,3 +99,14 @@ def test_refusals():
         ConstantForce([0, 1])
     with pytest.raises(CuttingError, match="Path force, Feed-normal: found"):
         PathForce(feed_normal="much")
+
+
+def test_tool_axes_of_any_length_give_the_same_frames():
+    p = np.array([[0, 0, 0], [1.0, 0.2, 0.3], [1.0, 2.0, 0.1], [1.5, 2.0, 0.1]])
+    k = np.array([[0, 0, 1.0], [0.1, 0, 1.0], [0.0, 0.3, 1.0], [0.2, 0.2, 1.0]])
+    unit = k / np.linalg.norm(k, axis=1, keepdims=True)
+    np.testing.assert_allclose(feed_frame(p, 3.0 * k), feed_frame(p, unit), atol=1e-14)
+    np.testing.assert_allclose(feed_share(p, 0.2 * k), feed_share(p, unit), atol=1e-14)
+    step = p[1] - p[0]
+    along = (step @ unit[1]) / np.linalg.norm(step)
+    assert feed_share(p, 5.0 * k)[1] == pytest.approx(np.sqrt(1.0 - along**2))
