@@ -90,7 +90,7 @@ def test_feed_and_depth_of_new_shapes_are_no_step_to_undo(sketching: AppTest) ->
 
 def test_a_feed_of_nothing_is_refused_beside_its_box(sketching: AppTest) -> None:
     box(sketching, "Feed, mm/min").set_value(0.0).run()
-    assert any("feed is 0 mm/min" in e for e in errors(sketching))
+    assert any("Feed: found 0 mm/min" in e for e in errors(sketching))
     assert sketch_of(sketching).v_f == pytest.approx(30e-3)
 
 
