@@ -23,7 +23,8 @@ def map_from_table(table: Table, robot: Robot, folder: Path | None) -> MeasuredF
         AB = table.rows("tilt_deg", 2, "deg")
         if not len(p) == len(C) == len(AB):
             raise table.refuse("C_m_N", f"expected {len(p)} rows like p_mm, found {len(C)} and {len(AB)} of tilt_deg.")
-        field = MeasuredField(p, C, AB, table.number("reach_m", "m", 0.0), table.text("source", ""))
+        reach, source = table.number("reach_m", "m", 0.0), table.text("source", "")
+        field = MeasuredField(p, C, AB, reach, source, table.flag("synthetic", False))
     table.finish()
     return field
 
@@ -40,4 +41,5 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
         "tilt_deg": rows(field.AB, "deg"),
         "reach_m": shown(field.reach, "m"),
         "source": field.source,
+        "synthetic": field.synthetic,
     }
