@@ -180,7 +180,7 @@ def parse_number(text: str) -> float:
 def split_unit(text: str) -> tuple[str, str]:
     """``"0.230 mm"`` as number and unit, for screens that set the unit small; ``(text, "")`` where none follows."""
     number, _, unit = text.rpartition(" ")
-    if number[-1:].isdigit() and len(unit) < 7 and not any(c.isdigit() for c in unit):
+    if number[-1:].isdigit() and len(unit) < 7 and not any(c.isdecimal() for c in unit):
         return number, unit
     return text, ""
 

@@ -107,14 +107,6 @@ def _low(name: str) -> str:
     return f"{html.escape(name[0])}<sub>{html.escape(name[1:])}</sub>" if len(name) == 2 else html.escape(name)
 
 
-def signed(value: float, plus: bool = False, digits: int = 3) -> str:
-    """A number of a matrix, with a true minus and no negative zero."""
-    text = f"{value:+.{digits}f}" if plus else f"{value:.{digits}f}"
-    if float(text) == 0.0:
-        text = text.lstrip("+-")
-    return text.replace("-", "−")
-
-
 def error(exc: RobomillError | str) -> None:
     """A refusal as people read it: one sentence."""
     st.error(str(exc), icon=":material/error:")

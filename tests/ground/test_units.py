@@ -180,6 +180,7 @@ def test_the_unit_comes_off_where_one_follows() -> None:
     assert split_unit("0.230 mm") == ("0.230", "mm")
     assert split_unit("24 lines") == ("24", "lines")
     assert split_unit("−0.5 µm/N") == ("−0.5", "µm/N")
+    assert split_unit("1.134 m³") == ("1.134", "m³")
     for whole in ("not reached", "0.5", "of 1200", "100 of 500", "45.00°", "2 samples", "2 h 05 min", "80 of 100", ""):
         number, unit = split_unit(whole)
         assert " ".join(filter(None, (number, unit))) == whole

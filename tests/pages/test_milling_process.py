@@ -31,7 +31,7 @@ from robomill.ui.milling.force import FILE as FORCE_FILE
 
 def milling(app: AppTest, question: str = "part") -> AppTest:
     """The milling page with one of its questions open."""
-    app.session_state[QUESTION] = question
+    store(app).values[QUESTION] = question
     return go(app, "6_Milling")
 
 
@@ -183,7 +183,7 @@ def test_worst_point_and_lines_move_the_scrubber(app: AppTest) -> None:
     assert "(−30.00, 0.00, −2.00)" in words(app)
     app.button(key="milling.verdict").click().run()
     assert not app.exception
-    assert app.session_state[QUESTION] == "tip"
+    assert store(app).values[QUESTION] == "tip"
     assert store(app).project.view.station == pytest.approx(1.0)
     assert "▸ 7" in words(app)
     app.slider(key="view.station").set_value(10.0).run()
@@ -303,12 +303,12 @@ def test_a_bad_stock_is_one_sentence_and_the_stock_stays(app: AppTest) -> None:
 
 def test_a_measured_profile_lies_over_the_prediction(app: AppTest) -> None:
     milling(app)
-    give(app, "profile:file", "cmm.csv", b"station_mm,offset_mm\n10,0.29\n50,0.30\n90,0.29\n")
+    give(app, "profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\n50,0.30\n90,0.29\n")
     assert not app.exception
     text = words(app)
     assert "cmm.csv" in text
     assert "it gives 78 % of what was measured" in text
-    give(app, "profile:file", "cmm.csv", b"station_mm,offset_mm\n10,0.29\nfifty,0.30\n")
+    give(app, "profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\nfifty,0.30\n")
     assert not app.exception
     assert "cmm.csv, row 3, column station_mm" in errors(app)[0]
     assert "cmm.csv" in words(app), "the good profile stays"

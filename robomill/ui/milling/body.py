@@ -59,7 +59,7 @@ def verdict_link(result: SimulationResult) -> None:
 
 def _land(result: SimulationResult) -> None:
     linked.go_to(result, result.worst)
-    st.session_state[QUESTION] = "tip"
+    session.keep(QUESTION, "tip")
 
 
 def inputs_column(result: SimulationResult | None) -> None:
@@ -96,9 +96,7 @@ def workbench(digest: str, dark: bool) -> None:
     with left:
         inputs_column(result)
     with right:
-        current = st.session_state.get(QUESTION, "part")
-        inputs.choice("Question", "milling.ask", QUESTIONS, current, _ask, inputs.HIDDEN)
-        question = st.session_state.get(QUESTION, "part")
+        question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
         with st.container(border=True):
             i = linked.scrubber(result)
             linked.where(result, i, spread)
@@ -125,10 +123,6 @@ def workbench(digest: str, dark: bool) -> None:
         _tip(result, i, spread, peak, dark)
     else:
         _part(result, i, spread, dark)
-
-
-def _ask(question: str) -> None:
-    st.session_state[QUESTION] = question
 
 
 def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:

@@ -10,7 +10,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.units import format_times, from_si
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
 from robomill.viz.picture import Camera
@@ -82,7 +82,7 @@ class Film:
 
 def current() -> Film | None:
     """The film of this session, being made or done."""
-    found = st.session_state.get(KEY)
+    found = session.kept(KEY)
     return found if isinstance(found, Film) else None
 
 
@@ -91,7 +91,7 @@ def give_up() -> None:
     film = current()
     if film is not None:
         film.stop.set()
-        del st.session_state[KEY]
+        session.drop(KEY)
 
 
 def panel(result: SimulationResult, dark: bool) -> None:
@@ -99,22 +99,14 @@ def panel(result: SimulationResult, dark: bool) -> None:
     view = session.project().view
     kind, frames, make = st.columns([1, 2, 1.2], vertical_alignment="bottom")
     with kind:
-        chosen: Any = st.segmented_control(
-            "Film as",
-            list(KINDS),
-            format_func=lambda k: KINDS[k],
-            default="gif",
-            required=True,
-            key="film:kind",
-            width="stretch",
-        )
+        chosen: Any = inputs.pick("Film as", "film.kind", KINDS)
     with frames:
-        count = st.slider("Pictures", *FRAMES, 36, step=4, key="film:frames")
+        count = st.slider("Pictures", *FRAMES, 36, step=4, key="film.frames")
     camera: Any = view.camera
     make.button(
         "Make the film",
         icon=":material/movie:",
-        key="film:make",
+        key="film.make",
         width="stretch",
         on_click=lambda: _begin(Film(result, chosen, count, view.exaggeration, camera, dark)),
     )
@@ -123,7 +115,7 @@ def panel(result: SimulationResult, dark: bool) -> None:
 
 def _begin(film: Film) -> None:
     give_up()
-    st.session_state[KEY] = film
+    session.keep(KEY, film)
     film.start()
 
 
@@ -146,7 +138,7 @@ def _waiting() -> None:
     words = "Writing the file" if film.done_frames == film.frames else f"Picture {film.done_frames} of {film.frames}"
     bar, cancel = st.columns([4, 1], vertical_alignment="center")
     bar.progress(film.done_frames / film.frames, words)
-    if cancel.button("Cancel", icon=":material/close:", key="film:cancel", width="stretch"):
+    if cancel.button("Cancel", icon=":material/close:", key="film.cancel", width="stretch"):
         give_up()
         st.rerun()
 

@@ -81,7 +81,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     """Centre offset and floor along the groove, best fit, and a measured profile over it."""
     unit = session.project().view.length
     found, block = profile(result)
-    measured = st.session_state.get(MEASURED)
+    measured = session.kept(MEASURED)
     fit = None
     if is_straight(result.path) and np.isfinite(found.centre_offset).sum() >= 3:
         fit = fit_groove(found)
@@ -136,21 +136,16 @@ def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:
 
 def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) -> None:
     with st.popover("Lay a measured profile over it", icon=":material/straighten:", type="secondary"):
-        st.file_uploader(
-            "Measured profile (.csv): station_mm, offset_mm",
-            key="profile:file",
-            max_upload_size=MAX_PROFILE_MB,
-            on_change=lambda: _take(st.session_state.get("profile:file")),
-        )
+        inputs.upload("Measured profile (.csv): station_mm, offset_mm", "profile.file", _take, most_MB=MAX_PROFILE_MB)
         pieces.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
         if measured is not None:
             st.button(
                 "Take it away",
-                key="profile:clear",
+                key="profile.clear",
                 icon=":material/close:",
-                on_click=lambda: st.session_state.pop(MEASURED, None),
+                on_click=session.drop,
+                args=(MEASURED,),
             )
-    inputs.sentence("profile:file")
     if measured is None:
         return
     for words in measured.findings:
@@ -178,20 +173,13 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
     )
 
 
-def _take(file: Any) -> None:
-    if file is None:
-        inputs.accept("profile:file")
-        return
-
-    def read() -> None:
-        try:
-            text = file.getvalue().decode("utf-8-sig")
-        except UnicodeDecodeError:
-            raise SurfaceError(f"{file.name}: this is not a text file; expected a CSV table.") from None
-        # Without a line break the text could be taken for the name of a file.
-        st.session_state[MEASURED] = read_profile(text + "\n", name=file.name)
-
-    inputs.submit("profile:file", None, read)
+def _take(data: bytes, name: str) -> None:
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SurfaceError(f"{name}: this is not a text file; expected a CSV table.") from None
+    # Without a line break the text could be taken for the name of a file.
+    session.keep(MEASURED, read_profile(text + "\n", name=name))
 
 
 def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> None:

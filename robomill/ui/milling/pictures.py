@@ -31,7 +31,7 @@ EXTRAS = {
     "so_far": "Cut so far",
 }
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
-HOW_KEY, EXTRAS_KEY = "milling.how", "milling.extras"
+HOW_KEY, EXTRAS_KEY = "picture.how", "picture.extras"
 EYES = {
     "iso": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "up": {"x": 0, "y": 0, "z": 1}},
     "along": {"eye": {"x": -1.6, "y": 0.0, "z": 0.55}, "up": {"x": 0, "y": 0, "z": 1}},
@@ -81,11 +81,9 @@ def turnable(result: SimulationResult, shown: Enlarged, view: View, dark: bool, 
 
 def _controls() -> str:
     view = session.project().view
-    how = st.session_state.get(HOW_KEY, "one")
     first, camera, times = pieces.split([2.1, 1.3, 0.9], "picture", gap="small")
     with first:
-        inputs.choice("View", "picture.how", HOW, how, lambda v: st.session_state.update({HOW_KEY: v}))
-    how = st.session_state.get(HOW_KEY, "one")
+        how = inputs.pick("View", HOW_KEY, HOW)
     with camera:
         inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: session.look(camera=c), inputs.LISTED)
     with times:
@@ -100,29 +98,25 @@ def _controls() -> str:
             inputs.LISTED,
         )
     if how != "turn":
-        chosen = st.session_state.get(EXTRAS_KEY, ["plane"])
-        inputs.seed("picture.extras", list(chosen))
+        chosen = session.kept(EXTRAS_KEY, ["plane"])
+        inputs.seed(EXTRAS_KEY, list(chosen))
         st.pills(
             "With",
             list(EXTRAS),
             selection_mode="multi",
-            key="picture.extras",
+            key=EXTRAS_KEY,
             format_func=lambda k: EXTRAS[k],
             label_visibility="collapsed",
-            on_change=_take_extras,
+            on_change=lambda: session.keep(EXTRAS_KEY, list(st.session_state[EXTRAS_KEY])),
         )
     return str(how)
-
-
-def _take_extras() -> None:
-    st.session_state[EXTRAS_KEY] = list(st.session_state["picture.extras"])
 
 
 def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
     """What is drawn, and the key it is kept under: all that it depends on."""
     view = session.project().view
-    extras = frozenset(st.session_state.get(EXTRAS_KEY, ["plane"]))
-    pair = st.session_state.get(HOW_KEY, "one") == "pair"
+    extras = frozenset(session.kept(EXTRAS_KEY, ["plane"]))
+    pair = session.kept(HOW_KEY, "one") == "pair"
     shown = cached.pictured(result.setup, view.exaggeration)
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
