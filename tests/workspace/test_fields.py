@@ -77,6 +77,15 @@ def test_a_singular_arm_gives_zero_not_an_error():
     np.testing.assert_array_equal(field.values("share_C_xx_1"), 0.0)
 
 
+def test_the_budget_counts_what_a_field_holds_and_one_quantity_of_it(monkeypatch):
+    asked = []
+    monkeypatch.setattr(Grid, "check_budget", lambda grid, bytes_per_cell, *more: asked.append(bytes_per_cell))
+    for name in ("slavkovic_5r", "fanuc_r2000ic"):
+        field = compliance_field(rm.load_robot(name), box_grid([1.0, -1.2, 0.0], [1.2, -1.0, 0.0], 0.1))
+        held = (field.theta, field.reached, field.J, field.shares, field.det_J, field.total, field.values("C_xx"))
+        assert asked.pop() == sum(array.nbytes for array in held) / field.grid.cells
+
+
 def test_budget_names_the_step_that_fits():
     robot = rm.load_robot("slavkovic_5r")
     with pytest.raises(WorkspaceError, match="GiB.*step of") as error:
