@@ -1,5 +1,7 @@
 """Maps: every quantity against the law at one configuration, NaN where unreachable, budgets, names."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,15 @@ def test_a_singular_arm_gives_zero_not_an_error():
     assert field.reached.all()
     np.testing.assert_array_equal(field.values("C_xx"), 0.0)
     np.testing.assert_array_equal(field.values("share_C_xx_1"), 0.0)
+
+
+def test_a_field_is_a_value_of_its_own():
+    field = compliance_field(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, 0.0], [0.1, -1.2, 0.0], 0.1))
+    for value, name in ((field, "theta"), (field.field("C_yy"), "values")):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(value, name, None)
+    assert field != dataclasses.replace(field)  # told apart as they are: arrays have no one truth to compare
+    assert field.field("C_yy") != field.field("C_yy")
 
 
 def test_the_budget_counts_what_a_field_holds_and_one_quantity_of_it(monkeypatch):
