@@ -1,17 +1,19 @@
 """Compiled kernels: what marks one, where its machine code is kept, what is not compiled yet, and who compiles it.
 
-A kernel module is an ordinary module called ``kernels`` or ``*_kernels``. It is imported inside the functions that
-call it, so that nothing imports the compiler before its first use:
+A kernel module is an ordinary module called ``kernels`` or ``*_kernels``, of plain Python:
 
     @part                                             # compiled into the kernels that call it
     def squared(x: float) -> float: ...
 
-    @kernel                                           # an entry point: compiled for the types of its annotations when
-    def norms(p: In2, norm: Out1) -> None: ...        # the module is imported, or loaded from disk
+    @kernel                                           # an entry point: compiled for the types of its annotations at
+    def norms(p: In2, norm: Out1) -> None: ...        # its first call, or loaded from disk
 
-Importing a kernel module compiles what the cache on disk does not hold: correct, only slow. A program that talks to
-people says so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m
-robomill.compiled`` compiles everything.
+    @kernel(few=8)                                    # likewise; but up to eight rows of its first argument run as the
+    def lengths(p: In2, length: Out1) -> None: ...    # Python they are written in, where no compiler is loaded yet
+
+The first call compiles what the cache on disk does not hold: correct, only slow. A program that talks to people says
+so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m robomill.compiled``
+compiles everything.
 """
 
 from __future__ import annotations
@@ -27,11 +29,11 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property, partial
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints, overload
 
 import numpy as np
 
@@ -43,12 +45,15 @@ RULES = "*/**/*_rules.py"  # plain Python that kernels compile too
 IMPORTED = re.compile(r"^from robomill\.([\w.]+) import", re.MULTILINE)
 WORDS = "Preparing the kernels, once, about 20 s"
 COMPLETE = "complete"
+COMPILER = "numba"
+FEW = 8  # configurations or poses: some milliseconds of plain Python
 PLACE = "ROBOMILL_CACHE"
 KEPT_FOLDERS = 4  # of older sources: so many stay beside the one in use
 # No reciprocals or reassociation: only a * b + c in one rounding.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 F = TypeVar("F", bound=Callable[..., Any])
+_parts: list[Callable[..., Any]] = []  # marked, and not yet known to the compiler
 _lock = threading.RLock()  # around the compiler's configuration
 _building = threading.Lock()
 _tried = False
@@ -82,38 +87,67 @@ OutBool2 = Annotated[BoolArray, Axes("bool_", 2, written=True)]
 
 def part(function: F) -> F:
     """Mark a function that kernels call: compiled into each of them, for the types it is called with."""
-    from numba import njit
-
-    options: dict[str, Any] = {**OPTIONS, "forceinline": True, "_nrt": False}  # no counting of references to arrays
-    return njit(**options)(function)  # type: ignore[no-any-return]
+    _parts.append(function)
+    return function
 
 
-def kernel(function: F) -> F:
-    """Mark an entry point: compiled here and now for the types of its annotations, or loaded from the cache on disk.
+@overload
+def kernel(function: Callable[..., Any]) -> Kernel: ...
+@overload
+def kernel(*, few: int) -> Callable[[Callable[..., Any]], Kernel]: ...
+def kernel(function: Any = None, *, few: int = 0) -> Any:
+    """Mark an entry point, which becomes a ``Kernel``."""
+    return Kernel(function, few) if function is not None else partial(Kernel, few=few)
+
+
+class Kernel:
+    """An entry point, compiled at its first call for the types of its annotations, or loaded from the cache on disk.
 
     Annotations: float, complex, int, bool, the aliases of this module (``In2``, ``Out3``, ...), tuples of these, and
-    NamedTuples whose fields are annotated so. An entry of the cache that cannot be read is removed and made again.
+    NamedTuples whose fields are annotated so. ``few``: so many rows of the first argument are done before the compiler
+    is loaded (half a second), so they run as plain Python unless something else has loaded it.
     """
-    from numba import config, njit
-    from numba.core.errors import NumbaError
 
-    def compile_it() -> F:
-        return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)  # type: ignore[no-any-return]
+    def __init__(self, function: Callable[..., Any], few: int = 0) -> None:
+        self.plain, self.few = function, few
+        self.__name__, self.__doc__ = function.__name__, function.__doc__
 
-    with _lock:
-        _prepare()
-        before = config.CACHE_DIR  # type: ignore[attr-defined]
-        config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
-        try:
-            return compile_it()
-        except NumbaError:
-            raise
-        except Exception:  # whatever a damaged file makes of the unpickling or of the linker
-            for file in kept_in().glob(f"*/*{function.__name__}-*"):
-                file.unlink(missing_ok=True)
-            return compile_it()
-        finally:
-            config.CACHE_DIR = before  # type: ignore[attr-defined]
+    def __call__(self, *arguments: Any) -> Any:
+        if self.few and COMPILER not in sys.modules and len(arguments[0]) <= self.few:
+            with np.errstate(all="ignore"):  # as compiled code does: NaN in, NaN out
+                return self.plain(*arguments)
+        return self.code(*arguments)
+
+    @cached_property
+    def code(self) -> Any:
+        """The machine code. An entry of the cache that cannot be read is removed and made again."""
+        from numba import config
+        from numba.core.errors import NumbaError
+
+        with _lock:
+            _prepare()
+            before = config.CACHE_DIR  # type: ignore[attr-defined]
+            config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
+            try:
+                return _compile(self.plain)
+            except NumbaError:
+                raise
+            except Exception:  # whatever a damaged file makes of the unpickling or of the linker
+                for file in kept_in().glob(f"*/*{self.__name__}-*"):
+                    file.unlink(missing_ok=True)
+                return _compile(self.plain)
+            finally:
+                config.CACHE_DIR = before  # type: ignore[attr-defined]
+
+
+def _compile(function: Callable[..., Any]) -> Any:
+    from numba import njit
+    from numba.extending import register_jitable
+
+    options: dict[str, Any] = {**OPTIONS, "forceinline": True, "_nrt": False}  # no counting of references to arrays
+    while _parts:
+        register_jitable(**options)(_parts.pop())
+    return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)
 
 
 def _signature(function: Callable[..., Any]) -> Any:
@@ -256,7 +290,9 @@ def build() -> None:
 def compile_all() -> None:
     """Compile or load every kernel, and note that they are there."""
     for name in modules():
-        import_module(name)
+        for entry in vars(import_module(name)).values():
+            if isinstance(entry, Kernel):
+                entry.code  # noqa: B018
     note = kept_in() / f"{COMPLETE}.{os.getpid()}"
     note.write_text("\n".join(modules()) + "\n")
     note.replace(kept_in() / COMPLETE)
@@ -274,4 +310,4 @@ def _prepare() -> None:
 
 
 if __name__ == "__main__":
-    compile_all()
+    import_module("robomill.compiled").compile_all()  # this file by its own name: what it marks is known there

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robomill.compiled import In1, In2, In3, Out2, Out3, OutBool2, kernel, part
+from robomill.compiled import FEW, In1, In2, In3, Out2, Out3, OutBool2, kernel, part
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, ROUNDING, Answer, Decoupled, Rules
 from robomill.kinematics.kernels import forward, misfit
 from robomill.kinematics.trig_kernels import arc_tangent, sin_cos
@@ -214,7 +214,7 @@ def choose(T, arm, rules, goal, room, best):
     return branch, spin
 
 
-@kernel
+@kernel(few=FEW)
 def nearest_of(T_MT: In3, arm: Decoupled, chain: Chain, rules: Rules, goals: In2, answer: Answer) -> None:
     """The answer for poses T_MT (m, 4, 4), nearest to goals (1 or m, n)."""
     n = len(chain.sign)
@@ -244,7 +244,7 @@ def solve_all(T, arm, chain, room, theta, sound):
             sound[branch + w] = real and shift <= RESIDUAL and angle <= RESIDUAL
 
 
-@kernel
+@kernel(few=FEW)
 def every_of(T_MT: In3, arm: Decoupled, chain: Chain, theta: Out3, sound: OutBool2) -> None:
     """All solutions theta (m, 8, n) in (-pi, pi] of poses T_MT (m, 4, 4), and whether they meet them, (m, 8)."""
     n = len(chain.sign)
@@ -253,7 +253,7 @@ def every_of(T_MT: In3, arm: Decoupled, chain: Chain, theta: Out3, sound: OutBoo
         solve_all(T_MT[i], arm, chain, room, theta[i], sound[i])
 
 
-@kernel
+@kernel(few=FEW)
 def turned_of(theta: In2, limits: In2, near: In1, result: Out2) -> None:
     """theta (m, n) turned by whole turns towards near (n,)."""
     for i in range(len(theta)):

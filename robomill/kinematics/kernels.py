@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robomill.compiled import In1, In2, In3, Out1, Out3, Out4, kernel, part
+from robomill.compiled import FEW, In1, In2, In3, Out1, Out3, Out4, kernel, part
 from robomill.kinematics.trig_kernels import sin_cos
 from robomill.robot.dh import Chain
 
@@ -118,7 +118,7 @@ def misfit(T, wanted, whole):
     return np.sqrt(shift), 2.0 * np.arcsin(min(0.5 * np.sqrt(chord), 1.0))
 
 
-@kernel
+@kernel(few=FEW)
 def frames_of(theta: In2, chain: Chain, frames: Out4) -> None:
     """frames (m, n + 1, 4, 4) of theta (m, n)."""
     turns = np.empty((theta.shape[1], 3))
@@ -126,7 +126,7 @@ def frames_of(theta: In2, chain: Chain, frames: Out4) -> None:
         forward(theta[i], chain, turns, frames[i])
 
 
-@kernel
+@kernel(few=FEW)
 def pose_of(theta: In2, chain: Chain, T_MT: Out3) -> None:
     """T_MT (m, 4, 4) of theta (m, n)."""
     n = theta.shape[1]
@@ -136,7 +136,7 @@ def pose_of(theta: In2, chain: Chain, T_MT: Out3) -> None:
         copy(frames[n], T_MT[i])
 
 
-@kernel
+@kernel(few=FEW)
 def jacobian_of(theta: In2, chain: Chain, T_MT: Out3, J: Out3) -> None:
     """T_MT (m, 4, 4) and J (m, 6, n) of theta (m, n)."""
     n = theta.shape[1]
@@ -147,7 +147,7 @@ def jacobian_of(theta: In2, chain: Chain, T_MT: Out3, J: Out3) -> None:
         copy(frames[n], T_MT[i])
 
 
-@kernel
+@kernel(few=FEW)
 def compliance_of(J: In3, C_theta: In1, C: Out3) -> None:
     """C (m, 3, 3) = J_v diag(C_theta) J_v^T, the rows v of J (m, 6, n). Eqs. (11), (12)."""
     for i in range(len(J)):
@@ -159,7 +159,7 @@ def compliance_of(J: In3, C_theta: In1, C: Out3) -> None:
                 C[i, r, k] = total
 
 
-@kernel
+@kernel(few=FEW)
 def misfit_of(theta: In2, chain: Chain, wanted: In3, whole: bool, shift: Out1, angle: Out1) -> None:
     """shift (m,) m and angle (m,) rad of theta (m, n) from the poses wanted (m, 4, 4)."""
     n = theta.shape[1]
@@ -169,7 +169,7 @@ def misfit_of(theta: In2, chain: Chain, wanted: In3, whole: bool, shift: Out1, a
         shift[i], angle[i] = misfit(frames[n], wanted[i], whole)
 
 
-@kernel
+@kernel(few=FEW)
 def determinant_of(A: In3, det: Out1) -> None:
     """det (m,) of A (m, k, n)."""
     k = A.shape[1]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numba import njit
+from numba.extending import register_jitable
 
 import robomill as rm
 from robomill.kinematics import kernels
@@ -12,6 +13,9 @@ from robomill.kinematics.trig_kernels import arc_tangent, sin_cos
 
 @pytest.fixture(scope="module")
 def trig():
+    for law in (sin_cos, arc_tangent):
+        register_jitable(law)
+
     @njit
     def many(x, y, out):
         for i in range(len(x)):
