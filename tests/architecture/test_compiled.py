@@ -138,7 +138,7 @@ def test_building_compiles_in_another_process_and_notes_it(tmp_path, monkeypatch
         "import sys; from robomill import compiled; before = compiled.missing(); compiled.build()\n"
         "assert 'numba' not in sys.modules\n"
         "print(before, compiled.missing(), len(list(compiled.kept_in().rglob('*.nbc'))))\n"
-        "from robomill.room import kernels; print(kernels.twice(4.0), sum(kernels.twice.code.stats.cache_hits.values()))"
+        "from robomill.room.kernels import twice; print(twice(4.0), sum(twice.code.stats.cache_hits.values()))"
     )
     env = {**os.environ, "PYTHONPATH": str(tmp_path)}
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=env)
