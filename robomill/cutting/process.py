@@ -17,6 +17,9 @@ from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import switch
 
+#: Cuts whose revolution is computed at once, to bound the memory.
+CASES = 2048
+
 
 @dataclass(frozen=True)
 class ProcessForce(ForceModel):
@@ -95,8 +98,8 @@ class ProcessForce(ForceModel):
         alike = np.round(load / np.where(scale > 0.0, scale, 1.0))
         _, first, inverse = np.unique(alike, axis=0, return_index=True, return_inverse=True)
         cases = load[first]
-        for start in range(0, len(cases), 2048):
-            part = cases[start : start + 2048]
+        for start in range(0, len(cases), CASES):
+            part = cases[start : start + CASES]
             c, a_p, *arc = part.T
             turns = force_over_pitch(self.material.terms, self.cutter, c, a_p, (arc[0], arc[1]))
             turns[..., 2] *= self.axial

@@ -67,6 +67,17 @@ def test_the_axial_force_alone_is_left_out():
     np.testing.assert_array_equal(without.peak(SLOT).high, whole.peak(SLOT).high * [1, 1, 0])
 
 
+def test_many_different_cuts_are_as_one_by_one(monkeypatch):
+    monkeypatch.setattr("robomill.cutting.process.CASES", 3)
+    depths = 1e-3 + 0.2e-3 * np.arange(8)
+    force = MechanisticForce(MILL, ROW)
+    together = force.peak(CutConditions.steady(0.03, 200.0, depths))
+    for i, depth in enumerate(depths):
+        alone = force.peak(CutConditions.steady(0.03, 200.0, depth))
+        for name in ("low", "high", "at_peak"):
+            np.testing.assert_allclose(getattr(together, name)[i], getattr(alone, name)[0], rtol=1e-12)
+
+
 @pytest.mark.parametrize("kind", SHAPES)
 def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
     for start in SHAPES:
