@@ -83,3 +83,10 @@ def test_program_to_table_and_back(app: AppTest) -> None:
     assert "0.251" in words(go(app, "app"))
     app.button(key="undo").click().run()
     assert isinstance(store(app).project.setup.source, GCodeSource)
+
+
+def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    for _ in range(2):
+        drawn = [element.key for element in app.run().get("bidi_component")]
+        assert "program.view" in drawn, "a run that draws nothing takes the program off the page"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +43,6 @@ def select_line(line: int) -> None:
     st.session_state[LINE] = int(line)
 
 
-@lru_cache(maxsize=4)
 def program_view(
     text: str, findings: Sequence[Finding], dark: bool, height: int = 420, *, fixed: int | None = None
 ) -> None:
