@@ -47,7 +47,7 @@ def among_pages(app: AppTest) -> AppTest:
 
 
 def bench(page: AppTest) -> Bench:
-    return page.session_state[KEY]  # type: ignore[no-any-return]
+    return page.session_state[PROJECT].values[KEY]  # type: ignore[no-any-return]
 
 
 def html(page: AppTest) -> str:
@@ -55,7 +55,7 @@ def html(page: AppTest) -> str:
 
 
 def typed(page: AppTest, text: str) -> AppTest:
-    return page.text_area(key="ident:text").set_value(text).run()
+    return page.text_area(key="identification.rows").set_value(text).run()
 
 
 def pick(page: AppTest, key: str, value: str) -> AppTest:
@@ -81,9 +81,9 @@ def test_it_opens_with_a_finished_result(page: AppTest) -> None:
 
 @pytest.mark.parametrize("sample", list(SAMPLES))
 def test_every_sample_runs_in_every_view(page: AppTest, sample: str) -> None:
-    page.selectbox(key="ident:sample").set_value(sample).run()
+    page.selectbox(key="identification.sample").set_value(sample).run()
     for view in ("compliances", "residuals", "models", "next", "cut"):
-        pick(page, "ident:view", view)
+        pick(page, "identification.view", view)
         assert not page.exception
         assert [e.value for e in page.error] == []
     assert bench(page).sample == sample
@@ -91,7 +91,7 @@ def test_every_sample_runs_in_every_view(page: AppTest, sample: str) -> None:
 
 @pytest.mark.parametrize("section", ["map", "laboratory"])
 def test_the_other_sections_run(page: AppTest, section: str) -> None:
-    pick(page, "ident:section", section)
+    pick(page, "identification.section", section)
     assert not page.exception
     assert not page.error
 
@@ -130,7 +130,7 @@ def test_bad_input_is_one_sentence_and_stays_in_its_box(page: AppTest, text: str
     if "no column" not in sentence:
         assert sentence in page.error[0].value
     assert "\n" not in page.error[0].value
-    assert page.text_area(key="ident:text").value == text
+    assert page.text_area(key="identification.rows").value == text
     assert "Nothing can be identified from these load tests yet." in html(page)
 
 
@@ -140,7 +140,7 @@ def test_refused_rows_survive_a_visit_elsewhere(among_pages: AppTest) -> None:
     typed(page, text)
     page.switch_page("pages/1_Robot.py").run()
     page.switch_page("pages/4_Identification.py").run()
-    assert page.text_area(key="ident:text").value == text
+    assert page.text_area(key="identification.rows").value == text
     assert len(page.error) == 1
 
 
@@ -180,12 +180,12 @@ def test_a_file_that_is_no_text_is_refused() -> None:
 
 def test_the_bench_survives_a_visit_elsewhere(among_pages: AppTest) -> None:
     page = among_pages
-    page.selectbox(key="ident:model").set_value("joints+tool").run()
-    pick(page, "ident:view", "models")
+    page.selectbox(key="identification.model").set_value("joints+tool").run()
+    pick(page, "identification.view", "models")
     page.switch_page("pages/6_Milling.py").run()
     page.switch_page("pages/4_Identification.py").run()
-    assert page.selectbox(key="ident:model").value == "joints+tool"
-    assert next(g for g in page.get("button_group") if g.key == "ident:view").value == "models"
+    assert page.selectbox(key="identification.model").value == "joints+tool"
+    assert next(g for g in page.get("button_group") if g.key == "identification.view").value == "models"
 
 
 # ---- outliers ------------------------------------------------------------------------------------------------------
@@ -195,30 +195,30 @@ def test_an_outlier_is_used_until_a_click_leaves_it_out(page: AppTest) -> None:
         return rows
 
     typed(page, _nine(spoilt))
-    pick(page, "ident:view", "residuals")
+    pick(page, "identification.view", "residuals")
     assert any("row 9" in w.value and "until you leave them out" in w.value for w in page.warning)
     assert bench(page).excluded == ()
-    click(page, "ident:drop")
+    click(page, "identification.leave_out")
     assert bench(page).excluded == (9,)
     assert "1.0 %" in html(page)
-    click(page, "ident:restore")
+    click(page, "identification.use_all")
     assert bench(page).excluded == ()
 
 
 # ---- models --------------------------------------------------------------------------------------------------------
 def test_models_are_ranked_and_the_absorbed_bending_is_said(page: AppTest) -> None:
-    page.selectbox(key="ident:sample").set_value("tilted_bending_tool").run()
-    pick(page, "ident:view", "models")
+    page.selectbox(key="identification.sample").set_value("tilted_bending_tool").run()
+    pick(page, "identification.view", "models")
     assert any("have absorbed what is not in the joints" in i.value for i in page.info)
-    click(page, "ident:best")
+    click(page, "identification.take_best")
     assert bench(page).model == "joints+bending"
 
 
 # ---- plan ----------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("goal", ["joint", "all", "path"])
 def test_three_more_tests_shrink_joint_4_by_a_third(page: AppTest, goal: str) -> None:
-    pick(page, "ident:view", "next")
-    page.selectbox(key="ident:goal").set_value(goal).run()
+    pick(page, "identification.view", "next")
+    page.selectbox(key="identification.goal").set_value(goal).run()
     assert not page.exception
     said = next(m.value for m in page.markdown if "more tests should narrow" in m.value)
     if goal == "joint":
@@ -272,9 +272,12 @@ def test_every_template_says_what_is_missing_rather_than_breaking(page: AppTest,
     assert not page.exception
 
 
-@pytest.mark.parametrize(("key", "value"), [("ident:count", 0.0), ("ident:load", -5.0), ("ident:tilt", 400.0)])
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("identification.count", 0.0), ("identification.load:N", -5.0), ("identification.tilt:deg", 400.0)],
+)
 def test_a_refused_plan_number_stays_with_its_bounds(page: AppTest, key: str, value: float) -> None:
-    pick(page, "ident:view", "next")
+    pick(page, "identification.view", "next")
     page.number_input(key=key).set_value(value).run()
     assert not page.exception
     assert "expected" in page.error[0].value
@@ -285,7 +288,7 @@ def test_a_refused_plan_number_stays_with_its_bounds(page: AppTest, key: str, va
 def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) -> None:
     before = page.session_state[PROJECT].project.setup
     assert page.session_state[PROJECT].project.known is None
-    click(page, "ident:use")
+    click(page, "identification.use")
     assert not page.exception
     setup = page.session_state[PROJECT].project.setup
     fit = identify(load_robot("slavkovic_5r"), read_load_tests(sample_text("nine_points"), load_robot("slavkovic_5r")))
@@ -295,11 +298,11 @@ def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) 
     assert "27 load tests (nine_points.csv)" in setup.robot.provenance["compliance.identified"].source
     known = page.session_state[PROJECT].project.known
     np.testing.assert_allclose(known.covariance, fit.covariance)
-    assert page.button(key="ident:use").disabled
+    assert page.button(key="identification.use").disabled
     page.button(key="undo").click().run()
     assert page.session_state[PROJECT].project.setup.digest() == before.digest()
     assert page.session_state[PROJECT].project.known is None, "undo takes the band along"
-    assert not page.button(key="ident:use").disabled
+    assert not page.button(key="identification.use").disabled
     page.button(key="redo").click().run()
     again = page.session_state[PROJECT].project.known
     assert again is not None, "and redo brings it back"
@@ -343,12 +346,12 @@ def test_bands_are_laid_into_the_path_plot_only_where_something_is_known(monkeyp
 def test_every_section_runs_in_every_unit(page: AppTest, units: str, joint_unit: str) -> None:
     pick(page, "view.units", units)
     page.selectbox(key="view.joint_unit").set_value(joint_unit).run()
-    page.selectbox(key="ident:model").set_value("joints+bending+tool").run()
+    page.selectbox(key="identification.model").set_value("joints+bending+tool").run()
     for view in ("compliances", "residuals", "models", "next", "cut"):
-        pick(page, "ident:view", view)
+        pick(page, "identification.view", view)
         assert not page.exception
     for section in ("map", "laboratory"):
-        pick(page, "ident:section", section)
+        pick(page, "identification.section", section)
         assert not page.exception
         assert not page.error
 
@@ -396,57 +399,57 @@ def test_without_an_identification_no_tile_has_a_band(page: AppTest) -> None:
 
 # ---- the measured map ----------------------------------------------------------------------------------------------
 def test_the_map_shows_both_methods_and_their_difference(page: AppTest) -> None:
-    pick(page, "ident:section", "map")
+    pick(page, "identification.section", "map")
     assert len(page.get("plotly_chart")) == 4
     shown = html(page)
     assert "differ by 15 % on average; the measured ones are higher" in shown
     assert "0.290" in shown
-    page.selectbox(key="ident:map:component").set_value("C_yz").run()
-    page.selectbox(key="ident:map:sample").set_value("nine_points_compliances").run()
+    page.selectbox(key="identification.map.component").set_value("C_yz").run()
+    page.selectbox(key="identification.map.sample").set_value("nine_points_compliances").run()
     assert not page.exception
     assert len(page.get("plotly_chart")) == 4
 
 
 def test_the_map_agrees_with_the_joint_model_it_was_made_from(page: AppTest) -> None:
-    click(page, "ident:use")
-    pick(page, "ident:section", "map")
+    click(page, "identification.use")
+    pick(page, "identification.section", "map")
     assert "differ by 1 % on average" in html(page)
 
 
 def test_a_map_with_a_direction_missing_is_one_sentence(page: AppTest) -> None:
     lines = sample_text("grid_45x6").splitlines()
     bench(page).take_map("\n".join(lines[:-1]), "mine.csv")
-    pick(page, "ident:section", "map")
+    pick(page, "identification.section", "map")
     assert not page.exception
     assert "not fully measured" in page.error[0].value
 
 
 # ---- the laboratory ------------------------------------------------------------------------------------------------
 def test_a_student_measures_fits_and_is_scored(page: AppTest) -> None:
-    pick(page, "ident:section", "laboratory")
+    pick(page, "identification.section", "laboratory")
     for x, y, b in ((0.0, -1300.0, 30.0), (400.0, -1500.0, -30.0), (-400.0, -1100.0, 20.0), (500.0, -1200.0, 0.0)):
-        for name, value in (("X", x), ("Y", y), ("B", b)):
-            page.number_input(key=f"lab:{name}").set_value(value).run()
-        click(page, "lab:three")
+        for name, value in (("X:mm", x), ("Y:mm", y), ("B:deg", b)):
+            page.number_input(key=f"identification.lab.{name}").set_value(value).run()
+        click(page, "identification.lab.three")
     assert not page.exception
     assert bench(page).laboratory.budget == 0  # type: ignore[union-attr]
-    assert page.button(key="lab:measure").disabled
+    assert page.button(key="identification.lab.measure").disabled
     assert "truth" not in html(page).lower() or not bench(page).handed_in
-    click(page, "lab:hand")
+    click(page, "identification.lab.hand_in")
     assert "of 100 points" in html(page)
-    page.button(key="lab:new").click().run()
+    page.button(key="identification.lab.begin").click().run()
     assert bench(page).laboratory.budget == 12  # type: ignore[union-attr]
     assert not bench(page).handed_in
 
 
 def test_a_pose_out_of_reach_costs_nothing_and_is_explained(page: AppTest) -> None:
-    pick(page, "ident:section", "laboratory")
-    page.number_input(key="lab:X").set_value(5000.0).run()
-    click(page, "lab:measure")
+    pick(page, "identification.section", "laboratory")
+    page.number_input(key="identification.lab.X:mm").set_value(5000.0).run()
+    click(page, "identification.lab.measure")
     assert not page.exception
     assert "not reached" in page.error[0].value
     assert bench(page).laboratory.budget == 12  # type: ignore[union-attr]
-    assert page.number_input(key="lab:X").value == 5000.0
+    assert page.number_input(key="identification.lab.X:mm").value == 5000.0
 
 
 # ---- words ---------------------------------------------------------------------------------------------------------
@@ -457,9 +460,9 @@ def test_a_sample_keeps_its_robot_when_the_project_has_another(among_pages: AppT
     page.switch_page("pages/4_Identification.py").run()
     assert not page.exception
     assert not page.error
-    assert page.selectbox(key="ident:robot").value == "slavkovic_5r"
+    assert page.selectbox(key="identification.robot").value == "slavkovic_5r"
     for section in ("map", "laboratory"):
-        pick(page, "ident:section", section)
+        pick(page, "identification.section", section)
         assert not page.exception
 
 
@@ -488,13 +491,13 @@ def test_another_robot_is_measured_without_touching_the_project(page: AppTest) -
         robot, np.repeat(theta, 3, axis=0), np.tile(np.eye(3) * 500, (12, 1)), noise=1e-6, model=Model("joints")
     )
     before = page.session_state[PROJECT].project.setup.digest()
-    page.selectbox(key="ident:robot").set_value("kuka_kr270").run()
+    page.selectbox(key="identification.robot").set_value("kuka_kr270").run()
     assert len(page.error) == 1
     assert "5 joint columns for a robot of 6 joints" in page.error[0].value
     typed(page, load_tests_to_csv(tests, digits=6))
     assert not page.exception
     assert not page.error
     for view in ("compliances", "residuals", "models", "next", "cut"):
-        pick(page, "ident:view", view)
+        pick(page, "identification.view", view)
         assert not page.exception
     assert page.session_state[PROJECT].project.setup.digest() == before

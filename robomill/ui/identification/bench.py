@@ -10,12 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+import numpy as np
 import streamlit as st
 
+from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.comparison import Comparison, compare_models
 from robomill.identification.estimate import identify
-from robomill.identification.laboratory import Laboratory
+from robomill.identification.laboratory import MAX_LOAD, Laboratory
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.result import IdentificationResult
@@ -27,8 +29,8 @@ from robomill.ui import session
 
 Value = TypeVar("Value")
 
-KEY = "robomill:load tests"
-KEPT = 24
+KEY = "identification.bench"
+REMEMBERED = 24
 SAMPLE_ROBOT = "slavkovic_5r"
 SAMPLES = {
     "nine_points": "Nine points, 81 equations",
@@ -38,6 +40,24 @@ SAMPLES = {
     "one_joint_at_a_time": "One joint at a time",
 }
 MAP_SAMPLES = {"grid_45x6": SAMPLES["grid_45x6"], "nine_points_compliances": SAMPLES["nine_points_compliances"]}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is measured next in the laboratory: X, Y, Z, A, B (m, rad), the axis of {M} pushed along, the load in N."""
+
+    pose: tuple[float, ...] = (0.0, -1.3, 0.0, 0.0, 0.0)
+    axis: str = "Y"
+    load: float = 250.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.load <= MAX_LOAD:
+            raise LoadTestError(f"Load: found {self.load:g} N, expected more than 0 and at most {MAX_LOAD:g} N.")
+
+    @property
+    def F(self) -> FloatArray:
+        """(3,) N in {M}."""
+        return np.eye(3)["XYZ".index(self.axis)] * self.load
 
 
 @dataclass(eq=False)
@@ -70,17 +90,23 @@ class Bench:
     map_sample: str = ""
     map_revision: int = 0
     laboratory: Laboratory | None = None
+    trial: Trial = Trial()
     handed_in: bool = False
     memory: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     def remembered(self, key: Any, make: Callable[[], Value]) -> Value:
-        """``make()``, once for each ``key``; the oldest of ``KEPT`` is forgotten. Refusals are not kept."""
+        """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not bench."""
         if key not in self.memory:
             made = make()
-            while len(self.memory) >= KEPT:
+            while len(self.memory) >= REMEMBERED:
                 del self.memory[next(iter(self.memory))]
             self.memory[key] = made
-        return self.memory[key]  # type: ignore[no-any-return]
+        found: Value = self.memory[key]
+        return found
+
+    def writer(self, name: str) -> Callable[[Any], None]:
+        """What an input calls with its new value for ``name``."""
+        return lambda value: setattr(self, name, value)
 
     def take(self, text: str, name: str, sample: str = "") -> None:
         """Put other tests on the bench; what was left out of the old ones is forgotten."""
@@ -96,26 +122,26 @@ class Bench:
 
 def bench() -> Bench:
     """The bench of this session; the first call lays the nine-point sample on it."""
-    if KEY not in st.session_state:
-        new = Bench()
-        take_sample(new, "nine_points")
-        new.take_map(sample_text("grid_45x6"), "grid_45x6.csv", "grid_45x6")
-        st.session_state[KEY] = new
-    kept: Bench = st.session_state[KEY]
-    if kept.sample and kept.seen_robot != session.project().setup.robot.name:
-        _sample_robot(kept)
-    return kept
+    held: Bench | None = session.kept(KEY)
+    if held is None:
+        held = Bench()
+        take_sample(held, "nine_points")
+        held.take_map(sample_text("grid_45x6"), "grid_45x6.csv", "grid_45x6")
+        session.keep(KEY, held)
+    if held.sample and held.seen_robot != session.project().setup.robot.name:
+        _sample_robot(held)
+    return held
 
 
-def take_sample(kept: Bench, sample: str) -> None:
+def take_sample(bench: Bench, sample: str) -> None:
     """Put a sample on the bench, with the robot that it was made for."""
-    kept.take(sample_text(sample), f"{sample}.csv", sample)
-    _sample_robot(kept)
+    bench.take(sample_text(sample), f"{sample}.csv", sample)
+    _sample_robot(bench)
 
 
-def _sample_robot(kept: Bench) -> None:
-    kept.seen_robot = session.project().setup.robot.name
-    kept.robot_name = "" if kept.seen_robot == SAMPLE_ROBOT else SAMPLE_ROBOT
+def _sample_robot(bench: Bench) -> None:
+    bench.seen_robot = session.project().setup.robot.name
+    bench.robot_name = "" if bench.seen_robot == SAMPLE_ROBOT else SAMPLE_ROBOT
 
 
 @st.cache_data(max_entries=8, show_spinner=False)
@@ -149,51 +175,53 @@ def _body(text: str) -> list[str]:
     return [line for line in text.splitlines() if line.strip(" \t,;") and not line.startswith("#")] or [""]
 
 
-def robot_of(kept: Bench) -> Robot:
+def robot_of(bench: Bench) -> Robot:
     """The robot that was measured: the project's, or a preset."""
-    return load_robot(kept.robot_name) if kept.robot_name else session.project().setup.robot
+    return load_robot(bench.robot_name) if bench.robot_name else session.project().setup.robot
 
 
-def tests_of(kept: Bench, robot: Robot) -> LoadTests | JointTests:
+def tests_of(bench: Bench, robot: Robot) -> LoadTests | JointTests:
     """The tests as read, their poses checked against the robot. Raises LoadTestError with row and column."""
     # The line end makes a single typed line a text, never the name of a file on this machine.
-    return kept.remembered(("tests", kept.revision, robot.digest()), lambda: read_load_tests(kept.text + "\n", robot))
+    return bench.remembered(
+        ("tests", bench.revision, robot.digest()), lambda: read_load_tests(bench.text + "\n", robot)
+    )
 
 
-def fit_of(kept: Bench, robot: Robot) -> IdentificationResult:
+def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
     """The fit of the model asked for. Raises LoadTestError."""
-    return kept.remembered(
-        ("fit", _choices(kept, robot), kept.model),
+    return bench.remembered(
+        ("fit", _choices(bench, robot), bench.model),
         lambda: identify(
             robot,
-            tests_of(kept, robot),
-            kept.model,
-            bending_joints=kept.bending,
-            robust=kept.robust,
-            exclude=kept.excluded,
+            tests_of(bench, robot),
+            bench.model,
+            bending_joints=bench.bending,
+            robust=bench.robust,
+            exclude=bench.excluded,
         ),
     )
 
 
-def comparison_of(kept: Bench, robot: Robot) -> Comparison:
+def comparison_of(bench: Bench, robot: Robot) -> Comparison:
     """Every model fitted to the same tests. Raises LoadTestError."""
-    tests = tests_of(kept, robot)
+    tests = tests_of(bench, robot)
     if isinstance(tests, JointTests):
         raise LoadTestError(
             "One joint at a time shows nothing but joints: models are compared on displacements of the tool."
         )
-    return kept.remembered(
-        ("models", _choices(kept, robot)),
-        lambda: compare_models(robot, tests, bending_joints=kept.bending, robust=kept.robust, exclude=kept.excluded),
+    return bench.remembered(
+        ("models", _choices(bench, robot)),
+        lambda: compare_models(robot, tests, bending_joints=bench.bending, robust=bench.robust, exclude=bench.excluded),
     )
 
 
-def field_of(kept: Bench, robot: Robot) -> MeasuredField:
+def field_of(bench: Bench, robot: Robot) -> MeasuredField:
     """The measured map. Raises LoadTestError."""
-    return kept.remembered(
-        ("map", kept.map_revision, robot.digest()), lambda: read_measured_map(kept.map_text + "\n", robot)
+    return bench.remembered(
+        ("map", bench.map_revision, robot.digest()), lambda: read_measured_map(bench.map_text + "\n", robot)
     )
 
 
-def _choices(kept: Bench, robot: Robot) -> tuple[Any, ...]:
-    return kept.revision, robot.digest(), kept.bending, kept.robust, kept.excluded
+def _choices(bench: Bench, robot: Robot) -> tuple[Any, ...]:
+    return bench.revision, robot.digest(), bench.bending, bench.robust, bench.excluded

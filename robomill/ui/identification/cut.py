@@ -15,6 +15,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
+from robomill.ui.box import Box
 from robomill.ui.identification.bench import Bench
 from robomill.ui.identification.inputs import adopted, field, knowledge
 from robomill.units import format_si, from_si
@@ -27,12 +28,12 @@ def cut_of(robot: Robot) -> SimulationResult:
     return cached.result(setup if setup.robot == robot else setup.replace(robot=robot))
 
 
-def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
+def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
     """Value and note of the tile on the cut: its worst deviation by the compliances found, with its band."""
     if not result.has_joints:
         return "no joints", "choose a model with joint springs"
     try:
-        found, known = predicted(kept, robot, result)
+        found, known = predicted(bench, robot, result)
     except RobomillError:
         return "not computed", "see In the cut"
     if found.worst < 0:
@@ -49,26 +50,26 @@ def cut_tile(kept: Bench, robot: Robot, result: IdentificationResult, unit: str)
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
 
 
-def predicted(kept: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:
+def predicted(bench: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:
     """The project's cut with the compliances found, and how unsure they, force and lengths are."""
-    found = cached.result(adopted(session.project().setup, robot, result, kept.name))
-    return found, knowledge(kept, robot, result)
+    found = cached.result(adopted(session.project().setup, robot, result, bench.name))
+    return found, knowledge(bench, robot, result)
 
 
-def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
+def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """The deviation along the project's path with its band, and what the band is made of."""
     if not result.has_joints:
         pieces.note("One constant matrix has no joint compliances; choose a model with joint springs.")
         return
     first, second, third = pieces.split([1.5, 1, 1], "cut", gap="small")
     with first:
-        axis = _component()
+        axis = inputs.pick("Deviation", "identification.component", {"": "Size", "x": "X", "y": "Y", "z": "Z"})
     with second:
-        field("Force known to ±", kept, "force_unsure", "N", 0, 1000, 5, 0)
+        field(bench, "force_unsure", Box("Force known to ±", "N", 5.0, 0, low=0, high=1000))
     with third:
-        field("Link lengths to ±", kept, "length_unsure", "mm", 0, 50, 0.5, 2)
+        field(bench, "length_unsure", Box("Link lengths to ±", "mm", 0.5, 2, low=0, high=50))
     try:
-        found, known = predicted(kept, robot, result)
+        found, known = predicted(bench, robot, result)
         now = cut_of(robot)
     except RobomillError as exc:
         pieces.error(exc)
@@ -85,17 +86,6 @@ def in_the_cut(kept: Bench, robot: Robot, result: IdentificationResult, unit: st
             alt="Deviation along the path with its 95 % band.",
         )
     pieces.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
-
-
-def _component() -> str:
-    options = {"": "Size", "x": "X", "y": "Y", "z": "Z"}
-    current = st.session_state.get("identification:component", "")
-
-    def take(name: str) -> None:
-        st.session_state["identification:component"] = name
-
-    inputs.choice("Deviation", "ident:component", options, current, take)
-    return str(st.session_state.get("identification:component", current))
 
 
 def _curves(

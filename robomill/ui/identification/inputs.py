@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import streamlit as st
 
-from robomill.errors import LoadTestError, RobomillError
+from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS, Model
@@ -19,9 +18,9 @@ from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.ui.identification.bench import SAMPLES, Bench, decoded, take_sample
-from robomill.ui.identification.words import MODEL_TITLES, summary
-from robomill.units import from_si, to_si, unit_label
+from robomill.ui.identification.words import summary
 
 SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual laboratory"}
 VIEWS = {
@@ -34,7 +33,7 @@ VIEWS = {
 MAX_MB = 50
 EDITABLE = 60_000
 OWN = "own"
-IDENTIFIED = "identified from"
+IDENTIFIED = "compliance.identified"
 TEMPLATES = {
     "joints": "Poses as joint angles",
     "world": "Poses as X, Y, Z, A, B",
@@ -45,40 +44,33 @@ TEMPLATES = {
 
 def choose(key: str, options: dict[str, str]) -> str:
     """A row of views; the choice outlives a visit to another page."""
-    kept = f"identification:{key}"
-    current = st.session_state.get(kept, next(iter(options)))
-
-    def take(picked: str) -> None:
-        st.session_state[kept] = picked
-
-    inputs.choice(key.capitalize(), f"ident:{key}", options, current, take, inputs.HIDDEN)
-    return str(st.session_state.get(kept, current))
+    return str(inputs.pick(key.capitalize(), f"identification.{key}", options, look=inputs.HIDDEN))
 
 
-def source(kept: Bench, robot: Robot) -> None:
+def source(bench: Bench, robot: Robot) -> None:
     """A sample, a file, or pasted rows; refused text stays with its sentence."""
-    samples = {**SAMPLES, OWN: kept.name} if not kept.sample else SAMPLES
+    samples = {**SAMPLES, OWN: bench.name} if not bench.sample else SAMPLES
     inputs.choice(
         "Load tests",
-        "ident:sample",
+        "identification.sample",
         samples,
-        kept.sample or OWN,
-        lambda name: None if name == OWN else take_sample(kept, name),
+        bench.sample or OWN,
+        lambda name: None if name == OWN else take_sample(bench, name),
         inputs.LISTED,
     )
-    upload("Your load tests (CSV)", "ident:file", kept.take, kept.revision)
+    upload("Your load tests (CSV)", "identification.file", bench.take, bench.revision)
     _templates(robot)
-    if len(kept.text) > EDITABLE:
-        pieces.note(f"{kept.name}: {len(kept.text.splitlines()):,} lines; files of this size are edited outside.")
+    if len(bench.text) > EDITABLE:
+        pieces.note(f"{bench.name}: {len(bench.text.splitlines()):,} lines; files of this size are edited outside.")
         return
-    with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=not kept.sample):
-        box = "ident:text"
-        inputs.seed(box, kept.text)
-        st.text_area(
+    with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=not bench.sample):
+        inputs.text(
             "Header with units, then one row a test",
-            key=box,
+            "identification.rows",
+            bench.text,
+            lambda rows: bench.take(rows, "pasted rows"),
+            lines=8,
             height=220,
-            on_change=lambda: kept.take(st.session_state[box], "pasted rows"),
         )
         pieces.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
 
@@ -88,15 +80,11 @@ def upload(label: str, key: str, take: Callable[[str, str], None], revision: int
 
     ``revision`` changes when the file was taken: the box is empty again then.
     """
-    box = f"{key}:{revision}"
 
-    def taken() -> None:
-        file: Any = st.session_state.get(box)
-        if file is not None:
-            inputs.submit(key, None, lambda: take(decoded(file.getvalue(), file.name), file.name))
+    def text_of(data: bytes, name: str) -> None:
+        take(decoded(data, name), name)
 
-    st.file_uploader(label, key=box, max_upload_size=MAX_MB, on_change=taken)
-    inputs.sentence(key)
+    inputs.upload(label, key, text_of, most_MB=MAX_MB, fresh=revision)
 
 
 def _templates(robot: Robot) -> None:
@@ -105,44 +93,29 @@ def _templates(robot: Robot) -> None:
         for protocol, label in TEMPLATES.items():
             name = f"load-tests-{protocol.replace(' ', '-')}.csv"
             sheet = load_test_template(protocol, robot.n)
-            pieces.download(label, sheet, name, "text/csv", key=f"ident:template:{protocol}")
+            pieces.download(label, sheet, name, "text/csv", key=f"identification.template.{protocol}")
 
 
-def robot_choice(kept: Bench) -> None:
+def robot_choice(bench: Bench) -> None:
     """Which robot was measured: the project's, or a preset."""
     titles = {"": f"The project's: {session.project().setup.robot.name}", **{n: n for n in robot_names()}}
-
-    def take(name: str) -> None:
-        kept.robot_name = name
-
-    inputs.choice("Robot measured", "ident:robot", titles, kept.robot_name, take, inputs.LISTED)
+    write = bench.writer("robot_name")
+    inputs.choice("Robot measured", "identification.robot", titles, bench.robot_name, write, inputs.LISTED)
 
 
-def model_choice(kept: Bench, robot: Robot) -> None:
+def model_choice(bench: Bench, robot: Robot) -> None:
     """Which springs are fitted, where links bend, and whether tests that do not fit weigh less."""
-
-    def take_model(name: str) -> None:
-        kept.model = name
-
-    inputs.choice(
-        "What gives", "ident:model", {m: MODEL_TITLES[m] for m in MODELS}, kept.model, take_model, inputs.LISTED
-    )
-    if Model(kept.model).has("bending"):
-        key = "ident:bending"
-        inputs.seed(key, [j for j in kept.bending if j in robot.joint_numbers])
-        st.multiselect(
+    titles = {name: family.title for name, family in MODELS.items()}
+    inputs.choice("What gives", "identification.model", titles, bench.model, bench.writer("model"), inputs.LISTED)
+    if Model(bench.model).has("bending"):
+        inputs.several(
             "Links bend at joints",
-            list(robot.joint_numbers),
-            key=key,
-            on_change=lambda: setattr(kept, "bending", tuple(sorted(st.session_state[key]))),
+            "identification.bending",
+            {j: str(j) for j in robot.joint_numbers},
+            [j for j in bench.bending if j in robot.joint_numbers],
+            lambda joints: setattr(bench, "bending", tuple(sorted(joints))),
         )
-    key = "ident:robust"
-    inputs.seed(key, kept.robust)
-    st.toggle(
-        "Weigh down tests that do not fit",
-        key=key,
-        on_change=lambda: setattr(kept, "robust", bool(st.session_state[key])),
-    )
+    inputs.switch("Weigh down tests that do not fit", "identification.robust", bench.robust, bench.writer("robust"))
 
 
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
@@ -169,26 +142,26 @@ def findings(
     return tuple(dict.fromkeys(found))
 
 
-def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
+def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     """The button that puts the compliances in force, with their uncertainty."""
     if not result.has_joints:
         pieces.note("One constant matrix has no joints to give to the project; choose a model with joint springs.")
         return
     setup = session.project().setup
-    fitted = adopted(setup, robot, result, kept.name)
+    fitted = adopted(setup, robot, result, bench.name)
     known = session.known(setup)
     in_force = known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
-        session.know(knowledge(kept, robot, result))  # force and lengths may have been stated since
+        session.know(knowledge(bench, robot, result))  # force and lengths may have been stated since
     st.button(
         "In force in the project" if in_force else "Use these compliances in the project",
         type="primary",
         icon=":material/check:" if in_force else ":material/input:",
-        key="ident:use",
+        key="identification.use",
         width="stretch",
         disabled=in_force,
         on_click=_use,
-        args=(kept, fitted, robot, result),
+        args=(bench, fitted, robot, result),
     )
     if in_force:
         pieces.note("Every page counts with them now, and shows its deviation with a band. Undo leads back.")
@@ -199,53 +172,39 @@ def use(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
             + (f" and {springs} springs beside the joints" if springs else "")
             + " of the project's robot; their uncertainty goes along as bands."
         )
-    inputs.sentence("ident:use")
+    inputs.sentence("identification.use")
 
 
 def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, name: str) -> SimulationSetup:
     """The set-up with the compliances and springs found; springs of an earlier identification give way."""
-    words = f"{IDENTIFIED} {len(result.row)} load tests ({name}), {MODEL_TITLES[result.model].lower()}"
-    marked = {**result.applied_to(robot).provenance, "compliance.identified": Provenance("computed", words)}
+    source = f"identified from {len(result.row)} load tests ({name}), {result.choice.title.lower()}"
+    applied = result.applied_to(robot)
+    marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
     found = result.springs(robot)
     names = {spring.name for spring in found}
-    old = tuple(s for s in setup.springs if s.name not in names and not s.provenance.source.startswith(IDENTIFIED))
-    return setup.replace(robot=result.applied_to(robot).replace(provenance=marked), springs=old + found)
+    identified = IDENTIFIED in setup.robot.provenance  # springs that were measured then came from that
+    old = tuple(
+        s for s in setup.springs if s.name not in names and not (identified and s.provenance.kind == "measured")
+    )
+    return setup.replace(robot=applied.replace(provenance=marked), springs=old + found)
 
 
-def knowledge(kept: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:
+def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:
     """How sure the compliances found are, with what was stated of force and lengths."""
     known = Knowledge.of(result, robot, f"from {len(result.row)} load tests")
-    return known.widened(robot, kept.force_unsure, kept.length_unsure)
+    return known.widened(robot, bench.force_unsure, bench.length_unsure)
 
 
-def _use(kept: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
+def _use(bench: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     def put() -> None:
-        known = knowledge(kept, robot, result)
+        known = knowledge(bench, robot, result)
         session.change(robot=fitted.robot, springs=fitted.springs)
         session.know(known)
-        kept.robot_name = ""
+        bench.robot_name = ""
 
-    inputs.submit("ident:use", None, put)
+    inputs.submit("identification.use", None, put)
 
 
-def field(label: str, kept: Bench, name: str, unit: str, low: float, high: float, step: float, digits: int) -> None:
-    """A number of the bench in display units, between two bounds that its refusal names."""
-    key = f"ident:{name}"
-    inputs.seed(key, round(float(from_si(float(getattr(kept, name)), unit)), 9))
-
-    def put() -> None:
-        typed = st.session_state[key]
-        if typed is None or not low <= typed <= high:
-            found = "nothing" if typed is None else f"{typed:g}"
-            raise LoadTestError(f"{label}: found {found}, expected {low:g} to {high:g} {unit_label(unit)}.")
-        setattr(kept, name, to_si(float(typed), unit))
-
-    named = f"{label}, {unit_label(unit)}" if unit_label(unit) else label
-    st.number_input(
-        named,
-        key=key,
-        step=float(step),
-        format=f"%.{digits}f",
-        on_change=lambda: inputs.submit(key, st.session_state[key], put),
-    )
-    inputs.sentence(key)
+def field(bench: Bench, name: str, box: Box) -> None:
+    """The box of a number of the bench."""
+    inputs.value(f"identification.{name}", box, getattr(bench, name), bench.writer(name))

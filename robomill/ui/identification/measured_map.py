@@ -28,12 +28,12 @@ CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
 
 
-def page(kept: Bench, view: View, dark: bool, top: Any) -> None:
+def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
-    robot = robot_of(kept)
+    robot = robot_of(bench)
     field, refusal = None, None
     try:
-        field = field_of(kept, robot)
+        field = field_of(bench, robot)
         cut: SimulationResult | None = cut_of(robot)
     except LoadTestError as exc:
         refusal = exc
@@ -41,10 +41,10 @@ def page(kept: Bench, view: View, dark: bool, top: Any) -> None:
         cut = None
     sentence = "These measurements do not make a map yet." if field is None else title(field, robot)
     with top:
-        pieces.headline(f"Measured map · {kept.map_name}", sentence)
+        pieces.headline(f"Measured map · {bench.map_name}", sentence)
     if field is not None:
         pieces.tiles(tiles(field, robot, cut, view.length))
-    chosen = _inputs(kept, field, view.length)
+    chosen = _inputs(bench, field, view.length)
     if refusal is not None:
         pieces.error(refusal)
     if field is not None:
@@ -55,43 +55,32 @@ def page(kept: Bench, view: View, dark: bool, top: Any) -> None:
         _use(field)
 
 
-def _inputs(kept: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
-    samples = {**MAP_SAMPLES, OWN: kept.map_name} if not kept.map_sample else MAP_SAMPLES
+def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
+    samples = {**MAP_SAMPLES, OWN: bench.map_name} if not bench.map_sample else MAP_SAMPLES
     first, second, third = pieces.split([1, 1.1, 1], "map-inputs", gap="large")
     with first:
         inputs.choice(
             "Measured compliances",
-            "ident:map:sample",
+            "identification.map.sample",
             samples,
-            kept.map_sample or OWN,
-            lambda n: None if n == OWN else kept.take_map(sample_text(n), f"{n}.csv", n),
+            bench.map_sample or OWN,
+            lambda n: None if n == OWN else bench.take_map(sample_text(n), f"{n}.csv", n),
             inputs.LISTED,
         )
-        robot_choice(kept)
+        robot_choice(bench)
     with second:
-        upload("Your measured map (CSV)", "ident:map:file", kept.take_map, kept.map_revision)
+        upload("Your measured map (CSV)", "identification.map.file", bench.take_map, bench.map_revision)
         pieces.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
-        component = _kept_choice("component", {c: c.replace("_", " ") for c in COMPONENTS}, "C_yy")
+        options = {c: c.replace("_", " ") for c in COMPONENTS}
+        component = inputs.pick("Component", "identification.map.component", options, "C_yy", inputs.LISTED)
         z = 0.0
         if field is not None:
             levels = np.unique(np.round(field.p[:, 2], 6))
             texts = {float(v): format_si(float(v), unit, 0 if unit == "mm" else 2) for v in levels}
-            z = _kept_choice("level", texts, min(texts, key=abs))
+            nearest = min(texts, key=abs)
+            z = inputs.pick("Level Z in {M}", "identification.map.level", texts, nearest, inputs.LISTED)
     return component, z
-
-
-def _kept_choice(name: str, options: dict[Any, str], start: Any) -> Any:
-    kept = f"identification:map:{name}"
-    current = st.session_state.get(kept, start)
-    current = current if current in options else start
-
-    def take(value: Any) -> None:
-        st.session_state[kept] = value
-
-    label = {"component": "Component", "level": "Level Z in {M}"}[name]
-    inputs.choice(label, f"ident:map:{name}", options, current, take, inputs.LISTED)
-    return current
 
 
 def title(field: MeasuredField, robot: Robot) -> str:
@@ -282,7 +271,7 @@ def _use(field: MeasuredField) -> None:
     if in_force:
         st.button(
             "Go back to the joint model",
-            key="map:drop",
+            key="identification.map.drop",
             on_click=session.change,
             kwargs={"measured_map": None},
             help="The simulation runs from this map now.",
@@ -290,7 +279,7 @@ def _use(field: MeasuredField) -> None:
         return
     st.button(
         "Simulate from this map",
-        key="map:use",
+        key="identification.map.use",
         type="primary",
         on_click=session.change,
         kwargs={"measured_map": field},

@@ -10,6 +10,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.identification.comparison import OVERFIT, Comparison, in_sample
+from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui import pieces
@@ -20,17 +21,17 @@ from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import models_figure
 
 
-def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
+def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Every model on the same tests: errors on own data and on poses left out, parameters, remarks."""
     try:
         with st.spinner("Fitting every model …"):
-            compared = comparison_of(kept, robot)
+            compared = comparison_of(bench, robot)
     except RobomillError as exc:
         st.info(str(exc), icon=":material/info:")
         return
     results, rows = compared.results, compared.rows()
     counts = [row["parameters"] for row in rows]
-    names = [f"{words.MODEL_TITLES[r.model]} ({n})" for r, n in zip(results, counts, strict=True)]
+    names = [f"{r.choice.title} ({n})" for r, n in zip(results, counts, strict=True)]
     best = compared.simplest_good
     st.markdown(f"**{_judgement(compared)}**")
     with st.container(border=True):
@@ -52,20 +53,21 @@ def models(kept: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     if absorbed:
         st.info(absorbed, icon=":material/lightbulb:")
     for name, reason in compared.refused.items():
-        pieces.note(f"{words.MODEL_TITLES[name]}: {html.escape(reason)}")
+        pieces.note(f"{MODELS[name].title}: {html.escape(reason)}")
     _side_by_side(results, rows, robot, joint_unit)
-    if kept.model != best.model:
+    if bench.model != best.model:
         st.button(
-            f"Take {words.MODEL_TITLES[best.model].lower()}",
-            key="ident:best",
+            f"Take {best.choice.title.lower()}",
+            key="identification.take_best",
             icon=":material/thumb_up:",
-            on_click=lambda: setattr(kept, "model", best.model),
+            on_click=bench.writer("model"),
+            args=(best.model,),
         )
 
 
 def _judgement(compared: Comparison) -> str:
     best, simple = compared.best, compared.simplest_good
-    title = words.MODEL_TITLES[simple.model]
+    title = simple.choice.title
     if best is simple:
         return f"{title} predict poses left out best, to {format_si(best.cv_relative_error, '%', 1)}."
     return (
@@ -99,7 +101,7 @@ def _side_by_side(
             for c, unit in zip(result.C_theta, units, strict=True)
         )
         remark = html.escape(str(row["remark"]).capitalize())
-        body += f"<tr><td>{words.MODEL_TITLES[result.model]}</td>{cells}<td>{remark}</td></tr>"
+        body += f"<tr><td>{result.choice.title}</td>{cells}<td>{remark}</td></tr>"
     st.html(
         f'<div style="overflow-x:auto"><table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table></div>'
     )

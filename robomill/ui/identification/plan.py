@@ -16,6 +16,7 @@ from robomill.io.load_test_sheets import load_tests_to_csv
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.ui.identification.bench import Bench, appended, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import field, upload
@@ -26,14 +27,14 @@ GOALS = {"joint": "One joint", "all": "All of them", "path": "The project's cut"
 MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 
 
-def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
+def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """Goal, box and load; the poses to measure, as a table and a sheet; intervals before and after."""
-    if isinstance(tests_of(kept, robot), JointTests):
+    if isinstance(tests_of(bench, robot), JointTests):
         st.info("One joint at a time needs no plan: load the joint known least once more.", icon=":material/info:")
         return
-    _goal_inputs(kept, robot, result)
+    _goal_inputs(bench, robot, result)
     try:
-        plan = plan_of(kept, robot, result)
+        plan = plan_of(bench, robot, result)
     except RobomillError as exc:
         pieces.error(exc)
         return
@@ -56,82 +57,81 @@ def measure_next(kept: Bench, robot: Robot, result: IdentificationResult, unit: 
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         pieces.download(
             "Measuring sheet (CSV)",
-            lambda: measuring_sheet(plan, kept.name),
+            lambda: measuring_sheet(plan, bench.name),
             "measuring-sheet.csv",
             "text/csv",
-            key="ident:sheet",
+            key="identification.sheet",
         )
         pieces.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
     upload(
-        "Filled-in sheet (CSV)", "ident:filled", lambda text, name: _take_sheet(kept, robot, text, name), kept.revision
+        "Filled-in sheet (CSV)",
+        "identification.filled",
+        lambda text, name: _take_sheet(bench, robot, text, name),
+        bench.revision,
     )
 
 
-def _goal_inputs(kept: Bench, robot: Robot, result: IdentificationResult) -> None:
-    def take(name: str) -> Any:
-        def put(value: Any) -> None:
-            setattr(kept, name, value)
-
-        return put
-
+def _goal_inputs(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     first, second, third, fourth, fifth = pieces.split([1.5, 1.1, 1, 1, 1], "goal", gap="small")
     with first:
-        inputs.choice("Make more certain", "ident:goal", GOALS, kept.goal, take("goal"), inputs.LISTED)
-    if kept.goal == "joint":
+        inputs.choice(
+            "Make more certain", "identification.goal", GOALS, bench.goal, bench.writer("goal"), inputs.LISTED
+        )
+    if bench.goal == "joint":
         joints = {j: f"Joint {j}" for j in robot.joint_numbers}
-        now = _joint(kept, robot, result)
+        now = _joint(bench, robot, result)
         with second:
-            inputs.choice("Joint", "ident:goal_joint", joints, now, take("goal_joint"), inputs.LISTED)
+            inputs.choice("Joint", "identification.goal_joint", joints, now, bench.writer("goal_joint"), inputs.LISTED)
     with third:
-        field("More tests", kept, "count", "1", 1, 30, 1, 0)
+        field(bench, "count", Box("More tests", whole=True, low=1, high=30))
     with fourth:
-        field("Load", kept, "load", "N", 1, 5000, 50, 0)
+        field(bench, "load", Box("Load", "N", 50.0, 0, low=1, high=5000))
     with fifth:
-        field("Tilt up to", kept, "tilt", "deg", 0, 90, 5, 0)
+        field(bench, "tilt", Box("Tilt up to", "deg", 5.0, 0, low=0, high=90))
     pieces.note(
         "Chosen among 300 poses within the joint limits and "
         f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."
     )
 
 
-def _joint(kept: Bench, robot: Robot, result: IdentificationResult) -> int:
-    if kept.goal_joint in robot.joint_numbers:
-        return kept.goal_joint
+def _joint(bench: Bench, robot: Robot, result: IdentificationResult) -> int:
+    if bench.goal_joint in robot.joint_numbers:
+        return bench.goal_joint
     return result.weakest_joint if result.has_joints else robot.joint_numbers[0]
 
 
-def _take_sheet(kept: Bench, robot: Robot, text: str, name: str) -> None:
+def _take_sheet(bench: Bench, robot: Robot, text: str, name: str) -> None:
     read_load_tests(text + "\n", robot)  # refused here with row and column of the sheet, before it joins anything
-    kept.take(appended(kept.text, text), f"{kept.name} + {name}")
+    bench.take(appended(bench.text, text), f"{bench.name} + {name}")
 
 
-def plan_of(kept: Bench, robot: Robot, result: IdentificationResult) -> Plan:
+def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
-    tests = tests_of(kept, robot)
+    tests = tests_of(bench, robot)
     assert not isinstance(tests, JointTests)
-    goal: Any = kept.goal if kept.goal == "all" else _joint(kept, robot, result)
-    if kept.goal == "path":
+    goal: Any = bench.goal if bench.goal == "all" else _joint(bench, robot, result)
+    if bench.goal == "path":
         cut = cut_of(robot)
         goal = PathLoad(cut.theta[cut.judged], cut.F[cut.judged])
     key = (
         "plan",
         id(result),
-        kept.goal,
+        bench.goal,
         goal if isinstance(goal, int) else session.project().setup.digest(),
-        kept.count,
-        kept.load,
-        kept.tilt,
+        bench.count,
+        bench.load,
+        bench.tilt,
     )
 
     def make() -> tuple[IdentificationResult, Plan]:
         tips = tests.tool_poses(robot)[:, :3, 3]
         found = box_candidates(
-            robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=kept.tilt, load=kept.load
+            robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=bench.tilt, load=bench.load
         )
         # The fit is kept beside the plan so that its identity stays its own.
-        return result, next_best(robot, tests, result, found, count=int(kept.count), goal=goal)
+        return result, next_best(robot, tests, result, found, count=bench.count, goal=goal)
 
-    return kept.remembered(key, make)[1]
+    return bench.remembered(key, make)[1]
 
 
 def plan_columns(plan: Plan, unit: str) -> dict[str, Any]:

@@ -19,8 +19,6 @@ from robomill.viz.identification import (
     residuals_figure,
 )
 
-RESIDUAL_UNITS = {"mm": "in mm", "%": "in % of the test"}
-
 
 def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Intervals beside the paper's tables, the joint these poses hardly see, correlations, condition."""
@@ -78,7 +76,7 @@ def unseen(result: IdentificationResult) -> None:
 def _noise(result: IdentificationResult) -> str:
     if not np.isfinite(result.noise):
         return "an unknown spread"
-    return format_si(result.noise, "urad" if result.residual.shape[1] == 1 else "um", 1)
+    return format_si(result.noise, "urad" if words.is_single(result) else "um", 1)
 
 
 def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
@@ -115,11 +113,12 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
 FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
 
 
-def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
+def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
     """Residual of each test, what does not fit, and the click that leaves it out."""
-    single = words.is_single(result)
+    length = "mrad" if words.is_single(result) else "mm"
+    options = {length: f"in {length}", "%": "in % of the test"}
     with st.container(border=True):
-        picked = _residual_unit(single)
+        picked = inputs.pick("Residuals", "identification.residual", options, look=inputs.HIDDEN)
         if picked == "%":
             with np.errstate(invalid="ignore", divide="ignore"):
                 size = words.sizes(result)[:, None]
@@ -136,28 +135,16 @@ def residuals(kept: Bench, result: IdentificationResult, dark: bool) -> None:
             caption=note + "One symbol a component. Ringed: further off than chance allows once in 100 data sets.",
             alt="Measured minus predicted displacement of each test.",
         )
-    _outliers(kept, result)
+    _outliers(bench, result)
 
 
-def _residual_unit(single: bool) -> str:
-    options = {"mrad": "in mrad", "%": RESIDUAL_UNITS["%"]} if single else RESIDUAL_UNITS
-    current = st.session_state.get("identification:residual", "")
-    current = current if current in options else next(iter(options))
-
-    def take(unit: str) -> None:
-        st.session_state["identification:residual"] = unit
-
-    inputs.choice("Residuals", "ident:residual", options, current, take, inputs.HIDDEN)
-    return str(st.session_state.get("identification:residual", current)) if current in options else current
-
-
-def _outliers(kept: Bench, result: IdentificationResult) -> None:
+def _outliers(bench: Bench, result: IdentificationResult) -> None:
     rows = [o.row for o in result.outliers]
-    if not rows and not kept.excluded:
+    if not rows and not bench.excluded:
         st.info("Every test fits the others; nothing is left out.", icon=":material/check_circle:")
         return
     if rows:
-        unit = "urad" if result.residual.shape[1] == 1 else "um"
+        unit = "urad" if words.is_single(result) else "um"
         named = "; ".join(
             f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {format_number(o.times, 0)} times the usual"
             for o in result.outliers[:6]
@@ -169,28 +156,28 @@ def _outliers(kept: Bench, result: IdentificationResult) -> None:
         )
         if len(rows) > 0.1 * len(result.row):
             pieces.note("So many at once speak against the model rather than against the readings: compare the models.")
-    key = "ident:excluded"
-    inputs.seed(key, list(kept.excluded))
-    st.multiselect(
+    flagged = tuple(sorted({*rows, *bench.excluded}))
+    inputs.several(
         "Rows left out",
-        sorted({*rows, *kept.excluded}),
-        key=key,
-        on_change=lambda: setattr(kept, "excluded", tuple(sorted(st.session_state[key]))),
+        "identification.excluded",
+        {row: str(row) for row in flagged},
+        bench.excluded,
+        lambda chosen: setattr(bench, "excluded", tuple(sorted(chosen))),
     )
     left, right = st.columns(2)
     left.button(
         f"Leave out {'this row' if len(rows) == 1 else f'these {len(rows)} rows'} and refit",
-        key="ident:drop",
+        key="identification.leave_out",
         disabled=not rows,
         width="stretch",
         icon=":material/filter_alt:",
-        on_click=lambda: setattr(kept, "excluded", tuple(sorted({*rows, *kept.excluded}))),
+        on_click=lambda: setattr(bench, "excluded", flagged),
     )
     right.button(
         "Use every row again",
-        key="ident:restore",
-        disabled=not kept.excluded,
+        key="identification.use_all",
+        disabled=not bench.excluded,
         width="stretch",
         icon=":material/undo:",
-        on_click=lambda: setattr(kept, "excluded", ()),
+        on_click=lambda: setattr(bench, "excluded", ()),
     )

@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.identification.comparison import in_sample
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import MODELS, Parameter
+from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui.pieces import Tile
@@ -17,7 +17,6 @@ from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import format_percent, format_si, format_value, from_si, unit_label
 from robomill.viz.identification import Intervals
 
-MODEL_TITLES = {name: family.title for name, family in MODELS.items()}
 IDENTIFIED_SET = "identified"
 SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
 
@@ -62,12 +61,12 @@ def intervals(
 def _drawing(
     result: IdentificationResult, robot: Robot, unit: str, rows: list[int], truth: FloatArray | None
 ) -> Intervals:
-    labels = [result.labels[k] for k in rows]
-    lumped = [result.lumped.get(p.label, "") for p in labels]
+    parameters = [result.labels[k] for k in rows]
+    lumped = [result.lumped.get(p.label, "") for p in parameters]
     known = np.isfinite(result.parameter_stderr[rows]) & np.array([not other for other in lumped])
     value = np.where(known, shown(result.parameters[rows], unit), np.nan)
     ends = np.array([interval(result.parameter_ci95[k], unit) for k in rows])
-    words = tuple(
+    said = tuple(
         f"<b>{number(v, unit)}</b>  ({number(low, unit)} to {number(high, unit)})"
         if seen
         else f"moves as {other} does at these poses: counted there"
@@ -75,18 +74,18 @@ def _drawing(
         else "not seen by these tests"
         for v, (low, high), seen, other in zip(value, ends, known, lumped, strict=True)
     )
-    joints = [p.joint - 1 for p in labels if p.joint is not None]
+    joints = [p.joint - 1 for p in parameters if p.joint is not None]
     references = {title: shown(C[joints], unit) for title, C in reference_sets(robot)} if joints else {}
     return Intervals(
-        labels=tuple(pretty(p) for p in labels),
+        labels=tuple(pretty(p) for p in parameters),
         value=value,
         low=ends[:, 0],
         high=ends[:, 1],
-        words=words,
+        words=said,
         unit=unit_label(unit),
         references=references,
         truth=None if truth is None else shown(truth, unit),
-        logarithmic=not any(p.signed for p in labels) and bool((value[known] > 0).any()),
+        logarithmic=not any(p.signed for p in parameters) and bool((value[known] > 0).any()),
     )
 
 
