@@ -5,6 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import KinematicsError
+from robomill.kinematics.result import misfit, task_mode, within_residual
 
 
 @pytest.fixture(scope="module")
@@ -58,3 +59,19 @@ def test_branch_by_name_or_part(robot):
 def test_poses_that_are_not_numbers_are_refused(robot):
     with pytest.raises(KinematicsError, match="NaN"):
         rm.inverse_kinematics(robot, np.full((4, 4), np.nan))
+
+
+def test_the_tool_axis_counts_for_five_axes_whatever_the_closed_form_says(robot):
+    """A tip at its place under an axis 0.1 mrad off is no answer; a turn about the axis is one."""
+    theta = np.deg2rad([[10.0, -20.0, 15.0, 5.0, 30.0]])
+    T_MT = rm.tool_pose(robot, theta)
+    mode = task_mode(robot)
+
+    def near_enough(T):
+        return bool(within_residual(*misfit(robot, theta, T, mode), mode)[0])
+
+    c, s = np.cos(1e-4), np.sin(1e-4)
+    leaned, spun = T_MT.copy(), T_MT.copy()
+    leaned[0, :3, :3] = T_MT[0, :3, :3] @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    spun[0, :3, :3] = T_MT[0, :3, :3] @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    assert (near_enough(T_MT), near_enough(leaned), near_enough(spun)) == (True, False, True)

@@ -71,6 +71,16 @@ def test_conversions_keep_the_pose(rows):
     np.testing.assert_array_equal(alpha[1:], robot.alpha[1:])
 
 
+@pytest.mark.parametrize("rows", [2, 5, 6])
+def test_a_standard_table_with_any_last_link_keeps_its_poses_as_a_modified_one(rows):
+    rng = np.random.default_rng(20 + rows)
+    robot = arm(rng, rows, "standard", np.full(rows, np.nan))
+    alpha, a, base, tool = standard_to_modified(robot.alpha, robot.a, robot.T_base, robot.T_tool)
+    other = robot.replace(convention="modified", alpha=alpha, a=a, T_base=base, T_tool=tool)
+    for theta in rng.uniform(-2, 2, (5, rows)):
+        np.testing.assert_allclose(pose(other, theta), pose(robot, theta), atol=1e-13)
+
+
 def test_right_angles_are_exact():
     for k in range(-9, 10):
         c, s = exact_cos_sin(k * np.pi / 2)
