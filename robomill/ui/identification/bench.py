@@ -94,8 +94,13 @@ class Bench:
     handed_in: bool = False
     memory: dict[Any, Any] = field(default_factory=dict, repr=False)
 
+    @property
+    def treatment(self) -> dict[str, Any]:
+        """How the tests are fitted, whichever the model: where links bend, what weighs less, what is left out."""
+        return {"bending_joints": self.bending, "robust": self.robust, "exclude": self.excluded}
+
     def remembered(self, key: Any, make: Callable[[], Value]) -> Value:
-        """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not bench."""
+        """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not kept."""
         if key not in self.memory:
             made = make()
             while len(self.memory) >= REMEMBERED:
@@ -192,14 +197,7 @@ def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
     """The fit of the model asked for. Raises LoadTestError."""
     return bench.remembered(
         ("fit", _choices(bench, robot), bench.model),
-        lambda: identify(
-            robot,
-            tests_of(bench, robot),
-            bench.model,
-            bending_joints=bench.bending,
-            robust=bench.robust,
-            exclude=bench.excluded,
-        ),
+        lambda: identify(robot, tests_of(bench, robot), bench.model, **bench.treatment),
     )
 
 
@@ -212,7 +210,7 @@ def comparison_of(bench: Bench, robot: Robot) -> Comparison:
         )
     return bench.remembered(
         ("models", _choices(bench, robot)),
-        lambda: compare_models(robot, tests, bending_joints=bench.bending, robust=bench.robust, exclude=bench.excluded),
+        lambda: compare_models(robot, tests, **bench.treatment),
     )
 
 
@@ -224,4 +222,4 @@ def field_of(bench: Bench, robot: Robot) -> MeasuredField:
 
 
 def _choices(bench: Bench, robot: Robot) -> tuple[Any, ...]:
-    return bench.revision, robot.digest(), bench.bending, bench.robust, bench.excluded
+    return bench.revision, robot.digest(), *bench.treatment.values()

@@ -85,19 +85,16 @@ def title(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
     if result is None:
         return f"{done} readings, {lab.budget} left: not enough yet to tell the joints apart."
     label, half = words.weakest(result)
-    known = f"known to ± {format_percent(half)}" if np.isfinite(half) else "not seen at all"
+    known = f"known to {words.within(half)}" if np.isfinite(half) else "not seen at all"
     return f"{done} readings, {lab.budget} left: {label} is {known}."
 
 
 def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool) -> list[pieces.Tile]:
     """Readings left, the gauge, the weakest joint, the score."""
-    weakest = words.weakest(result) if result is not None else None
-    if weakest is None:
-        least = pieces.Tile("Least known", "everything", "measure first")
-    else:
-        label, half = weakest
-        known = f"± {format_percent(half)}" if np.isfinite(half) else "not seen"
-        least = pieces.Tile("Least known", label.capitalize(), known)
+    least = pieces.Tile("Least known", "everything", "measure first")
+    if result is not None:
+        label, half = words.weakest(result)
+        least = pieces.Tile("Least known", label.capitalize(), words.within(half))
     score = lab.score(result) if handed_in and result is not None else None
     covered = int(np.nansum(score.covered)) if score else 0
     tone = "" if score is None else "ok" if score.points >= 80 else "tight" if score.points >= 50 else "out"

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
-from robomill.errors import LoadTestError, RobomillError
+from robomill.compliance.cartesian import cartesian_compliance
+from robomill.errors import RobomillError
 from robomill.identification.measured_field import MeasuredField
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
@@ -31,19 +35,21 @@ RIM = 2
 def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
     robot = robot_of(bench)
-    field, refusal = None, None
+    field = cut = refusal = None
+    sentence = "These measurements do not make a map yet."
     try:
         field = field_of(bench, robot)
-        cut: SimulationResult | None = cut_of(robot)
-    except LoadTestError as exc:
+    except RobomillError as exc:
         refusal = exc
-    except RobomillError:
-        cut = None
-    sentence = "These measurements do not make a map yet." if field is None else title(field, robot)
+    if field is not None:
+        model = model_at_points(field, robot)
+        sentence = title(field, model)
+        with contextlib.suppress(RobomillError):
+            cut = cut_of(robot)
     with top:
         pieces.headline(f"Measured map · {bench.map_name}", sentence)
     if field is not None:
-        pieces.tiles(tiles(field, robot, cut, view.length))
+        pieces.tiles(tiles(field, model, cut, view.length))
     chosen = _inputs(bench, field, view.length)
     if refusal is not None:
         pieces.error(refusal)
@@ -83,13 +89,13 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
     return component, z
 
 
-def title(field: MeasuredField, robot: Robot) -> str:
-    """How far the joint model in force is from what was measured, at the measured points."""
-    gap = gap_at_points(field, robot)
+def title(field: MeasuredField, model: FloatArray) -> str:
+    """How far the joint ``model`` (k, 3, 3) m/N in force is from what was measured, at the measured points."""
+    gap = gap_at_points(field, model)
     if not np.isfinite(gap).any():
         return "The joint model does not reach any of the measured points."
     mean = float(np.nanmean(gap))
-    bias = float(np.nanmean(_sizes(field.C) - _sizes(model_at_points(field, robot))))
+    bias = float(np.nanmean(_sizes(field.C) - _sizes(model)))
     word = "higher" if bias > 0 else "lower"
     far = format_percent(mean)
     return f"Measured and calculated compliances differ by {far} on average; the measured ones are {word}."
@@ -97,26 +103,22 @@ def title(field: MeasuredField, robot: Robot) -> str:
 
 def model_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
     """C (k, 3, 3) m/N of the joint model at the measured poses, NaN where not reached."""
-    from robomill.compliance.cartesian import cartesian_compliance
-    from robomill.kinematics.inverse import inverse_kinematics
-    from robomill.kinematics.transforms import pose_from_world
-
     solved = inverse_kinematics(robot, pose_from_world(np.concatenate([field.p, field.AB], axis=1)))
     return cartesian_compliance(robot, solved.theta)
 
 
-def gap_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
+def gap_at_points(field: MeasuredField, model: FloatArray) -> FloatArray:
     """(k,) |C measured - C model| / |C measured|, Frobenius."""
-    return _sizes(field.C - model_at_points(field, robot)) / _sizes(field.C)
+    return _sizes(field.C - model) / _sizes(field.C)
 
 
 def _sizes(C: FloatArray) -> FloatArray:
     return np.linalg.norm(C, axis=(-1, -2))
 
 
-def tiles(field: MeasuredField, robot: Robot, cut: SimulationResult | None, unit: str) -> list[pieces.Tile]:
+def tiles(field: MeasuredField, model: FloatArray, cut: SimulationResult | None, unit: str) -> list[pieces.Tile]:
     """Points, difference to the joint model, symmetry, and the cut by both methods."""
-    gap = gap_at_points(field, robot)
+    gap = gap_at_points(field, model)
     lines = field.lines
     shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
     seen = bool(np.isfinite(gap).any())
@@ -166,7 +168,8 @@ def cut_words(field: MeasuredField, cut: SimulationResult | None, unit: str) -> 
 def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
     grid = level_grid(field, z)
     i, j = ("xyz".index(c) for c in component[-2:])
-    measured = 0.5 * (field.compliance(grid.points())[:, :, 0, i, j] + field.compliance(grid.points())[:, :, 0, j, i])
+    C = field.compliance(grid.points())[:, :, 0]
+    measured = 0.5 * (C[..., i, j] + C[..., j, i])
     model = compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))).values(component)[:, :, 0]
     here = np.abs(field.p[:, 2] - z) < 1e-6
     x, y, points = (from_si(v, unit) for v in (grid.x, grid.y, field.p[here][:, :2]))
@@ -268,20 +271,13 @@ def _use(field: MeasuredField) -> None:
     """Let the simulation run from the map instead of the joint model, or go back to the joints."""
     setup = session.project().setup
     in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
-    if in_force:
-        st.button(
-            "Go back to the joint model",
-            key="identification.map.drop",
-            on_click=session.change,
-            kwargs={"measured_map": None},
-            help="The simulation runs from this map now.",
-        )
-        return
     st.button(
-        "Simulate from this map",
+        "Go back to the joint model" if in_force else "Simulate from this map",
         key="identification.map.use",
-        type="primary",
+        type="secondary" if in_force else "primary",
         on_click=session.change,
-        kwargs={"measured_map": field},
-        help="Deflections then come from the measured map; the joints' shares are still shown.",
+        kwargs={"measured_map": None if in_force else field},
+        help="The simulation runs from this map now."
+        if in_force
+        else "Deflections then come from the measured map; the joints' shares are still shown.",
     )

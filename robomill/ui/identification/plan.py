@@ -109,19 +109,14 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
     tests = tests_of(bench, robot)
     assert not isinstance(tests, JointTests)
-    goal: Any = bench.goal if bench.goal == "all" else _joint(bench, robot, result)
-    if bench.goal == "path":
+    goal: str | int | PathLoad = bench.goal
+    if goal == "joint":
+        goal = _joint(bench, robot, result)
+    elif goal == "path":
         cut = cut_of(robot)
         goal = PathLoad(cut.theta[cut.judged], cut.F[cut.judged])
-    key = (
-        "plan",
-        id(result),
-        bench.goal,
-        goal if isinstance(goal, int) else session.project().setup.digest(),
-        bench.count,
-        bench.load,
-        bench.tilt,
-    )
+    setup = session.project().setup.digest()
+    key = ("plan", id(result), bench.goal, bench.goal_joint, setup, bench.count, bench.load, bench.tilt)
 
     def make() -> tuple[IdentificationResult, Plan]:
         tips = tests.tool_poses(robot)[:, :3, 3]

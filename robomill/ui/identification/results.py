@@ -19,6 +19,9 @@ from robomill.viz.identification import (
     residuals_figure,
 )
 
+# Columns of the table of parameters beside those of the reference sets.
+FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
+
 
 def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Intervals beside the paper's tables, the joint these poses hardly see, correlations, condition."""
@@ -108,9 +111,6 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
     sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
     said = [f"{pieces.badge(source.kind)} {title}" for title, source in sources if source and title in references]
     pieces.note(f"In {unit_label(common)}. {' '.join(said)}")
-
-
-FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit", "share of displacement, %")
 
 
 def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:

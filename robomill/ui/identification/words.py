@@ -178,6 +178,11 @@ def weakest(result: IdentificationResult) -> tuple[str, float]:
     return result.labels[k].label, half / value if value > 0 else float("inf")
 
 
+def within(half: float) -> str:
+    """Half an interval as a share of its value, "± 53 %"."""
+    return f"± {format_percent(half)}" if np.isfinite(half) else "not seen"
+
+
 def title(result: IdentificationResult) -> str:
     """The page's one sentence."""
     cv = result.cv_relative_error
@@ -192,7 +197,7 @@ def title(result: IdentificationResult) -> str:
     label, half = weakest(result)
     if not np.isfinite(half):
         return f"{said}; {label} cannot be seen."
-    return f"{said}; {label} is known least, to ± {format_percent(half)}."
+    return f"{said}; {label} is known least, to {within(half)}."
 
 
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
@@ -217,9 +222,7 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
         low, high = interval(result.parameter_ci95[k], unit)
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
         note = note if np.isfinite(half) else "these tests do not see it"
-        items.append(
-            Tile(f"Least known: {label}", f"± {format_percent(half)}" if np.isfinite(half) else "not seen", note)
-        )
+        items.append(Tile(f"Least known: {label}", within(half), note))
     odd = len(result.outliers)
     items += [
         Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),
