@@ -15,8 +15,7 @@ from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.toolpath.source import GCodeSource, SketchSource
 from robomill.toolpath.text import split_lines
-from robomill.ui.toolpath import part_zero as part_zero_panel
-from robomill.ui.toolpath import program as program_panel
+from robomill.ui.toolpath.part_zero import frame_points, points_frame
 from robomill.ui.toolpath.program_view import window
 from robomill.ui.toolpath.sketch_table import pad_elements, sketch_frame, sketch_from_frame, sketch_from_pad
 from robomill.units import to_si
@@ -28,7 +27,7 @@ UNITS = [("mm", "mm/min"), ("in", "in/min")]
 def sketching(app: AppTest) -> AppTest:
     """The toolpath page with the sketch chosen."""
     go(app, "5_Toolpath")
-    app.button_group(key="source.kind").set_value("sketch").run()
+    app.button_group(key="toolpath.kind").set_value("sketch").run()
     assert not app.exception
     return app
 
@@ -57,8 +56,8 @@ def test_the_program_becomes_a_sketch_of_the_same_slot(sketching: AppTest) -> No
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_ready_made_sketch_is_drawn_and_simulated(sketching: AppTest, name: str) -> None:
-    sketching.selectbox(key="sketch.preset").set_value(name).run()
-    sketching.button(key="sketch.draw").click().run()
+    sketching.selectbox(key="toolpath.preset").set_value(name).run()
+    sketching.button(key="toolpath.draw").click().run()
     assert not sketching.exception
     assert not errors(sketching)
     expected = preset(name, sketch_of(sketching), store(sketching).project.setup.cutter.diameter)
@@ -67,11 +66,11 @@ def test_every_ready_made_sketch_is_drawn_and_simulated(sketching: AppTest, name
 
 
 def test_a_word_that_cannot_be_cut_is_kept_and_explained(sketching: AppTest) -> None:
-    sketching.selectbox(key="sketch.preset").set_value("word").run()
-    sketching.text_input(key="sketch.word").set_value("€").run()
+    sketching.selectbox(key="toolpath.preset").set_value("word").run()
+    sketching.text_input(key="toolpath.word").set_value("€").run()
     assert any("no strokes for '€'" in e for e in errors(sketching))
     assert len(sketch_of(sketching).elements) == 1, "the sketch before stays"
-    sketching.text_input(key="sketch.word").set_value("HI").run()
+    sketching.text_input(key="toolpath.word").set_value("HI").run()
     assert not errors(sketching)
     assert len(sketch_of(sketching).elements) == 6
 
@@ -83,7 +82,7 @@ def test_feed_and_depth_of_new_shapes_are_no_step_to_undo(sketching: AppTest) ->
     assert sketch_of(sketching).depth == pytest.approx(1.5e-3)
     assert "that is 10.0 mm/s" in words(sketching)
     assert (len(store(sketching).past), store(sketching).project.setup.digest()) == (steps, digest)
-    sketching.button(key="sketch.all").click().run()
+    sketching.button(key="toolpath.all").click().run()
     assert sketch_of(sketching).elements[0].depth == pytest.approx(1.5e-3)
     assert len(store(sketching).past) == steps + 1
 
@@ -185,15 +184,15 @@ def test_long_shapes_are_kept_though_their_points_are_not_typed() -> None:
 def test_three_points_of_the_table_give_the_frame_back(app: AppTest) -> None:
     go(app, "5_Toolpath")
     T_MW = store(app).project.setup.T_MW
-    frame = part_zero_panel.points_frame(T_MW, "in")
-    points = part_zero_panel.frame_points(frame, "in")
+    frame = points_frame(T_MW, "in")
+    points = frame_points(frame, "in")
     from robomill.toolpath.part_zero import frame_from_points
 
     np.testing.assert_allclose(frame_from_points(*points).T_MW, T_MW, atol=1e-7)
     frame.loc[1, "Y"] = None
     with pytest.raises(ToolpathError, match="on \\+x: Y is missing"):
-        part_zero_panel.frame_points(frame, "in")
-    app.button_group(key="part.way").set_value("points").run()
+        frame_points(frame, "in")
+    app.button_group(key="toolpath.way").set_value("points").run()
     assert not app.exception
     assert "Touch the zero" in words(app)
 
@@ -217,7 +216,7 @@ def test_a_dropped_program_is_read_and_its_dialect_said(app: AppTest) -> None:
     assert isinstance(source, GCodeSource)
     assert source.name == "PART.NC"
     assert "Read as Fanuc-like code, guessed" in words(app)
-    app.selectbox(key="program.dialect").set_value("linuxcnc").run()
+    app.selectbox(key="toolpath.dialect").set_value("linuxcnc").run()
     assert "as you chose" in words(app) or errors(app)
 
 
@@ -228,16 +227,16 @@ def test_a_program_that_is_refused_is_shown_at_its_line(app: AppTest) -> None:
     assert not app.exception
     assert any(e.startswith("bad.nc was not taken. Line 4") for e in errors(app))
     assert store(app).project.setup.digest() == before
-    app.button(key="refused.edit").click().run()
-    assert "I3 J0" in str(app.text_area(key=program_panel.TEXT).value)
-    app.text_area(key=program_panel.TEXT).set_value(BAD.decode().replace("I3", "I5")).run()
+    app.button(key="toolpath.mend").click().run()
+    assert "I3 J0" in str(app.text_area(key="toolpath.text").value)
+    app.text_area(key="toolpath.text").set_value(BAD.decode().replace("I3", "I5")).run()
     assert not errors(app)
     assert store(app).project.setup.digest() != before
 
 
 def test_a_line_is_pointed_at_by_its_number(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.number_input(key="program.line").set_value(7).run()
+    app.number_input(key="toolpath.go-to").set_value(7).run()
     assert not app.exception
     assert any("Line 7: N50 G1 X50 F1800 — 1 move, 100.00 mm at 1800 mm/min (30.0 mm/s)" in i.value for i in app.info)
 
@@ -249,7 +248,7 @@ def test_a_line_is_pointed_at_by_its_number(app: AppTest) -> None:
 def test_every_way_to_look_at_the_path(app: AppTest, colour: str, seen: str) -> None:
     go(app, "5_Toolpath")
     app.selectbox(key="toolpath.colour").set_value(colour).run()
-    app.button_group(key="toolpath.shape").set_value(seen).run()
+    app.button_group(key="toolpath.seen").set_value(seen).run()
     assert not app.exception
     assert not errors(app)
     assert len(app.get("plotly_chart")) == 1

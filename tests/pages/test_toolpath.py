@@ -18,8 +18,8 @@ def box(app: AppTest, label: str) -> Any:
 
 def type_program(app: AppTest, text: str) -> None:
     """Go to the editor and type a program."""
-    app.button_group(key="program.mode").set_value("edit").run()
-    app.text_area(key="program.text").set_value(text).run()
+    app.button_group(key="toolpath.mode").set_value("edit").run()
+    app.text_area(key="toolpath.text").set_value(text).run()
 
 
 def test_it_says_what_was_read(app: AppTest) -> None:
@@ -46,7 +46,7 @@ def test_a_program_that_cannot_be_read_is_kept_and_explained(app: AppTest, text:
     assert not app.exception
     assert len(errors(app)) >= 1
     assert len(errors(app)[0]) > 20
-    assert app.text_area(key="program.text").value == text
+    assert app.text_area(key="toolpath.text").value == text
     if store(app).project.setup.digest() == before:
         go(app, "app")
         assert "0.23 mm off in Y" in words(app)
@@ -76,7 +76,7 @@ def test_part_zero_moves_the_cut(app: AppTest) -> None:
 
 def test_program_to_table_and_back(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.button_group(key="source.kind").set_value("lines").run()
+    app.button_group(key="toolpath.kind").set_value("lines").run()
     assert not app.exception
     source = store(app).project.setup.source
     assert isinstance(source, LinesSource)
@@ -89,4 +89,4 @@ def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:
     go(app, "5_Toolpath")
     for _ in range(2):
         drawn = [element.key for element in app.run().get("bidi_component")]
-        assert "program.view" in drawn, "a run that draws nothing takes the program off the page"
+        assert "toolpath.program" in drawn, "a run that draws nothing takes the program off the page"

@@ -6,7 +6,7 @@ import pytest
 
 from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.details import finding_words, move_words, worst_first, written_in
+from robomill.ui.toolpath.summary import finding_words, move_words, worst_first, written_in
 
 APT = "PARTNO/X\n{}FEDRAT/600\nFROM/0,0,10\nGOTO/0,0,0\nGOTO/10,0,0\nFINI\n"
 

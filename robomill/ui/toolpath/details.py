@@ -11,55 +11,13 @@ import streamlit as st
 from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.apt import is_apt
-from robomill.toolpath.gcode.findings import NO_UNITS
-from robomill.toolpath.path import Toolpath
-from robomill.toolpath.source import GCodeSource
 from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
-from robomill.ui.toolpath.summary import path_summary
+from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
 from robomill.units import format_count, format_many, format_si, unit_label
 
 DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
-
-
-def duration(seconds: float) -> str:
-    """A time as people say it."""
-    if seconds < 120:
-        return format_si(seconds, "s", 1)
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
-
-
-def worst_first(findings: Sequence[Finding]) -> list[Finding]:
-    """Findings in the order of the list: by level, then by line."""
-    order = list(LEVELS)
-    return sorted(findings, key=lambda f: (order.index(f.level), f.line))
-
-
-def finding_words(finding: Finding, most: int = 64) -> str:
-    """A finding in one line of about ``most`` characters, cut between words."""
-    said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
-    return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
-
-
-def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
-    """The program's units and who says so: ``mm (G21)``, ``mm, assumed (no G20 or G21)``."""
-    name = {"mm": "millimetres" if long else "mm", "in": "inches" if long else "in"}.get(path.units, path.units)
-    if any(f.code == NO_UNITS for f in path.findings):
-        return f"{name}, assumed ({'no UNITS' if is_apt(source.text[:200_000].encode()) else 'no G20 or G21'})"
-    if is_apt(source.text[:200_000].encode()):
-        return f"{name} (UNITS)"
-    return f"{name} ({'G20' if path.units == 'in' else 'G21'})"
-
-
-def move_words(path: Toolpath) -> str:
-    """``27 moves, 5 arcs``: every move of the program, an arc as one; without arcs where they are not known."""
-    counts = path.counts
-    if counts is None:
-        return format_count(len(path) - 1, "move")
-    return f"{format_count(sum(counts), 'move')}, {format_count(counts[2], 'arc') if counts[2] else 'no arcs'}"
 
 
 def findings_list(findings: Sequence[Finding]) -> None:
@@ -79,6 +37,7 @@ def findings_list(findings: Sequence[Finding]) -> None:
     )
 
     def take() -> None:
+        # The table's own state: Streamlit says there which row was clicked.
         rows = st.session_state["toolpath.findings"]["selection"]["rows"]
         if rows:
             select_line(shown[rows[0]].line)
@@ -177,13 +136,13 @@ def support_table() -> None:
     """Which words are read, left out or refused; every row has its test."""
     from robomill.toolpath.gcode.support import DIFFERENCES, SUPPORT
 
-    said = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
+    statuses = {"read": "read", "ignored": "left out, counted", "refused": "refused"}
     with st.expander("What is supported", icon=":material/fact_check:"):
         frame = pd.DataFrame(
             {
                 "words": [row.words for row in SUPPORT],
                 "meaning": [row.meaning for row in SUPPORT],
-                "": [said[row.status] for row in SUPPORT],
+                "": [statuses[row.status] for row in SUPPORT],
                 "dialect": ["all" if row.dialect == "linuxcnc" else DIALECTS[row.dialect] for row in SUPPORT],
             }
         )
@@ -198,5 +157,5 @@ def support_table() -> None:
                 "dialect": st.column_config.TextColumn(width=80),
             },
         )
-        st.caption("Where reading differs from LinuxCNC: " + " ".join(DIFFERENCES))
+        st.caption("Where reading differs from LinuxCNC:\n" + "".join(f"\n- {said}" for said in DIFFERENCES))
         pieces.note("Unknown motion is refused at its line, unknown words that move nothing are counted as ignored.")

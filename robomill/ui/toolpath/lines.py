@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 import streamlit as st
@@ -22,7 +20,7 @@ COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
 def lines_inputs(source: LinesSource, view: View) -> None:
     """Starts, ends and feeds, and the spindle."""
     inputs.table(
-        f"lines:{view.units}",
+        f"toolpath.lines:{view.units}",
         lambda: lines_frame(_source(), view.length, view.feed),
         lambda frame: _take(frame, view),
         inputs.Sheet(
@@ -52,8 +50,11 @@ def _take(frame: pd.DataFrame, view: View) -> None:
 
 def lines_frame(source: LinesSource, unit: str, feed_unit: str) -> pd.DataFrame:
     """Straight cuts as a table in display units."""
-    values = np.hstack([_clean(source.start, unit), _clean(source.end, unit), _clean(source.v_f, feed_unit)[:, None]])
-    return pd.DataFrame(values, columns=list(COLUMNS))
+    # Rounded: the last bits are what the conversion leaves behind.
+    values = np.hstack(
+        [from_si(source.start, unit), from_si(source.end, unit), from_si(source.v_f, feed_unit)[:, None]]
+    )
+    return pd.DataFrame(np.round(values, 9), columns=list(COLUMNS))
 
 
 def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float = 0.0) -> LinesSource:
@@ -67,8 +68,3 @@ def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float 
                 raise ToolpathError(f"Row {row + 1}: {label} is missing; type a number.")
     numbers = kept[list(COLUMNS)].to_numpy(dtype=float)
     return LinesSource(to_si(numbers[:, :3], unit), to_si(numbers[:, 3:6], unit), to_si(numbers[:, 6], feed_unit), n_s)
-
-
-def _clean(values: Any, unit: str) -> Any:
-    """In ``unit``, without the last bits of the conversion."""
-    return np.round(from_si(np.asarray(values, dtype=float), unit), 9)

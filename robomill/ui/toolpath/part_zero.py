@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 import numpy as np
 import pandas as pd
 import streamlit as st
@@ -14,9 +11,10 @@ from robomill.errors import ToolpathError
 from robomill.io.workpiece import part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.units import format_si, from_si, to_si, unit_label
 
-WAY, TOUCH = "part.way", "part.touch"
+TOUCHED = "toolpath.touched"
 WAYS = {"numbers": "By numbers", "points": "By three points"}
 NAMES = ("zero", "on +x", "on the +y side")
 TOUCH_ERROR = 0.1e-3
@@ -25,36 +23,22 @@ TOUCH_ERROR = 0.1e-3
 def part_zero() -> None:
     """The two ways to say where the part lies."""
     st.markdown("**Part zero {W} in the robot's frame {M}**")
-    if WAY not in st.session_state:
-        st.session_state[WAY] = "numbers"
-    way = st.segmented_control(
-        "Part zero",
-        list(WAYS),
-        key=WAY,
-        format_func=lambda k: WAYS[k],
-        required=True,
-        label_visibility="collapsed",
-        width="stretch",
-    )
-    if way == "points":
+    if inputs.pick("Part zero", "toolpath.way", WAYS, look=inputs.HIDDEN) == "points":
         _by_points()
     else:
         _by_numbers()
 
 
 def _by_numbers() -> None:
-    unit = session.project().view.length
-    left, right = st.columns(2)
-    T_MW = session.project().setup.T_MW
+    unit, T_MW = session.project().view.length, session.project().setup.T_MW
     step, digits = (10.0, 2) if unit == "mm" else (1.0, 4)
+    left, right = st.columns(2)
     for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
         with column:
-            value = float(f"{from_si(float(T_MW[i, 3]), unit):.12g}")
-            name = f"zero:{axis}:{unit}"
-            kept_number(f"{axis}, {unit_label(unit)}", name, value, step, digits, partial(_move, i, unit))
+            inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=digits)
     with right:
-        turn = float(np.round(from_si(np.arctan2(T_MW[1, 0], T_MW[0, 0]), "deg"), 9))
-        kept_number("Turn about Z, °", "zero:turn", turn, 5.0, 2, _turn)
+        turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
+        inputs.value("toolpath.turn", Box("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
         pieces.note(
@@ -63,32 +47,8 @@ def _by_numbers() -> None:
         )
 
 
-def kept_number(label: str, name: str, value: float, step: float, digits: int, write: Callable[[float], None]) -> None:
-    """A number box whose own default is the value in force; ``write`` gets what is typed.
-
-    A box that moves to another column while a run is broken off comes up with its default and answers with it. So the
-    value is the default, not an entry of the session, and a new value is a new box: nothing can turn into 0.
-    """
-    waiting = session.store().refused.get(name)
-    shown = value if waiting is None else waiting[0]
-    key = f"{name}={shown}"
-
-    def take() -> None:
-        typed = st.session_state[key]
-        inputs.submit(name, typed, lambda: write(float(typed)))
-
-    st.number_input(label, value=shown, key=key, step=step, format=f"%.{digits}f", on_change=take)
-    inputs.sentence(name)
-
-
-def _move(i: int, unit: str, typed: float) -> None:
-    T_MW = np.array(session.project().setup.T_MW)
-    T_MW[i, 3] = to_si(typed, unit)
-    session.change(T_MW=T_MW)
-
-
-def _turn(degrees: float) -> None:
-    session.change(T_MW=part_frame(session.project().setup.T_MW[:3, 3], to_si(degrees, "deg")))
+def _turn(angle: float) -> None:
+    session.change(T_MW=part_frame(session.project().setup.T_MW[:3, 3], angle))
 
 
 def tilt_of(T_MW: FloatArray) -> float:
@@ -97,17 +57,16 @@ def tilt_of(T_MW: FloatArray) -> float:
 
 
 def _by_points() -> None:
-    view = session.project().view
-    unit = view.length
+    unit = session.project().view.length
     inputs.table(
-        f"touch:{unit}",
+        f"toolpath.points:{unit}",
         lambda: points_frame(session.project().setup.T_MW, unit),
         lambda frame: _take(frame, unit),
         inputs.Sheet(
             columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"}, locked=("point",)
         ),
     )
-    touched = st.session_state.get(TOUCH)
+    touched = session.kept(TOUCHED)
     words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
     if touched is not None and np.array_equal(touched.T_MW, session.project().setup.T_MW):
         error = touched.tilt(TOUCH_ERROR)
@@ -132,7 +91,7 @@ def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
     for row in range(3):
         for column, axis in enumerate("XYZ"):
             typed = frame[axis].iloc[row]
-            if typed is None or pd.isna(typed):
+            if inputs.empty(typed):
                 raise ToolpathError(f"Part zero, {NAMES[row]}: {axis} is missing; type a number.")
             values[row, column] = to_si(float(typed), unit)
     return values
@@ -141,4 +100,4 @@ def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
 def _take(frame: pd.DataFrame, unit: str) -> None:
     touched = frame_from_points(*frame_points(frame, unit))
     session.change(T_MW=touched.T_MW, from_editor=True)
-    st.session_state[TOUCH] = touched
+    session.keep(TOUCHED, touched)

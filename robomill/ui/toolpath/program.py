@@ -15,6 +15,7 @@ from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
@@ -23,7 +24,8 @@ from robomill.ui.toolpath.sources import put
 SUFFIXES = ("nc", "ngc", "tap", "gcode", "cnc", "txt", "mpf", "eia", "min")
 MAX_PROGRAM_MB = 100
 EDITABLE_CHARACTERS = 200_000
-FILE, TEXT, MODE, REFUSED = "program.file", "program.text", "program.mode", "program.refused"
+TEXT, MODE, REFUSED = "toolpath.text", "toolpath.mode", "toolpath.refused"
+MODES = {"code": "Code", "edit": "Edit"}
 
 
 @dataclass(frozen=True)
@@ -37,19 +39,17 @@ class Refused:
 
 def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
     """File, dialect and text."""
-    key = f"{FILE}:{session.store().revision}"
-    # Any name is let in and judged here, so that upper case and odd endings get a sentence and not a grey refusal.
-    st.file_uploader(
+    inputs.upload(
         "Program file",
-        key=key,
-        max_upload_size=MAX_PROGRAM_MB,
-        on_change=lambda: _take_file(st.session_state.get(key)),
-        help=f"Endings {', '.join(SUFFIXES)}, upper or lower case; up to {MAX_PROGRAM_MB} MB.",
+        "toolpath.file",
+        take_program,
+        most_MB=MAX_PROGRAM_MB,
+        look=inputs.Look(hint=f"Endings {', '.join(SUFFIXES)}, upper or lower case; up to {MAX_PROGRAM_MB} MB."),
+        fresh=session.store().revision,
     )
-    inputs.sentence(FILE)
-    reading.reading_panel(_accept, _refuse)
-    refused = st.session_state.get(REFUSED)
-    if isinstance(refused, Refused):
+    reading.reading_inputs(_accept, _refuse)
+    refused: Refused | None = session.kept(REFUSED)
+    if refused is not None:
         _show_refused(refused, dark)
         return
     _dialect(source)
@@ -57,7 +57,7 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
 
 
 def _dialect(source: GCodeSource) -> None:
-    inputs.choice("Dialect", "program.dialect", DIALECTS, source.dialect, _take_dialect, inputs.LISTED)
+    inputs.choice("Dialect", "toolpath.dialect", DIALECTS, source.dialect, _take_dialect, inputs.LISTED)
     pieces.note(dialect_words(source))
 
 
@@ -78,59 +78,27 @@ def _take_dialect(name: str) -> None:
 
 
 def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
-    lines = source.block_texts()
-    if MODE not in st.session_state:
-        st.session_state[MODE] = "code"
+    count = len(source.block_texts())
     with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
-        mode = st.segmented_control(
-            "Program",
-            ["code", "edit"],
-            key=MODE,
-            required=True,
-            label_visibility="collapsed",
-            format_func=lambda k: {"code": "Code", "edit": "Edit"}[k],
-        )
+        with st.container(width=114):
+            mode = inputs.pick("Program", MODE, MODES, look=inputs.HIDDEN)
         if mode == "code":
-            inputs.seed("program.line", min(selected_line(), len(lines)))
-            st.number_input(
-                "Line",
-                key="program.line",
-                min_value=0,
-                max_value=max(len(lines), 1),
-                step=1,
-                width=130,
-                on_change=lambda: select_line(int(st.session_state["program.line"] or 0)),
-                label_visibility="collapsed",
-                help="Go to a line; 0 points at none.",
-            )
-            st.caption(f"of {len(lines):,} lines")
+            box = Box("Line", hint="Go to a line; 0 points at none.", low=0, high=count, whole=True, hidden=True)
+            with st.container(width=130):
+                inputs.value("toolpath.go-to", box, min(selected_line(), count), select_line)
+            st.caption(f"of {count:,} lines")
     if mode == "code":
-        height = min(max(22 * len(lines) + 24, 130), 420)
+        height = min(max(22 * count + 24, 130), 420)
         program_view(source.text, path.findings if path is not None else (), dark, height)
     elif len(source.text) > EDITABLE_CHARACTERS:
-        pieces.note(f"{len(lines):,} lines are too many for this box: change them in their own file and drop it here.")
+        pieces.note(f"{count:,} lines are too many for this box: change them in their own file and drop it here.")
     else:
-        inputs.seed(TEXT, source.text)
-        st.text_area(
-            "Program text",
-            key=TEXT,
-            height=420,
-            label_visibility="collapsed",
-            on_change=lambda: inputs.submit(TEXT, st.session_state[TEXT], lambda: _take_text(st.session_state[TEXT])),
-        )
-        inputs.sentence(TEXT)
-
-
-def _take_file(file: object) -> None:
-    if file is None:
-        return
-    name = str(getattr(file, "name", "program"))
-    inputs.submit(FILE, None, lambda: take_program(file.getvalue(), name))  # type: ignore[attr-defined]
+        inputs.text("Program text", TEXT, source.text, _take_text, lines=2, height=420, label_visibility="collapsed")
 
 
 def take_program(data: bytes, name: str) -> None:
     """A dropped file: read at once, or beside the page where it is big. Raises the refusal of what is no program."""
-    st.session_state.pop(REFUSED, None)
+    _leave()
     if Path(name).suffix.lower().lstrip(".") not in SUFFIXES:
         raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
     source = program_from_bytes(data, name)
@@ -148,12 +116,11 @@ def take_program(data: bytes, name: str) -> None:
 def _accept(source: GCodeSource) -> None:
     put(source, f"program {source.name}")
     inputs.accept(TEXT)
-    if reading.current() is None and st.session_state.get(MODE) == "edit":
-        st.session_state[MODE] = "code"
+    session.keep(MODE, "code")
 
 
 def _refuse(source: GCodeSource, exc: RobomillError) -> None:
-    st.session_state[REFUSED] = Refused(source, str(exc), int(getattr(exc, "line", 0)))
+    session.keep(REFUSED, Refused(source, str(exc), int(getattr(exc, "line", 0))))
 
 
 def _show_refused(refused: Refused, dark: bool) -> None:
@@ -163,24 +130,24 @@ def _show_refused(refused: Refused, dark: bool) -> None:
         st.button(
             "Mend it here",
             icon=":material/edit:",
-            key="refused.edit",
+            key="toolpath.mend",
             on_click=_mend,
             args=(refused,),
             disabled=len(refused.source.text) > EDITABLE_CHARACTERS,
         )
-        st.button("Leave it", icon=":material/close:", key="refused.leave", on_click=_leave, type="tertiary")
+        st.button("Leave it", icon=":material/close:", key="toolpath.leave", on_click=_leave, type="tertiary")
     level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
     program_view(refused.source.text, level, dark, fixed=refused.line)
 
 
 def _mend(refused: Refused) -> None:
     _leave()
-    st.session_state[MODE] = "edit"
+    session.keep(MODE, "edit")
     inputs.refuse(TEXT, refused.source.text, refused.reason)
 
 
 def _leave() -> None:
-    st.session_state.pop(REFUSED, None)
+    session.drop(REFUSED)
 
 
 def _take_text(text: str) -> None:

@@ -11,9 +11,10 @@ import streamlit as st
 from robomill.arrays import digest
 from robomill.provenance import Finding
 from robomill.toolpath.text import split_lines
+from robomill.ui import session
 from robomill.viz.theme import palette
 
-KEY = "program.view"
+KEY = "toolpath.program"
 LINE = "toolpath.line"
 WHOLE = 1500
 AROUND = 400
@@ -35,12 +36,12 @@ _component = st.components.v2.component(
 
 def selected_line() -> int:
     """The source line (row of a table, shape of a sketch) that is pointed at; 0 for none."""
-    return int(st.session_state.get(LINE, 0))
+    return int(session.kept(LINE, 0))
 
 
 def select_line(line: int) -> None:
     """Point at ``line``; 0 points at none."""
-    st.session_state[LINE] = int(line)
+    session.keep(LINE, int(line))
 
 
 def program_view(
@@ -72,7 +73,7 @@ def program_view(
     if fixed is None:
         _component(key=KEY, data=data, on_line_change=_take)
     else:
-        _component(key=f"{KEY}.fixed", data=data, on_line_change=lambda: None)
+        _component(key="toolpath.refused-program", data=data, on_line_change=lambda: None)
 
 
 def window(lines: Sequence[str], selected: int) -> tuple[int, list[str]]:
@@ -88,6 +89,7 @@ def window(lines: Sequence[str], selected: int) -> tuple[int, list[str]]:
 
 
 def _take() -> None:
+    # The component's own state: Streamlit puts there what the browser sends.
     sent = st.session_state[KEY].get("line")
     if sent:
         select_line(int(sent["line"]))

@@ -11,6 +11,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.toolpath.source import GCodeSource
+from robomill.ui import session
 
 KEY = "toolpath.reading"
 BACKGROUND_CHARACTERS = 1_500_000
@@ -57,25 +58,24 @@ def read_beside(source: GCodeSource) -> None:
     """Begin to read ``source`` while the page stays alive; an earlier reading is given up."""
     give_up()
     reading = Reading(source)
-    st.session_state[KEY] = reading
+    session.keep(KEY, reading)
     reading.start()
 
 
 def current() -> Reading | None:
     """The reading that goes on, if any."""
-    found = st.session_state.get(KEY)
-    return found if isinstance(found, Reading) else None
+    reading: Reading | None = session.kept(KEY)
+    return reading
 
 
 def give_up() -> None:
     """Stop the reading that goes on."""
-    reading = current()
+    reading: Reading | None = session.drop(KEY)
     if reading is not None:
         reading.stop.set()
-        del st.session_state[KEY]
 
 
-def reading_panel(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]) -> None:
+def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]) -> None:
     """Progress and cancel while a program is read; ``take`` puts it into the project, ``refuse`` shows why not."""
     reading = current()
     if reading is None:
@@ -97,7 +97,7 @@ def _progress() -> None:
     wait = f", about {left:.0f} s left" if left == left and left >= 1 else ""
     with st.container(border=True):
         st.progress(reading.share, f"Reading {reading.source.name}: {100 * reading.share:.0f} % of {size:.1f} MB{wait}")
-        if st.button("Cancel", icon=":material/close:", key="reading.cancel"):
+        if st.button("Cancel", icon=":material/close:", key="toolpath.cancel"):
             give_up()
             st.rerun()
 
@@ -105,7 +105,7 @@ def _progress() -> None:
 def _finish(
     reading: Reading, take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]
 ) -> None:
-    del st.session_state[KEY]
+    session.drop(KEY)
     if reading.bug is not None:
         raise reading.bug
     if reading.error is not None:

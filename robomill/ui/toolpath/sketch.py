@@ -10,12 +10,12 @@ import streamlit as st
 from robomill.toolpath.sketch import SHAPES
 from robomill.toolpath.sketch_presets import PRESETS, preset
 from robomill.ui import inputs, pieces, session
-from robomill.ui.toolpath.part_zero import kept_number
+from robomill.ui.box import declared
 from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.toolpath.sources import put_sketch, sketch_source
-from robomill.units import UNITS, format_si, from_si, to_si, unit_label
+from robomill.units import format_si, unit_label
 
-CHOICE, WORD = "sketch.preset", "sketch.word"
+SHAPE, WORD = "toolpath.preset", "toolpath.word"
 
 
 def sketch_inputs() -> None:
@@ -23,58 +23,56 @@ def sketch_inputs() -> None:
     _presets()
     _settings()
     _table()
-    export()
+    _export()
 
 
 def _presets() -> None:
-    st.session_state.setdefault(CHOICE, "slot")
     with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
-        st.selectbox("Ready-made sketch", list(PRESETS), key=CHOICE, format_func=lambda k: PRESETS[k])
-        st.button("Draw it", icon=":material/draw:", key="sketch.draw", on_click=_draw)
-    if st.session_state[CHOICE] == "word":
-        st.session_state.setdefault(WORD, "ROBOMILL")
-        st.text_input("Word", key=WORD, max_chars=40, on_change=_draw)
-    inputs.sentence(CHOICE)
+        chosen = inputs.pick("Ready-made sketch", SHAPE, PRESETS, "slot", inputs.LISTED)
+        word = session.kept(WORD, "ROBOMILL")
+        st.button(
+            "Draw it",
+            icon=":material/draw:",
+            key="toolpath.draw",
+            on_click=lambda: inputs.submit(WORD, word, lambda: _draw(word)),
+        )
+    if chosen == "word":
+        inputs.text("Word", WORD, word, _draw, max_chars=40)
+    else:
+        inputs.sentence(WORD)
 
 
-def _draw() -> None:
-    name, word = st.session_state[CHOICE], st.session_state.get(WORD, "ROBOMILL")
-
-    def draw() -> None:
-        setup = session.project().setup
-        put_sketch(preset(name, sketch_source().sketch, setup.cutter.diameter, word), f"ready-made: {PRESETS[name]}")
-
-    inputs.submit(CHOICE, None, draw)
+def _draw(word: str) -> None:
+    session.keep(WORD, word)
+    name, cutter = session.kept(SHAPE, "slot"), session.project().setup.cutter
+    put_sketch(preset(name, sketch_source().sketch, cutter.diameter, word), f"ready-made: {PRESETS[name]}")
 
 
 def _settings() -> None:
     view = session.project().view
+    inches = view.units == "in"
     st.markdown("**New shapes**")
     left, right = st.columns(2)
     with left:
-        _setting("Feed", "v_f", view.feed, 60.0 if view.units == "mm" else 1.0)
+        _setting("v_f", view.feed, 1.0 if inches else 60.0)
         st.caption(f"that is {format_si(sketch_source().sketch.v_f, 'mm/s', 1)}")
     with right:
-        _setting("Depth", "depth", view.length, 0.5 if view.units == "mm" else 0.02)
-        st.button("For all shapes", key="sketch.all", type="tertiary", icon=":material/done_all:", on_click=_all)
+        _setting("depth", view.length, 0.02 if inches else 0.5)
+        st.button("For all shapes", key="toolpath.all", type="tertiary", icon=":material/done_all:", on_click=_all)
     with st.expander("Plunge, clearance, spindle", icon=":material/height:"):
         one, two, three = st.columns(3)
         with one:
-            _setting("Plunge feed", "v_plunge", view.feed, 60.0 if view.units == "mm" else 1.0)
+            _setting("v_plunge", view.feed, 1.0 if inches else 60.0)
         with two:
-            _setting("Clearance", "clearance", view.length, 1.0 if view.units == "mm" else 0.05)
+            _setting("clearance", view.length, 0.05 if inches else 1.0)
         with three:
-            _setting("Spindle", "n_s", "1/min", 500.0)
+            _setting("n_s", "1/min", 500.0)
 
 
-def _setting(label: str, field: str, unit: str, step: float) -> None:
-    value = float(f"{from_si(getattr(sketch_source().sketch, field), unit):.12g}")
-    digits = {"in": 3, "in/min": 1, "mm": 2}.get(unit, UNITS[unit].digits)
-
-    def write(typed: float) -> None:
-        put_sketch(sketch_source().sketch.replace(**{field: to_si(typed, unit)}))
-
-    kept_number(f"{label}, {unit_label(unit)}", f"sketch.{field}:{unit}", value, step, digits, write)
+def _setting(name: str, unit: str, step: float) -> None:
+    sketch = sketch_source().sketch
+    box = declared(sketch, name, unit=unit, step=step, digits={"in": 3, "in/min": 1, "mm": 2}.get(unit))
+    inputs.value(f"toolpath.{name}", box, getattr(sketch, name), lambda new: put_sketch(sketch.replace(**{name: new})))
 
 
 def _all() -> None:
@@ -92,7 +90,7 @@ def _table() -> None:
 
     column = st.column_config
     inputs.table(
-        f"sketch:{view.units}",
+        f"toolpath.shapes:{view.units}",
         lambda: sketch_frame(sketch_source().sketch, length, feed),
         write,
         inputs.Sheet(
@@ -119,7 +117,7 @@ def _table() -> None:
     )
 
 
-def export() -> None:
+def _export() -> None:
     """The path as a G-code file."""
     if not sketch_source().sketch.elements:
         return
@@ -131,4 +129,4 @@ def export() -> None:
 
         return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
 
-    pieces.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="sketch.export")
+    pieces.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="toolpath.export")

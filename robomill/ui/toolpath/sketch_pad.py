@@ -18,12 +18,12 @@ from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
 from robomill.ui import inputs, session
 from robomill.ui.project import Project
-from robomill.ui.toolpath.sketch_table import pad_elements, sketch_from_pad
+from robomill.ui.toolpath.sketch_table import in_unit, pad_elements, sketch_from_pad
 from robomill.ui.toolpath.sources import put_sketch
-from robomill.units import UNITS, from_si
+from robomill.units import UNITS
 
-KEY = "sketch.pad"
-MEMORY = "sketch.memory"
+KEY = "toolpath.pad"
+MEMORY = "toolpath.pad-memory"
 HEIGHT = 430
 
 
@@ -52,8 +52,8 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
 
     ``reach``: x, y, dx, dy of a grid in display units and runs [row, from, to) of cells out of reach.
     """
-    view, kept = session.project().view, session.store()
-    memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
+    view, held = session.project().view, session.store()
+    memory = _memory()
     shown = _fingerprint(sketch, view.length)
     if shown != memory.known:
         memory.rev, memory.known = memory.rev + 1, shown
@@ -62,21 +62,28 @@ def sketch_pad(sketch: Sketch, cutter: float, reach: dict[str, Any] | None, heig
         "unit": UNITS[view.length].label,
         "height": height,
         "elements": pad_elements(sketch, view.length, view.feed),
-        "grid": _plain(sketch.grid, view.length),
-        "depth": _plain(sketch.depth, view.length),
-        "feed": _plain(sketch.v_f, view.feed),
-        "cutter": _plain(cutter, view.length),
+        "grid": in_unit(sketch.grid, view.length),
+        "depth": in_unit(sketch.depth, view.length),
+        "feed": in_unit(sketch.v_f, view.feed),
+        "cutter": in_unit(cutter, view.length),
         "reach": reach,
-        "undo": _leads_to_a_sketch(kept.past),
-        "redo": _leads_to_a_sketch(kept.future),
+        "undo": _leads_to_a_sketch(held.past),
+        "redo": _leads_to_a_sketch(held.future),
     }
     _component(key=KEY, data=data, on_sketch_change=_take, on_history_change=_history)
     inputs.sentence(KEY)
 
 
+def _memory() -> PadMemory:
+    memory: PadMemory = session.kept(MEMORY) or PadMemory()
+    session.keep(MEMORY, memory)
+    return memory
+
+
 def _take() -> None:
+    # The component's own state, here and in ``_history``: Streamlit puts there what the browser sends.
     sent = st.session_state[KEY].get("sketch")
-    memory: PadMemory = st.session_state.setdefault(MEMORY, PadMemory())
+    memory = _memory()
     source = session.project().setup.source
     # What was drawn on a board that has been overwritten since is not merged into the new one.
     if not sent or sent.get("rev") != memory.rev or source.kind != "sketch":
@@ -94,11 +101,11 @@ def _write(sent: dict[str, Any], source: SketchSource, memory: PadMemory) -> Non
 
 
 def _history() -> None:
-    asked, kept = st.session_state[KEY].get("history"), session.store()
+    asked, held = st.session_state[KEY].get("history"), session.store()
     if not asked:
         return
     back = asked.get("way") == "undo"
-    if _leads_to_a_sketch(kept.past if back else kept.future):
+    if _leads_to_a_sketch(held.past if back else held.future):
         (session.undo if back else session.redo)()
 
 
@@ -109,7 +116,3 @@ def _leads_to_a_sketch(steps: list[Project]) -> bool:
 
 def _fingerprint(sketch: Sketch, unit: str) -> str:
     return digest((sketch.elements, unit))
-
-
-def _plain(value: float, unit: str) -> float:
-    return round(float(from_si(value, unit)), 6)

@@ -23,7 +23,7 @@ _LONG = re.compile(r"\d+ points$")
 def sketch_frame(sketch: Sketch, unit: str, feed_unit: str) -> pd.DataFrame:
     """One row a shape; ``points`` reads "x, y; x, y", or "1253 points" where there are too many to type."""
     rows = [
-        (number, e.shape, points_text(e, unit), _clean(e.depth, unit), _clean(e.v_f, feed_unit))
+        (number, e.shape, points_text(e, unit), in_unit(e.depth, unit), in_unit(e.v_f, feed_unit))
         for number, e in enumerate(sketch.elements, start=1)
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
@@ -52,7 +52,7 @@ def points_text(element: Element, unit: str) -> str:
     """The points as people type them."""
     if len(element.points) > MAX_SHOWN_POINTS:
         return f"{len(element.points)} points"
-    return "; ".join(f"{_clean(x, unit):.10g}, {_clean(y, unit):.10g}" for x, y in element.points)
+    return "; ".join(f"{in_unit(x, unit):.10g}, {in_unit(y, unit):.10g}" for x, y in element.points)
 
 
 def pad_elements(sketch: Sketch, unit: str, feed_unit: str) -> list[dict[str, Any]]:
@@ -60,9 +60,9 @@ def pad_elements(sketch: Sketch, unit: str, feed_unit: str) -> list[dict[str, An
     return [
         {
             "shape": e.shape,
-            "points": _clean(e.points, unit).tolist(),
-            "depth": _clean(e.depth, unit),
-            "feed": _clean(e.v_f, feed_unit),
+            "points": in_unit(e.points, unit).tolist(),
+            "depth": in_unit(e.depth, unit),
+            "feed": in_unit(e.v_f, feed_unit),
         }
         for e in sketch.elements
     ]
@@ -107,6 +107,7 @@ def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
     return to_si(np.array(found), unit)
 
 
-def _clean(value: Any, unit: str) -> Any:
+def in_unit(value: Any, unit: str) -> Any:
+    """SI values as the table and the pad show them, without what the conversion leaves behind."""
     shown = np.round(from_si(np.asarray(value, dtype=float), unit), 6) + 0.0  # no minus before a zero
     return shown if shown.ndim else float(shown)

@@ -24,7 +24,7 @@ MAX_ROWS = 200
 def kind_switch() -> None:
     """The choice between the three."""
     source = session.project().setup.source
-    inputs.choice("Path from", "source.kind", KINDS, source.kind, switch)
+    inputs.choice("Path from", "toolpath.kind", KINDS, source.kind, switch)
 
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
@@ -46,35 +46,19 @@ def switch(kind: str) -> None:
     if kind == setup.source.kind:
         return
     if kind == "lines":
-        put(lines_of_path(_path()), "converted to a table of lines")
+        put(lines_of_path(setup.toolpath), "converted to a table of lines")
     elif kind == "program":
         from robomill.io.gcode_out import write_gcode
 
         name = f"{setup.source.kind}.nc"
-        put(GCodeSource(write_gcode(_path()), name), f"written from a {setup.source.name}")
+        put(GCodeSource(write_gcode(setup.toolpath), name), f"written from a {setup.source.name}")
     else:
-        put(SketchSource(_sketch(setup.cutter.diameter)), "sketched by hand", **_stock_follows())
-
-
-def _path() -> Toolpath:
-    return session.project().setup.toolpath
-
-
-def _stock_follows() -> dict[str, Any]:
-    """A stated block rarely fits what will be drawn: the stock becomes the bounds of the path."""
-    setup = session.project().setup
-    if setup.stock is None:
-        return {}
-    return {"stock": None}
-
-
-def _sketch(diameter: float) -> Sketch:
-    try:
-        path = _path()
-        traced = sketch_of_path(path)
-    except RobomillError:
-        traced = None
-    return traced or preset("slot", Sketch(), diameter)
+        try:
+            traced = sketch_of_path(setup.toolpath)
+        except RobomillError:
+            traced = None
+        # A stated block rarely fits what will be drawn: the stock becomes the bounds of the path.
+        put(SketchSource(traced or preset("slot", Sketch(), setup.cutter.diameter)), "sketched by hand", stock=None)
 
 
 def lines_of_path(path: Toolpath) -> LinesSource:
@@ -112,10 +96,10 @@ def sketch_source() -> SketchSource:
 
 def put_sketch(sketch: Sketch, words: str = "sketched by hand", from_editor: bool = False) -> None:
     """Replace the sketch; what only concerns drawing (snap, next feed and depth) is no step to undo."""
-    kept, source = session.store(), sketch_source()
+    held, source = session.store(), sketch_source()
     changed = dataclasses.replace(source, sketch=sketch)
-    setup = kept.project.setup
+    setup = held.project.setup
     if setup.replace(source=changed).digest() == setup.digest():
-        kept.project = dataclasses.replace(kept.project, setup=setup.replace(source=changed))
+        held.project = dataclasses.replace(held.project, setup=setup.replace(source=changed))
     else:
         put(changed, words, from_editor=from_editor)

@@ -1,15 +1,22 @@
-"""What the page says about a path at every rerun, worked out once: a million moves are not counted twice."""
+"""What the page says about a path: its numbers, counted once and not at every rerun, and the words made of them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.provenance import Finding
+from robomill.toolpath.apt import is_apt
+from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+from robomill.ui.toolpath.program_view import LEVELS
 from robomill.ui.toolpath.reach import PathReach
+from robomill.units import format_count, format_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,3 +77,40 @@ def distinct(values: IntArray) -> IntArray:
 
 def _range(values: FloatArray) -> tuple[float, float] | None:
     return (float(values.min()), float(values.max())) if len(values) else None
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it."""
+    if seconds < 120:
+        return format_si(seconds, "s", 1)
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def worst_first(findings: Sequence[Finding]) -> list[Finding]:
+    """Findings in the order of the list: by level, then by line."""
+    order = list(LEVELS)
+    return sorted(findings, key=lambda f: (order.index(f.level), f.line))
+
+
+def finding_words(finding: Finding, most: int = 64) -> str:
+    """A finding in one line of about ``most`` characters, cut between words."""
+    said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
+    return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
+
+
+def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
+    """The program's units and who says so: ``mm (G21)``, ``mm, assumed (no G20 or G21)``."""
+    name = {"mm": "millimetres" if long else "mm", "in": "inches" if long else "in"}.get(path.units, path.units)
+    apt = is_apt(source.text[:200_000].encode())
+    if any(f.code == NO_UNITS for f in path.findings):
+        return f"{name}, assumed ({'no UNITS' if apt else 'no G20 or G21'})"
+    return f"{name} ({'UNITS' if apt else 'G20' if path.units == 'in' else 'G21'})"
+
+
+def move_words(path: Toolpath) -> str:
+    """``27 moves, 5 arcs``: every move of the program, an arc as one; without arcs where they are not known."""
+    counts = path.counts
+    if counts is None:
+        return format_count(len(path) - 1, "move")
+    return f"{format_count(sum(counts), 'move')}, {format_count(counts[2], 'arc') if counts[2] else 'no arcs'}"
