@@ -35,7 +35,10 @@ def test_another_model_starts_from_the_force_that_pushed():
 
 
 def test_words_for_the_report():
-    assert PathForce(1.0, -110.5).numbers == "Feed 1 N, Feed-normal −110.5 N, Axial 0 N"
+    assert PathForce(1.0, -110.5).numbers == "1 N along the feed, −110.5 N left of the feed"
+    assert PathForce(feed_normal=100.0).numbers == "100 N left of the feed"
+    assert PathForce(axial=-3.0).numbers == "−3 N axial"
+    assert PathForce().numbers == "0 N"
     assert ConstantForce([0, 100, -3]).numbers == "F (0, 100, −3) N in {M}"
     assert MechanisticForce(MILL, ROW).numbers == ROW.title
     assert MechanisticForce(MILL, ROW, axial=False).numbers == f"{ROW.title}, axial force left out"

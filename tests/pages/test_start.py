@@ -22,6 +22,7 @@ def test_paper_and_assumed_numbers_are_marked(app: AppTest) -> None:
     for kind in ("paper", "measured", "assumed", "computed"):
         assert f"rm-{kind}" in text
     assert "are not printed" in text
+    assert "100 N left of the feed" in text
     for number in ("0.23 mm", "0.26 mm", "0.29 mm", "0.30 mm"):
         assert number in text
 

@@ -12,6 +12,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import BY_HAND, PLUNGE, ForceModel, MeanForce
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
+from robomill.units import format_short
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,13 @@ class PathForce(ForceModel):
     def first(cls, mean: MeanForce) -> dict[str, Any]:
         """The components that pushed so far."""
         return dict(zip(("feed", "feed_normal", "axial"), map(float, mean.along_path), strict=True))
+
+    @property
+    def numbers(self) -> str:
+        """The components that push, each with its direction, e.g. ``"100 N left of the feed"``."""
+        ways = ("along the feed", "left of the feed", "axial")
+        said = [f"{format_short(v, 'N')} {way}" for v, way in zip(self._vector, ways, strict=True) if v]
+        return ", ".join(said) or format_short(0.0, "N")
 
     @property
     def _vector(self) -> tuple[float, float, float]:
