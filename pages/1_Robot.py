@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
 import streamlit as st
 
 from robomill import ui
-from robomill.ui.robot import editors as robot_panel
-from robomill.ui.robot.pose import pose_now, pose_sliders, poses_compared, tip_words
+from robomill.ui.robot import editors, pose
 from robomill.units import format_si
 from robomill.viz.arm import ArmScene, arm_figure
 
 project = ui.begin("Robot")
 robot, view, dark = project.setup.robot, project.view, ui.dark()
 result = ui.attempt(ui.result, project.setup)
-theta = pose_now(project, result)
-now, old = poses_compared(project, theta)
+theta = pose.configuration(project, result)
+now, old = pose.compared(project, theta)
 
 ui.headline(
     f"Robot · {robot.title or robot.name}",
@@ -23,51 +21,50 @@ ui.headline(
     f"and {format_si(100 * abs(now.C[2, 1]), view.length, 3)} in Z.",
 )
 cut = ui.verdict_tiles(result, view.length)[0] if result is not None else ui.Tile("Max deviation", "not computed")
-stiff = float(np.sqrt(np.linalg.eigvalsh(now.C)[-1] ** 2))
 ui.tiles(
     [
         ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, cut.change, kind="computed"),
         ui.Tile(
             "C_yy at this pose",
-            format_si(now.C[1, 1], "um/N", 3),
+            format_si(now.component("yy"), "um/N", 3),
             "direct compliance along Y",
-            format_si(old.C[1, 1], "um/N", 3) if old else "",
+            format_si(old.component("yy"), "um/N", 3) if old else "",
         ),
         ui.Tile(
             "Softest direction",
-            format_si(stiff, "um/N", 3),
-            robot_panel.direction_words(now.C),
-            format_si(float(np.linalg.eigvalsh(old.C)[-1]), "um/N", 3) if old else "",
+            format_si(now.principal[0][-1], "um/N", 3),
+            pose.direction_words(now),
+            format_si(old.principal[0][-1], "um/N", 3) if old else "",
         ),
         ui.Tile(
             "det(J)",
-            format_si(now.det, "m3", 3) if np.isfinite(now.det) else "not square",
-            robot_panel.det_words(now),
-            format_si(old.det, "m3", 3) if old and np.isfinite(old.det) else "",
+            pose.det_value(now),
+            pose.det_words(now),
+            pose.det_value(old),
         ),
     ]
 )
 
 left, right = ui.split([5, 9], "page", gap="large")
 with left:
-    robot_panel.editors(project)
-    pose_sliders(project, theta, result)
+    editors.editors(project)
+    pose.controls(project, theta, result)
 with right:
-    pose, numbers = ui.split([2.3, 1], "pose")
-    with pose, st.container(border=True):
-        scene = ArmScene(frames=now.frames, ghost=old.frames if old and old.moved else None)
-        before = old.frames.tobytes() if old and old.moved else b""
+    picture, numbers = ui.split([2.3, 1], "pose")
+    with picture, st.container(border=True):
+        before = pose.ghost(now, old)
+        scene = ArmScene(frames=now.frames, ghost=before)
         arm = ui.kept_figure(
             "robot-arm",
-            (now.frames.tobytes(), before, dark),
+            (now.frames.tobytes(), b"" if before is None else before.tobytes(), dark),
             lambda: arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8),
         )
         ui.figure(
             arm,
             "robot-arm",
             alt="The arm at the chosen joint angles.",
-            caption=f"{tip_words(robot, theta, view.length)}. Foot and tube sizes are for the eye only.",
+            caption=f"{pose.tip_words(now, view.length)}. Foot and tube sizes are for the eye only.",
         )
     with numbers:
-        robot_panel.compliance_matrix(now, old)
-        robot_panel.share_bars(robot, theta, dark)
+        pose.compliance_matrix(now, old)
+        pose.share_bars(now, dark)

@@ -5,23 +5,22 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import fields as maps_fields
-from robomill.ui import session
-from robomill.ui.maps import workspace as panel
+from robomill.ui import fields, session
+from robomill.ui.maps import workspace
 
 project = ui.begin("Workspace")
 robot, unit = project.setup.robot, project.view.length
 view = session.maps()
 
-box = ui.attempt(maps_fields.region, robot, view)
+box = ui.attempt(fields.region, robot, view)
 known = None
 if box is not None:
-    grid = ui.attempt(maps_fields.solid, robot, box)
-    known = ui.attempt(maps_fields.field, robot, grid, view.A, view.B) if grid is not None else None
+    grid = ui.attempt(fields.solid, robot, box)
+    known = ui.attempt(fields.field, robot, grid, view.A, view.B) if grid is not None else None
 
-ui.headline(f"Workspace · {robot.title or robot.name}", panel.sentence(robot, known))
+ui.headline(f"Workspace · {robot.title or robot.name}", workspace.sentence(robot, known))
 if known is not None and box is not None:
-    ui.tiles(panel.tiles(robot, view, box, known, unit))
+    ui.tiles(workspace.tiles(robot, view, box, known, unit))
 else:
     ui.tiles(
         [
@@ -32,8 +31,8 @@ else:
 
 left, right = ui.thirds()
 with left:
-    panel.controls(robot, view, unit)
+    workspace.controls(robot, view, unit)
 with right:
     with st.container(border=True):
-        panel.picture()
-    panel.box_card(robot, view, unit)
+        workspace.picture()
+    workspace.box_card(robot, view, unit)

@@ -6,44 +6,41 @@ import streamlit as st
 
 from robomill import ui
 from robomill.improve.sensitivity import stiffened
-from robomill.ui import fields as maps_fields
-from robomill.ui import session
-from robomill.ui.maps import compliance as panel
-from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.maps import point as point_panel
-from robomill.ui.maps import sheets
-from robomill.ui.point import default_point, report
+from robomill.ui import fields, session
+from robomill.ui.maps import compliance, plane, point, sheets
+from robomill.ui.point import default_point, in_hand
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length
 view = session.maps()
 title = f"Compliance · {robot.title or robot.name}"
 
-box = ui.attempt(maps_fields.region, robot, view)
-known = ui.attempt(maps_fields.overview, robot, view, box) if box is not None else None
+box = ui.attempt(fields.region, robot, view)
+known = ui.attempt(fields.overview, robot, view, box) if box is not None else None
 if box is None or known is None:
     ui.headline(title, "There is nothing to map: mend what is named above.")
     ui.tiles([ui.Tile(label, "none") for label in ("At the point", "Softest direction", "Softest place", "Pays most")])
     left, _ = ui.thirds()
     with left:
-        maps_inputs.where(robot, view, unit)
+        plane.controls(robot, view, unit)
     st.stop()
 
-now = panel.fields(robot, view, known)
-point = default_point(view, box, known)
-old = report(robot, point, view.A, view.B)
-found = report(stiffened(robot, view.stiffening(robot)), point, view.A, view.B)
+factors = view.stiffening(robot)
+now = fields.stiffer(known, factors)
+here = default_point(view, box, known)
+old = in_hand(robot, here, view.A, view.B).pose
+found = in_hand(stiffened(robot, factors), here, view.A, view.B)
 
-ui.headline(title, point_panel.headline(found, unit))
-ui.tiles(panel.tiles(found, old, now, known, view, unit))
+ui.headline(title, point.headline(found, unit))
+ui.tiles(compliance.tiles(found, old, now, known, view, unit))
 
 left, right = ui.thirds()
 with left:
-    panel.controls(robot, view, found, unit)
-    panel.what_if(robot, view)
+    compliance.controls(robot, view, found, unit)
+    compliance.what_if(robot, view)
 with right, st.container(border=True):
     sheets.picture()
 
-point_panel.show(found, old, view.component, unit)
+point.show(found, old, view.component, unit)
 st.subheader("Where does stiffness pay?")
-panel.where_it_pays(found, now, panel.quiet_result(project), view, unit)
+compliance.where_it_pays(found, now, compliance.quiet_result(project), view, unit)

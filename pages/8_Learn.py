@@ -5,9 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
-from robomill.ui.learn import edge as learn_edge
-from robomill.ui.learn import lesson as learn_panel
-from robomill.ui.learn import mathematics as learn_mathematics
+from robomill.ui.learn import edge, lesson, mathematics
 
 project = ui.begin("Learn")
 robot = project.setup.robot
@@ -15,16 +13,16 @@ robot = project.setup.robot
 ui.note(
     f"Why does a robot bend sideways? A lesson with {robot.title or robot.name}; one question, one picture, one reason."
 )
-found = ui.attempt(learn_panel.stand, robot)
-if found is None or not found.reached:
+found = ui.attempt(lesson.stand, robot)
+if found is None or not found.pose.reached:
     ui.note(
         "This robot reaches nothing with its tool vertical, so there is no pose to ask about. Choose another robot."
     )
 else:
-    learn_panel.question(found)
+    lesson.question(found)
     st.divider()
-    learn_edge.edge(found)
+    edge.edge(found)
     st.divider()
-    learn_mathematics.equations(found)
+    mathematics.equations(found.pose)
 st.divider()
-learn_mathematics.reproduced()
+mathematics.reproduced()

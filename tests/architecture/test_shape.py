@@ -20,7 +20,7 @@ MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts).removesuffix(".__
 MOST_LINES = 60
 MOST_PARAMETERS = 6
 # Functions that take more. The number only falls: whoever groups what belongs together lowers it.
-MANY_PARAMETERS = 21
+MANY_PARAMETERS = 14
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
 LONG = {
     "inverse_kinematics",
@@ -42,7 +42,6 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    *("C_X", "det_J_unit", "gives_most"),
     *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
 }

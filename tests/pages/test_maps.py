@@ -127,7 +127,7 @@ def test_stiffer_joints_leave_a_ghost_and_can_be_put_into_the_robot(app: AppTest
     assert '<span class="rm-was">2.295' in said
     names = [t.get("name") for t in charts(app)[2]["data"]]  # type: ignore[attr-defined]
     assert "sum before" in names
-    app.button(key="maps:adopt").click().run()
+    app.button(key="maps.adopt").click().run()
     after = store(app).project.setup.robot.C_theta
     np.testing.assert_allclose(after, before / [1, 1, 2, 1, 1])
     assert view(app).factors is None
@@ -240,7 +240,7 @@ def test_the_lesson_asks_then_reveals(app: AppTest) -> None:
     assert "Where does the tip go?" in words(app)
     assert "<b>0.102 mm</b>" not in words(app)
     app.radio(key="learn:answer").set_value("y").run()
-    app.button(key="learn:reveal").click().run()
+    app.button(key="learn.reveal").click().run()
     said = words(app)
     assert "<b>0.102 mm</b> down" in said
     assert '<td class="off">−1.024</td>' in said, "the off-diagonal term lights up"

@@ -49,16 +49,16 @@ def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> 
 
 def test_slider_and_box_show_the_same_angle_and_it_survives_a_page_change(app: AppTest) -> None:
     go(app, "1_Robot")
-    app.number_input(key="pose:box:1").set_value(-40.0).run()
-    assert app.slider(key="pose:slider:1").value == -40.0
-    app.slider(key="pose:slider:0").set_value(12.5).run()
-    assert app.number_input(key="pose:box:0").value == 12.5
+    app.number_input(key="pose.box.1:deg").set_value(-40.0).run()
+    assert app.slider(key="pose.slider.1").value == -40.0
+    app.slider(key="pose.slider.0").set_value(12.5).run()
+    assert app.number_input(key="pose.box.0:deg").value == 12.5
     go(app, "6_Milling")
     go(app, "1_Robot")
-    assert app.number_input(key="pose:box:1").value == -40.0
+    assert app.number_input(key="pose.box.1:deg").value == -40.0
     theta = np.array(store(app).project.view.theta)
     np.testing.assert_allclose(theta[:2], [to_si(12.5, "deg"), to_si(-40.0, "deg")])
-    app.button(key="pose:cut").click().run()
+    app.button(key="pose.cut").click().run()
     assert store(app).project.view.theta is None
 
 

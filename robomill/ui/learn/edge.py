@@ -10,19 +10,20 @@ import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
+from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
+from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.ui import cached, inputs, pieces, session, shell
-from robomill.ui import fields as maps_fields
-from robomill.ui.learn.lesson import SIDE, lesson
-from robomill.ui.learn.lesson import go as step_on
-from robomill.ui.point import FORCE, PointReport, report
+from robomill.ui import cached, fields, inputs, pieces, session, shell
+from robomill.ui.learn import lesson
+from robomill.ui.point import FORCE, InHand, in_hand
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
+from robomill.viz import solids
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
@@ -48,10 +49,10 @@ class Ray:
         return np.linalg.norm(self.p[:, :2], axis=1)
 
 
-def ray(found: PointReport) -> Ray:
+def ray(found: InHand) -> Ray:
     """The poses from near the base to the edge of the workspace through the lesson's point, from the cache."""
-    robot = found.robot
-    return _ray(f"{maps_fields.geometry_key(robot)}/{digest(np.array(found.point))}", robot, np.array(found.point))
+    robot = found.pose.robot
+    return _ray(f"{fields.geometry_key(robot)}/{digest(np.array(found.point))}", robot, np.array(found.point))
 
 
 @st.cache_resource(max_entries=16, show_spinner=False)
@@ -90,7 +91,7 @@ def _ray(key: str, _robot: Robot, _point: FloatArray) -> Ray:
 
 
 @st.fragment
-def edge(found: PointReport) -> None:
+def edge(found: InHand) -> None:
     """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it."""
     st.html('<p class="rm-ask">Now drag the arm to the edge of its workspace.</p>')
     way = ray(found)
@@ -99,43 +100,44 @@ def edge(found: PointReport) -> None:
     if len(way.p) < 3:
         pieces.note("This pose is the only one in reach on its ray; choose another robot or point.")
         return
-    now = lesson()
-    i = way.start if now.out is None else int(np.abs(way.radius - now.out).argmin())
-    key = f"learn:out:{unit}:{len(radius)}"
+    out = lesson.progress().out
+    i = way.start if out is None else int(np.abs(way.radius - out).argmin())
+    key = f"learn.out.{len(radius)}:{unit}"
     inputs.seed(key, i)
     st.select_slider(
         f"Distance from the base, {unit_label(unit)}",
         list(range(len(radius))),
         key=key,
         format_func=lambda k: format_value(radius[k], unit, 0 if unit == "mm" else 1, with_unit=False),
-        on_change=lambda: step_on(out=float(way.radius[st.session_state[key]])),
+        on_change=lambda: lesson.go(out=float(way.radius[st.session_state[key]])),
     )
-    here = report(found.robot, tuple(map(float, way.p[i])), 0.0, 0.0)  # type: ignore[arg-type]
+    x, y, z = way.p[i].tolist()
+    here = in_hand(found.pose.robot, (x, y, z), 0.0, 0.0)
     left, right = pieces.split([1.35, 1], "edge", gap="large")
     with left, st.container(border=True):
-        _stretch(found, here, way, i)
+        _stretch(found, here, way)
     with right:
-        _measure(found, here, way, i)
+        _measure(here.pose, way, i)
 
 
-def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
-    if here.frames is None or found.frames is None:
+def _stretch(found: InHand, here: InHand, way: Ray) -> None:
+    pose = here.pose
+    if not pose.reached:
         pieces.note(html.escape(here.reason))
         return
     dark = shell.dark()
-    frames = here.frames
-    yardstick = float(np.linalg.norm(np.diff(found.frames[:, :3, 3], axis=0), axis=1).sum())
+    yardstick = solids.yardstick(found.pose.frames)
     # One scale for the whole ray, so that the body is seen to stretch.
-    times = ellipsoid_scale(found.C, 0.13 * yardstick)
+    times = ellipsoid_scale(found.pose.C, 0.13 * yardstick)
 
     def draw() -> go.Figure:
-        fig = arm_figure(ArmScene(frames=frames), dark=dark, height=480, revision="learn-edge", zoom=1.1)
-        fig.add_traces(ellipsoid_traces(here.C, frames[-1][:3, 3], times, dark=dark, width=0.005 * yardstick))
+        fig = arm_figure(ArmScene(frames=pose.frames), dark=dark, height=480, revision="learn-edge", zoom=1.1)
+        fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.005 * yardstick))
         low, high = way.p.min(axis=0) - 0.12 * yardstick, way.p.max(axis=0) + 0.12 * yardstick
         widen(fig, low, high, room=2.6)
-        return fig.update_layout(scene_camera=SIDE)
+        return fig.update_layout(scene_camera=lesson.SIDE)
 
-    fig = cached.kept_figure("learn-edge", (found.robot.digest(), digest(here.theta), way.start, dark), draw)
+    fig = cached.kept_figure("learn-edge", (pose.robot.digest(), digest(pose.theta), way.start, dark), draw)
     grown = format_times(times / FORCE)
     pieces.figure(
         fig,
@@ -145,10 +147,10 @@ def _stretch(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     )
 
 
-def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
-    what = quantity(found.robot, "det_J")
+def _measure(pose: PoseReport, way: Ray, i: int) -> None:
+    what = quantity(pose.robot, "det_J")
     det = float(way.det[i])
-    soft = float(np.linalg.eigvalsh(here.C)[-1]) if here.reached else float("nan")
+    softest_here = pose.principal[0][-1]
     number, label = split_unit(format_si(det, what.unit, 3))
     near = (
         "A singularity: one direction is lost."
@@ -158,10 +160,10 @@ def _measure(found: PointReport, here: PointReport, way: Ray, i: int) -> None:
     st.html(
         f'<p class="rm-note">det(J)</p><div class="rm-det">{number} <small>{label}</small></div>'
         f'<p class="rm-note">{near}</p>'
-        f'<p class="rm-note">softest direction</p><div class="rm-det">{format_si(soft, "um/N", 2)}</div>'
+        f'<p class="rm-note">softest direction</p><div class="rm-det">{format_si(softest_here, "um/N", 2)}</div>'
     )
     unit = session.project().view.length
-    softest = np.asarray(np.linalg.eigvalsh(cartesian_compliance(found.robot, way.theta))[:, -1], dtype=np.float64)
+    softest = soft_direction(cartesian_compliance(pose.robot, way.theta))[0][:, -1]
     fig = ray_figure(
         from_si(way.radius, unit),
         i,

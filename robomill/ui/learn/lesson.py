@@ -10,11 +10,11 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
+from robomill.compliance.at_pose import PoseReport
 from robomill.robot.model import Robot
-from robomill.ui import cached, inputs, pieces, session, shell
-from robomill.ui import fields as maps_fields
+from robomill.ui import cached, fields, inputs, pieces, session, shell
 from robomill.ui.learn.style import BIG
-from robomill.ui.point import FORCE, PointReport, default_point, report
+from robomill.ui.point import FORCE, InHand, default_point, in_hand
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 
@@ -36,43 +36,43 @@ class Lesson:
     out: float | None = None
 
 
-def lesson() -> Lesson:
-    """The lesson of this session."""
+def progress() -> Lesson:
+    """How far this session is."""
     return cast(Lesson, session.kept(KEPT, Lesson()))
 
 
-def go(**fields: Any) -> None:
+def go(**steps: Any) -> None:
     """Another step in the lesson."""
-    session.keep(KEPT, dataclasses.replace(lesson(), **fields))
+    session.keep(KEPT, dataclasses.replace(progress(), **steps))
 
 
-def stand(robot: Robot) -> PointReport:
+def stand(robot: Robot) -> InHand:
     """Where the lesson stands: the point in hand of the maps, tool vertical."""
     view = dataclasses.replace(session.maps(), A=0.0, B=0.0, point=None)
-    box = maps_fields.region(robot, view)
-    known = maps_fields.overview(robot, view, box)
-    return report(robot, default_point(view, box, known), 0.0, 0.0)
+    box = fields.region(robot, view)
+    known = fields.overview(robot, view, box)
+    return in_hand(robot, default_point(view, box, known), 0.0, 0.0)
 
 
 @st.fragment
-def question(found: PointReport) -> None:
+def question(found: InHand) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
     st.html(BIG + '<p class="rm-ask">Push the tool along Y. Where does the tip go?</p>')
-    now = lesson()
+    now = progress()
     left, right = pieces.split([1.35, 1], "ask", gap="large")
     with right:
         _answers(now)
         st.button(
             "Hide it again" if now.revealed else "Show where it goes",
-            key="learn:reveal",
+            key="learn.reveal",
             width="stretch",
             type="secondary" if now.revealed else "primary",
             icon=":material/visibility:",
-            on_click=lambda: go(revealed=not lesson().revealed),
+            on_click=lambda: go(revealed=not progress().revealed),
         )
-        _answer(found, now)
+        _answer(found.pose.C, now)
     with left, st.container(border=True):
-        _push(found, now.revealed)
+        _push(found.pose, now.revealed)
 
 
 def _answers(now: Lesson) -> None:
@@ -90,11 +90,11 @@ def _answers(now: Lesson) -> None:
         )
 
 
-def _answer(found: PointReport, now: Lesson) -> None:
+def _answer(C: FloatArray, now: Lesson) -> None:
     if not now.revealed:
         st.html('<p class="rm-say">Ask the class first. Then show.</p>')
         return
-    delta = FORCE * found.C[:, 1]
+    delta = FORCE * C[:, 1]
     truth = went(delta)
     unit = session.project().view.length
     st.html(f'<p class="rm-say">100 N along Y move the tip {_moves(delta, unit)}.</p>')
@@ -104,7 +104,7 @@ def _answer(found: PointReport, now: Lesson) -> None:
             f"You said: {ANSWERS[now.answer].lower()}. {judged} the second column of C says where a push along Y leads."
         )
         pieces.note(said)
-    st.html(compliance_table(found.C))
+    st.html(compliance_table(C))
     pieces.note(
         f"C in {unit_label('um/N')}. Blue: along the push. Orange, outlined: the off-diagonal terms, where the "
         f"push leads aside."
@@ -145,25 +145,24 @@ def compliance_table(C: FloatArray) -> str:
     return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'
 
 
-def _push(found: PointReport, revealed: bool) -> None:
-    assert found.frames is not None
-    delta = FORCE * found.C[:, 1]
+def _push(pose: PoseReport, revealed: bool) -> None:
+    delta = FORCE * pose.C[:, 1]
     unit, dark = session.project().view.length, shell.dark()
     scene = ArmScene(
-        frames=found.frames,
+        frames=pose.frames,
         force=np.array([0.0, FORCE, 0.0]),
         force_label="100 N",
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
     )
-    key = (found.robot.digest(), digest(found.theta), revealed, unit, dark)
+    key = (pose.robot.digest(), digest(pose.theta), revealed, unit, dark)
     more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
     fig = cached.kept_figure(
         "learn-push",
         key,
         lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
     )
-    drawn = format_times(displacement_scale(delta, found.frames))
+    drawn = format_times(displacement_scale(delta, pose.frames))
     pieces.figure(
         fig,
         "learn-push",

@@ -8,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
+from robomill.compliance.at_pose import PoseReport
 from robomill.identification.estimate import identify
 from robomill.io.load_tests import read_load_tests
 from robomill.io.materials import sample_materials
@@ -17,7 +18,7 @@ from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cached, pieces
-from robomill.ui.point import FORCE, PointReport
+from robomill.ui.point import FORCE
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.units import from_si, unit_label
 
@@ -26,7 +27,7 @@ SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
 SMALL = 5e-4
 
 
-def equations(found: PointReport) -> None:
+def equations(pose: PoseReport) -> None:
     """Eqs. (13), (14) and (15) with this robot's numbers at this pose."""
     st.subheader("The mathematics, with the numbers of now")
     left, right = pieces.split([1, 1], "mathematics", gap="large")
@@ -34,29 +35,28 @@ def equations(found: PointReport) -> None:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
         pieces.note(
             "Every joint gives in its own direction J<sub>i</sub>; the tip gives by the sum. Along Y, with "
-            "C<sub>θ</sub> in "
-            "10⁻⁶ rad/(N m) and J in m/rad:"
+            "C<sub>θ</sub> in 10⁻⁶ rad/(N m) and J in m/rad:"
         )
-        st.latex(r"\large " + component(found, 1, 1))
+        st.latex(r"\large " + component(pose, 1, 1))
         pieces.note("and from Y into Z, the reason for the sideways answer:")
-        st.latex(r"\large " + component(found, 2, 1))
+        st.latex(r"\large " + component(pose, 2, 1))
     with right:
         st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
-        st.latex(r"\large " + product(found.C))
+        st.latex(r"\large " + product(pose.C))
         pieces.note(f"C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot's frame {{M}}.")
 
 
-def component(found: PointReport, row: int, column: int) -> str:
+def component(pose: PoseReport, row: int, column: int) -> str:
     """C_ab as the sum of its joints with numbers, as TeX; joints that add nothing are left out."""
     name = "xyz"[row] + "xyz"[column]
-    shares = from_si(found.C_joint[:, row, column], "um/N")
+    shares = from_si(pose.shares(name), "um/N")
     top = float(np.abs(shares).max())
     terms = []
-    for i, number in enumerate(found.robot.joint_numbers):
+    for i, number in enumerate(pose.robot.joint_numbers):
         if abs(shares[i]) <= max(SMALL, 1e-3 * top):
             continue
-        C = float(found.robot.C_theta[i] * 1e6)
-        a, b = (float(found.J[k, i]) for k in (row, column))
+        C = float(pose.robot.C_theta[i] * 1e6)
+        a, b = (float(pose.J[k, i]) for k in (row, column))
         factors = rf"({a:.3f})^2" if row == column else rf"({a:.3f})({b:.3f})"
         terms.append(rf"\underbrace{{{C:.3f}\cdot {factors}}}_{{\text{{joint {number}}}}}")
     total = float(shares.sum())

@@ -10,8 +10,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobomillError, WorkspaceError
 from robomill.io.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import fields as maps_fields
-from robomill.ui import inputs, pieces, session
+from robomill.ui import fields, inputs, pieces, session
 from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
 from robomill.viz.maps import Map, Scale, symmetric_limit
@@ -97,10 +96,10 @@ def _field(key: str, robot: Robot, view: MapView, known: ComplianceField) -> Com
     if key == "now":
         return known
     if key == "what-if":
-        return maps_fields.stiffer(known, view.stiffening(robot))
+        return fields.stiffer(known, view.stiffening(robot))
     kind, _, name = key.partition(":")
     other = robot.with_compliance_set(name) if kind == "set" else load_robot(name)
-    return maps_fields.field(other, known.grid, view.A, view.B)
+    return fields.field(other, known.grid, view.A, view.B)
 
 
 def _mean(values: FloatArray) -> str:

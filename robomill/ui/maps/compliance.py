@@ -8,15 +8,16 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
+from robomill.compliance.at_pose import PoseReport
 from robomill.errors import RobomillError
 from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import fields as maps_fields
-from robomill.ui import inputs, pieces, session, shell
-from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui import cached, inputs, pieces, session, shell
+from robomill.ui.box import Box
+from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
-from robomill.ui.point import PointReport
+from robomill.ui.point import InHand
 from robomill.ui.project import MapView, Project
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
@@ -28,12 +29,12 @@ WORDS = {c: f"C_{c}" for c in COMPONENTS}
 
 
 def tiles(
-    found: PointReport, old: PointReport, now: ComplianceField, before: ComplianceField, view: MapView, unit: str
+    found: InHand, old: PoseReport, now: ComplianceField, before: ComplianceField, view: MapView, unit: str
 ) -> list[pieces.Tile]:
     """The component at the point, the softest direction there, the softest place, where stiffness pays."""
-    component = view.component
+    component, pose = view.component, found.pose
     point = place(found.point, unit)
-    gain = compliance_sensitivity(now.C_joint(), component, joint_numbers=found.robot.joint_numbers)
+    gain = compliance_sensitivity(now.C_joint(), component, joint_numbers=pose.robot.joint_numbers)
     best = int(gain.ranking[0])
     known = bool(now.reached.any())
     saved = float(np.nanmean(gain.gain[..., best])) if known else float("nan")
@@ -43,16 +44,16 @@ def tiles(
     return [
         pieces.Tile(
             f"C_{component} at the point",
-            _um(found.component(component)) if found.reached else "not reached",
+            _um(pose.component(component)) if pose.reached else "not reached",
             f"at {point}",
             _um(old.component(component)) if old.reached else "",
             kind="computed",
         ),
         pieces.Tile(
             "Softest direction there",
-            _um(_softest(found)) if found.reached else "not reached",
+            _um(pose.principal[0][-1]) if pose.reached else "not reached",
             "what 1 N moves the tip at most",
-            _um(_softest(old)) if old.reached else "",
+            _um(old.principal[0][-1]) if old.reached else "",
         ),
         pieces.Tile(
             "Softest place of the region",
@@ -62,26 +63,22 @@ def tiles(
         ),
         pieces.Tile(
             "Stiffness pays most in",
-            f"joint {found.robot.joint_numbers[best]}" if known else "nothing reached",
+            f"joint {pose.robot.joint_numbers[best]}" if known else "nothing reached",
             f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else "",
         ),
     ]
-
-
-def _softest(found: PointReport) -> float:
-    return float(np.linalg.eigvalsh(found.C)[-1])
 
 
 def _um(value: float) -> str:
     return format_si(value, UM, 3)
 
 
-def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None:
+def controls(robot: Robot, view: MapView, found: InHand, unit: str) -> None:
     """Region, tilt, plane; component; point; scale."""
-    maps_inputs.where(robot, view, unit)
+    plane.controls(robot, view, unit)
     inputs.choice(
         "Component for comparing and ranking",
-        "maps:component",
+        "maps.component",
         WORDS,
         view.component,
         lambda c: session.see(component=c),
@@ -90,24 +87,18 @@ def controls(robot: Robot, view: MapView, found: PointReport, unit: str) -> None
     st.markdown("**The point in hand**")
     for i, column in enumerate(st.columns(3)):
         with column:
-            maps_inputs.value(
-                "XYZ"[i],
-                f"maps:point:{i}:{unit}",
-                found.point[i],
-                unit,
-                lambda v, i=i: _put(found, i, v),  # type: ignore[misc]
-                50.0 if unit == "mm" else 1.0,
-            )
+            box = Box("XYZ"[i], unit, 50.0 if unit == "mm" else 1.0, plane.digits(unit))
+            inputs.value(f"maps.point.{i}", box, found.point[i], partial(_put, found, i))
     inputs.choice(
         "Colours of the 3 × 3 maps",
-        "maps:common",
+        "maps.common",
         {True: "One scale", False: "Direct and cross apart"},
         view.common,
         lambda c: session.see(common=c),
     )
 
 
-def _put(found: PointReport, i: int, value: float) -> None:
+def _put(found: InHand, i: int, value: float) -> None:
     point = list(found.point)
     point[i] = value
     session.see(point=tuple(point))
@@ -125,7 +116,7 @@ def what_if(robot: Robot, view: MapView) -> None:
             kwargs={"factors": None},
             type="tertiary",
             disabled=not changed,
-            key="maps:reset",
+            key="maps.reset",
             icon=":material/restart_alt:",
         )
     for i, number in enumerate(robot.joint_numbers):
@@ -134,7 +125,7 @@ def what_if(robot: Robot, view: MapView) -> None:
         with slider:
             inputs.slider(
                 f"Joint {number}, times its stiffness",
-                f"maps:factor:{i}",
+                f"maps.factor.{i}",
                 inputs.Span(0.5, 4.0, 0.05, "%.2f"),
                 float(scale[i]),
                 partial(_factor, robot, i),
@@ -145,7 +136,7 @@ def what_if(robot: Robot, view: MapView) -> None:
         on_click=_adopt,
         args=(robot,),
         disabled=not changed,
-        key="maps:adopt",
+        key="maps.adopt",
         icon=":material/check:",
         width="stretch",
         help="The milling result follows; undo leads back.",
@@ -153,28 +144,27 @@ def what_if(robot: Robot, view: MapView) -> None:
 
 
 def _factor(robot: Robot, i: int, value: float) -> None:
-
     scale = session.maps().stiffening(robot)
     scale[i] = value
     session.see(factors=None if (scale == 1.0).all() else tuple(scale.tolist()))
 
 
 def _adopt(robot: Robot) -> None:
-
     session.change(robot=stiffened(robot, session.maps().stiffening(robot)))
     session.see(factors=None)
 
 
 def where_it_pays(
-    found: PointReport, now: ComplianceField, result: SimulationResult | None, view: MapView, unit: str
+    found: InHand, now: ComplianceField, result: SimulationResult | None, view: MapView, unit: str
 ) -> None:
     """What 10 % more stiffness in one joint takes off: at the point, along the path of the project, over the region."""
-    joints = found.robot.joint_numbers
+    robot = found.pose.robot
+    joints = robot.joint_numbers
     groups: list[tuple[str, FloatArray, str]] = []
-    if found.reached:
-        at_point = compliance_sensitivity(found.C_joint, view.component, joint_numbers=joints)
+    if found.pose.reached:
+        at_point = compliance_sensitivity(found.pose.C_joint, view.component, joint_numbers=joints)
         groups.append((f"|C<sub>{view.component}</sub>| at the point", from_si(at_point.gain, UM), unit_label(UM)))
-    along = _along_path(result, view, found.robot)
+    along = _along_path(result, view, robot)
     micro = "um"
     if along is not None:
         groups.append(("deviation along the path", from_si(_mean(along), micro), f"{unit_label(micro)}, mean"))
@@ -220,14 +210,7 @@ def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) ->
 
 def quiet_result(project: Project) -> SimulationResult | None:
     """The milling result of the project, or None where it is refused: this page works without one."""
-    from robomill.ui import cached
-
     try:
         return cached.result(project.setup)
     except RobomillError:
         return None
-
-
-def fields(robot: Robot, view: MapView, known: ComplianceField) -> ComplianceField:
-    """The region with the what-if factors in force."""
-    return maps_fields.stiffer(known, view.stiffening(robot))

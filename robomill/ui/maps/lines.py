@@ -9,28 +9,23 @@ import streamlit as st
 
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
-from robomill.ui import fields as maps_fields
-from robomill.ui import pieces, session, shell
-from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.project import MapView
+from robomill.ui import fields, pieces, shell
+from robomill.ui.maps import plane
+from robomill.ui.maps.plane import Region
 from robomill.units import format_significant, from_si, unit_label
 from robomill.viz.shares import LinePanel, line_panels
-from robomill.workspace.reach import Box
 
 
-def show(robot: Robot, view: MapView, box: Box, unit: str) -> None:
+def show(region: Region) -> None:
     """The six lines with their own slider; the total before the what-if factors stays as ghost."""
-    if maps_fields.flat(robot) not in (None, 2):
+    robot, box, unit = region.robot, region.box, region.unit
+    if fields.flat(robot) not in (None, 2):
         raise WorkspaceError("The six lines lie in a plane of constant Z_M; this arm moves in another plane.")
-    _, at = (
-        maps_fields.plane_at(robot, view, box)
-        if view.normal == "z"
-        else ("z", min(max(0.0, box.lower[2]), box.upper[2]))
-    )
-    maps_inputs.plane_slider(robot, box, "z", at, unit)
-    _, at = maps_fields.plane_at(robot, session.maps(), box) if view.normal == "z" else ("z", at)
-    found = maps_fields.lines(robot, box, at)
-    scale = view.stiffening(robot)
+    across = region.view.normal == "z"
+    at = region.at()[1] if across else min(max(0.0, float(box.lower[2])), float(box.upper[2]))
+    plane.slider(region, "z", at)
+    found = fields.lines(robot, box, region.at()[1] if across else at)
+    scale = region.factors
     changed = bool((scale != 1.0).any())
     panels = []
     for line in found:

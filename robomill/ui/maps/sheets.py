@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,20 +11,14 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.robot.model import Robot
-from robomill.ui import fields as maps_fields
-from robomill.ui import inputs, pieces, session, shell
-from robomill.ui.maps import compare as compare_panel
-from robomill.ui.maps import inputs as maps_inputs
-from robomill.ui.maps import lines as lines_panel
+from robomill.ui import fields, inputs, pieces, session, shell
+from robomill.ui.maps import compare, lines, plane
+from robomill.ui.maps.plane import Region
 from robomill.ui.point import default_point
-from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import COMPONENTS
-from robomill.workspace.reach import Box
 
 SHEETS = {
     "nine": "3 × 3 maps",
@@ -43,76 +39,92 @@ def picture() -> None:
     project = session.project()
     robot, unit = project.setup.robot, project.view.length
     view = session.maps()
-    inputs.choice("Picture", "maps:sheet", SHEETS, view.sheet, lambda s: session.see(sheet=s), inputs.HIDDEN)
+    inputs.choice("Picture", "maps.sheet", SHEETS, view.sheet, lambda s: session.see(sheet=s), inputs.HIDDEN)
     view = session.maps()
     try:
-        box = maps_fields.region(robot, view)
+        region = Region(robot, view, fields.region(robot, view), unit)
         if view.sheet == "lines":
-            lines_panel.show(robot, view, box, unit)
+            lines.show(region)
             return
-        normal, at = maps_fields.plane_at(robot, view, box)
-        maps_inputs.plane_slider(robot, box, normal, at, unit)
-        normal, at = maps_fields.plane_at(robot, session.maps(), box)
-        grid = maps_fields.plane(robot, view, box, normal, at)
-        known = maps_fields.field(robot, grid, view.A, view.B)
+        plane.slider(region, *region.at())
+        normal, at = region.at()
+        known = region.field(region.grid(normal, at))
         if view.sheet != "compare" and not known.reached.any():
             st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
             return
-        _SHEETS[view.sheet](robot, view, box, known, normal, at, unit)
+        _SHEETS[view.sheet](Cut(region, normal, at, known))
     except RobomillError as exc:
         pieces.error(exc)
 
 
-def slab(values: FloatArray, normal: str) -> FloatArray:
-    """(nu, nv) from a plane's (nx, ny, nz)."""
-    return values.squeeze(axis="xyz".index(normal))
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """The plane of a picture: where it cuts the region, and what is known over it with the joints as they are."""
+
+    region: Region
+    normal: str
+    at: float
+    known: ComplianceField
+
+    def slab(self, values: FloatArray) -> FloatArray:
+        """(nu, nv) from the plane's (nx, ny, nz)."""
+        return values.squeeze(axis="xyz".index(self.normal))
+
+    def stiffer(self) -> ComplianceField:
+        """The same with the what-if factors in force."""
+        return fields.stiffer(self.known, self.region.factors)
+
+    def sheet(self, rows: list[list[Map | None]], scales: dict[str, Scale]) -> MapSheet:
+        """Panels over the plane with the point in hand marked."""
+        unit, grid = self.region.unit, self.known.grid
+        u, v = (a for a in "xyz" if a != self.normal)
+        point = dict(zip("xyz", default_point(self.region.view, self.region.box, self.known), strict=True))
+        return MapSheet(
+            rows,
+            from_si(getattr(grid, u), unit),
+            from_si(getattr(grid, v), unit),
+            *plane.axes(self.normal, unit),
+            scales,
+            point=(float(from_si(point[u], unit)), float(from_si(point[v], unit))),
+            on_plane=abs(point[self.normal] - self.at) < 1e-6,
+        )
 
 
-def sheet(
-    rows: list[list[Map | None]],
-    grid: Grid,
-    normal: str,
-    at: float,
-    unit: str,
-    scales: dict[str, Scale],
-    view: MapView,
-    box: Box,
-    known: ComplianceField,
-) -> MapSheet:
-    """Panels over a plane with the point in hand marked."""
-    i = "xyz".index(normal)
-    u_name, v_name = (a for a in "xyz" if a != normal)
-    point = default_point(view, box, known)
-    u, v = (float(from_si(point["xyz".index(a)], unit)) for a in (u_name, v_name))
-    return MapSheet(
-        rows,
-        from_si(getattr(grid, u_name), unit),
-        from_si(getattr(grid, v_name), unit),
-        *maps_inputs.axes_titles(normal, unit),
-        scales,
-        point=(u, v),
-        on_plane=abs(point[i] - at) < 1e-6,
-    )
+@dataclass(frozen=True)
+class Words:
+    """What is said of a picture: its name in files, the line beneath it, and what it shows for who cannot see it."""
+
+    key: str
+    caption: str
+    alt: str
 
 
-def draw(drawn: MapSheet, key: str, columns: int, normal: str, at: float, caption: str, alt: str, table: Any) -> None:
+def draw(cut: Cut, drawn: MapSheet, words: Words, table: Callable[[], Any]) -> None:
     """Show a sheet; a click in it makes its cell the point in hand and runs the page again."""
     ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
     most = {1: 400, 2: 240}.get(len(drawn.rows), 165)
     least = 88 if len(drawn.scales) == 1 else 130  # the title of a colour bar stands along it
-    panel = int(min(max(700 / columns * ratio, least), most))
-    fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=f"{key}-{normal}", gap_x=0.03, gap_y=34)
-    widget = f"sheet-{key}"
+    panel = int(min(max(700 / max(len(drawn.rows[0]), 2) * ratio, least), most))
+    revision = f"{words.key}-{cut.normal}"
+    fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=revision, gap_x=0.03, gap_y=34)
+    widget = f"sheet-{words.key}"
 
     def take() -> None:
         found = picked_point(drawn.u, drawn.v, st.session_state.get(widget))
         if found is not None:
-            st.session_state["maps:clicked"] = (normal, at, found)
+            session.keep("maps.clicked", (cut.normal, cut.at, found))
 
     pieces.figure(
-        fig, widget, name=f"compliance-{key}", caption=caption, alt=alt, table=table, on_select=take, lazy=True
+        fig,
+        widget,
+        name=f"compliance-{words.key}",
+        caption=words.caption,
+        alt=words.alt,
+        table=table,
+        on_select=take,
+        lazy=True,
     )
-    clicked = st.session_state.pop("maps:clicked", None)
+    clicked = session.drop("maps.clicked")
     if clicked is not None:
         _open(clicked)
 
@@ -133,10 +145,9 @@ def _columns(known: ComplianceField, names: list[str]) -> Any:
     return map_columns([known.field(name) for name in names])
 
 
-def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    scale = view.stiffening(robot)
-    now = maps_fields.stiffer(known, scale)
-    whole = from_si(maps_fields.overview(robot, view, box).total, UM)
+def _nine(cut: Cut) -> None:
+    view, known, now = cut.region.view, cut.known, cut.stiffer()
+    whole = from_si(cut.region.overview().total, UM)
     direct, cross = whole[..., :3], whole[..., 3:]
     label = f"C, {unit_label(UM)}"
     if view.common:
@@ -154,26 +165,25 @@ def _nine(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal:
         row: list[Map | None] = []
         for j, c in enumerate(names):
             k = COMPONENTS.index(c)
-            shown = slab(from_si(now.total[..., k], UM), normal)
-            change = shown - slab(from_si(known.total[..., k], UM), normal)
+            shown = cut.slab(from_si(now.total[..., k], UM))
+            change = shown - cut.slab(from_si(known.total[..., k], UM))
             title = f"<b>C<sub>{'xyz'[i]}{'xyz'[j]}</sub></b>  {span(shown)}" + _moved(change)
             row.append(Map(title, shown, "main" if view.common or i == j else "cross", unit_label(UM)))
         rows.append(row)
     about = (
         "One scale for all nine, centred on zero: the robot's own largest value over the region, so colours stay "
-        "while the "
-        "plane moves."
+        "while the plane moves."
         if view.common
         else "Direct terms on a scale of sizes, cross terms on one centred on zero."
     )
     draw(
-        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
-        "nine",
-        3,
-        normal,
-        at,
-        f"{about} Click a cell for the report of that pose.",
-        "The nine components of the compliance matrix over the plane.",
+        cut,
+        cut.sheet(rows, scales),
+        Words(
+            "nine",
+            f"{about} Click a cell for the report of that pose.",
+            "The nine components of the compliance matrix over the plane.",
+        ),
         lambda: _columns(now, [f"C_{c}" for c in COMPONENTS]),
     )
 
@@ -191,12 +201,13 @@ def _moved(change: FloatArray) -> str:
     return f"  <i>({format_number(np.nanmean(change), 2, sign=True)} mean)</i>"
 
 
-def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    inputs.choice("Components", "maps:shares", SHARES, view.shares, lambda s: session.see(shares=s), inputs.HIDDEN)
+def _shares(cut: Cut) -> None:
+    kind, robot = cut.region.view.shares, cut.region.robot
+    inputs.choice("Components", "maps.shares", SHARES, kind, lambda s: session.see(shares=s), inputs.HIDDEN)
     kind = session.maps().shares
-    now = maps_fields.stiffer(known, view.stiffening(robot))
+    now = cut.stiffer()
     index = [COMPONENTS.index(c) for c in ROWS[kind]]
-    whole = from_si(maps_fields.overview(robot, view, box).shares[..., index], UM)
+    whole = from_si(cut.region.overview().shares[..., index], UM)
     top = symmetric_limit([whole])
     label = f"share, {unit_label(UM)}"
     scale = Scale(label, 0.0, top) if kind == "direct" else Scale(label, -top, top, "diverging")
@@ -207,22 +218,22 @@ def _shares(robot: Robot, view: MapView, box: Box, known: ComplianceField, norma
             [
                 Map(
                     f"C<sub>{c}</sub> joint {number}  {_mean(values[..., j])}",
-                    slab(values[..., j], normal),
+                    cut.slab(values[..., j]),
                     unit=unit_label(UM),
                 )
                 for j, number in enumerate(robot.joint_numbers)
             ]
         )
-    words = "sizes, from zero" if kind == "direct" else "signed, centred on zero"
+    how = "sizes, from zero" if kind == "direct" else "signed, centred on zero"
     draw(
-        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
-        f"shares-{kind}",
-        robot.n,
-        normal,
-        at,
-        f"Each joint's summand of eq. (16), mean beside its name; one scale, {words}. Joints in a row add up to "
-        f"the map.",
-        "Shares of each joint in the compliance over the plane.",
+        cut,
+        cut.sheet(rows, {"main": scale}),
+        Words(
+            f"shares-{kind}",
+            f"Each joint's summand of eq. (16), mean beside its name; one scale, {how}. Joints in a row add up to "
+            f"the map.",
+            "Shares of each joint in the compliance over the plane.",
+        ),
         lambda: _columns(now, [f"C_{c}_{j}" for c in ROWS[kind] for j in range(1, robot.n + 1)]),
     )
 
@@ -231,11 +242,11 @@ def _mean(values: FloatArray) -> str:
     return format_number(np.nanmean(values), 2) if np.isfinite(values).any() else "none"
 
 
-def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    now = maps_fields.stiffer(known, view.stiffening(robot))
+def _dominant(cut: Cut) -> None:
+    now = cut.stiffer()
 
     def panel(title: str, name: str) -> Map:
-        return Map(title, slab(now.values(name), normal))
+        return Map(title, cut.slab(now.values(name)))
 
     rows: list[list[Map | None]] = [
         [
@@ -244,31 +255,31 @@ def _dominant(robot: Robot, view: MapView, box: Box, known: ComplianceField, nor
         ],
         [None, *(panel(f"C<sub>{c}</sub>", f"dominant_C_{c}") for c in ROWS["cross"])],
     ]
-    scale = Scale("", 0, 1, "joints", joints=robot.joint_numbers)
+    scale = Scale("", 0, 1, "joints", joints=cut.region.robot.joint_numbers)
     draw(
-        sheet(rows, known.grid, normal, at, unit, {"main": scale}, view, box, known),
-        "dominant",
-        4,
-        normal,
-        at,
-        "The joint with the largest share: where to stiffen first.",
-        "The joint that gives most, over the plane.",
+        cut,
+        cut.sheet(rows, {"main": scale}),
+        Words(
+            "dominant",
+            "The joint with the largest share: where to stiffen first.",
+            "The joint that gives most, over the plane.",
+        ),
         lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
     )
 
 
-def _compare(robot: Robot, view: MapView, box: Box, known: ComplianceField, normal: str, at: float, unit: str) -> None:
-    compare_panel.controls(robot, view)
-    view = session.maps()
-    rows, scales, rows_of_text, columns = compare_panel.panels(robot, view, known, normal)
+def _compare(cut: Cut) -> None:
+    robot = cut.region.robot
+    compare.controls(robot, cut.region.view)
+    rows, scales, rows_of_text, columns = compare.panels(robot, session.maps(), cut.known, cut.normal)
     draw(
-        sheet(rows, known.grid, normal, at, unit, scales, view, box, known),
-        "compare",
-        max(len(rows[0]), 2),
-        normal,
-        at,
-        "The compared ones on one scale; the difference to the first on its own, centred on zero.",
-        "The same compliance of up to three robots or compliance sets, and the differences.",
+        cut,
+        cut.sheet(rows, scales),
+        Words(
+            "compare",
+            "The compared ones on one scale; the difference to the first on its own, centred on zero.",
+            "The same compliance of up to three robots or compliance sets, and the differences.",
+        ),
         lambda: columns,
     )
     pieces.facts(rows_of_text)

@@ -7,16 +7,17 @@ import re
 from functools import partial
 
 import numpy as np
+import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.at_pose import at_pose
 from robomill.errors import RobomillError
-from robomill.kinematics.decoupled import decoupled
-from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
-from robomill.ui import fields as maps_fields
-from robomill.ui import inputs, pieces, session, shell
-from robomill.ui.maps import inputs as maps_inputs
+from robomill.ui import fields, inputs, pieces, session, shell
+from robomill.ui.maps import plane
+from robomill.ui.maps.plane import Region
+from robomill.ui.point import in_hand, middle
 from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
@@ -49,7 +50,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
     limit = known.values("limit_distance")
     nearest = format_percent(np.nanmin(limit)) if np.isfinite(limit).any() else NOT_REACHED
-    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    largest = fields.proposed_box(robot, view.A, view.B)
     size = "none" if largest is None else format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
     singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
@@ -77,7 +78,7 @@ def box_size(size: FloatArray, unit: str) -> str:
 
 
 def _against(box: Box, robot: Robot, unit: str) -> str:
-    if maps_fields.flat(robot) is not None:
+    if fields.flat(robot) is not None:
         return "in the plane of the arm"
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
@@ -103,22 +104,19 @@ def sentence(robot: Robot, known: ComplianceField | None) -> str:
 
 def _why(known: ComplianceField) -> str:
     """Why the middle of the region is not reached."""
-    from robomill.kinematics.inverse import inverse_kinematics
-    from robomill.kinematics.transforms import pose_from_world
-
-    middle = [float(axis[len(axis) // 2]) for axis in (known.grid.x, known.grid.y, known.grid.z)]
-    reason = inverse_kinematics(known.robot, pose_from_world([*middle, known.A, known.B])).reason()
+    x, y, z = (float(axis[len(axis) // 2]) for axis in (known.grid.x, known.grid.y, known.grid.z))
+    reason = in_hand(known.robot, (x, y, z), known.A, known.B).reason
     return f"at its middle, {reason}." if reason else "choose another plane."
 
 
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
     names = {what.name: what.title for what in quantities(robot).values() if what.rests_on == "geometry"}
-    inputs.choice("Quantity", "maps:quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
+    inputs.choice("Quantity", "maps.quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
     what = quantity(robot, view.quantity)
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
-    maps_inputs.where(robot, view, unit)
-    pieces.note(maps_inputs.tilt_note(robot))
+    plane.controls(robot, view, unit)
+    pieces.note(plane.tilt_note(robot))
 
 
 def formula_html(formula: str) -> str:
@@ -130,10 +128,10 @@ def formula_html(formula: str) -> str:
 def box_card(robot: Robot, view: MapView, unit: str) -> None:
     """The largest box beside the paper's, with its place."""
     st.markdown("**Machining boxes**")
-    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    largest = fields.proposed_box(robot, view.A, view.B)
     rows = []
     digits = 0 if unit == "mm" else 1
-    flat = maps_fields.flat(robot) is not None
+    flat = fields.flat(robot) is not None
     for name, box, kind in (("largest in reach", largest, "computed"), ("the paper's", Box(*PAPER_BOX), "paper")):
         if box is None or (flat and kind == "paper"):
             continue
@@ -147,7 +145,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
             on_click=session.see,
             kwargs={"region": "largest", "at": None, "point": None},
             icon=":material/crop_free:",
-            key="maps:largest",
+            key="maps.largest",
         )
     pieces.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
 
@@ -158,28 +156,28 @@ def picture() -> None:
     project = session.project()
     robot, unit = project.setup.robot, project.view.length
     view = session.maps()
-    inputs.choice("Picture", "maps:picture", PICTURES, view.picture, lambda p: session.see(picture=p), inputs.HIDDEN)
+    inputs.choice("Picture", "maps.picture", PICTURES, view.picture, lambda p: session.see(picture=p), inputs.HIDDEN)
     view = session.maps()
     try:
-        box = maps_fields.region(robot, view)
-        {"plane": _plane, "pair": _pair, "solid": _solid}[view.picture](robot, view, box, unit)
+        region = Region(robot, view, fields.region(robot, view), unit)
+        {"plane": _plane, "pair": _pair, "solid": _solid}[view.picture](region)
     except RobomillError as exc:
         pieces.error(exc)
 
 
-def _plane(robot: Robot, view: MapView, box: Box, unit: str) -> None:
-    normal, at = maps_fields.plane_at(robot, view, box)
-    maps_inputs.plane_slider(robot, box, normal, at, unit)
-    normal, at = maps_fields.plane_at(robot, session.maps(), box)
-    _sheet(robot, view, box, normal, [at], unit, "plane")
+def _plane(region: Region) -> None:
+    plane.slider(region, *region.at())
+    normal, at = region.at()
+    _sheet(region, normal, [at], "plane")
 
 
-def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
-    normal, _ = maps_fields.plane_at(robot, view, box)
+def _pair(region: Region) -> None:
+    view, box, unit = region.view, region.box, region.unit
+    normal, _ = region.at()
     i = "xyz".index(normal)
     low, high = float(box.lower[i]), float(box.upper[i])
     if high - low < 1e-9:
-        _sheet(robot, view, box, normal, [low], unit, "pair")
+        _sheet(region, normal, [low], "pair")
         pieces.note("The region has no depth: there is only one plane.")
         return
     first, second = view.pair if view.pair and low <= min(view.pair) and max(view.pair) <= high else (low, high)
@@ -190,13 +188,13 @@ def _pair(robot: Robot, view: MapView, box: Box, unit: str) -> None:
             ends = [float(from_si(v, unit)) for v in (low, high, at)]
             inputs.slider(
                 f"{name} {('left' if k == 0 else 'right')}, {unit_label(unit)}",
-                f"maps:pair:{k}:{normal}:{unit}",
+                f"maps.pair.{k}.{normal}:{unit}",
                 inputs.Span(ends[0], ends[1], float(from_si(step, unit)), "%.0f" if unit == "mm" else "%.2f"),
                 ends[2],
                 partial(_put_pair, k, unit, (first, second)),
             )
     first, second = session.maps().pair or (first, second)
-    _sheet(robot, view, box, normal, [first, second], unit, "pair")
+    _sheet(region, normal, [first, second], "pair")
 
 
 def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None:
@@ -204,22 +202,20 @@ def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None
     session.see(pair=(at, now[1]) if k == 0 else (now[0], at))
 
 
-def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float], unit: str, key: str) -> None:
+def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
     """One or two planes of the quantity on a scale that stays while they move."""
-    what = quantity(robot, view.quantity)
+    unit, what = region.unit, quantity(region.robot, region.view.quantity)
     maps_row, grid = [], None
     for at in ats:
-        grid = maps_fields.plane(robot, view, box, normal, at)
-        values = maps_fields.field(robot, grid, view.A, view.B).values(what.name)
+        grid = region.grid(normal, at)
+        values = region.field(grid).values(what.name)
         shown = from_si(values, what.unit).squeeze(axis="xyz".index(normal))
-        maps_row.append(
-            Map(f"{what.title}, {maps_inputs.plane_title(normal, at, unit)}", shown, unit=unit_label(what.unit))
-        )
+        maps_row.append(Map(f"{what.title}, {plane.title(normal, at, unit)}", shown, unit=unit_label(what.unit)))
     assert grid is not None
     u_name, v_name = (a for a in "xyz" if a != normal)
     u, v = from_si(getattr(grid, u_name), unit), from_si(getattr(grid, v_name), unit)
-    titles = maps_inputs.axes_titles(normal, unit)
-    sheet = MapSheet([maps_row], u, v, *titles, {"main": scale_of(robot, view, box, what)})
+    titles = plane.axes(normal, unit)
+    sheet = MapSheet([maps_row], u, v, *titles, {"main": _scale(region, what)})
     ratio = float(np.ptp(v) / max(np.ptp(u), 1e-9)) if len(u) > 1 else 1.0
     width = 760 if len(ats) == 1 else 370
     height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
@@ -229,33 +225,29 @@ def _sheet(robot: Robot, view: MapView, box: Box, normal: str, ats: list[float],
         f"workspace-{key}",
         name=f"workspace-{what.name}",
         alt=f"{what.title} over a plane of the workspace.",
-        table=lambda: plane_columns(robot, view, grid, what),
+        table=lambda: _columns(region, grid, what),
         lazy=True,
         caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
     )
 
 
-def plane_columns(robot: Robot, view: MapView, grid: Grid, what: Quantity) -> dict[str, FloatArray]:
+def _columns(region: Region, grid: Grid, what: Quantity) -> dict[str, FloatArray]:
     """The table twin of a plane."""
     from robomill.io.maps import map_columns
 
-    return map_columns([maps_fields.field(robot, grid, view.A, view.B).field(what.name)])
+    return map_columns([region.field(grid).field(what.name)])
 
 
-def scale_of(robot: Robot, view: MapView, box: Box, what: Quantity) -> Scale:
+def _scale(region: Region, what: Quantity) -> Scale:
     """The scale of a quantity over the whole region."""
-    known = maps_fields.field(robot, maps_fields.solid(robot, box, _overview(robot)), view.A, view.B)
-    return Scale.of(what, from_si(known.values(what.name), what.unit), robot.joint_numbers)
+    return Scale.of(what, from_si(region.overview().values(what.name), what.unit), region.robot.joint_numbers)
 
 
-def _overview(robot: Robot) -> int:
-    return 700 if decoupled(robot) is not None else 150
-
-
-def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
-    what = quantity(robot, view.quantity)
-    grid = maps_fields.solid(robot, box)
-    known = maps_fields.field(robot, grid, view.A, view.B)
+def _solid(region: Region) -> None:
+    robot = region.robot
+    what = quantity(robot, region.view.quantity)
+    grid = fields.solid(robot, region.box)
+    known = region.field(grid)
     if not known.reached.any():
         pieces.note(sentence(robot, known))
         return
@@ -264,64 +256,51 @@ def _solid(robot: Robot, view: MapView, box: Box, unit: str) -> None:
     caption = "Everything in reach at this tilt."
     if values is not None:
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        share = _level(low, high, view, unit_label(what.unit))
+        share = _level(low, high, region.view, unit_label(what.unit))
         cut = low + share * (high - low)
         mask = mask & (np.nan_to_num(values, nan=-np.inf) >= cut)
         caption = (
             f"Cells where {what.title} is at least {format_significant(cut, 3)} {unit_label(what.unit)}".rstrip() + "."
         )
-    _solid_figure(robot, view, box, grid, mask, values, what, caption)
+    pieces.figure(
+        _solid_figure(
+            region, grid, mask, None if values is None else (values, Scale.of(what, values, robot.joint_numbers))
+        ),
+        "workspace-solid",
+        name=f"workspace-{what.name}",
+        caption=caption,
+        alt="The arm with the cells of its workspace as voxels.",
+        table=lambda: _columns(region, grid, what),
+        lazy=True,
+    )
 
 
 def _level(low: float, high: float, view: MapView, unit: str) -> float:
-    key = "maps:level"
+    key = "maps.level"
     lowest, highest = format_significant(low, 3), format_significant(high, 3)
     label = f"Cells from the lowest value, {lowest}, up to the highest, {highest} {unit}"
     inputs.slider(label, key, inputs.Span(0.0, 1.0, 0.02, "percent"), view.level, lambda v: session.see(level=v))
-    return float(st.session_state.get(key, view.level))
+    return session.maps().level
 
 
-def _solid_figure(
-    robot: Robot,
-    view: MapView,
-    box: Box,
-    grid: Grid,
-    mask: BoolArray,
-    values: FloatArray | None,
-    what: Quantity,
-    caption: str,
-) -> None:
-    dark = shell.dark()
+def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[FloatArray, Scale] | None) -> go.Figure:
+    dark, robot, view = shell.dark(), region.robot, region.view
     p = palette(dark)
-    theta = _standing(robot, view, box)
-    fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=dark, height=560, revision="workspace-solid")
-    shown = None if values is None else (values, Scale.of(what, values, robot.joint_numbers))
+    fig = arm_figure(ArmScene(frames=_standing(region)), dark=dark, height=560, revision="workspace-solid")
     if mask.any():
         fig.add_trace(voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark))
-    low, high = np.array(box.lower), np.array(box.upper)
-    largest = maps_fields.proposed_box(robot, view.A, view.B)
+    low, high = np.array(region.box.lower), np.array(region.box.upper)
+    largest = fields.proposed_box(robot, view.A, view.B)
     if largest is not None and view.region != "paper":
         fig.add_traces(wire_box(largest.lower, largest.upper, p.accent, "largest box"))
     if view.region == "paper" or (robot.n >= 5 and view.region != "own"):
         fig.add_traces(wire_box(*PAPER_BOX, p.warm, "the paper's box"))
         low, high = np.minimum(low, PAPER_BOX[0]), np.maximum(high, PAPER_BOX[1])
     widen(fig, low, high)
-    pieces.figure(
-        fig,
-        "workspace-solid",
-        name=f"workspace-{what.name}",
-        caption=caption,
-        alt="The arm with the cells of its workspace as voxels.",
-        table=lambda: plane_columns(robot, view, grid, what),
-        lazy=True,
-    )
+    return fig
 
 
-def _standing(robot: Robot, view: MapView, box: Box) -> FloatArray:
-    """A configuration in the middle of the region, so that the arm is drawn where it works."""
-    from robomill.kinematics.inverse import inverse_kinematics
-    from robomill.kinematics.transforms import pose_from_world
-
-    middle = 0.5 * (np.asarray(box.lower) + box.upper)
-    found = inverse_kinematics(robot, pose_from_world([*middle, view.A, view.B]))
-    return found.theta if bool(found.reached) else np.asarray(robot.home)
+def _standing(region: Region) -> FloatArray:
+    """Frames of the arm in the middle of the region, so that it is drawn where it works."""
+    pose = in_hand(region.robot, middle(region.box), region.view.A, region.view.B).pose
+    return pose.frames if pose.reached else at_pose(region.robot, region.robot.home).frames

@@ -1,22 +1,16 @@
-"""The robot page's inputs and its matrix."""
+"""The robot page's inputs: which robot, its compliances, D-H table, limits and tool."""
 
 from __future__ import annotations
 
-import numpy as np
 import pandas as pd
 import streamlit as st
 
-from robomill.arrays import FloatArray
-from robomill.compliance.cartesian import joint_contributions
 from robomill.io.robots import load_robot, robot_names
-from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import inputs, pieces, session
 from robomill.ui.project import Project, is_stiffness
 from robomill.ui.robot import tables
-from robomill.ui.robot.pose import PoseNumbers
-from robomill.units import format_number, format_percent, format_si, unit_label
-from robomill.viz.theme import joint_colours
+from robomill.units import unit_label
 
 SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
 
@@ -151,42 +145,3 @@ def _said(robot: Robot, block: str) -> None:
     found = robot.provenance.get(block)
     if found is not None:
         pieces.note(f"{pieces.badge(found.kind)} {pieces.subscripts(found.source)}")
-
-
-def compliance_matrix(now: PoseNumbers, old: PoseNumbers | None) -> None:
-    """C at the pose in um/N, and how it changed."""
-    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in now.C], ["X", "Y", "Z"])
-    pieces.note("Row: where the tip goes. Column: where you push.")
-    if old is not None:
-        st.markdown("**Before the last change**")
-        pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in old.C], ["X", "Y", "Z"])
-
-
-def share_bars(robot: Robot, theta: FloatArray, dark: bool) -> None:
-    """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
-    J = geometric_jacobian(robot, theta)
-    C_yy = joint_contributions(J[:3], robot.C_theta)[:, 1, 1]
-    total = float(C_yy.sum()) or 1.0
-    st.markdown("**Where the give along Y comes from**")
-    rows = "".join(
-        f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
-        f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
-        f'<td class="n">{format_percent(value / total)}</td></tr>'
-        for number, value, colour in zip(robot.joint_numbers, C_yy, joint_colours(7, dark))
-    )
-    st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
-
-
-def direction_words(C: FloatArray) -> str:
-    """The softest direction of C as a unit vector in words."""
-    vector = np.linalg.eigh(C)[1][:, -1]
-    vector = vector * np.sign(vector[np.argmax(np.abs(vector))])
-    return "along (" + ", ".join(format_number(v, 2) for v in vector) + ") in {M}"
-
-
-def det_words(now: PoseNumbers) -> str:
-    """What det(J) says in words."""
-    if not np.isfinite(now.det):
-        return "the task Jacobian of this arm is not square"
-    return "singular here" if abs(now.det) < 1e-6 else "0 at a singularity"

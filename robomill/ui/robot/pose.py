@@ -2,40 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.compliance.cartesian import cartesian_compliance
-from robomill.kinematics.dexterity import determinant
-from robomill.kinematics.forward import joint_frames, tool_pose
+from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, session
+from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.ui.project import Project
 from robomill.ui.robot.tables import slides
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_many, format_number, format_percent, format_si, from_si, to_si, unit_label
+from robomill.viz.theme import joint_colours
 
 
-@dataclass(frozen=True, eq=False)
-class PoseNumbers:
-    """The arm at one configuration: frames (n+1, 4, 4), C (3, 3) m/N, det(J) m^3 (NaN where J is not square)."""
-
-    frames: FloatArray
-    C: FloatArray
-    det: float
-    moved: bool = False
-
-
-def pose_numbers(robot: Robot, theta: FloatArray, moved: bool = False) -> PoseNumbers:
-    """Everything the robot page says about one configuration."""
-    det = float(determinant(robot, theta)) if robot.n == 5 else float("nan")
-    return PoseNumbers(joint_frames(robot, theta), cartesian_compliance(robot, theta), det, moved)
-
-
-def pose_now(project: Project, result: SimulationResult | None) -> FloatArray:
+def configuration(project: Project, result: SimulationResult | None) -> FloatArray:
     """(n,) the configuration looked at: the chosen one, or the cut's worst point, or home."""
     robot, chosen = project.setup.robot, project.view.theta
     if chosen is not None and len(chosen) == robot.n:
@@ -48,18 +30,23 @@ def at_cut(result: SimulationResult) -> FloatArray:
     return np.array(result.theta[result.worst])
 
 
-def poses_compared(project: Project, theta: FloatArray) -> tuple[PoseNumbers, PoseNumbers | None]:
-    """The numbers now and, where the last change altered the robot, those before it at the same joint angles."""
+def compared(project: Project, theta: FloatArray) -> tuple[PoseReport, PoseReport | None]:
+    """The arm now and, where the last change altered the robot, as it was before it at the same joint angles."""
     robot, before = project.setup.robot, session.before()
-    now = pose_numbers(robot, theta)
+    now = at_pose(robot, theta)
     if before is None or before.setup.robot == robot or before.setup.robot.n != robot.n:
         return now, None
-    old = pose_numbers(before.setup.robot, theta)
-    moved = bool(np.abs(old.frames - now.frames).max() > 1e-9)
-    return now, PoseNumbers(old.frames, old.C, old.det, moved)
+    return now, at_pose(before.setup.robot, theta)
 
 
-def pose_sliders(project: Project, theta: FloatArray, result: SimulationResult | None) -> None:
+def ghost(now: PoseReport, old: PoseReport | None) -> FloatArray | None:
+    """Frames of the arm before the last change, where that moved it."""
+    if old is None or old.frames.shape != now.frames.shape:
+        return None
+    return old.frames if np.abs(old.frames - now.frames).max() > 1e-9 else None
+
+
+def controls(project: Project, theta: FloatArray, result: SimulationResult | None) -> None:
     """A slider and a number box a joint; both show the same angle."""
     robot = project.setup.robot
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
@@ -68,7 +55,7 @@ def pose_sliders(project: Project, theta: FloatArray, result: SimulationResult |
             "At the cut",
             on_click=lambda: session.look(theta=None),
             type="tertiary",
-            key="pose:cut",
+            key="pose.cut",
             icon=":material/my_location:",
             disabled=result is None or result.worst < 0,
         )
@@ -76,7 +63,7 @@ def pose_sliders(project: Project, theta: FloatArray, result: SimulationResult |
             "Home",
             on_click=lambda: session.look(theta=tuple(robot.home.tolist())),
             type="tertiary",
-            key="pose:home",
+            key="pose.home",
             icon=":material/home:",
         )
     prismatic = slides(robot)[robot.free]
@@ -86,43 +73,69 @@ def pose_sliders(project: Project, theta: FloatArray, result: SimulationResult |
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
     low, high = (float(from_si(float(v), unit)) for v in robot.limits[i])
-    shown = round(float(from_si(float(theta[i]), unit)), 3)
-    keys = (f"pose:slider:{i}", f"pose:box:{i}")
 
-    def take(key: str) -> None:
+    def turn(angle: float) -> None:
         new = np.array(theta)
-        new[i] = to_si(float(st.session_state[key]), unit)
+        new[i] = angle
         session.look(theta=tuple(new.tolist()))
 
-    for key in keys:
-        inputs.seed(key, min(max(shown, low), high))
     name, slider, box = st.columns([0.14, 1, 0.5], vertical_alignment="center")
     name.markdown(f"**{label}**")
-    slider.slider(
-        label,
-        low,
-        high,
-        key=keys[0],
-        step=0.5,
-        format="%.1f°" if unit == "deg" else "%.1f mm",
-        label_visibility="collapsed",
-        on_change=take,
-        args=(keys[0],),
-    )
-    box.number_input(
-        label,
-        low,
-        high,
-        key=keys[1],
-        step=1.0,
-        format="%.2f",
-        label_visibility="collapsed",
-        on_change=take,
-        args=(keys[1],),
-    )
+    with slider:
+        span = inputs.Span(low, high, 0.5, "%.1f°" if unit == "deg" else "%.1f mm")
+        shown = round(float(from_si(float(theta[i]), unit)), 3)
+        inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
+    with box:
+        inputs.value(f"pose.box.{i}", Box(label, unit, 1.0, 2, low=low, high=high, hidden=True), theta[i], turn)
 
 
-def tip_words(robot: Robot, theta: FloatArray, unit: str) -> str:
+def tip_words(pose: PoseReport, unit: str) -> str:
     """Where the tool tip is, in {M}."""
-    p = tool_pose(robot, theta)[:3, 3]
-    return f"Tip at ({', '.join(format_si(float(v), unit, 1).partition(' ')[0] for v in p)}) {unit} in {{M}}"
+    return f"Tip at ({format_many(pose.T_MT[:3, 3], unit, 1, with_unit=False)}) {unit} in {{M}}"
+
+
+def direction_words(pose: PoseReport) -> str:
+    """The softest direction as a unit vector in words."""
+    return "along (" + ", ".join(format_number(v, 2) for v in pose.principal[1][:, -1]) + ") in {M}"
+
+
+def det_value(pose: PoseReport | None) -> str:
+    """det(J) with its unit; this page gives it for the 5 x 5 task Jacobian alone."""
+    if pose is None:
+        return ""
+    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.robot.n == 5 else "not square"
+
+
+def det_words(pose: PoseReport) -> str:
+    """What det(J) says in words."""
+    if pose.robot.n != 5:
+        return "the task Jacobian of this arm is not square"
+    return "singular here" if abs(pose.det_J) < 1e-6 else "0 at a singularity"
+
+
+def compliance_matrix(now: PoseReport, old: PoseReport | None) -> None:
+    """C at the pose in um/N, and how it changed."""
+    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
+    _matrix(now)
+    pieces.note("Row: where the tip goes. Column: where you push.")
+    if old is not None:
+        st.markdown("**Before the last change**")
+        _matrix(old)
+
+
+def _matrix(pose: PoseReport) -> None:
+    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in pose.C], ["X", "Y", "Z"])
+
+
+def share_bars(pose: PoseReport, dark: bool) -> None:
+    """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
+    shares = pose.shares("yy")
+    total = float(shares.sum()) or 1.0
+    st.markdown("**Where the give along Y comes from**")
+    rows = "".join(
+        f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
+        f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
+        f'<td class="n">{format_percent(value / total)}</td></tr>'
+        for number, value, colour in zip(pose.robot.joint_numbers, shares, joint_colours(7, dark))
+    )
+    st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
