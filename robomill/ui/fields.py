@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import BoolArray, FloatArray, digest
+from robomill.arrays import FloatArray, digest
 from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
@@ -17,8 +17,8 @@ from robomill.units import format_si
 from robomill.workspace.fields import ComplianceField, compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import LineDeviation, border_and_middle_lines
-from robomill.workspace.reach import Box, reach
-from robomill.workspace.region import FLAT, coarse_cells, coarse_grid, flat_axis, largest_region, reach_extent
+from robomill.workspace.reach import Box
+from robomill.workspace.region import FLAT, coarse_grid, flat_axis, largest_region, reach_extent
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.5)
 PLANE_CELLS = 1900
@@ -134,11 +134,6 @@ def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     return _lines(key, robot, box, z, points)
 
 
-def reached(robot: Robot, grid: Grid, A: float, B: float) -> BoolArray:
-    """WS over ``grid``, from the cache."""
-    return _reached(f"{geometry_key(robot)}/{digest((grid.x, grid.y, grid.z, A, B))}", robot, grid, A, B)
-
-
 def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
     """The largest machining box at this tilt, from the cache."""
     return _proposed(f"{geometry_key(robot)}/largest", robot, "largest", A, B)
@@ -147,11 +142,6 @@ def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
 @st.cache_resource(max_entries=48, show_spinner=False)
 def _field(key: str, _robot: Robot, _grid: Grid, _A: float, _B: float) -> ComplianceField:
     return compliance_field(_robot, _grid, _A, _B)
-
-
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _reached(key: str, _robot: Robot, _grid: Grid, _A: float, _B: float) -> BoolArray:
-    return reach(_robot, _grid, ((_A, _B),))
 
 
 @st.cache_resource(max_entries=64, show_spinner="Looking for the largest box in reach")
@@ -167,21 +157,3 @@ def _flat(key: str, _robot: Robot) -> int | None:
 @st.cache_resource(max_entries=24, show_spinner=False)
 def _lines(key: str, _robot: Robot, _box: Box, _z: float, _points: int) -> list[LineDeviation]:
     return border_and_middle_lines(_robot, _box.lower[:2], _box.upper[:2], _z, points=_points)
-
-
-__all__ = [
-    "coarse_cells",
-    "field",
-    "flat",
-    "geometry_key",
-    "lines",
-    "normals",
-    "plane",
-    "plane_at",
-    "plane_step",
-    "proposed_box",
-    "reached",
-    "region",
-    "solid",
-    "stiffer",
-]

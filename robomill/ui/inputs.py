@@ -21,9 +21,10 @@ from robomill.ui.project import read_field, with_field
 
 @dataclass(frozen=True)
 class Look:
-    """How an input is shown: as a list instead of a row, without its label, with a hint, or greyed."""
+    """How an input is shown: as a list or stacked instead of a row, without its label, with a hint, or greyed."""
 
     listed: bool = False
+    stacked: bool = False
     hidden: bool = False
     hint: str | None = None
     disabled: bool = False
@@ -108,7 +109,10 @@ def choice(
     write: Callable[[Any], None],
     look: Look = PLAIN,
 ) -> None:
-    """A choice between a few options in a row, or many in a list; ``write`` gets the chosen key."""
+    """A choice between a few options in a row or stacked, or many in a list; ``write`` gets the chosen key.
+
+    Stacked, none is chosen where ``current`` is None.
+    """
     seed(key, current)
 
     def take() -> None:
@@ -126,6 +130,8 @@ def choice(
     }
     if look.listed:
         st.selectbox(label, list(options), **common)
+    elif look.stacked:
+        st.radio(label, list(options), index=None, **common)
     else:
         st.segmented_control(label, list(options), required=True, width="stretch", **common)
     sentence(key)
@@ -194,6 +200,19 @@ def slider(
         disabled=look.disabled,
         label_visibility=look.label_visibility,
         on_change=lambda: submit(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
+    )
+    sentence(key)
+
+
+def stops(label: str, key: str, options: Mapping[Any, str], current: Any, write: Callable[[Any], None]) -> None:
+    """A slider over options that stand in an order but not at equal steps; ``write`` gets the chosen key."""
+    seed(key, current)
+    st.select_slider(
+        label,
+        list(options),
+        key=key,
+        format_func=lambda k: options[k],
+        on_change=lambda: submit(key, st.session_state[key], lambda: write(st.session_state[key])),
     )
     sentence(key)
 

@@ -102,14 +102,13 @@ def edge(found: InHand) -> None:
         return
     out = lesson.progress().out
     i = way.start if out is None else int(np.abs(way.radius - out).argmin())
-    key = f"learn.out.{len(radius)}:{unit}"
-    inputs.seed(key, i)
-    st.select_slider(
+    digits = 0 if unit == "mm" else 1
+    inputs.stops(
         f"Distance from the base, {unit_label(unit)}",
-        list(range(len(radius))),
-        key=key,
-        format_func=lambda k: format_value(radius[k], unit, 0 if unit == "mm" else 1, with_unit=False),
-        on_change=lambda: lesson.go(out=float(way.radius[st.session_state[key]])),
+        f"learn.out.{len(radius)}:{unit}",
+        {k: format_value(r, unit, digits, with_unit=False) for k, r in enumerate(radius)},
+        i,
+        lambda k: lesson.go(out=float(way.radius[k])),
     )
     x, y, z = way.p[i].tolist()
     here = in_hand(found.pose.robot, (x, y, z), 0.0, 0.0)

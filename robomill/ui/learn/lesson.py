@@ -13,7 +13,6 @@ from robomill.arrays import FloatArray, digest
 from robomill.compliance.at_pose import PoseReport
 from robomill.robot.model import Robot
 from robomill.ui import cached, fields, inputs, pieces, session, shell
-from robomill.ui.learn.style import BIG
 from robomill.ui.point import FORCE, InHand, default_point, in_hand
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
@@ -25,6 +24,26 @@ SIDE = {
     "center": {"x": 0, "y": 0, "z": -0.04},
     "projection": {"type": "orthographic"},
 }
+
+# Big type, readable from the back row.
+BIG = """<style>
+.rm-ask { font-size: 2.5rem; line-height: 1.15; font-weight: 650; letter-spacing: -.02em; margin: .2rem 0 .4rem 0;
+  text-wrap: balance; }
+[class*="st-key-learn-answers"] label p { font-size: 1.5rem !important; line-height: 1.5; }
+.rm-say { font-size: 1.65rem; line-height: 1.3; font-weight: 500; margin: .3rem 0; }
+.rm-say b { font-weight: 700; }
+.rm-c { border-collapse: separate; border-spacing: 6px; margin: .2rem 0 .4rem -6px;
+  font-variant-numeric: tabular-nums; }
+.rm-c td { font-size: 1.75rem; min-width: 6.4rem; text-align: right; padding: .5rem .8rem; border-radius: 8px;
+  border: 0;  background: color-mix(in srgb, currentColor 4%, transparent); }
+.rm-c th { font-size: 1.05rem; font-weight: 500; opacity: .75; border: 0; padding: .1rem .5rem; text-align: right; }
+.rm-c td.on { background: color-mix(in srgb, #0A84B5 22%, transparent); font-weight: 650; }
+.rm-c td.off { background: color-mix(in srgb, #D67500 32%, transparent); font-weight: 650;
+  outline: 2px solid #D67500; }
+.rm-det { font-size: 3.1rem; font-weight: 650; letter-spacing: -.02em; line-height: 1.1;
+  font-variant-numeric: tabular-nums; }
+.rm-det small { font-size: 1.2rem; font-weight: 500; opacity: .75; }
+</style>"""
 
 
 @dataclass(frozen=True)
@@ -61,7 +80,9 @@ def question(found: InHand) -> None:
     now = progress()
     left, right = pieces.split([1.35, 1], "ask", gap="large")
     with right:
-        _answers(now)
+        with st.container(key="learn-answers"):
+            look = inputs.Look(stacked=True, hidden=True)
+            inputs.choice("Your answer", "learn.answer", ANSWERS, now.answer, lambda a: go(answer=a), look)
         st.button(
             "Hide it again" if now.revealed else "Show where it goes",
             key="learn.reveal",
@@ -73,21 +94,6 @@ def question(found: InHand) -> None:
         _answer(found.pose.C, now)
     with left, st.container(border=True):
         _push(found.pose, now.revealed)
-
-
-def _answers(now: Lesson) -> None:
-    key = "learn:answer"
-    inputs.seed(key, now.answer)
-    with st.container(key="learn-answers"):
-        st.radio(
-            "Your answer",
-            list(ANSWERS),
-            key=key,
-            format_func=lambda a: ANSWERS[a],
-            index=None,
-            label_visibility="collapsed",
-            on_change=lambda: go(answer=st.session_state[key]),
-        )
 
 
 def _answer(C: FloatArray, now: Lesson) -> None:
