@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from streamlit.testing.v1 import AppTest
 
+from robomill.compliance.springs.joint_bending import JointBending
 from robomill.errors import LoadTestError, ProjectError
 from robomill.identification.estimate import identify
 from robomill.identification.knowledge import Knowledge
+from robomill.identification.laboratory import MAX_LOAD
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
 from robomill.identification.synthesis import simulated_tests
@@ -21,10 +23,11 @@ from robomill.io.load_tests import read_load_tests
 from robomill.io.projects import load_setup
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.provenance import Kind, Provenance
 from robomill.simulation.run import simulate
 from robomill.ui import session, uncertainty
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import KEY, SAMPLES, Bench, decoded, sample_text
+from robomill.ui.identification.bench import KEY, SAMPLES, Bench, Trial, decoded, sample_text
 from robomill.ui.identification.inputs import adopted
 from robomill.ui.project import Project, project_from_toml, project_to_toml
 from robomill.ui.session import KEY as PROJECT
@@ -321,6 +324,21 @@ def test_springs_come_along_and_give_way_to_the_next_identification() -> None:
     assert plain.springs == ()
 
 
+@pytest.mark.parametrize(
+    ("kind", "before", "stays"), [("measured", False, True), ("measured", True, False), ("user", True, True)]
+)
+def test_a_spring_gives_way_only_where_an_earlier_identification_measured_it(
+    kind: Kind, before: bool, stays: bool
+) -> None:
+    """One's own springs stay, and so does one that was measured before anything was identified here."""
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    robot = setup.robot
+    fit = identify(robot, read_load_tests(sample_text("nine_points"), robot))
+    spring = JointBending(3, 1e-7, 2e-7, provenance=Provenance(kind, "a source that says nothing"))
+    start = (adopted(setup, robot, fit, "a.csv") if before else setup).replace(springs=(spring,))
+    assert adopted(start, robot, fit, "b.csv").springs == ((spring,) if stays else ())
+
+
 def test_bands_are_laid_into_the_path_plot_only_where_something_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     import streamlit as st
 
@@ -440,6 +458,25 @@ def test_a_student_measures_fits_and_is_scored(page: AppTest) -> None:
     page.button(key="identification.lab.begin").click().run()
     assert bench(page).laboratory.budget == 12  # type: ignore[union-attr]
     assert not bench(page).handed_in
+
+
+@pytest.mark.parametrize("load", [0.0, -50.0, MAX_LOAD + 1])
+def test_a_load_that_cannot_be_hung_on_is_refused_at_its_box(page: AppTest, load: float) -> None:
+    pick(page, "identification.section", "laboratory")
+    page.number_input(key="identification.lab.load:N").set_value(load).run()
+    assert page.error[0].value == f"Load: found {load:g} N, expected more than 0 and at most {MAX_LOAD:g} N."
+    assert page.number_input(key="identification.lab.load:N").value == load
+    assert bench(page).trial == Trial(), "what was asked for stays the last good one"
+
+
+def test_a_new_exercise_has_what_was_asked_for(page: AppTest) -> None:
+    pick(page, "identification.section", "laboratory")
+    for name, value in (("seed", 7), ("noise:um", 2.5), ("budget", 30)):
+        page.number_input(key=f"identification.lab.{name}").set_value(value).run()
+    lab = click(page, "identification.lab.begin") and bench(page).laboratory
+    assert lab is not None
+    assert (lab.seed, lab.budget) == (7, 30)
+    assert lab.noise == pytest.approx(2.5e-6)
 
 
 def test_a_pose_out_of_reach_costs_nothing_and_is_explained(page: AppTest) -> None:

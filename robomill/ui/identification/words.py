@@ -205,27 +205,23 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
     cv, inside = result.cv_relative_error, in_sample(result)
     single = is_single(result)
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
-    items = [
+    least = Tile("Least known joint", "none", "this model has no joints")
+    if result.has_joints:
+        label, half = weakest(result)
+        k = next(i for i, p in enumerate(result.labels) if p.label == label)
+        unit = unit_of(result.labels[k], joint_unit)
+        low, high = interval(result.parameter_ci95[k], unit)
+        note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
+        least = Tile(f"Least known: {label}", within(half), note if np.isfinite(half) else "these tests do not see it")
+    odd = len(result.outliers)
+    return [
         Tile(
             f"Error on {'readings' if single else 'poses'} left out",
             format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
             f"cross-validated; {format_si(inside, '%', 1)} on its own data",
             kind="computed",
         ),
-    ]
-    if not result.has_joints:
-        items.append(Tile("Least known joint", "none", "this model has no joints"))
-    else:
-        label, half = weakest(result)
-        k = next(i for i, p in enumerate(result.labels) if p.label == label)
-        unit = unit_of(result.labels[k], joint_unit)
-        low, high = interval(result.parameter_ci95[k], unit)
-        note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
-        note = note if np.isfinite(half) else "these tests do not see it"
-        items.append(Tile(f"Least known: {label}", within(half), note))
-    odd = len(result.outliers)
-    items += [
+        least,
         Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),
         Tile("The cut at its worst", *cut),
     ]
-    return items
