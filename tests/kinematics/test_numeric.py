@@ -1,0 +1,133 @@
+"""Numerical inverse kinematics: its errors and Jacobians against the rotation vector and finite differences, limits."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import robomill as rm
+from robomill.kinematics import numeric
+from robomill.kinematics.jacobian import pose_and_jacobian
+
+
+def twisted_arm(limits):
+    """Six joints whose last three axes do not meet: no closed form."""
+    return rm.Robot(
+        name="twisted",
+        convention="standard",
+        alpha=np.array([1.3, 0.2, 1.1, -1.4, 1.2, 0.3]),
+        a=np.array([0.15, 0.6, 0.1, 0.08, 0.12, 0.05]),
+        d=np.array([0.5, 0.1, 0.15, 0.55, 0.1, 0.2]),
+        theta_offset=np.zeros(6),
+        sign=np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0]),
+        prismatic=np.zeros(6, dtype=bool),
+        limits_all=np.tile(limits, (6, 1)),
+        C_theta_all=np.full(6, 1e-6),
+        T_base=np.eye(4),
+        T_tool=np.eye(4),
+        blocked=np.full(6, np.nan),
+    )
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return twisted_arm([-2.8, 2.8])
+
+
+def configurations(arm, m, seed=4):
+    return np.random.default_rng(seed).uniform(*(0.8 * arm.limits.T), (m, arm.n))
+
+
+def test_the_error_of_a_pose_is_the_rotation_vector_of_the_turn_left(arm):
+    theta, goal = configurations(arm, 40), configurations(arm, 40, 5)
+    pose, J = pose_and_jacobian(arm, theta)
+    T_MT = rm.tool_pose(arm, goal)
+    e, jacobian = numeric._task(pose, J, T_MT, "pose")
+    turn = Rotation.from_matrix(T_MT[:, :3, :3] @ pose[:, :3, :3].transpose(0, 2, 1)).as_rotvec()
+    np.testing.assert_allclose(e[:, :3], T_MT[:, :3, 3] - pose[:, :3, 3], atol=1e-15)
+    np.testing.assert_allclose(e[:, 3:], turn, atol=1e-9)
+    np.testing.assert_array_equal(jacobian, J)
+
+
+def test_the_error_of_an_axis_is_the_turn_that_brings_it_home(arm):
+    theta, goal = configurations(arm, 40), configurations(arm, 40, 5)
+    pose, J = pose_and_jacobian(arm, theta)
+    T_MT = rm.tool_pose(arm, goal)
+    e, _ = numeric._task(pose, J, T_MT, "axis")
+    for i in range(len(theta)):
+        R, z, wanted = pose[i, :3, :3], pose[i, :3, 2], T_MT[i, :3, 2]
+        turn = Rotation.from_rotvec(R[:, :2] @ e[i, 3:])
+        np.testing.assert_allclose(turn.apply(z), wanted, atol=1e-9)
+        assert np.linalg.norm(e[i, 3:]) == pytest.approx(np.arccos(np.clip(z @ wanted, -1, 1)), abs=1e-7)
+
+
+@pytest.mark.parametrize("mode", ["position", "axis", "pose"])
+def test_the_jacobian_of_a_task_is_how_its_error_falls(arm, mode):
+    theta = configurations(arm, 12)
+    pose, J = pose_and_jacobian(arm, theta)
+    e, jacobian = numeric._task(pose, J, pose, mode)
+    np.testing.assert_allclose(e, 0.0, atol=1e-12)
+    step = 1e-6
+    for j in range(arm.n):
+        moved = theta.copy()
+        moved[:, j] += step
+        after, _ = numeric._task(rm.tool_pose(arm, moved), J, pose, mode)
+        np.testing.assert_allclose(-after / step, jacobian[:, :, j], atol=5e-6)
+
+
+@pytest.mark.parametrize("spin", ["fixed", "least motion"])
+def test_poses_of_an_arm_without_a_closed_form_are_found_and_met(arm, spin):
+    theta = configurations(arm, 60)
+    T_MT = rm.tool_pose(arm, theta)
+    found = rm.inverse_kinematics(arm, T_MT, spin=spin)
+    assert found.reached.mean() > 0.95
+    met = rm.tool_pose(arm, found.theta[found.reached])
+    wanted = T_MT[found.reached]
+    np.testing.assert_allclose(met[:, :3, 2:], wanted[:, :3, 2:], atol=2e-9)
+    turned = np.abs(met[:, :3, 0] - wanted[:, :3, 0]).max(axis=1)
+    assert (turned < 2e-9).all() if spin == "fixed" else (turned > 1e-3).mean() > 0.5
+    assert (found.theta[found.reached] >= arm.limits[:, 0]).all()
+    assert (found.theta[found.reached] <= arm.limits[:, 1]).all()
+
+
+def test_a_joint_pressed_against_its_limit_lets_the_others_do_the_work():
+    """Started with joints on their limits and told to leave them no further, the descent still arrives."""
+    narrow = twisted_arm([-0.9, 0.9])
+    rng = np.random.default_rng(8)
+    goal = rng.uniform(-0.85, 0.85, (200, 6))
+    for side in (-0.9, 0.9):
+        start = np.clip(goal + rng.normal(0.0, 0.25, goal.shape), -0.9, 0.9)
+        pressed = rng.integers(0, 6, len(goal))
+        start[np.arange(len(goal)), pressed] = side
+        theta, error = numeric.descend(narrow, rm.tool_pose(narrow, goal), start, "pose")
+        assert (error <= numeric.TIGHT).mean() > 0.75
+        assert (np.abs(theta) <= 0.9).all()
+    # A goal that needs a joint past its limit: the free joints settle where no motion of theirs helps any more.
+    beyond = goal[:40].copy()
+    beyond[:, 0] = 1.4
+    T_MT = rm.tool_pose(narrow, beyond)
+    theta, error = numeric.descend(narrow, T_MT, np.clip(beyond, -0.9, 0.9), "position")
+    assert (error > 0).all()
+    assert (np.abs(theta) <= 0.9).all()
+
+
+def test_a_small_arm_takes_the_solution_nearest_to_where_it_stood():
+    """A planar arm of two links: elbow up and elbow down both reach; the side it stood on is kept."""
+    planar = rm.Robot(
+        name="planar",
+        convention="standard",
+        alpha=np.zeros(2),
+        a=np.array([0.6, 0.5]),
+        d=np.zeros(2),
+        theta_offset=np.zeros(2),
+        sign=np.ones(2),
+        prismatic=np.zeros(2, dtype=bool),
+        limits_all=np.tile([-3.0, 3.0], (2, 1)),
+        C_theta_all=np.full(2, 1e-6),
+        T_base=np.eye(4),
+        T_tool=np.eye(4),
+        blocked=np.full(2, np.nan),
+    )
+    for bend in (0.9, -0.9):
+        theta = np.array([[0.3, bend], [0.8, bend / 2], [-0.4, 1.5 * bend]])
+        found = rm.inverse_kinematics(planar, rm.tool_pose(planar, theta), near=theta + 0.1 * np.sign(bend))
+        np.testing.assert_allclose(found.theta, theta, atol=1e-8)
