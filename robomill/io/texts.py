@@ -7,6 +7,8 @@ from pathlib import Path
 
 from robomill.errors import RobomillError
 
+LONGEST_PLACE = 80  # characters of a path that a refusal shows
+
 
 def read_text(given: str | Path | bytes, error: type[RobomillError], expected: str, name: str = "") -> tuple[str, str]:
     """(text, name). A ``str`` with a line break, or a blank one, is the text itself; any other names a file.
@@ -24,7 +26,9 @@ def read_text(given: str | Path | bytes, error: type[RobomillError], expected: s
             raw = Path(given).read_bytes()
         except (OSError, ValueError) as exc:
             why = getattr(exc, "strerror", None) or exc
-            raise error(f"{str(given)[:80]}: cannot be opened ({why}); expected {expected}.") from None
+            place = str(given)
+            place = place if len(place) <= LONGEST_PLACE else f"…{place[1 - LONGEST_PLACE :]}"  # the file's name shows
+            raise error(f"{place}: cannot be opened ({why}); expected {expected}.") from None
     try:
         text = raw.decode("utf-16" if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig")
     except UnicodeDecodeError:

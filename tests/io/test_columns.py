@@ -221,6 +221,9 @@ def test_units_as_they_end_a_name() -> None:
 def test_a_missing_file_names_itself(tmp_path) -> None:
     with pytest.raises(SurfaceError, match=r"none.csv: cannot be opened \(No such file or directory\); expected a CSV"):
         read_columns(tmp_path / "none.csv", LAYOUT)
+    deep = tmp_path / ("a" * 60) / ("b" * 60)
+    with pytest.raises(SurfaceError, match=r"^….*b/none.csv: cannot be opened"):
+        read_columns(deep / "none.csv", LAYOUT)
     file = tmp_path / "there.csv"
     file.write_text("Fx_N\n1\n2\n", encoding="utf-16")
     columns, name = read_columns(str(file), LAYOUT)
