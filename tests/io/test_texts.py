@@ -47,5 +47,5 @@ def test_what_is_no_text(tmp_path, raw: bytes) -> None:
 def test_what_is_no_file(given: str, why: str) -> None:
     with pytest.raises(ProjectError, match=f"cannot be opened .*{why}.*expected words") as caught:
         read_text(given, ProjectError, "words")
-    assert str(caught.value).startswith(given[:80])
+    assert given[-79:] in str(caught.value)
     assert len(str(caught.value)) < 200
