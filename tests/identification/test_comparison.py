@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.comparison import Comparison, compare_models, in_sample
+from robomill.identification.comparison import Comparison, _rank, compare_models, in_sample
 from robomill.identification.estimate import identify
 from robomill.identification.models import Model
 from robomill.identification.plan import box_candidates
@@ -189,3 +190,13 @@ def test_models_come_in_the_order_of_their_error():
     assert max(len(r.labels) for r in comparison.results) == 5 + 2 + 2
     with pytest.raises(LoadTestError, match="no model was named"):
         compare_models(ROBOT, bent_tests(2, 0.2), [])
+
+
+def test_of_errors_that_differ_by_rounding_the_model_with_fewer_parameters_comes_first():
+    few, many = (
+        SimpleNamespace(cv_relative_error=0.2 * (1 + 4e-16), labels="ab"),
+        SimpleNamespace(cv_relative_error=0.2, labels="abc"),
+    )
+    worse = SimpleNamespace(cv_relative_error=0.2 * (1 + 1e-7), labels="a")
+    unknown = SimpleNamespace(cv_relative_error=np.nan, labels="")
+    assert sorted([unknown, worse, many, few], key=_rank) == [few, many, worse, unknown]
