@@ -25,7 +25,7 @@ reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(view.simulated, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
-view.tiles(path, reach, result, unit, source.kind)
+view.tiles(source, path, reach, result, unit)
 
 left, right = ui.thirds() if source.kind == "program" else ui.split([1.2, 1.75], "page", gap="large")
 with left:

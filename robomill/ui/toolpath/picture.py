@@ -16,7 +16,6 @@ from robomill.ui import inputs, pieces, session
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
-from robomill.ui.toolpath.view import PLACES
 from robomill.units import from_si, unit_label
 from robomill.viz.arm import arm_figure
 from robomill.viz.path_picture import BUDGET, PathPicture, decimate
@@ -107,7 +106,7 @@ def _picture(
         length_unit=unit_label(unit),
         reached=use.reached if use is not None else reach.reached,
         selected=selected_line(),
-        noun=PLACES[setup.source.kind],
+        noun=setup.source.block_name,
         stock=(from_si(stock.lower, unit), from_si(stock.upper, unit)),
         total=len(setup.toolpath) - 1,
         indices=_kept(use if use is not None else reach),

@@ -24,7 +24,7 @@ MAX_ROWS = 200
 def kind_switch() -> None:
     """The choice between the three."""
     source = session.project().setup.source
-    inputs.choice("Path from", "toolpath.kind", KINDS, source.kind, switch)
+    inputs.choice("Path from", "toolpath.kind", KINDS, source.kind, _convert)
 
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
@@ -40,7 +40,7 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
     program_view.select_line(0)
 
 
-def switch(kind: str) -> None:
+def _convert(kind: str) -> None:
     """The same path by other means, as far as that goes; undo leads back."""
     setup = session.project().setup
     if kind == setup.source.kind:

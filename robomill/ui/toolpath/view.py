@@ -32,7 +32,6 @@ from robomill.units import (
 AUTO_SAMPLES = 60_000
 ASKED = "toolpath.asked"
 NOUNS = {"program": "cut", "lines": "cut", "sketch": "shape"}
-PLACES = {"program": "line", "lines": "row", "sketch": "shape"}
 
 
 def samples(setup: SimulationSetup) -> int:
@@ -69,19 +68,18 @@ def headline(
 
     Always two lines, so that the board beneath does not move while one draws.
     """
-    name, kind = source.name, source.kind
     if path is None:
-        pieces.headline(f"Toolpath · {name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
+        pieces.headline(f"Toolpath · {source.name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
     size = format_many(summary.high - summary.low, unit, 1 if unit == "mm" else 2, " × ")
-    lead = f"{format_count(summary.blocks, NOUNS[kind])} within {size}."
+    lead = f"{format_count(summary.blocks, NOUNS[source.kind])} within {size}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
-    pieces.headline(f"Toolpath · {name}", verdict(reach, result, unit, kind), lead)
+    pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit, source), lead)
 
 
-def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str, kind: str) -> str:
+def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str, source: PathSource) -> str:
     """The page's one sentence."""
     if reach is None:
         return "The path was read; the arm was not asked."
@@ -91,11 +89,11 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str,
     if result is None or result.worst < 0:
         return "The arm reaches all of the path."
     worst = format_si(result.max_deviation, unit, 2 if unit == "mm" else 4)
-    return f"All in reach; at most {worst} off, at {PLACES[kind]} {result.worst_block:,}."
+    return f"All in reach; at most {worst} off, at {source.block_name} {result.worst_block:,}."
 
 
 def tiles(
-    path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str, kind: str
+    source: PathSource, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str
 ) -> None:
     """Length and time, reach, deviation, findings."""
     if path is None:
@@ -117,15 +115,15 @@ def tiles(
         blocks = lost.tolist()
         share = 1.0 - missed / max(path_summary(reach.path).cuts, 1)
         named = ", ".join(f"{b:,}" for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
-        words = f"out of reach at {PLACES[kind]} {named}" if blocks else "of the cut, within the joint limits"
+        words = f"out of reach at {source.block_name} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
         found.append(
             pieces.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
         )
-    found.append(_deviation_tile(result, unit, kind))
-    if kind != "program":
+    found.append(_deviation_tile(result, unit, source))
+    if source.kind != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
-        found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[kind], f"{summary.blocks:,}", words))
+        found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[source.kind], f"{summary.blocks:,}", words))
         pieces.tiles(found)
         return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
@@ -135,7 +133,7 @@ def tiles(
     pieces.tiles(found)
 
 
-def _deviation_tile(result: SimulationResult | None, unit: str, kind: str) -> pieces.Tile:
+def _deviation_tile(result: SimulationResult | None, unit: str, source: PathSource) -> pieces.Tile:
     if result is None:
         return pieces.Tile("Max deviation", "–", "not simulated yet")
     if result.worst < 0:
@@ -144,7 +142,7 @@ def _deviation_tile(result: SimulationResult | None, unit: str, kind: str) -> pi
     return pieces.Tile(
         "Max deviation",
         format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
-        f"{PLACES[kind]} {result.worst_block:,} · {format_percent(result.verdict.share)} of the tolerance",
+        f"{source.block_name} {result.worst_block:,} · {format_percent(result.verdict.share)} of the tolerance",
         tone=tone,
         kind="computed",
     )
