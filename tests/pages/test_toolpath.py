@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
+from robomill.ui.toolpath.reading import BACKGROUND_CHARACTERS
 
 
 def box(app: AppTest, label: str) -> Any:
@@ -90,3 +92,20 @@ def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:
     for _ in range(2):
         drawn = [element.key for element in app.run().get("bidi_component")]
         assert "toolpath.program" in drawn, "a run that draws nothing takes the program off the page"
+
+
+def test_a_big_program_is_read_beside_the_page(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    body = "".join(f"G1 X{i % 100} Y{i // 100 % 7}\n" for i in range(180_000))
+    text = f"G21 G90\nG0 X0 Y0 Z1\nG1 Z-1 F6000\n{body}M2\n"
+    assert len(text) > BACKGROUND_CHARACTERS
+    next(b for b in app.file_uploader if b.label == "Program file").upload("big.nc", text.encode(), "text/plain")
+    app.run()
+    for _ in range(60):
+        if store(app).project.setup.source.name == "big.nc":
+            break
+        time.sleep(0.2)
+        app.run()
+    assert not app.exception
+    assert store(app).project.setup.source == GCodeSource(text, "big.nc")
+    assert "Not simulated yet" in words(app)
