@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import go, store, words
+from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.ui import session
@@ -98,3 +98,14 @@ def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.Mon
         app.number_input(key="robot.T_tool[2,3]:mm").set_value(value).run()
     app.button(key="undo").click().run()
     assert store(app).project.setup.robot.T_tool[2, 3] == 0.005
+
+
+def test_an_angle_beyond_its_limit_is_refused_in_a_sentence(app: AppTest) -> None:
+    go(app, "1_Robot")
+    before = store(app).project.view.theta
+    app.number_input(key="pose.box.1:deg").set_value(400.0).run()
+    assert not app.exception
+    assert any("found 400, expected" in e for e in errors(app))
+    assert store(app).project.view.theta == before
+    app.number_input(key="pose.box.1:deg").set_value(-40.0).run()
+    assert errors(app) == []
