@@ -30,6 +30,7 @@ def test_it_runs_and_shows_the_compliance_at_the_cut(app: AppTest) -> None:
     assert "2.295" in text
     assert "−1.024" in text
     assert "1.134" in text
+    assert not np.signbit(app.number_input(key="pose.box.0:deg").value), "no -0.00 from the last bits"
 
 
 def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> None:

@@ -74,6 +74,9 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
     low, high = (float(from_si(float(v), unit)) for v in robot.limits[i])
 
+    # Without the last bits of inverse kinematics, which would read "-0.00".
+    shown = round(float(from_si(float(theta[i]), unit)), 3) + 0.0
+
     def turn(angle: float) -> None:
         new = np.array(theta)
         new[i] = angle
@@ -83,10 +86,11 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
     name.markdown(f"**{label}**")
     with slider:
         span = inputs.Span(low, high, 0.5, "%.1f°" if unit == "deg" else "%.1f mm")
-        shown = round(float(from_si(float(theta[i]), unit)), 3)
         inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
     with box:
-        inputs.value(f"pose.box.{i}", Box(label, unit, 1.0, 2, low=low, high=high, hidden=True), theta[i], turn)
+        inputs.value(
+            f"pose.box.{i}", Box(label, unit, 1.0, 2, low=low, high=high, hidden=True), to_si(shown, unit), turn
+        )
 
 
 def tip_words(pose: PoseReport, unit: str) -> str:
