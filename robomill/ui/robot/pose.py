@@ -72,9 +72,8 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
-    low, high = (float(from_si(float(v), unit)) for v in robot.limits[i])
-
-    # Without the last bits of inverse kinematics, which would read "-0.00".
+    # Without the last bits, which would read "-0.00" and refuse a limit typed as it stands.
+    low, high = (round(float(from_si(float(v), unit)), 9) for v in robot.limits[i])
     shown = round(float(from_si(float(theta[i]), unit)), 3) + 0.0
 
     def turn(angle: float) -> None:
