@@ -18,7 +18,7 @@ from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
-from robomill.quantities import described, quantities, settle
+from robomill.quantities import described, settle
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
@@ -106,10 +106,6 @@ class ForceModel:
     def numbers(self) -> str:
         """Its numbers in words, for the report."""
         return described(self) + (" in {M}" if self.frame == "M" else "")
-
-    def unit_of(self, name: str) -> str:
-        """The unit in which the page shows the field ``name``."""
-        return quantities(type(self))[name].unit
 
     def cut_by(self, cutter: Cutter) -> Self:
         """The same model for another cutter; itself where it does not depend on one."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import ProjectError
-from robomill.quantities import quantities
+from robomill.quantities import Quantity, quantities
 from robomill.ui.project import read_field
 from robomill.units import UNITS, from_si, to_si, unit_label
 
@@ -62,11 +62,33 @@ class Box:
         return int(shown) if self.whole else to_si(float(shown), self.unit)
 
 
-def declared(owner: Any, path: str, **shown: Any) -> Box:
-    """The box of the field at ``path`` of ``owner`` as its class declares it; in another ``unit`` its step follows."""
+def declaration(owner: Any, path: str) -> Quantity | None:
+    """What the class of the field at ``path`` of ``owner`` says of it; None where it says nothing.
+
+    An index names one entry of an array: a number, labelled with its axis.
+    """
     above, _, last = path.rpartition(".")
     holder = read_field(owner, above) if above else owner
-    said = quantities(type(holder)).get(last.partition("[")[0])
+    name, _, index = last.partition("[")
+    said = quantities(type(holder)).get(name)
+    return said if said is None or not index else entry(said, int(index.rstrip("]")))
+
+
+def entry(said: Quantity, i: int) -> Quantity:
+    """Entry ``i`` of a declared array, as a number of its own."""
+    return replace(said, kind="number", label=f"{said.label} {said.axes[i]}", shape=(), axes=())
+
+
+def declared(owner: Any, path: str, **shown: Any) -> Box:
+    """The box of the number at ``path`` of ``owner`` as its class declares it; ``shown`` as for ``box_of``."""
+    return box_of(declaration(owner, path), **shown)
+
+
+def box_of(said: Quantity | None, **shown: Any) -> Box:
+    """The box of a declared number; ``shown`` are fields of ``Box`` to be otherwise (in another ``unit`` steps follow).
+
+    A number that nobody declared needs its ``label``.
+    """
     if said is None:
         return Box(**shown)
     unit = shown.get("unit", said.unit)

@@ -59,20 +59,24 @@ class Sheet:
 
 
 def number(path: str, **shown: Any) -> None:
-    """The number box of the set-up's field at ``path`` ("cutter.diameter"), as the field declares it.
+    """The number box of the set-up's field at ``path``, shown otherwise than declared, or not declared at all.
 
-    ``shown`` are fields of ``Box`` that are to be otherwise; a field that is not declared needs a ``label``.
+    ``shown`` are fields of ``Box``; a field that is not declared needs a ``label``.
     """
     setup = session.project().setup
     box = declared(setup, path, **shown)
+    value(path, box, read_field(setup, path), into_setup(path, _key(path, box)))
+
+
+def into_setup(path: str, label: str) -> Callable[[Any], None]:
+    """Writes the field at ``path``; quick changes with one ``label`` are one step back."""
     name = path.partition(".")[0].partition("[")[0]
-    key = _key(path, box)
 
-    def write(new: float | None) -> None:
+    def write(new: Any) -> None:
         changed = with_field(session.project().setup, path, new)
-        session.change(label=key, **{name: getattr(changed, name)})
+        session.change(label=label, **{name: getattr(changed, name)})
 
-    value(path, box, read_field(setup, path), write)
+    return write
 
 
 def value(name: str, box: Box, current: float | None, write: Callable[[Any], None]) -> None:

@@ -69,9 +69,9 @@ def test_axial_pull_can_be_left_out(app: AppTest) -> None:
 
 def test_coupling_says_what_it_did_and_needs_the_material(app: AppTest) -> None:
     milling(app, "force")
-    assert app.toggle(key="setup.coupling").disabled
+    assert app.toggle(key="coupling").disabled
     mechanistic(app)
-    app.toggle(key="setup.coupling").set_value(True).run()
+    app.toggle(key="coupling").set_value(True).run()
     assert not app.exception
     text = words(app)
     assert "iterations" in text
@@ -93,12 +93,12 @@ def test_kienzle_row_and_back(app: AppTest) -> None:
 
 def test_a_row_of_ones_own_joins_the_band(app: AppTest) -> None:
     mechanistic(milling(app, "force"))
-    app.text_input(key="material:name").set_value("My 7075").run()
-    app.button(key="material:add").click().run()
+    app.text_input(key="milling.material.name").set_value("My 7075").run()
+    app.button(key="milling.material.add").click().run()
     assert "where its numbers come from" in errors(app)[0]
-    assert app.text_input(key="material:name").value == "My 7075"
-    app.text_input(key="material:source").set_value("our dynamometer").run()
-    app.button(key="material:add").click().run()
+    assert app.text_input(key="milling.material.name").value == "My 7075"
+    app.text_input(key="milling.material.source").set_value("our dynamometer").run()
+    app.button(key="milling.material.add").click().run()
     assert not app.exception
     force = store(app).project.setup.force
     assert isinstance(force, ProcessForce)
@@ -140,6 +140,12 @@ def test_springs_have_their_own_lines(app: AppTest) -> None:
     assert "Spindle and holder, Across: found −1 µm/N" in errors(app)[0]
     app.number_input(key="springs.spindle.lateral:um/N").set_value(0.1).run()
     assert errors(app) == []
+    app.number_input(key="cutter.diameter:mm").set_value(10.0).run()
+    assert app.button(key="springs.tool_bending.same").label == "It bends as 8.0 mm: take the cutter's diameter"
+    app.button(key="springs.tool_bending.same").click().run()
+    (bending,) = [spring for spring in store(app).project.setup.springs if isinstance(spring, ToolBending)]
+    assert bending.diameter == pytest.approx(10e-3)
+    app.number_input(key="cutter.diameter:mm").set_value(8.0).run()
     app.toggle(key="springs.tool_bending").set_value(False).run()
     app.toggle(key="springs.spindle").set_value(False).run()
     assert store(app).project.setup.digest() == before.digest()
@@ -228,7 +234,7 @@ def test_a_bad_force_record_is_one_sentence_and_the_force_stays(app: AppTest) ->
     app.selectbox(key="force.kind").set_value("measured").run()
     assert not app.exception
     for text, sentence in BAD_FORCES:
-        give(app, "force:file", "record.csv", text.encode())
+        give(app, "milling.force.file", "record.csv", text.encode())
         assert not app.exception
         assert len(errors(app)) == 1
         assert sentence in errors(app)[0]
@@ -239,7 +245,7 @@ def test_a_bad_force_record_is_one_sentence_and_the_force_stays(app: AppTest) ->
 def test_a_force_record_is_filtered_and_laid_on_the_path(app: AppTest) -> None:
     milling(app, "tip")
     app.selectbox(key="force.kind").set_value("measured").run()
-    give(app, "force:file", "record.csv", GOOD.encode())
+    give(app, "milling.force.file", "record.csv", GOOD.encode())
     assert not app.exception
     assert errors(app) == []
     force = store(app).project.setup.force
@@ -247,10 +253,30 @@ def test_a_force_record_is_filtered_and_laid_on_the_path(app: AppTest) -> None:
     assert force.cutoff == 50.0
     assert "low-pass 50 Hz, zero phase" in words(app)
     assert "The groove is 0.23 mm off in Y" in words(app)
-    assert app.session_state[FORCE_FILE][0] == "record.csv"
+    assert store(app).values[FORCE_FILE][1] == "record.csv"
     app.number_input(key="force.cutoff:Hz").set_value(0.0).run()
     assert len(errors(app)) == 1
     assert app.number_input(key="force.cutoff:Hz").value == 0.0
+    app.number_input(key="force.cutoff:Hz").set_value(20.0).run()
+    app.number_input(key="force.start:s").set_value(1.5).run()
+    app.toggle(key="force.filter").set_value(False).run()
+    assert not app.exception
+    force = store(app).project.setup.force
+    assert (force.cutoff, force.start) == (None, 1.5)
+    assert "force.cutoff:Hz" not in {n.key for n in app.number_input}
+    assert "unfiltered" in words(app)
+    app.toggle(key="force.filter").set_value(True).run()
+    assert store(app).project.setup.force.cutoff == 50.0
+
+
+def test_a_record_is_read_again_when_its_reading_changes(app: AppTest) -> None:
+    milling(app, "tip")
+    app.selectbox(key="force.kind").set_value("measured").run()
+    give(app, "milling.force.file", "record.csv", GOOD.encode())
+    app.button_group(key="milling.force.side").set_value("part").run()
+    assert not app.exception
+    on_tool = store(app).project.setup.force.record.F[:, 1].mean()
+    assert on_tool == pytest.approx(-100.5, abs=0.01)
 
 
 def give(app: AppTest, key: str, name: str, data: bytes) -> None:
@@ -272,29 +298,29 @@ def box(scale: float = 1.0, open_: bool = False) -> bytes:
 
 def test_stock_from_stl_in_its_own_unit(app: AppTest) -> None:
     milling(app, "tip")
-    app.button_group(key="stock.kind").set_value("stl").run()
-    give(app, "stock:file", "blank.stl", box(1e-3))
+    app.button_group(key="milling.stock").set_value("stl").run()
+    give(app, "milling.stock.file", "blank.stl", box(1e-3))
     assert not app.exception
     assert any("looks like metres" in w.value for w in app.warning)
-    app.button_group(key="stock.unit").set_value("m").run()
+    app.button_group(key="milling.stock.unit").set_value("m").run()
     assert not app.exception
     assert errors(app) == []
     stock = store(app).project.setup.stock
     assert stock is not None
     np.testing.assert_allclose(stock.upper - stock.lower, [0.11, 0.04, 0.01])
     assert "The groove is 0.23 mm off in Y" in words(app)
-    app.button_group(key="stock.kind").set_value("path").run()
+    app.button_group(key="milling.stock").set_value("path").run()
     assert store(app).project.setup.stock is None
-    app.button_group(key="stock.kind").set_value("block").run()
+    app.button_group(key="milling.stock").set_value("block").run()
     assert not app.exception
 
 
 def test_a_bad_stock_is_one_sentence_and_the_stock_stays(app: AppTest) -> None:
     milling(app, "tip")
     before = store(app).project.setup.digest()
-    app.button_group(key="stock.kind").set_value("stl").run()
+    app.button_group(key="milling.stock").set_value("stl").run()
     for data, sentence in ((b"", "is empty"), (b"no mesh at all", "STL"), (box(open_=True), "not watertight")):
-        give(app, "stock:file", "blank.stl", data)
+        give(app, "milling.stock.file", "blank.stl", data)
         assert not app.exception
         assert len(errors(app)) == 1
         assert sentence in errors(app)[0]

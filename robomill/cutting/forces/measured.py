@@ -107,18 +107,19 @@ class MeasuredForce(ForceModel):
         above=0.0,
         written_none=0.0,
         step=10.0,
-        hint="Without phase shift; empty: no filter.",
+        boxed=False,
     )
-    start: float = quantity("Path starts at", default=0.0, digits=3)
+    start: float = quantity("Path starts at", default=0.0, digits=3, boxed=False)
 
     @property
     def numbers(self) -> str:
         """The record and its filter."""
         return self.provenance.source
 
-    def unit_of(self, name: str) -> str:
-        """The start has the unit of the record's axis."""
-        return AXIS_UNITS[self.record.axis] if name == "start" else super().unit_of(name)
+    @property
+    def start_unit(self) -> str:
+        """The unit in which people say the start: that of the record's axis."""
+        return AXIS_UNITS[self.record.axis]
 
     @property
     def frame(self) -> Frame:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,19 +12,19 @@ import streamlit as st
 
 from robomill.cutting.force import ForceModel, MeanForce
 from robomill.cutting.forces import FORCES
-from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.cutting.forces.measured import PAPER_CUTOFF, ForceRecord, MeasuredForce
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
-from robomill.quantities import declared_types, quantities
-from robomill.ui import cached, inputs, pieces, session
+from robomill.quantities import declared_types
+from robomill.ui import cached, declared, inputs, pieces, session
 from robomill.ui.milling import materials as material_panel
-from robomill.ui.milling.numbers import boxes_of, draw
 from robomill.units import format_count
 
 PENDING = "milling.force.pending"
-FILE = "milling.force.file"
+FILE, SIDE, TRUST = "milling.force.file", "milling.force.side", "milling.force.trust"
+SIDES = {"tool": "tool", "part": "part"}
 MAX_FORCE_MB = 60
 
 
@@ -33,7 +34,7 @@ def inputs_panel() -> None:
     force: ForceModel | None = setup.force
     current = setup.force.kind
     # Asked for, but what it needs is not there yet; any change of the project makes an end of the wait.
-    digest, wanted = st.session_state.get(PENDING, ("", ""))
+    digest, wanted = session.kept(PENDING, ("", ""))
     if digest == setup.digest() and wanted != current:
         force, current = None, wanted
     titles = {kind: model.title for kind, model in FORCES.items()}
@@ -42,7 +43,7 @@ def inputs_panel() -> None:
         if kind in EDITORS:
             EDITORS[kind](force)
     if force is not None:
-        boxes_of(force, "force", _write, force.unit_of)
+        declared.fields(force, "force", _write)
         if force.hint:
             pieces.note(force.hint)
         if force.stated:
@@ -57,26 +58,14 @@ def _write(name: str, value: Any) -> None:
 
 def _process_switches(process: bool) -> None:
     setup = session.project().setup
-    said = quantities(type(setup))
-    draw(
-        said["engagement"],
-        "setup.engagement",
-        setup.engagement,
-        lambda on: session.change(engagement=on, coupling=setup.coupling and on),
-    )
-    draw(
-        said["coupling"],
-        "setup.coupling",
-        setup.coupling,
-        lambda on: session.change(coupling=on),
-        disabled=not (setup.engagement and process),
-    )
+    declared.field("engagement", lambda on: session.change(engagement=on, coupling=setup.coupling and on))
+    declared.field("coupling", look=inputs.Look(disabled=not (setup.engagement and process)))
 
 
 def _switch(kind: str) -> None:
     """Another model, with what its fields start from; one that needs what is not there yet waits for it."""
     setup = session.project().setup
-    st.session_state.pop(PENDING, None)
+    session.drop(PENDING)
     if kind == setup.force.kind:
         return
     model = FORCES[kind]
@@ -89,7 +78,7 @@ def _switch(kind: str) -> None:
         elif wanted == tuple[Material, ...]:
             given[name] = material_panel.others(given["material"])
         elif wanted is ForceRecord:
-            st.session_state[PENDING] = (setup.digest(), kind)
+            session.keep(PENDING, (setup.digest(), kind))
             return
     follows = model.follows_cut
     session.change(
@@ -112,65 +101,58 @@ def _mean_force() -> MeanForce:
 
 
 def _record(force: Any) -> None:
-    """The file of a measured force, and what was read from it."""
-    key = f"force:file:{session.store().revision if force is None else 'kept'}"
-    st.file_uploader(
+    """The file of a measured force, how it is read, and how it is laid on the path."""
+    inputs.upload(
         "Force record (.csv): t_s or s_mm, then F_feed_N, F_feed_normal_N, F_axial_N, or F_x_N, F_y_N, F_z_N",
-        key=key,
-        max_upload_size=MAX_FORCE_MB,
-        on_change=lambda: _take(st.session_state.get(key)),
+        FILE,
+        _take,
+        most_MB=MAX_FORCE_MB,
+        fresh=session.store().revision if force is None else "kept",
     )
     left, right = st.columns(2)
-    left.segmented_control(
-        "The sensor felt the force on the",
-        ["tool", "part"],
-        default="tool",
-        required=True,
-        key="force:on",
-        on_change=_again,
-        width="stretch",
-    )
-    right.checkbox(
-        "Trust the unit",
-        key="force:trust",
-        on_change=_again,
-        help="Accept forces whose size looks like another unit (mN, kN).",
-    )
-    inputs.sentence("force:file")
-    if force is None:
-        if not session.store().refused.get("force:file"):
-            pieces.note("Until a record is given, the force stays as it was.")
-        return
-    samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
-    pieces.note(f"{pieces.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
+    with left:
+        felt = session.kept(SIDE, "tool")
+        inputs.choice("The sensor felt the force on the", SIDE, SIDES, felt, partial(_read_with, SIDE))
+    with right:
+        look = inputs.Look(hint="Accept forces whose size looks like another unit (mN, kN).")
+        inputs.switch("Trust the unit", TRUST, session.kept(TRUST, False), partial(_read_with, TRUST), look)
+    if force is not None:
+        _filter(force)
+        samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
+        pieces.note(f"{pieces.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
+    elif FILE not in session.store().refused:
+        pieces.note("Until a record is given, the force stays as it was.")
 
 
-def _take(file: Any) -> None:
-    if file is None:
-        inputs.accept("force:file")
-        return
-    st.session_state[FILE] = (file.name, file.getvalue())
-    _again()
+def _filter(force: MeasuredForce) -> None:
+    """The low-pass filter with its cut-off, and where the path starts in the record."""
+    on = force.cutoff is not None
+    inputs.switch("Low-pass, zero phase", "force.filter", on, lambda on: _write("cutoff", PAPER_CUTOFF if on else None))
+    left, right = st.columns(2)
+    if on:
+        with left:
+            inputs.number("force.cutoff", label="Cut-off", optional=False)
+    with right:
+        inputs.number("force.start", unit=declared.in_view(force.start_unit), digits=3)
 
 
-def _again() -> None:
-    """Read the file that was given, with the options as they stand."""
-    if FILE not in st.session_state:
-        return
-    name, data = st.session_state[FILE]
+def _read_with(option: str, chosen: Any) -> None:
+    """Another way to read the file: read it again, if there is one."""
+    session.keep(option, chosen)
+    if given := session.kept(FILE):
+        inputs.submit(FILE, None, lambda: _take(*given))
 
-    def read() -> None:
-        on = st.session_state.get("force:on", "tool")
-        record = read_forces(data, on=on, source=name, trust_units=bool(st.session_state.get("force:trust")))
-        old = session.project().setup.force
-        given = {name: getattr(old, name) for name in ("cutoff", "start")} if old.kind == MeasuredForce.kind else {}
-        force = MeasuredForce(record, **given)
-        # What cannot be laid on this path is refused here, with the file, and not on the page.
-        force.components(cached.result(session.project().setup).conditions)
-        session.change(force=force, coupling=False)
-        st.session_state.pop(PENDING, None)
 
-    inputs.submit("force:file", None, read)
+def _take(data: bytes, name: str) -> None:
+    """Read the file with the options as they stand; it is kept, to be read again with others."""
+    session.keep(FILE, (data, name))
+    record = read_forces(data, on=session.kept(SIDE, "tool"), source=name, trust_units=session.kept(TRUST, False))
+    old = session.project().setup.force
+    force = replace(old, record=record) if isinstance(old, MeasuredForce) else MeasuredForce(record)
+    # What cannot be laid on this path is refused here, with the file, and not on the page.
+    force.components(cached.result(session.project().setup).conditions)
+    session.change(force=force, coupling=False)
+    session.drop(PENDING)
 
 
 #: What draws a field that is no number, by its type; it gets the model, or None while the field is waited for.

@@ -117,7 +117,7 @@ def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 
     source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
     pieces.figure(
         engagement_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
-        "engagement",
+        "milling.engagement",
         name="engagement",
         table=lambda: force_columns(result, None),
         caption=f"Arc of engagement and depth, {source}.",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import streamlit as st
 
@@ -19,9 +19,10 @@ from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.ui import inputs, pieces, session
-from robomill.units import from_si, to_si, unit_label
+from robomill.ui.box import Box
+from robomill.units import to_si, unit_label
 
-OWN = "milling.materials"
+OWN, NEW = "milling.materials", "milling.material"
 
 
 @st.cache_resource(show_spinner=False)
@@ -31,7 +32,7 @@ def _samples() -> tuple[Material, ...]:
 
 def rows(kind: str) -> dict[str, Material]:
     """Every row of a kind ("mechanistic", "kienzle"): the samples, those of this session, the one a project brings."""
-    every = [*_samples(), *st.session_state.get(OWN, {}).values()]
+    every = [*_samples(), *session.kept(OWN, {}).values()]
     brought = getattr(session.project().setup.force, "material", None)
     return {m.name: m for m in (*every, *([brought] if brought is not None else [])) if m.kind == kind}
 
@@ -80,7 +81,7 @@ def picker(force: Any) -> None:
 def _coefficients(material: Material) -> None:
     st.markdown(f"**{material.title}**")
     inputs.table(
-        f"material:{material.name}",
+        f"milling.coefficients.{material.name}",
         lambda: coefficient_frame(material),
         lambda frame: _keep(with_coefficients(material, frame), from_editor=True),
         inputs.Sheet(
@@ -90,76 +91,57 @@ def _coefficients(material: Material) -> None:
     pieces.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
     pieces.download(
         "Row as TOML",
-        lambda: material_to_toml(material),
+        partial(material_to_toml, material),
         f"{material.name}.toml",
         "application/toml",
-        key="get:material",
+        key="milling.material.get",
     )
 
 
 def _add(material: Material) -> None:
-    name = st.text_input("Name of the new row", key="material:name", placeholder="7075 from my own tests")
-    alloy = st.text_input("Alloy (rows of one alloy make the band)", key="material:alloy", value=material.alloy)
-    source = st.text_input("Where the numbers come from", key="material:source", placeholder="our dynamometer, May")
-    st.button(
-        "Add as a copy of this row",
-        key="material:add",
-        icon=":material/add:",
-        on_click=_copy,
-        args=(material, name, alloy, source),
-    )
-    st.file_uploader(
-        "Or a row from a file (.toml)",
-        key="material:file",
-        type=["toml"],
-        max_upload_size=1,
-        on_change=lambda: _from_file(st.session_state.get("material:file")),
-    )
-    inputs.sentence("material:add")
+    texts = {
+        "name": ("Name of the new row", "", "7075 from my own tests"),
+        "alloy": ("Alloy (rows of one alloy make the band)", material.alloy, ""),
+        "source": ("Where the numbers come from", "", "our dynamometer, May"),
+    }
+    for name, (label, first, example) in texts.items():
+        key = f"{NEW}.{name}"
+        inputs.text(label, key, session.kept(key, first), partial(session.keep, key), placeholder=example)
+    key = f"{NEW}.add"
+    copy = partial(inputs.submit, key, None, partial(_copy, material))
+    st.button("Add as a copy of this row", key=key, icon=":material/add:", on_click=copy)
+    inputs.sentence(key)
+    inputs.upload("Or a row from a file (.toml)", f"{NEW}.file", _take, most_MB=1)
 
 
-def _copy(material: Material, name: str, alloy: str, source: str) -> None:
-    def put() -> None:
-        key = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-        if not key or not source.strip():
-            raise CuttingError("A new row needs a name and where its numbers come from.")
-        if key in rows(material.kind):
-            raise CuttingError(f"There is a row named {key!r} already; choose another name.")
-        _keep(
-            material.replace(
-                name=key, title=name.strip(), alloy=alloy.strip(), provenance=Provenance("user", source.strip())
-            )
-        )
-
-    inputs.submit("material:add", None, put)
+def _copy(material: Material) -> None:
+    title, source = (session.kept(f"{NEW}.{name}", "").strip() for name in ("name", "source"))
+    name = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")
+    if not name or not source:
+        raise CuttingError("A new row needs a name and where its numbers come from.")
+    if name in rows(material.kind):
+        raise CuttingError(f"There is a row named {name!r} already; choose another name.")
+    alloy = session.kept(f"{NEW}.alloy", material.alloy).strip()
+    _keep(material.replace(name=name, title=title, alloy=alloy, provenance=Provenance("user", source)))
 
 
-def _from_file(file: Any) -> None:
-    if file is None:
-        return
-
-    def put() -> None:
-        _keep(material_from_toml(*read_text(file.getvalue(), CuttingError, "a material row (.toml)", file.name)))
-
-    inputs.submit("material:add", None, put)
+def _take(data: bytes, name: str) -> None:
+    _keep(material_from_toml(*read_text(data, CuttingError, "a material row (.toml)", name)))
 
 
 def _keep(material: Material, from_editor: bool = False) -> None:
     """Add or replace a row of this session and put it in force."""
-    st.session_state[OWN] = {**st.session_state.get(OWN, {}), material.name: material}
+    session.keep(OWN, {**session.kept(OWN, {}), material.name: material})
     _use(material, from_editor)
 
 
 def coefficient_frame(material: Material) -> pd.DataFrame:
     """One row a coefficient in the units of the trade; empty where the source does not give it."""
     said = [quantities(Material)[name] for name in material.coefficients]
-    values = [getattr(material, q.name) for q in said]
     return pd.DataFrame(
         {
             "coefficient": [q.name for q in said],
-            "value": [
-                None if v is None else float(f"{from_si(v, q.unit):.10g}") for v, q in zip(values, said, strict=True)
-            ],
+            "value": [Box(q.label, q.unit).shown(getattr(material, q.name)) for q in said],
             "unit": [unit_label(q.unit) for q in said],
         }
     )
@@ -167,10 +149,11 @@ def coefficient_frame(material: Material) -> pd.DataFrame:
 
 def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
     """``material`` with the table's coefficients, as a row of one's own. Raises CuttingError naming the coefficient."""
-    values: dict[str, float | None] = {}
-    for name, value in zip(frame["coefficient"], frame["value"], strict=True):
-        empty = value is None or value is pd.NA or (isinstance(value, float) and np.isnan(value))
-        values[name] = None if empty else to_si(float(value), quantities(Material)[name].unit)
+    units = {name: quantities(Material)[name].unit for name in frame["coefficient"]}
+    values = {
+        name: None if inputs.empty(value) else to_si(float(value), units[name])
+        for name, value in zip(frame["coefficient"], frame["value"], strict=True)
+    }
     if material.provenance.kind == "user":
         return material.replace(**values)
     return material.replace(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,12 +17,10 @@ from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, session
-from robomill.ui.milling.numbers import box, boxes_of
+from robomill.ui import declared, inputs, pieces, session
 from robomill.units import format_si, from_si, to_si, unit_label
 
-WEIGHT_ON = "milling.weight"
-SWITCHED = "milling.springs."  # + kind: a table of joints is open though nothing in it bends yet
+WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
 
 
 def title() -> str:
@@ -72,12 +70,11 @@ def _one(kind: type[Spring]) -> None:
     if not found:
         return
     spring: Spring = found[0]
-    units = quantities(kind)
-    boxes_of(spring, key, lambda name, v: _put(kind, spring.edited(**{name: v})), lambda name: units[name].unit)
+    declared.fields(spring, key, lambda name, v: _put(kind, spring.edited(**{name: v})))
     fitted = spring.fitted(cutter)
     if fitted != spring:
         st.button(
-            f"It bends otherwise than the {cutter.title}: take the cutter's numbers",
+            _otherwise(spring, fitted),
             key=f"{key}.same",
             on_click=lambda: _put(kind, fitted),
             type="tertiary",
@@ -86,13 +83,32 @@ def _one(kind: type[Spring]) -> None:
     pieces.note(f"{pieces.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
 
 
+def _otherwise(spring: Spring, fitted: Spring) -> str:
+    """What is not as the cutter in the spindle has it, and that it can be taken from there."""
+    apart = [q for q in quantities(type(spring)).values() if getattr(spring, q.name) != getattr(fitted, q.name)]
+    found = ", ".join(format_si(getattr(spring, q.name), declared.in_view(q.unit), 1) for q in apart)
+    return f"It bends as {found}: take the cutter's {', '.join(q.label.lower() for q in apart)}"
+
+
+def _table_open(title: str, key: str, given: bool, clear: Callable[[], None], hint: str | None) -> bool:
+    """The switch of a table; it can stand open before anything is typed into it, and is cleared when switched off."""
+
+    def turn(on: bool) -> None:
+        session.keep(key, on)
+        if not on:
+            clear()
+        session.store().revision += 1
+
+    on = given or session.kept(key, False)
+    inputs.switch(title, key, on, turn, inputs.Look(hint=hint))
+    return on
+
+
 def _each_joint(kind: type[Spring]) -> None:
     """The switch of a spring that each joint can have, and their table."""
     n, key = session.project().setup.robot.n, f"springs.{kind.kind}"
     springs = {spring.joint: spring for spring in _find(kind)}
-    on = bool(springs) or st.session_state.get(SWITCHED + kind.kind, False)
-    inputs.switch(kind.title, key, on, lambda on: _switch_table(kind, on), inputs.Look(hint=kind.hint))
-    if not on:
+    if not _table_open(kind.title, key, bool(springs), lambda: _put(kind), kind.hint):
         return
     columns = joint_columns(kind)
     inputs.table(
@@ -105,13 +121,6 @@ def _each_joint(kind: type[Spring]) -> None:
     )
     units = ", ".join(dict.fromkeys(unit_label(q.unit) for q in columns))
     pieces.note(f"{pieces.badge('user')} {units}; 0 is rigid, which is what the paper assumes.")
-
-
-def _switch_table(kind: type[Spring], on: bool) -> None:
-    st.session_state[SWITCHED + kind.kind] = on
-    if not on:
-        _put(kind)
-    session.store().revision += 1
 
 
 def joint_columns(kind: type[Spring]) -> list[Quantity]:
@@ -130,33 +139,24 @@ def joint_springs(kind: type[Any], frame: pd.DataFrame) -> list[Any]:
     """The springs of a table; joints whose numbers are all as at the start are left out."""
     found = []
     for i, joint in enumerate(frame["joint"]):
-        values = {q.name: to_si(_cell(frame[q.label].iloc[i]), q.unit) for q in joint_columns(kind)}
+        cells = {q: frame[q.label].iloc[i] for q in joint_columns(kind)}
+        values = {q.name: 0.0 if inputs.empty(cell) else to_si(float(cell), q.unit) for q, cell in cells.items()}
         spring = kind(int(joint), **values, provenance=TYPED)
         if spring != kind(int(joint), provenance=TYPED):
             found.append(spring)
     return found
 
 
-def _cell(value: Any) -> float:
-    return 0.0 if pd.isna(value) else float(value)
-
-
 def _weight() -> None:
     setup = session.project().setup
     links = setup.links
-    inputs.switch(
-        "Weight of the arm",
-        "springs.weight",
-        links is not None or st.session_state.get(WEIGHT_ON, False),
-        _switch_weight,
-        inputs.Look(hint="Sag under the masses of the links and the payload."),
-    )
-    if links is None and not st.session_state.get(WEIGHT_ON):
+    hint = "Sag under the masses of the links and the payload."
+    if not _table_open("Weight of the arm", "springs.weight", links is not None, _no_weight, hint):
         return
     inputs.table(
         "springs.weight",
         lambda: weight_frame(setup.robot.n, links),
-        lambda frame: _take_weight(frame),
+        _take_weight,
         inputs.Sheet(
             columns=(
                 {"joint": st.column_config.TextColumn("joint", width=44)}
@@ -168,17 +168,11 @@ def _weight() -> None:
     if links is None:
         pieces.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
-    box("add_sag")
+    declared.field("add_sag")
 
 
-WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
-
-
-def _switch_weight(on: bool) -> None:
-    st.session_state[WEIGHT_ON] = on
-    if not on:
-        session.change(links=None, add_sag=False)
-    session.store().revision += 1
+def _no_weight() -> None:
+    session.change(links=None, add_sag=False)
 
 
 def _take_weight(frame: pd.DataFrame) -> None:
@@ -207,35 +201,27 @@ def weight_from(frame: pd.DataFrame) -> LinkMasses | None:
 
 def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, bool]]:
     """Rows of the result at sample i: what gives, its share (3,) m, its provenance, whether it counts."""
-    robot = result.setup.robot
-    given = {**robot.provenance, **result.setup.provenance}
-    known = given.get(f"compliance.{robot.compliance_set}")
+    setup = result.setup
+    robot, links = setup.robot, setup.links
+    known = {**robot.provenance, **setup.provenance}.get(f"compliance.{robot.compliance_set}")
     kind = known.kind if known is not None else "user"
     rows: list[tuple[str, FloatArray, str, bool]] = [
         (f"joint {number}", result.delta_joint[i, j], kind, True) for j, number in enumerate(robot.joint_numbers)
     ]
     rows += [
-        (spring.name, result.delta_spring[i, k], spring.provenance.kind, True)
-        for k, spring in enumerate(result.setup.springs)
+        (spring.name, result.delta_spring[i, k], spring.provenance.kind, True) for k, spring in enumerate(setup.springs)
     ]
-    if result.sag is not None and result.setup.links is not None:
-        rows.append(
-            (
-                "sag under the weight",
-                result.sag[i].sum(axis=0),
-                result.setup.links.provenance.kind,
-                result.setup.add_sag,
-            )
-        )
+    if result.sag is not None and links is not None:
+        rows.append(("sag under the weight", result.sag[i].sum(axis=0), links.provenance.kind, setup.add_sag))
     return rows
 
 
 def lines_table(result: SimulationResult, i: int) -> None:
     """Who gives how much at the station, joint by joint and spring by spring."""
-    unit = result_unit()
+    unit = session.project().view.length
     body = ""
     for name, share, kind, counts in [*lines(result, i), ("together", result.delta[i], "computed", True)]:
-        cells = "".join(f'<td class="n">{_number(float(v), unit)}</td>' for v in share)
+        cells = "".join(f'<td class="n">{_signed(v, unit)}</td>' for v in share)
         remark = "" if counts else " shown, not added"
         strong = ' style="font-weight:600"' if name == "together" else ""
         body += f"<tr{strong}><td>{html.escape(name)}</td>{cells}<td>{pieces.badge(kind)}{remark}</td></tr>"
@@ -243,10 +229,5 @@ def lines_table(result: SimulationResult, i: int) -> None:
     st.html(f'<table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table>')
 
 
-def result_unit() -> str:
-    """The unit of deviations."""
-    return session.project().view.length
-
-
-def _number(value: float, unit: str) -> str:
+def _signed(value: float, unit: str) -> str:
     return format_si(value, unit, 4, sign=True, with_unit=False, missing="–")

@@ -1,0 +1,79 @@
+"""Boxes as fields declare them, and what a number typed into one means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from robomill.arrays import FloatArray
+from robomill.errors import ProjectError
+from robomill.quantities import quantity, whole
+from robomill.ui.box import Box, box_of, declaration, declared
+
+
+@dataclass(frozen=True)
+class Slot:
+    width: float = quantity("Width", "mm", default=2e-3, step=0.5, digits=2, hint="Across.")
+    ends: FloatArray = quantity("End", "mm", shape=(3,), axes="XYZ", default=None)
+    passes: int = whole("Passes", default=2)
+    radius: float | None = quantity("Radius", "mm", optional=True)
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    slot: Slot
+
+
+PART = Part(Slot(ends=np.array([0.01, 0.02, 0.03])))
+
+
+def test_a_number_is_shown_as_its_field_declares_it() -> None:
+    box = declared(PART, "slot.width")
+    assert (box.title, box.step, box.form, box.hint, box.optional) == ("Width, mm", 0.5, "%.2f", "Across.", False)
+    assert declared(PART.slot, "radius").optional
+
+
+def test_another_unit_takes_the_step_along_and_what_is_given_replaces_the_declaration() -> None:
+    box = declared(PART, "slot.width", unit="in", label="Breadth")
+    assert box.title == "Breadth, in"
+    assert box.step == pytest.approx(0.02)
+    assert box.typed(1.0) == pytest.approx(0.0254)
+
+
+def test_an_index_names_one_entry_with_its_axis() -> None:
+    said = declaration(PART, "slot.ends[1]")
+    assert said is not None
+    assert (said.kind, said.label, said.axes) == ("number", "End Y", ())
+
+
+def test_what_is_not_declared_has_no_declaration_and_stands_on_its_own_words() -> None:
+    assert declaration(PART, "slot.note") is None
+    assert box_of(None, label="Free", digits=1).form == "%.1f"
+
+
+def test_a_whole_number_has_no_decimals() -> None:
+    box = declared(PART, "slot.passes")
+    assert box.whole
+    assert box.form is None
+    assert box.shown(3.0) == 3
+    assert isinstance(box.typed(3.0), int)
+
+
+def test_an_empty_box_is_none_only_where_it_may_be() -> None:
+    assert Box("Radius", optional=True).typed(None) is None
+    with pytest.raises(ProjectError, match="empty"):
+        Box("Radius").typed(None)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "expected"), [(1.0, None, "1 or more"), (None, 5.0, "5 or less"), (1.0, 5.0, "1 to 5")]
+)
+def test_bounds_are_said_in_the_unit_that_is_shown(low: float | None, high: float | None, expected: str) -> None:
+    box = Box("Depth", "mm", low=low, high=high)
+    outside = 0.5 if low is not None else 5.5
+    with pytest.raises(ProjectError, match=f"Depth: found {outside:g}, expected {expected} mm"):
+        box.typed(outside)
+    assert box.typed(1.0 if low is not None else 5.0) == pytest.approx(1e-3 if low is not None else 5e-3)
