@@ -13,7 +13,7 @@ import numpy as np
 
 from robomill.compiled import FEW, In1, In2, In3, Out2, Out3, OutBool2, kernel, part
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, ROUNDING, Answer, Decoupled, Rules
-from robomill.kinematics.kernels import forward, misfit
+from robomill.kinematics.kernels import forward, forward_from, misfit
 from robomill.kinematics.trig_kernels import arc_tangent, sin_cos
 from robomill.robot.dh import Chain
 
@@ -21,6 +21,7 @@ TURN = 2.0 * np.pi
 TINY = 1e-150
 ARM_WEIGHT = 1e6  # rad^2: far above any joint motion
 SPIN_HALVINGS = 7
+WRIST = 3  # joints of the arm before those of the wrist
 
 
 @part
@@ -238,10 +239,16 @@ def solve_all(T, arm, chain, room, theta, sound):
     for posture in range(4):
         branch = 2 * posture
         real = solve(target, arm, posture, factors, theta[branch : branch + 2])
+        sound[branch], sound[branch + 1] = False, False
+        if not real:
+            continue
         for w in range(2):
-            forward(theta[branch + w], chain, turns, frames)
+            if w == 0:
+                forward(theta[branch], chain, turns, frames)
+            else:  # both wrists stand on the same arm
+                forward_from(WRIST, theta[branch + 1], chain, turns, frames)
             shift, angle = misfit(frames[n], T, n == 6)
-            sound[branch + w] = real and shift <= RESIDUAL and angle <= RESIDUAL
+            sound[branch + w] = shift <= RESIDUAL and angle <= RESIDUAL
 
 
 @kernel(few=FEW)

@@ -28,13 +28,19 @@ def forward(theta, chain, turns, frames):
 
     turns (n, 3) is room for each joint's sine, cosine and shift.
     """
+    copy(chain.T_0, frames[0])
+    forward_from(0, theta, chain, turns, frames)
+
+
+@part
+def forward_from(first, theta, chain, turns, frames):
+    """As ``forward``, where the frames up to that of joint ``first`` (counted from 0) stand already."""
     E = chain.E
-    for i in range(len(theta)):
+    for i in range(first, len(theta)):
         q = chain.sign[i] * theta[i] + chain.offset[i]
         turns[i, 0], turns[i, 1] = sin_cos(0.0 if chain.prismatic[i] else q)
         turns[i, 2] = q if chain.prismatic[i] else 0.0
-    copy(chain.T_0, frames[0])
-    for i in range(len(theta)):
+    for i in range(first, len(theta)):
         s, c, slide = turns[i, 0], turns[i, 1], turns[i, 2]
         for r in range(3):
             x, y, z, p = frames[i, r, 0], frames[i, r, 1], frames[i, r, 2], frames[i, r, 3]
