@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -17,9 +17,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.robot.model import Robot
 from robomill.units import unit_label
-
-if TYPE_CHECKING:
-    from robomill.workspace.fields import ComplianceField
+from robomill.workspace.cells import Cells
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 Colours = Literal["sequential", "diverging", "joints", "reach"]
@@ -39,7 +37,7 @@ class Quantity:
     unit: str
     formula: str
     meaning: str
-    law: Callable[[ComplianceField], FloatArray]
+    law: Callable[[Cells], FloatArray]
     colours: Colours = "sequential"
     rests_on: Literal["geometry", "compliance"] = "geometry"
 
@@ -214,7 +212,7 @@ def _joint(robot: Robot, c: str, joint: int) -> Quantity:
 def _share(robot: Robot, c: str, joint: int) -> Quantity:
     k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
 
-    def law(field: ComplianceField) -> FloatArray:
+    def law(field: Cells) -> FloatArray:
         whole = np.abs(field.shares[..., k]).sum(axis=-1)
         nothing = np.where(field.reached, 0.0, np.nan)
         return np.divide(field.shares[..., joint, k], whole, out=nothing, where=whole > 0)
@@ -235,7 +233,7 @@ def _signed_or_not(c: str) -> Colours:
     return "sequential" if c[0] == c[1] else "diverging"
 
 
-def _largest(field: ComplianceField, size: FloatArray) -> FloatArray:
+def _largest(field: Cells, size: FloatArray) -> FloatArray:
     """Number (as in the robot's table) of the joint with the largest ``size`` (nx, ny, nz, n)."""
     numbers = np.array(field.robot.joint_numbers, dtype=np.float64)
     return field.where_reached(numbers[np.argmax(size[field.reached], axis=-1)])

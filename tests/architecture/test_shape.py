@@ -57,14 +57,12 @@ def functions(path: Path) -> list[ast.FunctionDef]:
 
 
 def imports(module: str, *, inside_functions: bool) -> set[str]:
-    """Modules of the product that ``module`` imports; those needed for annotations alone do not count."""
+    """Modules of the product that ``module`` imports; those needed for annotations alone count too."""
     found: set[str] = set()
 
     def visit(node: ast.AST) -> None:
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.FunctionDef | ast.Lambda) and not inside_functions:
-                continue
-            if isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING":
                 continue
             if isinstance(child, ast.Import):
                 found.update(alias.name for alias in child.names)
