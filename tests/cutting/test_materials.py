@@ -127,3 +127,21 @@ def test_an_added_file_loads_by_path(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(TEXT, encoding="utf-8")
     assert load_material(path).Ktc == to_si(700.0, "N/mm2")
+
+
+def test_a_kienzle_row_is_its_specific_force_at_any_chip() -> None:
+    """k_c = k_c1.1 (h / 1 mm)^-mc: a tenth of the chip has 10^mc times the specific force."""
+    row = Material(**{**ROW, **NO_CUTTING}, kc11=7e8, mc=0.25, radial_ratio=0.4, axial_ratio=0.1)
+    (term,) = row.terms
+    for chip_mm in (1.0, 0.1, 0.05):
+        h = chip_mm * 1e-3
+        width_force = 7e8 * chip_mm**-0.25 * h
+        assert math.isclose(term.Kt * h**term.exponent, width_force, rel_tol=1e-12)
+        assert math.isclose(term.Kr * h**term.exponent, 0.4 * width_force, rel_tol=1e-12)
+        assert math.isclose(term.Ka * h**term.exponent, 0.1 * width_force, rel_tol=1e-12)
+
+
+@pytest.mark.parametrize("missing", ["name", "title", "alloy"])
+def test_a_row_without_a_name_a_title_or_an_alloy_is_refused(missing: str) -> None:
+    with pytest.raises(CuttingError):
+        Material(**{**ROW, missing: ""})

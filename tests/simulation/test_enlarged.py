@@ -69,6 +69,11 @@ def test_the_cut_so_far_grows_to_the_whole(process: SimulationResult) -> None:
     ahead = shown.drawn.x > 0.01
     assert np.isnan(middle.error[ahead]).all()
     np.testing.assert_allclose(tip_drawn(process, shown, nearest_feed(process, 0.05))[1], 10 * 0.2773e-3, atol=5e-6)
+    i = nearest_feed(process, 0.02)
+    tip = tip_drawn(process, shown, i)
+    # Ten times what the tip moves in {W}, whose axes are those of {M} here, from where it was told to be.
+    np.testing.assert_allclose((tip - process.path.p[i]) / 10, process.delta[i], atol=1e-12)
+    assert abs(process.path.p[i, 0]) > 0.01
 
 
 def test_a_picture_has_no_more_cells_than_a_screen_needs(result: SimulationResult) -> None:
