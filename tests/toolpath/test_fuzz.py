@@ -12,7 +12,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.apt import is_apt, read_apt
-from robomill.toolpath.gcode import Tool, interpret  # noqa: F401  compiled before a clock runs
+from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.support import SUPPORT
 
