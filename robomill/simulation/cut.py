@@ -9,6 +9,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_share
+from robomill.simulation.samples import at_starts
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -39,15 +40,6 @@ def cut_conditions(
     found = engage(setup.stock_block, setup.cell, setup.cutter, tip, path.k, cutting)
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex")}
     return CutConditions(**arc, **common)
-
-
-def at_starts(path: Toolpath, values: FloatArray) -> FloatArray:
-    """``values`` (m, ...) where a step of no length, which begins a cut, takes the value of the step after it."""
-    out = np.array(values)
-    still = np.flatnonzero(path.cutting & (path.step_length == 0.0))
-    still = still[still + 1 < len(path)]
-    out[still] = out[still + 1]
-    return out
 
 
 def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: FloatArray) -> FloatArray:

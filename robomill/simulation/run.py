@@ -17,11 +17,11 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import pose_from_world
 from robomill.simulation.coupling import FixedPoint, fixed_point
-from robomill.simulation.cut import at_starts, cut_conditions, moved_points
+from robomill.simulation.cut import cut_conditions, moved_points
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.samples import at_starts, sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.sampling import resample
 
 COUPLING_TOLERANCE = 1e-8
 COUPLING_ITERATIONS = 40
@@ -33,7 +33,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     Points that cannot be reached are NaN in theta, C and delta, and counted in ``reached``.
     Raises RobomillError children naming what cannot be run.
     """
-    path = resample(setup.toolpath, setup.step)
+    path = sampled(setup.toolpath, setup.step)
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
     ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path), near="path")

@@ -1,0 +1,87 @@
+"""Blocks that do not move: the same program without them is the truth, and whole results are compared with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.io.samples import samples_dir
+from robomill.simulation.samples import STILL, at_starts, moving
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+
+SLOT = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4, step=2e-3)
+ARRAYS = ("theta", "C", "F", "delta", "delta_joint", "R_MF", "p_machined", "deviation", "judged", "removes")
+
+
+def toolpath(p, k=(0.0, 0.0, 1.0)):
+    m = len(p)
+    given = {"v_f": 0.01, "block": np.arange(m), "n_s": 200.0, "tool": 0}
+    return Toolpath(p=p, k=k, cutting=np.arange(m) > 0, **given)
+
+
+def run(*lines: str, **changes):
+    """Each line with its own number, so that a line left out does not renumber the others."""
+    text = "\n".join(["G21 G90 S12000 M3", *lines, "M2", ""])
+    return rm.simulate(SLOT.replace(source=GCodeSource(text), **changes))
+
+
+CUT = ("G0 X-50 Y0 Z5", "G0 Z-2", "G1 X0 F1800", "G1 X20", "G3 X20 Y12 I0 J6", "G1 X-50", "G0 Z20")
+STILLS = {
+    "twice": (3, ["G1 X0"]),
+    "several": (3, ["G1 X0", "G1 Y0", "G1 X0 Y0", "G1 X0.00001"]),
+    "before the first cut": (2, ["G1 Z-2 F900", "G1 X-50"]),
+    "at the end": (6, ["G1 X-50", "G1 X-50"]),
+    "a dwell": (3, ["G4 P2", "G1 X0"]),
+    "a rapid": (3, ["G0 X0"]),
+    "before an arc": (4, ["G1 X20"]),
+}
+
+
+def same(found, truth) -> None:
+    for name in ARRAYS:
+        np.testing.assert_allclose(getattr(found, name), getattr(truth, name), atol=3e-8, rtol=0, err_msg=name)
+    for name in ("a_p", "phi_st", "phi_ex"):
+        a, b = (getattr(r.conditions, name) for r in (found, truth))
+        np.testing.assert_allclose(a, b, atol=3e-8, err_msg=name)
+    assert found.worst == truth.worst
+    assert found.max_deviation == pytest.approx(truth.max_deviation, abs=1e-12)
+    assert found.removes.sum() == truth.removes.sum()
+    np.testing.assert_allclose(found.machined.z, truth.machined.z, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", STILLS)
+def test_a_block_that_does_not_move_changes_nothing(name):
+    at, still = STILLS[name]
+    truth, found = run(*CUT), run(*CUT[:at], *still, *CUT[at:])
+    same(found, truth)
+    line = truth.worst_block + (len(still) if truth.worst_block > at + 1 else 0)
+    assert found.worst_block == line
+
+
+def test_a_point_twice_in_the_middle_of_an_arc():
+    """An arc in two halves, with and without a block that repeats the point between them."""
+    halves = ("G3 X26 Y6 I0 J6", "G3 X20 Y12 I-6 J0")
+    truth = run(*CUT[:4], *halves, *CUT[5:])
+    found = run(*CUT[:4], halves[0], "G1 X26 Y6", "G1 Y6", halves[1], *CUT[5:])
+    same(found, truth)
+
+
+def test_creeping_is_moving():
+    """Steps below the limit that add up are kept where they have left it."""
+    p = np.zeros((40, 3))
+    p[:, 0] = 0.3 * STILL * np.arange(40)
+    path = toolpath(p)
+    kept = moving(path)
+    assert 5 < len(kept) < 20
+    assert np.diff(kept.p[:, 0]).max() < 2 * STILL
+    assert kept.p[-1, 0] > p[-1, 0] - 1.01 * STILL
+
+
+def test_turning_on_the_spot_is_kept_and_takes_the_step_after_it():
+    k = np.array([[0, 0, 1.0], [0, 0, 1.0], [0, np.sin(0.1), np.cos(0.1)], [0, np.sin(0.2), np.cos(0.2)], [0, 0, 1.0]])
+    p = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]]) * 1e-2
+    path = toolpath(p, k)
+    assert len(moving(path)) == 5
+    assert at_starts(path, np.arange(5.0)).tolist() == [0, 1, 4, 4, 4]
