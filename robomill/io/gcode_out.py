@@ -39,9 +39,11 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
     speeds = np.round(from_si(path.n_s, "1/min"), _FEED_DECIMALS)
     for i in range(len(path)):
         if i == 0 and not lengths[0].any() and not angles[0].any():
-            writer.spindle(int(path.tool[0]), float(speeds[0]))
+            writer.spindle(int(path.tool[0]), float(speeds[0]), bool(path.ccw[0]))
             continue
-        writer.spindle(int(path.tool[i]), float(speeds[i]))
+        writer.spindle(int(path.tool[i]), float(speeds[i]), bool(path.ccw[i]))
+        if path.dwell[i] > 0:
+            writer.line(["G4", "P" + _number(float(path.dwell[i]), _FEED_DECIMALS)])
         position = [float(v) for v in lengths[i]] + ([float(v) for v in angles[i]] if tilted else [])
         writer.move(position, bool(path.cutting[i]), float(feeds[i]))
     writer.line(["M5"] if writer.speed else [])
@@ -70,7 +72,7 @@ class _Writer:
         self.at: list[float] = [0.0] * 5
         self.motion = ""
         self.feed = 0.0
-        self.speed = 0.0
+        self.speed, self.ccw = 0.0, False
         self.tool = 0
 
     def raw(self, text: str) -> None:
@@ -81,14 +83,14 @@ class _Writer:
             self.count += 1
             self.lines.append(" ".join(([f"N{self.count * self.step}"] if self.step else []) + words))
 
-    def spindle(self, tool: int, speed: float) -> None:
-        """Change the tool and the spindle speed where they change."""
+    def spindle(self, tool: int, speed: float, ccw: bool) -> None:
+        """Change the tool and the spindle's speed and sense where they change."""
         if tool != self.tool:
             self.line([f"T{tool}", "M6"])
             self.tool, self.speed = tool, 0.0
-        if speed != self.speed:
-            self.line([f"S{_number(speed, _FEED_DECIMALS)}", "M3"] if speed else ["M5"])
-            self.speed = speed
+        if speed != self.speed or (speed and ccw != self.ccw):
+            self.line([f"S{_number(speed, _FEED_DECIMALS)}", "M4" if ccw else "M3"] if speed else ["M5"])
+            self.speed, self.ccw = speed, ccw
 
     def move(self, position: list[float], cutting: bool, feed: float) -> None:
         """G0 or G1 to a position; the words that do not change are left out."""

@@ -69,7 +69,6 @@ _SILENT = frozenset(
         "SELCTL",
         "CATLOG",
         "TURRET",
-        "DELAY",
         "PREFUN",
         "AUXFUN",
         "SEQNO",
@@ -86,6 +85,8 @@ class _State:
     unit_said: str = ""
     feed: float = 0.0
     speed: float = 0.0
+    ccw: bool = False
+    waited: float = 0.0
     tool: int = 0
     rapid: bool = False
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
@@ -129,6 +130,8 @@ def read_apt(path_or_text: Source) -> Toolpath:
         block=table[:, 8].astype(np.int64),
         n_s=table[:, 9],
         tool=table[:, 10].astype(np.int64),
+        ccw=table[:, 11] > 0,
+        dwell=table[:, 12],
         findings=findings.freeze(),
         units=state.unit,
     )
@@ -182,6 +185,10 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
         _units(state, values, line)
     elif word in ("LOADTL", "TOOLNO"):
         state.tool = int(abs(_numbers(values[:1], line, word)[0])) if values else state.tool
+    elif word == "DELAY":
+        turns = "REV" in (v.upper() for v in values)
+        count = sum(_numbers([v for v in values if v.upper() != "REV"], line, word)[:1])
+        state.waited += count if not turns else count / state.speed if state.speed > 0.0 else 0.0
     elif word == "MULTAX":
         state.axis = state.axis if not values or values[0].upper() == "ON" else (0.0, 0.0, 1.0)
     elif word in _MOVES:
@@ -202,10 +209,10 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
     if cutting and state.feed <= 0:
         raise GCodeError(f"Line {line}: a cut needs a feed; FEDRAT comes first.", line=line)
     point = [to_si(v, state.unit) for v in numbers[:3]]
-    state.rows.append(
-        (*point, *state.axis, state.feed if cutting else 0.0, float(cutting), line, state.speed, state.tool)
-    )
-    state.rapid = False
+    feed = state.feed if cutting else 0.0
+    turning = (state.speed, state.tool, state.ccw and state.speed > 0.0)
+    state.rows.append((*point, *state.axis, feed, cutting, line, *turning, state.waited))
+    state.rapid, state.waited = False, 0.0
 
 
 def _feed(state: _State, values: list[str], line: int) -> None:
@@ -229,7 +236,10 @@ def _spindle(state: _State, values: list[str], line: int) -> None:
     numbers = [v for v in values if _NUMBER.match(v)]
     if "OFF" in words:
         state.speed = 0.0
-    elif numbers:
+        return
+    if "CLW" in words or "CCLW" in words:
+        state.ccw = "CCLW" in words
+    if numbers:
         state.speed = to_si(abs(float(numbers[0])), "1/min")
     elif not any(w in words for w in ("ON", "CLW", "CCLW")):
         raise GCodeError(f"Line {line}: SPINDL has {','.join(values)!r}; expected a speed or OFF.", line=line)

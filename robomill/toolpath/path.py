@@ -14,6 +14,17 @@ from robomill.errors import ToolpathError
 from robomill.provenance import Finding
 from robomill.units import format_si
 
+PER_MOVE: dict[str, type] = {
+    "v_f": float,
+    "cutting": bool,
+    "block": int,
+    "n_s": float,
+    "tool": int,
+    "ccw": bool,
+    "dwell": float,
+}
+"""Arrays of a path with one value a move, and their types."""
+
 
 @dataclass(frozen=True, eq=False)
 class Toolpath:
@@ -26,6 +37,8 @@ class Toolpath:
     block    (m,) int        1-based source line of the move (row of the table for a table of lines)
     n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated
     tool     (m,) int        tool number, 0 where not stated
+    ccw      (m,) bool       True where the spindle turns counter-clockwise (M4), False where not stated
+    dwell    (m,) s          time that the tool stands still before the move
     counts                   rapid moves, straight cuts and arcs of the program, None where there is none
     """
 
@@ -36,6 +49,8 @@ class Toolpath:
     block: IntArray
     n_s: FloatArray
     tool: IntArray
+    ccw: BoolArray = field(default_factory=lambda: np.zeros(1, dtype=bool))
+    dwell: FloatArray = field(default_factory=lambda: np.zeros(1))
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     units: str = "mm"
     counts: tuple[int, int, int] | None = field(default=None, compare=False)
@@ -51,7 +66,7 @@ class Toolpath:
             raise ToolpathError("Tool axis: expected unit vectors, found a length that is not 1.")
         exact = np.array_equal(length, np.ones_like(length))
         values: dict[str, Any] = {"p": frozen(p), "k": frozen(k if exact else k / length)}
-        for name, dtype in (("v_f", float), ("cutting", bool), ("block", int), ("n_s", float), ("tool", int)):
+        for name, dtype in PER_MOVE.items():
             values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)
         if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():
             raise ToolpathError("Toolpath: a feed rate is negative or not a number; feeds must be 0 or more.")
@@ -87,7 +102,7 @@ class Toolpath:
 
     def digest(self) -> str:
         """SHA-256 of the motion (findings do not count)."""
-        return digest((self.p, self.k, self.v_f, self.cutting, self.block, self.n_s, self.tool))
+        return digest((self.p, self.k, *(getattr(self, name) for name in PER_MOVE)))
 
 
 def toolpath_from_lines(

@@ -9,7 +9,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import PER_MOVE, Toolpath
 from robomill.units import from_si
 
 MAX_SAMPLES = 5_000_000
@@ -45,15 +45,13 @@ def resample(path: Toolpath, step: float) -> Toolpath:
     p = path.p[before] + fraction[:, None] * (path.p[owner] - path.p[before])
     last = index == counts[owner]
     p[last] = path.p[owner[last]]
+    carried = {name: getattr(path, name)[owner] for name in PER_MOVE}
+    carried["dwell"] = np.where(np.arange(len(owner)) == first, carried["dwell"], 0.0)
     return dataclasses.replace(
         path,
         p=p,
         k=_slerp(path.k[before], path.k[owner], fraction),
-        v_f=path.v_f[owner],
-        cutting=path.cutting[owner],
-        block=path.block[owner],
-        n_s=path.n_s[owner],
-        tool=path.tool[owner],
+        **carried,
     )
 
 

@@ -95,7 +95,8 @@ def run(count: int, seed: int) -> tuple[int, float]:
 @pytest.fixture
 def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
     base = "robomill.toolpath.gcode."
-    import_module(base + "kernels")  # compiled before a clock runs
+    import_module(base + "kernels")
+    interpret("G0 X1\n" * 400)  # compiled before a clock runs
     for name, value in (
         ("interpreter.MAX_STEPS", 3000),
         ("program.MAX_MOVES", 20_000),

@@ -52,6 +52,8 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
         cutting=_spread(cuts, counts, False),
         block=_spread(program.line, counts, program.line[0]),
         n_s=_spread(program.n_s, counts, program.n_s[0]),
+        ccw=_spread(program.ccw, counts, program.ccw[0]),
+        dwell=_at_first(program.dwell, first, len(p)),
         tool=_spread(program.tool, counts, program.tool[0]),
         findings=program.findings,
         units=program.units or "mm",
@@ -89,6 +91,15 @@ def _spread(values: Any, counts: IntArray, first: Any) -> Any:
     out = np.empty(int(counts.sum()) + 1, dtype=values.dtype)
     out[0] = first
     out[1:] = np.repeat(values, counts)
+    return out
+
+
+def _at_first(values: FloatArray, first: IntArray, count: int) -> FloatArray:
+    """A value of each move for the first of its ``count`` points alone, 0 for the others (one 0 if all are)."""
+    if not values.any():
+        return np.zeros(1)
+    out = np.zeros(count)
+    out[first] = values
     return out
 
 

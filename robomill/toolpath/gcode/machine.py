@@ -44,7 +44,7 @@ class Machine:
     (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are
     those of the last refusal, ``initial_level`` is where a row of cycles began (NaN outside of one). ``sent`` is the
     end of the last straight move that was recorded: after a tool change or an input the machine is asked where it
-    stands and answers with that, as LinuxCNC's preview does.
+    stands and answers with that, as LinuxCNC's preview does. ``waited`` are the seconds of dwells since the last move.
     """
 
     def __init__(self, tools: ToolTable | None) -> None:
@@ -74,7 +74,7 @@ class Machine:
         self.spline_order = 3
         self.line = 0
         self.return_value, self.value_returned = 0.0, 0.0
-        self.dwells, self.dwell_time = 0, 0.0
+        self.dwells, self.dwell_time, self.waited = 0, 0.0, 0.0
         self.messages: list[tuple[int, str]] = []
 
     # --- units
@@ -146,6 +146,7 @@ class Machine:
         """Count a dwell."""
         self.dwells += 1
         self.dwell_time += max(seconds, 0.0)
+        self.waited += max(seconds, 0.0)
 
     # --- tools
     def find_tool(self, number: int) -> Tool | None:

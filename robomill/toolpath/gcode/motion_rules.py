@@ -43,6 +43,7 @@ STATE = np.dtype(
         ("factor", "f8"),
         ("feed", "f8"),
         ("speed", "f8"),
+        ("waited", "f8"),
         ("initial_level", "f8"),
         ("unit_code", "i8"),
         ("motion", "i8"),
@@ -73,6 +74,8 @@ MOVE = np.dtype(
         ("sweep", "f8"),
         ("v_f", "f8"),
         ("n_s", "f8"),
+        ("ccw", "?"),
+        ("dwell", "f8"),
         ("tool", "i4"),
     ]
 )
@@ -206,7 +209,9 @@ def write_move(m, kind: int, end, v_f: float, row) -> None:
     row.kind = kind
     row.v_f = v_f
     row.n_s = spindle_speed(m) if m.spindle != 0 else 0.0
+    row.ccw = m.spindle < 0
     row.tool = m.in_spindle
+    row.dwell, m.waited = m.waited, 0.0
     for axis in range(3):
         row.start[axis], row.rotary0[axis] = m.at[axis], m.turned[axis]
         row.rotary[axis] = math.radians(end[3 + axis] + m.g92[3 + axis] + m.g5x[3 + axis])

@@ -41,6 +41,8 @@ class Program:
     sweep     (m,) rad       signed sweep of arcs (clockwise negative), 0 for straight moves
     v_f       (m,) m/s       feed rate, 0 for traverses
     n_s       (m,) 1/s       spindle speed, 0 where stopped
+    ccw       (m,) bool      the spindle turns counter-clockwise (M4)
+    dwell     (m,) s         stood still before the move
     tool      (m,) int       tool number in the spindle
     """
 
@@ -57,6 +59,8 @@ class Program:
     sweep: FloatArray
     v_f: FloatArray
     n_s: FloatArray
+    ccw: BoolArray
+    dwell: FloatArray
     tool: IntArray
     units: str = ""
     dialect: str = "linuxcnc"
@@ -115,8 +119,8 @@ class Move:
     def __init__(self, line: int = 0) -> None:
         self.line = line
         self.kind = self.plane = self.turns = self.tool = 0
-        self.clockwise = False
-        self.sweep = self.v_f = self.n_s = 0.0
+        self.clockwise = self.ccw = False
+        self.sweep = self.v_f = self.n_s = self.dwell = 0.0
         self.start, self.end, self.centre = [0.0] * 3, [0.0] * 3, [0.0] * 3
         self.rotary0, self.rotary = [0.0] * 3, [0.0] * 3
 

@@ -1,0 +1,87 @@
+"""Which way the spindle turns and where the program waits, from the words to the short steps.
+
+The truth is a walk through the words by hand: modal M3, M4, M5 as a state, G4 as seconds before the next move.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.io.gcode_out import write_gcode
+from robomill.toolpath.apt import read_apt
+from robomill.toolpath.gcode import read_gcode
+from robomill.toolpath.path import toolpath_from_lines
+from robomill.toolpath.sampling import resample
+
+WORDS = [
+    *("M3 S600", "G1 X1 F600", "X2", "M5", "X3", "M4", "X4", "G4 P0.5", "G4 P0.25", "G2 X6 I1", "X8 I1"),
+    *("M3", "G1 X9", "M4 S0", "X10", "S900", "G0 X11", "G4 P2", "M2"),
+]
+
+
+def truth() -> tuple[list[bool], list[float]]:
+    """Sense and dwell of each move of WORDS."""
+    sense, waited, speed = 0, 0.0, 0.0
+    ccw, dwell = [], []
+    for line in WORDS:
+        words = line.split()
+        speed = next((float(w[1:]) for w in words if w[0] == "S"), speed)
+        sense = {"M3": 1, "M4": -1, "M5": 0}.get(words[0], sense)
+        if words[0] == "G4":
+            waited += float(words[1][1:])
+        if any(w[0] == "X" for w in words):
+            ccw.append(sense < 0)
+            dwell.append(waited)
+            waited = 0.0
+    return ccw, dwell
+
+
+@pytest.mark.parametrize("padding", [0, 40, 25_000], ids=["by words", "by words, longer", "compiled"])
+def test_the_sense_and_the_dwell_stand_with_the_move(padding: int) -> None:
+    path = read_gcode("\n".join(["G21", *WORDS[:-1], *["X11 (stays)"] * padding, "M2"]), chord_error=1e-3)
+    ccw, dwell = truth()
+    moves = np.unique(path.block[1:], return_index=True)[1] + 1  # the first point of each line
+    assert path.ccw[moves][: len(ccw)].tolist() == ccw
+    assert path.dwell[moves][: len(dwell)] == pytest.approx(dwell)
+    assert path.dwell.sum() == pytest.approx(sum(dwell) + (2.0 if padding else 0.0))
+    assert [bool(path.ccw[path.block == line].all()) for line in path.block[moves][: len(ccw)]] == ccw
+
+
+def test_short_steps_keep_the_sense_and_wait_once() -> None:
+    path = read_gcode("\n".join(WORDS))
+    fine = resample(path, 1e-4)
+    assert fine.dwell.sum() == pytest.approx(path.dwell.sum())
+    for line in np.unique(path.block):
+        assert set(fine.ccw[fine.block == line]) == set(path.ccw[path.block == line])
+    waits = np.flatnonzero(fine.dwell)
+    assert (fine.block[waits] != fine.block[waits - 1]).all()
+
+
+def test_the_sense_counts_in_the_digest_and_defaults_to_clockwise() -> None:
+    right, left = (read_gcode(f"{m} S600\nG1 X1 F60\nM2\n") for m in ("M3", "M4"))
+    assert right.digest() != left.digest()
+    assert not toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], 0.01, 10.0).ccw.any()
+
+
+def test_a_cycle_waits_at_the_bottom() -> None:
+    path = read_gcode("M3 S600\nG82 X1 Z-2 R1 P0.5 F60\nX2\nG80\nM2\n")
+    waits = np.flatnonzero(path.dwell)
+    assert path.dwell[waits].tolist() == [0.5, 0.5]
+    assert path.p[waits - 1, 2] == pytest.approx(-2e-3)
+
+
+def test_written_and_read_again() -> None:
+    path = read_gcode("\n".join(word.replace("S0", "S1") for word in WORDS))
+    again = read_gcode(write_gcode(path))
+    assert again.ccw.tolist() == path.ccw.tolist()
+    assert again.dwell == pytest.approx(path.dwell)
+
+
+def test_apt_says_it_too() -> None:
+    path = read_apt(
+        "UNITS/MM\nSPINDL/600,RPM,CCLW\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nDELAY/1.5\nSPINDL/600,CLW\nGOTO/2,0,0\n"
+        "DELAY/5,REV\nGOTO/3,0,0\nSPINDL/OFF\nGOTO/4,0,0\nFINI\n"
+    )
+    assert path.ccw.tolist() == [True, True, False, False, False]
+    assert path.dwell.tolist() == [0.0, 0.0, 1.5, 0.5, 0.0]
