@@ -8,8 +8,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
-from robomill.ui.identification import cut, laboratory, measured_map, models, plan, results, words
-from robomill.ui.identification import inputs as panel
+from robomill.ui.identification import cut, inputs, laboratory, measured_map, models, plan, results, words
 from robomill.ui.identification.bench import Bench, bench, fit_of, robot_of, tests_of
 
 
@@ -29,17 +28,17 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length)))
     left, right = ui.split([1, 2.3], "page", gap="large")
     with left:
-        panel.source(kept, robot)
-        panel.said(tests, refusal, panel.findings(tests, result, robot))
-        panel.robot_choice(kept)
-        panel.model_choice(kept, robot)
+        inputs.source(kept, robot)
+        inputs.said(tests, refusal, inputs.findings(tests, result, robot))
+        inputs.robot_choice(kept)
+        inputs.model_choice(kept, robot)
         if result is not None:
-            panel.use(kept, robot, result)
+            inputs.use(kept, robot, result)
     with right:
         if result is None:
             st.info("Mend what is named beside; your rows are kept as they are.", icon=":material/arrow_back:")
             return
-        view_name = panel.choose("view", panel.VIEWS)
+        view_name = inputs.choose("view", inputs.VIEWS)
         if view_name == "compliances":
             results.compliances(result, robot, view.joint_unit, dark)
         elif view_name == "residuals":
@@ -54,6 +53,6 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
 
 project = ui.begin("Identification")
 top = st.container()
-section = panel.choose("section", panel.SECTIONS)
+section = inputs.choose("section", inputs.SECTIONS)
 show = {"tests": load_tests, "map": measured_map.page, "laboratory": laboratory.page}[section]
 show(bench(), project.view, ui.dark(), top)

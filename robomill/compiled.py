@@ -120,24 +120,30 @@ class Kernel:
 
     @cached_property
     def code(self) -> Any:
-        """The machine code. An entry of the cache that cannot be read is removed and made again."""
+        """The machine code: made once, however many threads ask for it at the same moment."""
+        with _lock:
+            if "code" not in vars(self):  # another thread may have made it while this one waited
+                vars(self)["code"] = self._made()
+            return vars(self)["code"]
+
+    def _made(self) -> Any:
+        """Compiled or loaded. An entry of the cache that cannot be read is removed and made again."""
         from numba import config
         from numba.core.errors import NumbaError
 
-        with _lock:
-            _prepare()
-            before = config.CACHE_DIR  # type: ignore[attr-defined]
-            config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
-            try:
-                return _compile(self.plain)
-            except NumbaError:
-                raise
-            except Exception:  # whatever a damaged file makes of the unpickling or of the linker
-                for file in kept_in().glob(f"*/*{self.__name__}-*"):
-                    file.unlink(missing_ok=True)
-                return _compile(self.plain)
-            finally:
-                config.CACHE_DIR = before  # type: ignore[attr-defined]
+        _prepare()
+        before = config.CACHE_DIR  # type: ignore[attr-defined]
+        config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
+        try:
+            return _compile(self.plain)
+        except NumbaError:
+            raise
+        except Exception:  # whatever a damaged file makes of the unpickling or of the linker
+            for file in kept_in().glob(f"*/*{self.__name__}-*"):
+                file.unlink(missing_ok=True)
+            return _compile(self.plain)
+        finally:
+            config.CACHE_DIR = before  # type: ignore[attr-defined]
 
 
 def _compile(function: Callable[..., Any]) -> Any:

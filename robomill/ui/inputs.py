@@ -21,13 +21,18 @@ from robomill.ui.project import read_field, with_field
 
 @dataclass(frozen=True)
 class Look:
-    """How an input is shown: as a list or stacked instead of a row, without its label, with a hint, or greyed."""
+    """How an input is shown: as a list or stacked instead of a row, without its label, with a hint, or greyed.
+
+    A list of which ``most`` can be chosen says ``placeholder`` while none is.
+    """
 
     listed: bool = False
     stacked: bool = False
     hidden: bool = False
     hint: str | None = None
     disabled: bool = False
+    most: int | None = None
+    placeholder: str | None = None
 
     @property
     def label_visibility(self) -> Literal["visible", "collapsed"]:
@@ -159,18 +164,20 @@ def several(
     options: Mapping[Any, str],
     current: Sequence[Any],
     write: Callable[[list[Any]], None],
-    **shown: Any,
+    look: Look = LISTED,
 ) -> None:
-    """A choice of any number of options; ``write`` gets the list of those chosen, ``shown`` goes to Streamlit."""
+    """A choice of any number of options, as a list or in a row; ``write`` gets the list of those chosen."""
     seed(key, list(current))
-    st.multiselect(
-        label,
-        list(options),
-        key=key,
-        format_func=lambda k: options[k],
-        on_change=lambda: submit(key, st.session_state[key], lambda: write(list(st.session_state[key]))),
-        **shown,
-    )
+    common: dict[str, Any] = {
+        "key": key,
+        "format_func": lambda k: options[k],
+        "on_change": lambda: submit(key, st.session_state[key], lambda: write(list(st.session_state[key]))),
+        "label_visibility": look.label_visibility,
+    }
+    if look.listed:
+        st.multiselect(label, list(options), max_selections=look.most, placeholder=look.placeholder, **common)
+    else:
+        st.pills(label, list(options), selection_mode="multi", **common)
     sentence(key)
 
 
@@ -198,7 +205,7 @@ def slider(
         low,
         high,
         key=key,
-        step=span.step,
+        step=float(span.step),
         format=span.form,
         help=look.hint,
         disabled=look.disabled,

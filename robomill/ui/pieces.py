@@ -6,6 +6,7 @@ import html
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import streamlit as st
@@ -141,14 +142,14 @@ def figure(
     name: str = "",
     caption: str = "",
     alt: str = "",
-    on_select: Callable[[], None] | None = None,
+    on_pick: Callable[[Mapping[str, Any]], None] | None = None,
     lazy: bool = False,
-) -> Any:
+) -> None:
     """A plotly figure that keeps its camera, with its table twin and CSV beneath and PNG in its own tool bar.
 
     A ``lazy`` table is made when it is opened: maps are redrawn at every slider step, their tables are not.
     ``name`` is the file name of what is taken away (default: the key), ``alt`` what a screen reader says,
-    ``on_select`` a callback for picked points (the picked points are returned, too).
+    ``on_pick`` gets the point that was clicked, as plotly says it (its x, y and customdata).
     """
     file_name = name or key
     config = {
@@ -168,15 +169,24 @@ def figure(
         ],
         "toImageButtonOptions": {"format": "png", "filename": f"robomill-{file_name}", "scale": 2},
     }
-    more: dict[str, Any] = {"on_select": on_select, "selection_mode": "points"} if on_select else {}
-    picked = st.plotly_chart(fig, key=key, theme=None, config=config, alt=alt or None, **more)
+    more: dict[str, Any] = {}
+    if on_pick is not None:
+        more = {"on_select": partial(_picked, key, on_pick), "selection_mode": "points"}
+    st.plotly_chart(fig, key=key, theme=None, config=config, alt=alt or None, **more)
     if caption or table is not None:
         with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute", gap="small"):
             if caption:
                 note(caption)
             if table is not None:
                 table_twin(table, file_name, key if lazy else "")
-    return picked
+
+
+def _picked(key: str, take: Callable[[Mapping[str, Any]], None]) -> None:
+    # The figure's own state: Streamlit says there which points were clicked.
+    said = st.session_state.get(key)
+    points = said["selection"]["points"] if said else []
+    if points:
+        take(points[0])
 
 
 def table_twin(table: Callable[[], Columns], name: str, asked: str = "") -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.viz.along import Along, add_band
-from robomill.viz.theme import axis_colours, joint_colours, palette, rgba
+from robomill.viz.theme import axis_colours, joint_colours, palette, rgba, say
 
 DASHES = {"x": "dot", "y": "solid", "z": "dash"}
 
@@ -65,16 +66,8 @@ def components_figure(c: Components, *, dark: bool, height: int = 300, station: 
         plot.curve(c.delta[:, column], words, line, "%{y:+.4f} " + c.unit, customdata=lines)
     for side in (1, -1) if np.nanmin(c.delta, initial=0.0) < -0.6 * c.tolerance else (1,):
         plot.level(side * c.tolerance, p.bad)
-    plot.fig.add_annotation(
-        x=1,
-        xref="paper",
-        y=c.tolerance,
-        yshift=9,
-        xanchor="right",
-        text=f"tolerance {c.tolerance:g} {c.unit}",
-        showarrow=False,
-        font={"size": 12, "color": p.bad},
-    )
+    words = f"tolerance {c.tolerance:g} {c.unit}"
+    say(plot.fig, words, 1, c.tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
     plot.zero()
     _name_station(plot, station)
     return plot.done(f"Deviation in {{M}}, {c.unit}", station)
@@ -144,14 +137,5 @@ def _without_the_small(shares: FloatArray, names: Sequence[str]) -> tuple[FloatA
 
 def _name_station(plot: Along, station: float | None) -> None:
     if station is not None:
-        plot.fig.add_annotation(
-            x=station,
-            y=0,
-            yref="paper",
-            yshift=10,
-            xshift=4,
-            xanchor="left",
-            text="station",
-            showarrow=False,
-            font={"size": 12, "color": palette(plot.dark).accent},
-        )
+        beside: dict[str, Any] = {"yref": "paper", "yshift": 10, "xshift": 4, "xanchor": "left"}
+        say(plot.fig, "station", station, 0, palette(plot.dark).accent, **beside)

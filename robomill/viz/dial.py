@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_value
-from robomill.viz.theme import figure, palette, rgba
+from robomill.viz.theme import arrow, figure, palette, rgba, say
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
     _teeth(fig, dial, p.muted)
     _turning(fig, dial, p.muted)
     _forces(fig, dial, dark)
-    fig.add_annotation(x=0, y=1.86, text="feed ↑", showarrow=False, font={"size": 12, "color": p.muted})
+    say(fig, "feed ↑", 0, 1.86, p.muted)
     size = float(np.hypot(*dial.force[:2]))
     words = f"{size:.0f} N across" if dial.engaged or size > 0 else "in air"
     down = (
@@ -64,7 +64,7 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
         if abs(dial.force[2]) < 0.05
         else f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
     )
-    fig.add_annotation(x=0, y=-1.72, text=words + down, showarrow=False, font={"size": 13, "color": p.text})
+    say(fig, words + down, 0, -1.72, p.text, size=13)
     fig.update_layout(
         showlegend=False,
         hovermode="closest",
@@ -127,16 +127,8 @@ def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
         hovertemplate=f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>"
         f"depth {format_value(dial.depth, dial.unit)}<extra></extra>",
     )
-    at = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
-    fig.add_annotation(
-        x=float(at[0]),
-        y=float(at[1]),
-        text=f"{arc:.0f}°",
-        showarrow=False,
-        bgcolor=rgba(p.background, 0.75),
-        font={"size": 13, "color": p.warm},
-        borderpad=2,
-    )
+    x, y = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
+    say(fig, f"{arc:.0f}°", float(x), float(y), p.warm, size=13, bgcolor=rgba(p.background, 0.75), borderpad=2)
 
 
 def _teeth(fig: go.Figure, dial: Dial, colour: str) -> None:
@@ -153,21 +145,7 @@ def _turning(fig: go.Figure, dial: Dial, colour: str) -> None:
     phi = 250.0 + turn * np.linspace(-24, 24, 25)
     x, y = _place(phi, 1.17)
     fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
-    fig.add_annotation(
-        x=x[-1],
-        y=y[-1],
-        ax=x[-3],
-        ay=y[-3],
-        xref="x",
-        yref="y",
-        axref="x",
-        ayref="y",
-        text="",
-        showarrow=True,
-        arrowhead=2,
-        arrowwidth=1.4,
-        arrowcolor=colour,
-    )
+    arrow(fig, (x[-3], y[-3]), (x[-1], y[-1]), colour, 1.4)
 
 
 def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
@@ -183,22 +161,6 @@ def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
             hovertemplate="another row of the alloy<extra></extra>",
         )
     for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
-        if force is None or float(np.hypot(force[0], force[1])) < 1e-9:
-            continue
-        fig.add_annotation(
-            x=-force[1] / scale,
-            y=force[0] / scale,
-            ax=0,
-            ay=0,
-            xref="x",
-            yref="y",
-            axref="x",
-            ayref="y",
-            text="",
-            showarrow=True,
-            arrowhead=2,
-            arrowsize=1.0,
-            arrowwidth=width,
-            arrowcolor=colour,
-        )
+        if force is not None and float(np.hypot(force[0], force[1])) >= 1e-9:
+            arrow(fig, (0.0, 0.0), (-force[1] / scale, force[0] / scale), colour, width)
     fig.add_scatter(x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")

@@ -197,16 +197,7 @@ def models_figure(
             hoverinfo="skip",
             line={"color": rgba(p.warm, 0.55), "width": 6},
         )
-        fig.add_annotation(
-            x=1.0,
-            xref="paper",
-            xshift=8,
-            y=k,
-            xanchor="left",
-            text=f"{left_out[k]:.2f} %",
-            showarrow=False,
-            font={"size": 13, "color": p.text},
-        )
+        say(fig, f"{left_out[k]:.2f} %", 1.0, float(k), p.text, size=13, xref="paper", xshift=8, xanchor="left")
     fig.add_scatter(
         x=in_sample,
         y=y,

@@ -140,15 +140,8 @@ def sheet_figure(
     return unchecked(data, layout)
 
 
-def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, event: Any) -> tuple[float, float] | None:
-    """(u, v) of the point clicked, from what the screen returns; None where nothing was picked."""
-    try:
-        points = event["selection"]["points"]
-    except (KeyError, TypeError):
-        return None
-    if not points:
-        return None
-    u, v = float(points[0]["x"]), float(points[0]["y"])
+def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, u: float, v: float) -> tuple[float, float]:
+    """(u, v) of the grid's point next to where was clicked."""
     return float(sheet_u[np.abs(sheet_u - u).argmin()]), float(sheet_v[np.abs(sheet_v - v).argmin()])
 
 

@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.viz.along import Along
-from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba
+from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba, say
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,15 +85,7 @@ def histogram_figure(
     )
     for side, words in ((-1, "− tolerance"), (1, "+ tolerance")):
         fig.add_vline(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
-        fig.add_annotation(
-            x=side * tolerance,
-            y=1.0,
-            yref="paper",
-            yanchor="bottom",
-            text=words,
-            showarrow=False,
-            font={"size": 12, "color": p.bad},
-        )
+        say(fig, words, side * tolerance, 1.0, p.bad, yref="paper", yanchor="bottom")
     reach = max(1.12 * tolerance, float(np.abs(edges).max()) * 1.04)
     fig.update_layout(
         xaxis=axis(f"Signed error, {unit} (− too deep, + material left)", dark=dark, range=[-reach, reach]),

@@ -10,9 +10,9 @@ import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_value
-from robomill.viz.theme import axis, figure, palette, rgba, say
+from robomill.viz.theme import Point, arrow, axis, figure, palette, rgba, say
 
-Point = tuple[float, float]
+HEAD = {"arrowhead": 3, "arrowsize": 1.1}
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,20 +82,20 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
         return
     for x in walls:
         _line(fig, (x, d.top + 0.08 * step), (x, over + 0.14 * step), p.muted)
-        _arrow(fig, (centre, over), (x, over), p.text)
+        arrow(fig, (centre, over), (x, over), p.text, **HEAD)
     _text(fig, (centre, over), _width(d), p.text, dark)
 
     beside, middle = walls[0] - 0.75 * step, 0.5 * (d.top + d.floor)
     _line(fig, (walls[0] + 0.1 * step, d.floor), (beside - 0.15 * step, d.floor), p.muted)
     for y in (d.top, d.floor):
-        _arrow(fig, (beside, middle), (beside, y), p.text)
+        arrow(fig, (beside, middle), (beside, y), p.text, **HEAD)
     _text(fig, (beside, middle), _depth(d), p.text, dark)
 
     under, side, reach = d.floor - 0.42 * step, 1.0 if d.centre_offset >= 0 else -1.0, 0.55 * step
     for x, colour in ((ideal_centre, p.accent), (centre, p.warm)):
         _line(fig, (x, d.floor - 0.62 * step), (x, d.top + 0.45 * step), colour, "dashdot")
-    _arrow(fig, (centre + side * reach, under), (centre, under), p.warm)
-    _arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm)
+    arrow(fig, (centre + side * reach, under), (centre, under), p.warm, **HEAD)
+    arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm, **HEAD)
     _text(fig, (centre + side * reach, under), _off(d), p.warm, dark, "right" if side > 0 else "left")
     _text(fig, (0.5 * (walls[1] + seen[1]), d.floor), _floor(d), p.warm, dark)
 
@@ -108,7 +108,7 @@ def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, flo
     middle = 0.5 * (min(ends) + max(ends))
     for wall in inside:
         _line(fig, (wall, d.top), (wall, over), p.muted)
-        _arrow(fig, (middle, over), (wall, over), p.text)
+        arrow(fig, (middle, over), (wall, over), p.text, **HEAD)
     for end in ends[len(inside) :]:
         _line(fig, (middle, over), (end, over), p.text)
     _text(fig, (middle, over), f"{_width(d)}, {_depth(d)}", p.text, dark)
@@ -134,26 +134,6 @@ def _floor(d: SectionDrawing) -> str:
 def _line(fig: go.Figure, a: Point, b: Point, colour: str, dash: str = "solid") -> None:
     line = {"color": colour, "width": 1, "dash": dash}
     fig.add_shape(type="line", x0=a[0], y0=a[1], x1=b[0], y1=b[1], line=line)
-
-
-def _arrow(fig: go.Figure, tail: tuple[float, float], head: tuple[float, float], colour: str) -> None:
-    fig.add_annotation(
-        x=head[0],
-        y=head[1],
-        ax=tail[0],
-        ay=tail[1],
-        xref="x",
-        yref="y",
-        axref="x",
-        ayref="y",
-        text="",
-        showarrow=True,
-        arrowhead=3,
-        arrowsize=1.1,
-        arrowwidth=1.2,
-        arrowcolor=colour,
-        standoff=0,
-    )
 
 
 def _text(fig: go.Figure, at: Point, text: str, colour: str, dark: bool, xanchor: str = "center") -> None:

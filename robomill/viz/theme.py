@@ -24,6 +24,8 @@ DIVERGING = [[0.0, "#08457E"], [0.25, "#4E93C8"], [0.5, "#ECECE8"], [0.75, "#E89
 DIVERGING_DARK = [[0.0, "#6FC1FF"], [0.25, "#2F7DB5"], [0.5, "#3A444B"], [0.75, "#D07A2C"], [1.0, "#FFB368"]]
 SEQUENTIAL = "Cividis"
 
+Point = tuple[float, float]
+
 
 @dataclass(frozen=True)
 class Palette:
@@ -143,6 +145,13 @@ def say(fig: go.Figure, text: str, x: float, y: float, colour: str, **more: Any)
     """Words in a plane figure, without an arrow; ``more`` says what x and y refer to and where they are anchored."""
     font = {"size": more.pop("size", 12), "color": colour}
     fig.add_annotation(x=x, y=y, text=text, showarrow=False, font=font, **more)
+
+
+def arrow(fig: go.Figure, tail: Point, head: Point, colour: str, width: float = 1.2, **more: Any) -> None:
+    """An arrow in the axes of a plane figure; ``more`` says how its head looks."""
+    drawn = {"arrowhead": 2, **more, "arrowwidth": width, "arrowcolor": colour, "showarrow": True, "text": ""}
+    axes = {"xref": "x", "yref": "y", "axref": "x", "ayref": "y"}
+    fig.add_annotation(x=head[0], y=head[1], ax=tail[0], ay=tail[1], **axes, **drawn)
 
 
 def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:

@@ -4,6 +4,9 @@ import importlib
 import os
 import subprocess
 import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -94,6 +97,29 @@ def test_a_damaged_cache_heals(folder, suffix, damage):
     np.testing.assert_allclose(result()[0], EXPECTED)
     _, total = result()
     assert sum(total.code.stats.cache_hits.values()) == 1
+
+
+def test_two_threads_that_ask_at_the_same_moment_make_one_code(folder, monkeypatch):
+    sys.modules.pop("sums_kernels", None)
+    total = importlib.import_module("sums_kernels").total
+    asked, made = threading.Barrier(2), []
+
+    def slowly(function):
+        made.append(function)
+        time.sleep(0.05)  # whoever did not wait is here by now
+        return len(made)
+
+    monkeypatch.setattr(compiled, "_compile", slowly)
+    look = type(total).code.func  # Python from 3.12 on puts no lock of its own around it
+
+    def ask():
+        asked.wait()
+        return look(total)
+
+    with ThreadPoolExecutor(2) as pool:
+        answers = [future.result() for future in [pool.submit(ask), pool.submit(ask)]]
+    assert answers == [1, 1]
+    assert total.code == 1
 
 
 def test_every_kernel_module_is_found_and_none_is_imported_by_the_core():

@@ -193,7 +193,7 @@ def test_worst_point_and_lines_move_the_scrubber(app: AppTest) -> None:
     assert store(app).project.view.station == pytest.approx(1.0)
     assert "▸ 7" in words(app)
     app.slider(key="view.station").set_value(10.0).run()
-    app.button(key="scrub:worst").click().run()
+    app.button(key="milling.worst").click().run()
     assert store(app).project.view.station == pytest.approx(1.0)
 
 
@@ -329,12 +329,12 @@ def test_a_bad_stock_is_one_sentence_and_the_stock_stays(app: AppTest) -> None:
 
 def test_a_measured_profile_lies_over_the_prediction(app: AppTest) -> None:
     milling(app)
-    give(app, "profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\n50,0.30\n90,0.29\n")
+    give(app, "milling.profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\n50,0.30\n90,0.29\n")
     assert not app.exception
     text = words(app)
     assert "cmm.csv" in text
     assert "it gives 78 % of what was measured" in text
-    give(app, "profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\nfifty,0.30\n")
+    give(app, "milling.profile.file:0", "cmm.csv", b"station_mm,offset_mm\n10,0.29\nfifty,0.30\n")
     assert not app.exception
     assert "cmm.csv, row 3, column station_mm" in errors(app)[0]
     assert "cmm.csv" in words(app), "the good profile stays"

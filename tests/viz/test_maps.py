@@ -85,10 +85,7 @@ def test_two_scales_have_a_bar_each() -> None:
 
 
 def test_a_pick_snaps_to_the_grid() -> None:
-    event = {"selection": {"points": [{"x": 48.0, "y": -1290.0}]}}
-    assert picked_point(U, V, event) == (0.0, -1300.0)
-    assert picked_point(U, V, {"selection": {"points": []}}) is None
-    assert picked_point(U, V, None) is None
+    assert picked_point(U, V, 48.0, -1290.0) == (0.0, -1300.0)
 
 
 def test_hover_words() -> None:

@@ -46,9 +46,7 @@ def controls(robot: Robot, view: MapView) -> None:
         candidates(robot, view),
         chosen(robot, view),
         lambda keys: session.see(against=tuple(keys)),
-        max_selections=MOST,
-        label_visibility="collapsed",
-        placeholder="Robots or compliance sets",
+        inputs.Look(listed=True, hidden=True, most=MOST, placeholder="Robots or compliance sets"),
     )
 
 

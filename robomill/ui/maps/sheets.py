@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -109,10 +109,9 @@ def draw(cut: Cut, drawn: MapSheet, words: Words, table: Callable[[], Any]) -> N
     fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=revision, gap_x=0.03, gap_y=34)
     widget = f"sheet-{words.key}"
 
-    def take() -> None:
-        found = picked_point(drawn.u, drawn.v, st.session_state.get(widget))
-        if found is not None:
-            session.keep("maps.clicked", (cut.normal, cut.at, found))
+    def take(point: Mapping[str, Any]) -> None:
+        found = picked_point(drawn.u, drawn.v, float(point["x"]), float(point["y"]))
+        session.keep("maps.clicked", (cut.normal, cut.at, found))
 
     pieces.figure(
         fig,
@@ -121,7 +120,7 @@ def draw(cut: Cut, drawn: MapSheet, words: Words, table: Callable[[], Any]) -> N
         caption=words.caption,
         alt=words.alt,
         table=table,
-        on_select=take,
+        on_pick=take,
         lazy=True,
     )
     clicked = session.drop("maps.clicked")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import streamlit as st
@@ -17,7 +18,7 @@ from robomill.viz.picture import Camera
 from robomill.viz.views import surface_picture
 from robomill.viz.worker import RenderWorker
 
-KEY = "milling.film"
+KEY, COUNT = "milling.film", "milling.film.pictures"
 SIZE = (960, 544)
 EVERY_S = 0.5
 KINDS = {"gif": "GIF", "mp4": "MP4"}
@@ -99,14 +100,15 @@ def panel(result: SimulationResult, dark: bool) -> None:
     view = session.project().view
     kind, frames, make = st.columns([1, 2, 1.2], vertical_alignment="bottom")
     with kind:
-        chosen: Any = inputs.pick("Film as", "film.kind", KINDS)
+        chosen: Any = inputs.pick("Film as", "milling.film.kind", KINDS)
     with frames:
-        count = st.slider("Pictures", *FRAMES, 36, step=4, key="film.frames")
+        count = int(session.kept(COUNT, 36))
+        inputs.slider("Pictures", COUNT, inputs.Span(*FRAMES, 4, "%d"), count, partial(session.keep, COUNT))
     camera: Any = view.camera
     make.button(
         "Make the film",
         icon=":material/movie:",
-        key="film.make",
+        key="milling.film.make",
         width="stretch",
         on_click=lambda: _begin(Film(result, chosen, count, view.exaggeration, camera, dark)),
     )
@@ -138,7 +140,7 @@ def _waiting() -> None:
     words = "Writing the file" if film.done_frames == film.frames else f"Picture {film.done_frames} of {film.frames}"
     bar, cancel = st.columns([4, 1], vertical_alignment="center")
     bar.progress(film.done_frames / film.frames, words)
-    if cancel.button("Cancel", icon=":material/close:", key="film.cancel", width="stretch"):
+    if cancel.button("Cancel", icon=":material/close:", key="milling.film.cancel", width="stretch"):
         give_up()
         st.rerun()
 
@@ -155,7 +157,7 @@ def _finished(film: Film) -> None:
         st.image(film.data, width="stretch")
     else:
         st.video(film.data, autoplay=True, loop=True, muted=True)
-    pieces.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="get:film")
+    pieces.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="milling.get.film")
     pieces.note(
         f"{film.frames} pictures, {len(film.data) / 1e6:.1f} MB, displacement shown {format_times(film.times, 6)}."
     )

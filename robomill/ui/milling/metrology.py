@@ -136,12 +136,14 @@ def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:
 
 def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) -> None:
     with st.popover("Lay a measured profile over it", icon=":material/straighten:", type="secondary"):
-        inputs.upload("Measured profile (.csv): station_mm, offset_mm", "profile.file", _take, most_MB=MAX_PROFILE_MB)
+        inputs.upload(
+            "Measured profile (.csv): station_mm, offset_mm", "milling.profile.file", _take, most_MB=MAX_PROFILE_MB
+        )
         pieces.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
         if measured is not None:
             st.button(
                 "Take it away",
-                key="profile.clear",
+                key="milling.profile.clear",
                 icon=":material/close:",
                 on_click=session.drop,
                 args=(MEASURED,),

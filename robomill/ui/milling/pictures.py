@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ EXTRAS = {
     "so_far": "Cut so far",
 }
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
-HOW_KEY, EXTRAS_KEY = "picture.how", "picture.extras"
+VIEW, WITH = "milling.picture.view", "milling.picture.with"
 EYES = {
     "iso": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "up": {"x": 0, "y": 0, "z": 1}},
     "along": {"eye": {"x": -1.6, "y": 0.0, "z": 0.55}, "up": {"x": 0, "y": 0, "z": 1}},
@@ -83,7 +84,7 @@ def _controls() -> str:
     view = session.project().view
     first, camera, times = pieces.split([2.1, 1.3, 0.9], "picture", gap="small")
     with first:
-        how = inputs.pick("View", HOW_KEY, HOW)
+        how = inputs.pick("View", VIEW, HOW)
     with camera:
         inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: session.look(camera=c), inputs.LISTED)
     with times:
@@ -98,25 +99,19 @@ def _controls() -> str:
             inputs.LISTED,
         )
     if how != "turn":
-        chosen = session.kept(EXTRAS_KEY, ["plane"])
-        inputs.seed(EXTRAS_KEY, list(chosen))
-        st.pills(
-            "With",
-            list(EXTRAS),
-            selection_mode="multi",
-            key=EXTRAS_KEY,
-            format_func=lambda k: EXTRAS[k],
-            label_visibility="collapsed",
-            on_change=lambda: session.keep(EXTRAS_KEY, list(st.session_state[EXTRAS_KEY])),
-        )
+        inputs.several("With", WITH, EXTRAS, _extras(), partial(session.keep, WITH), inputs.HIDDEN)
     return str(how)
+
+
+def _extras() -> list[str]:
+    return list(session.kept(WITH, ["plane"]))
 
 
 def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
     """What is drawn, and the key it is kept under: all that it depends on."""
     view = session.project().view
-    extras = frozenset(session.kept(EXTRAS_KEY, ["plane"]))
-    pair = session.kept(HOW_KEY, "one") == "pair"
+    extras = frozenset(_extras())
+    pair = session.kept(VIEW, "one") == "pair"
     shown = cached.pictured(result.setup, view.exaggeration)
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
@@ -153,14 +148,14 @@ def downloads(result: SimulationResult, i: int) -> None:
             lambda: csv_text(deviation_columns(result)),
             "deviation.csv",
             "text/csv",
-            key="get:deviation",
+            key="milling.get.deviation",
         )
         pieces.download(
-            "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="get:png"
+            "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="milling.get.png"
         )
         for kind in FORMATS:
             pieces.download(
-                f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"get:{kind}"
+                f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"milling.get.{kind}"
             )
     pieces.note(
         f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "

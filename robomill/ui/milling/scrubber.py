@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
 import numpy as np
 import streamlit as st
@@ -52,7 +54,7 @@ def scrubber(result: SimulationResult) -> int:
             other = place + step
             st.button(
                 label,
-                key=f"scrub:{label.lower()}",
+                key=f"milling.{label.lower()}",
                 help=f"To the {words} that cuts",
                 disabled=not 0 <= other < len(lines),
                 on_click=_to_line,
@@ -60,7 +62,7 @@ def scrubber(result: SimulationResult) -> int:
             )
         st.button(
             "Worst",
-            key="scrub:worst",
+            key="milling.worst",
             icon=":material/my_location:",
             on_click=go_to,
             args=(result, result.worst),
@@ -130,29 +132,20 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
         else [""] * len(s)
     )
     add_picks(fig, s, size, words)
-    key = "linked-deviation"
     pieces.figure(
         fig,
-        key,
+        "linked-deviation",
         name="deviation",
         table=lambda: deviation_columns(result),
         caption=caption,
         alt="Deviation of the tool tip along the path, by component.",
-        on_select=_picker(result, key),
+        on_pick=partial(_station_at, result),
     )
 
 
-def _picker(result: SimulationResult, key: str) -> Callable[[], None]:
-    unit = session.project().view.length
-
-    def take() -> None:
-        picked = st.session_state.get(key)
-        points = picked["selection"]["points"] if picked else []
-        if points:
-            total = float(from_si(float(result.path.s[-1]), unit))
-            session.look(station=min(max(float(points[0]["x"]) / total, 0.0), 1.0))
-
-    return take
+def _station_at(result: SimulationResult, point: Mapping[str, Any]) -> None:
+    total = float(from_si(float(result.path.s[-1]), session.project().view.length))
+    session.look(station=min(max(float(point["x"]) / total, 0.0), 1.0))
 
 
 def at_feed(result: SimulationResult, values: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -54,7 +55,7 @@ def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResu
         key,
         name="toolpath",
         table=lambda: _columns(reach, result),
-        on_select=None if seen == "turn" else lambda: _point_at(key),
+        on_pick=None if seen == "turn" else _point_at,
         caption=caption + thinned,
         alt=alt,
     )
@@ -122,12 +123,10 @@ def _kept(drawn: PathReach | SimulationResult) -> IntArray:
     return decimate(path.p, path.cutting, drawn.reached, BUDGET, must)
 
 
-def _point_at(key: str) -> None:
-    """A click on the path points at its line; the figure's own state says which point was clicked."""
-    picked = st.session_state.get(key)
-    points = picked["selection"]["points"] if picked else []
-    if points and points[0].get("customdata") is not None:
-        data = points[0]["customdata"]
+def _point_at(point: Mapping[str, Any]) -> None:
+    """A click on the path points at its line."""
+    data = point.get("customdata")
+    if data is not None:
         select_line(int(data["0"] if isinstance(data, dict) else data[0]))
 
 
