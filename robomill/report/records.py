@@ -60,9 +60,20 @@ def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:
                 "joints": robot.n,
                 "compliance_sets": sorted(robot.compliance_sets),
                 "compliance_set": robot.compliance_set,
+                "provenance": said_of(robot),
             }
             for robot in robots
         ]
+    }
+
+
+def said_of(robot: Robot) -> dict[str, dict[str, str]]:
+    """What is said of each block of the robot's numbers: kind and source; of its compliance sets the one in force."""
+    in_force = f"compliance.{robot.compliance_set}"
+    return {
+        block: {"kind": said.kind, "source": said.source}
+        for block, said in robot.provenance.items()
+        if block == in_force or not block.startswith("compliance.")
     }
 
 
@@ -78,6 +89,7 @@ def pose_record(pose: PoseReport) -> dict[str, Any]:
         "det_J": pose.det_J if robot.n == 5 else None,
         "C_um_per_N": shown(pose.C, "um/N"),
         "joint_share_um_per_N": shown(pose.C_joint, "um/N"),
+        "provenance": said_of(robot),
     }
 
 
@@ -89,6 +101,7 @@ def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
         "reached": bool(ik.reached),
         "residual_m": float(ik.residual),
         "reason": ik.reason(),
+        "provenance": said_of(robot),
     }
 
 

@@ -38,6 +38,7 @@ def sources(setup: SimulationSetup) -> list[Source]:
         Source("D-H table", f"{robot.rows} joints, {robot.convention}", given.get("geometry", NOT_STATED)),
         Source("Link lengths", f"{lengths} mm", given.get("lengths", given.get("geometry", NOT_STATED))),
         Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
+        Source("Tool in the last axis", _tool(setup), given.get("tool", NOT_STATED)),
         Source("Path", f"{format_si(float(path.s[-1]), 'mm', 0)} at feed", given.get("path", NOT_STATED)),
         Source("Cutter", setup.cutter.title, given.get("cutter", NOT_STATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
@@ -50,6 +51,12 @@ def sources(setup: SimulationSetup) -> list[Source]:
 def _lengths(setup: SimulationSetup) -> list[float]:
     robot = setup.robot
     return [float(v) for v in np.concatenate([robot.a, robot.d]) if v != 0.0]
+
+
+def _tool(setup: SimulationSetup) -> str:
+    tip, k = setup.robot.T_tool[:3, 3], setup.robot.T_tool[:3, 2]
+    direction = ", ".join(format_significant(float(v) + 0.0) for v in np.round(k, 4))
+    return f"tip {format_many(tip, 'mm', 1)}, z_T along ({direction})"
 
 
 def _stock(setup: SimulationSetup) -> str:

@@ -17,7 +17,7 @@ AXES = "xyz"
 def field(request) -> ComplianceField:
     low, high = {
         "slavkovic_5r": ([-0.5, -2.2, -0.2], [0.7, -1.0, 0.1]),
-        "fanuc_r2000ic": ([1, -1, 0], [3, 1, 0.4]),
+        "fanuc_r2000ic": ([1.2, -1, 0], [3.4, 1, 0.4]),
         "planar_3r": ([-0.1, -0.4, 0], [1.4, 0.5, 0]),
     }[request.param]
     robot = rm.load_robot(request.param)
