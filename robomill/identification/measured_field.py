@@ -2,7 +2,8 @@
 
 Between the measured points the entries are interpolated linearly (multilinearly on a grid, over a Delaunay mesh
 otherwise), which keeps symmetric matrices symmetric and positive ones positive. Outside, or too far from any
-measured point, the answer is NaN. The map holds for the tool orientation it was measured at.
+measured point, the answer is NaN. The map holds for the tool orientation it was measured at; ``turned`` says how far
+another one is from it. ``standard_error`` says how sure the entries are (``map_error``).
 """
 
 from __future__ import annotations
@@ -14,10 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, as_floats, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
-from robomill.kinematics.transforms import world_from_pose
+from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
+from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import format_si
@@ -31,6 +33,7 @@ class MeasuredField:
     """Compliance matrices C (k, 3, 3) m/N measured with the tip at p (k, 3) m in {M}, tool orientation AB (k, 2) rad.
 
     reach (m): points further than this from every measured one are masked; chosen from the spacing unless given.
+    stderr (k, 3, 3) m/N: standard error of each entry; judged by the matrices' asymmetry unless given.
     """
 
     p: FloatArray
@@ -39,6 +42,7 @@ class MeasuredField:
     reach: float = 0.0
     source: str = ""
     synthetic: bool = False
+    stderr: FloatArray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         p = as_floats(self.p, "measured points", (None, 3), error=LoadTestError)
@@ -51,6 +55,9 @@ class MeasuredField:
         object.__setattr__(self, "p", frozen(p))
         object.__setattr__(self, "C", frozen(C))
         object.__setattr__(self, "AB", frozen(np.zeros((len(p), 2)) if self.AB is None else self.AB))
+        noise = np.full(C.shape, noise_by_asymmetry(C)) if self.stderr is None else self.stderr
+        stderr = as_floats(noise, "standard errors", C.shape, error=LoadTestError, finite=False)
+        object.__setattr__(self, "stderr", frozen(stderr))
         if self.reach <= 0.0:
             object.__setattr__(self, "reach", self._spacing())
 
@@ -63,7 +70,7 @@ class MeasuredField:
         pose = tests.pose_index()
         x_M = tests.x_M if tests.x_M is not None else world_from_pose(tests.tool_poses(robot))
         count = int(pose.max()) + 1
-        C, where = np.empty((count, 3, 3)), np.empty((count, 5))
+        C, where, spread = np.empty((count, 3, 3)), np.empty((count, 5)), np.empty((count, 3))
         for k in range(count):
             here = np.flatnonzero(pose == k)
             F, moved = tests.wrench[here, :3], tests.displacement[here, :3]
@@ -73,27 +80,66 @@ class MeasuredField:
                     "in three independent directions at every point."
                 )
             C[k] = np.linalg.lstsq(F, moved, rcond=None)[0].T
+            spread[k] = np.sqrt(np.diag(np.linalg.inv(F.T @ F)))
             where[k] = x_M[here[0]]
-        return cls(where[:, :3], C, where[:, 3:], reach, tests.source, tests.synthetic)
+        stderr = noise_of_tests(C, spread, tests.noise) * np.repeat(spread[:, None, :], 3, axis=1)
+        return cls(where[:, :3], C, where[:, 3:], reach, tests.source, tests.synthetic, stderr)
 
     # ---- between the points ----------------------------------------------------------------------------------------
     def compliance(self, p: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N with the tip at p (..., 3) m in {M}; NaN outside the measured region."""
         p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
+        return self._within_reach(p, self.C)
+
+    def _within_reach(self, p: FloatArray, values: FloatArray) -> FloatArray:
+        """Values (k, 3, 3) of the measured points at p (..., 3); NaN outside the measured region."""
         flat = p.reshape(-1, 3)
-        C = self._interpolate(flat)
-        C[self.distance(flat) > self.reach] = np.nan
-        return C.reshape(*p.shape[:-1], 3, 3)
+        found = self._interpolate(flat, values)
+        found[self.distance(flat) > self.reach] = np.nan
+        return found.reshape(*p.shape[:-1], 3, 3)
 
     def deflection(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
         """delta (..., 3) m under F (..., 3) N, eq. (15) with the measured C; NaN outside."""
         return np.einsum("...ij,...j->...i", self.compliance(p), np.asarray(F, dtype=np.float64))
 
+    def standard_error(self, p: ArrayLike) -> FloatArray:
+        """(..., 3, 3) m/N standard error of each entry of ``compliance(p)``; NaN where that is NaN or it is not known.
+
+        The measured points' own, as if neighbours erred alike (a gauge that stands askew does not average out), and
+        what a straight line between points may miss, as bent as the map is.
+        """
+        p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
+        return np.sqrt(self._within_reach(p, self.stderr**2) + self._bent**2)
+
+    def covariance(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
+        """(..., 3, 3) m^2: covariance of ``deflection(p, F)``, the entries' errors taken as independent."""
+        variance = np.einsum("...ij,...j->...i", self.standard_error(p) ** 2, np.asarray(F, dtype=np.float64) ** 2)
+        return variance[..., None] * np.eye(3)
+
+    def turned(self, p: ArrayLike, k: ArrayLike) -> FloatArray:
+        """(...) rad between unit tool axes k (..., 3) at p (..., 3) m in {M} and that of the nearest measured point."""
+        measured = axis_from_tilt(*self.AB.T)[self._nearest(p)[1]]
+        k = np.asarray(k, dtype=np.float64)
+        across = np.linalg.norm(np.cross(measured, k), axis=-1)
+        return np.asarray(np.arctan2(across, np.einsum("...i,...i->...", measured, k)), dtype=np.float64)
+
     def distance(self, p: ArrayLike) -> FloatArray:
         """(...) m to the nearest measured point."""
+        return self._nearest(p)[0]
+
+    def _nearest(self, p: ArrayLike) -> tuple[FloatArray, IntArray]:
         p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
-        known = np.where(np.isfinite(p), p, 1e6)
-        return np.asarray(self._tree.query(known)[0], dtype=np.float64)
+        far, index = self._tree.query(np.where(np.isfinite(p), p, 1e6))
+        return np.asarray(far, dtype=np.float64), np.asarray(index, dtype=np.int64)
+
+    @cached_property
+    def _bent(self) -> FloatArray:
+        return between_points(self.p[:, self._used], self.C, self.stderr)
+
+    @cached_property
+    def _used(self) -> IntArray:
+        """The axes along which the points vary."""
+        return np.flatnonzero(np.ptp(self.p, axis=0) > GRID)
 
     def inside(self, p: ArrayLike) -> BoolArray:
         """(...) bool: where the map answers."""
@@ -165,17 +211,17 @@ class MeasuredField:
             return 0.505 * float(np.linalg.norm(gaps))
         return 1.5 * float(self._tree.query(self.p, k=2)[0][:, 1].max())
 
-    def _interpolate(self, p: FloatArray) -> FloatArray:
-        """(m, 3, 3) over the axes along which the points vary; NaN outside them."""
+    def _interpolate(self, p: FloatArray, known: FloatArray) -> FloatArray:
+        """(m, 3, 3) from the measured points' ``known`` (k, 3, 3) over the axes that vary; NaN outside them."""
         from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
 
-        used = np.flatnonzero(np.ptp(self.p, axis=0) > GRID)
+        used = self._used
         if len(used) == 0:
-            return np.repeat(self.C, len(p), axis=0)
+            return np.repeat(known, len(p), axis=0)
         if self.lines is not None:
             axes = [self.lines[i] for i in used]
             order = np.lexsort(np.round(self.p[:, used] / GRID).T[::-1])
-            values = self.C[order].reshape(*(len(axis) for axis in axes), 3, 3)
+            values = known[order].reshape(*(len(axis) for axis in axes), 3, 3)
             ends = np.array([[axis[0], axis[-1]] for axis in axes])
             at = p[:, used]
             near = np.clip(at, ends[:, 0], ends[:, 1])
@@ -183,7 +229,7 @@ class MeasuredField:
             call = RegularGridInterpolator(axes, values, bounds_error=False, fill_value=np.nan)
             return np.asarray(call(at), dtype=np.float64)
         try:
-            mesh = LinearNDInterpolator(self.p[:, used], self.C.reshape(-1, 9))
+            mesh = LinearNDInterpolator(self.p[:, used], known.reshape(-1, 9))
         except Exception as exc:  # Qhull's own error type has no sentence a person could use
             raise LoadTestError("Measured map: the points lie on one line; measure off it too.") from exc
         return np.asarray(mesh(p[:, used])).reshape(-1, 3, 3)

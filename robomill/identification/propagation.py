@@ -20,6 +20,7 @@ from scipy.special import ndtri, stdtrit
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
+from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 
 STEP = 1e-6  # m, for the derivative with respect to a length
@@ -79,6 +80,20 @@ def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Kn
         parts[2] = L @ np.swapaxes(L, -1, -2)
     spread = [frozen(_spread(part)) for part in parts]
     return Uncertain(frozen(delta), frozen(sum(parts)), spread[0], spread[1], spread[2], known.dof)
+
+
+def uncertain_by_map(field: MeasuredField, p: ArrayLike, F: ArrayLike, force: FloatArray | None = None) -> Uncertain:
+    """delta = C F by a measured map at p (..., 3) m under F (..., 3) N in {M}, with the map's own uncertainty.
+
+    force: (3, 3) N^2 covariance of the force, None: certain. NaN where the map does not answer or knows no error.
+    """
+    C, F = field.compliance(p), as_floats(F, "F", (3,), error=RobomillError, finite=False)
+    delta = np.einsum("...ij,...j->...i", C, F)
+    parts = [field.covariance(p, F), np.zeros((*delta.shape, 3)), np.zeros((*delta.shape, 3))]
+    if force is not None:
+        parts[1] = parts[1] + C @ force @ np.swapaxes(C, -1, -2)
+    spread = [frozen(_spread(part)) for part in parts]
+    return Uncertain(frozen(delta), frozen(sum(parts)), spread[0], spread[1], spread[2])
 
 
 def length_derivative(robot: Robot, theta: FloatArray, F: FloatArray, known: Knowledge) -> FloatArray:

@@ -24,7 +24,10 @@ def map_from_table(table: Table, robot: Robot, folder: Path | None) -> MeasuredF
         if not len(p) == len(C) == len(AB):
             raise table.refuse("C_m_N", f"expected {len(p)} rows like p_mm, found {len(C)} and {len(AB)} of tilt_deg.")
         reach, source = table.number("reach_m", "m", 0.0), table.text("source", "")
-        field = MeasuredField(p, C, AB, reach, source, table.flag("synthetic", False))
+        stderr = table.rows("stderr_m_N", 9, "m/N").reshape(-1, 3, 3) if table.has("stderr_m_N") else None
+        if stderr is not None and len(stderr) != len(p):
+            raise table.refuse("stderr_m_N", f"expected {len(p)} rows like p_mm, found {len(stderr)}.")
+        field = MeasuredField(p, C, AB, reach, source, table.flag("synthetic", False), stderr)  # type: ignore[arg-type]
     table.finish()
     return field
 
@@ -35,7 +38,7 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
     def rows(values: Any, unit: str) -> list[list[float]]:
         return [[shown(v, unit) for v in row] for row in np.asarray(values)]
 
-    return {
+    data = {
         "p_mm": rows(field.p, "mm"),
         "C_m_N": rows(field.C.reshape(-1, 9), "m/N"),
         "tilt_deg": rows(field.AB, "deg"),
@@ -43,3 +46,6 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
         "source": field.source,
         "synthetic": field.synthetic,
     }
+    if np.isfinite(field.stderr).all():
+        data["stderr_m_N"] = rows(field.stderr.reshape(-1, 9), "m/N")
+    return data

@@ -262,3 +262,63 @@ def test_one_point_answers_for_its_surroundings():
     field = MeasuredField(np.array([[0, -1.3, 0]]), np.eye(3)[None] * 2e-6)
     assert field.compliance([0.0, -1.3, 0.04])[0, 0] == 2e-6
     assert not field.inside([0.0, -1.3, 0.06])
+
+
+# ---- how sure the map is -------------------------------------------------------------------------------------------
+def test_the_tilt_is_the_angle_between_the_axes():
+    """Against arccos of the dot product of axes made by rotation matrices; the nearest point's axis counts."""
+    A, B = 0.3, -0.4
+    k = rm.pose_from_world(np.array([0, 0, 0, A, B]))[:3, 2]
+    p = np.array([[0, 0, 0], [1.0, 0, 0]])
+    field = MeasuredField(p, np.tile(np.eye(3), (2, 1, 1)), np.array([[0.0, 0.0], [A, B]]))
+    assert field.turned([0.1, 0, 0], k) == pytest.approx(np.arccos(k[2]))
+    assert field.turned([[0.9, 0, 0]], [k])[0] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("loads", [1, 3])
+def test_the_standard_error_is_the_spread_of_maps_measured_again(loads):
+    """Maps of one linear arm measured many times with the same gauge: the spread of their entries is the truth."""
+    p, noise = grid_points(3, 3, 2), 4e-6
+    C, theta = linear_field(p), theta_at(p)
+    F = np.concatenate([np.eye(3) * load for load in (250.0, 150.0, 200.0)[:loads]])
+    rng, rows = np.random.default_rng(3), len(F)
+    found, said, covariances = [], [], []
+    for _ in range(60):
+        moved = np.einsum("kij,rj->kri", C, F).reshape(-1, 3) + noise * rng.standard_normal((rows * len(p), 3))
+        tests = LoadTests(np.tile(F, (len(p), 1)), moved, theta=np.repeat(theta, rows, axis=0))
+        field = MeasuredField.from_tests(ROBOT, tests)
+        found.append(field.compliance(p))
+        said.append(field.stderr)
+        covariances.append(field.covariance(p[4], [30.0, -80.0, 50.0]))
+    spread = np.sqrt(np.mean((np.array(found) - np.mean(found, axis=0)) ** 2))
+    assert np.sqrt(np.mean(np.square(said))) == pytest.approx(spread, rel=0.05)
+    delta = np.array(found)[:, 4] @ [30.0, -80.0, 50.0]
+    expected = np.sqrt(np.trace(np.cov(delta.T)))
+    assert expected < np.sqrt(np.trace(np.mean(covariances, axis=0))) * 1.15  # what lies between points is on top
+    assert np.sqrt(np.trace(np.mean(covariances, axis=0))) < 1.5 * expected
+
+
+def test_stated_noise_is_not_undercut_and_no_sign_of_error_is_not_known():
+    p = grid_points(2, 2, 1)
+    F, C = np.tile(np.eye(3) * 100.0, (4, 1)), linear_field(p)
+    moved = np.einsum("kij,rj->kri", C, np.eye(3) * 100.0).reshape(-1, 3)
+    theta = np.repeat(theta_at(p), 3, axis=0)
+    stated = MeasuredField.from_tests(ROBOT, LoadTests(F, moved, theta=theta, noise=np.full(12, 5e-6)))
+    np.testing.assert_allclose(stated.stderr, 5e-8, rtol=1e-9)
+    silent = MeasuredField(p, C)
+    assert np.isnan(silent.stderr).all()
+    assert np.isnan(silent.covariance(p, [0, 1.0, 0])[..., 0, 0]).all()
+
+
+def test_what_lies_between_points_of_a_bent_field_is_in_the_error():
+    """C_yy bent along x: a straight line between points misses h^2 f''/8 at most, 1/sqrt(1.875) of it on average."""
+    x = np.linspace(-0.6, 0.6, 9)
+    p = np.stack([x, 0 * x, 0 * x], axis=-1)
+    C = np.tile(np.eye(3) * 1e-6, (9, 1, 1))
+    C[:, 1, 1] += 2e-6 * x**2
+    field = MeasuredField(p, C, stderr=np.full((9, 3, 3), 1e-12))
+    between = np.stack([np.linspace(-0.6, 0.6, 401), np.zeros(401), np.zeros(401)], axis=-1)
+    missed = field.compliance(between)[:, 1, 1] - (1e-6 + 2e-6 * between[:, 0] ** 2)
+    said = field.standard_error(between)
+    assert np.abs(missed).max() == pytest.approx(said[:, 1, 1].max(), rel=1e-3)
+    assert said[:, 0, 0].max() < 1e-11

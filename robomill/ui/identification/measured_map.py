@@ -12,11 +12,12 @@ from robomill.arrays import FloatArray, digest
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.errors import RobomillError
 from robomill.identification.measured_field import MeasuredField
+from robomill.identification.propagation import uncertain_by_map
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, session
+from robomill.ui import inputs, pieces, session, uncertainty
 from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
@@ -30,6 +31,7 @@ from robomill.workspace.grid import Grid
 COMPONENTS = ("C_xx", "C_yy", "C_zz", "C_xy", "C_xz", "C_yz")
 CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
+TURNED = 1e-3  # rad between the tool of the path and that of the map, from which it is said
 
 
 def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
@@ -162,7 +164,12 @@ def cut_words(field: MeasuredField, cut: SimulationResult | None, unit: str) -> 
     beside = f"{format_si(cut.max_deviation, unit, digits)} by the joint model"
     if missing:
         beside += f"; {missing} of {int(cut.judged.sum())} points not covered"
-    return format_si(float(np.nanmax(size)), unit, digits), beside
+    worst = int(np.nanargmax(size))
+    sure = uncertain_by_map(field, cut.setup.in_base(cut.path.p[worst]), cut.F[worst])
+    half = float(sure.half_along(sure.delta / np.linalg.norm(sure.delta)))
+    if not np.isfinite(half):
+        return format_si(float(size[worst]), unit, digits), beside
+    return uncertainty.band_text(float(size[worst]), half, unit), f"95 % by the map's own errors; {beside}"
 
 
 def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
@@ -263,8 +270,10 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
             f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
             f"{body}</table>"
         )
-        if float(np.abs(field.AB).max()) < 1e-9 and not np.allclose(cut.path.k, [0.0, 0.0, 1.0], atol=1e-6):
-            pieces.note("The map was measured with the tool vertical; the path tilts it, which the map cannot know.")
+        turned = field.turned(cut.setup.in_base(cut.path.p), cut.path.k @ cut.setup.T_MW[:3, :3].T)[cut.judged]
+        if turned.max() > TURNED:
+            far = format_si(float(turned.max()), "deg", 1)
+            pieces.note(f"The path's tool stands up to {far} off the one that was measured, which the map cannot know.")
 
 
 def _use(field: MeasuredField) -> None:
