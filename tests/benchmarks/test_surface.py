@@ -91,16 +91,19 @@ def test_hundred_connected_segments(capsys):
 
 
 def test_growth(capsys):
-    p = connected()
+    """Time grows no faster than the cells and the segments do; a third to spare for what else the machine does."""
+    p, by_cell, by_segment = connected(), [], []
     with capsys.disabled():
         print()
         for cell in (4e-4, 2e-4, 1e-4, 5e-5):
             spent = best_of(lambda cell=cell: cut(STOCK, cell, FLAT, p), 3)
             cells = round(0.02 / cell**2)
+            by_cell.append(spent / cells)
             print(f"  cells {cells / 1e6:6.2f} M: {spent * 1e3:8.1f} ms")
         for n in (1000, 4000, 16000, 64000):
             walk = wander(n)
             spent = best_of(lambda walk=walk: cut(STOCK, 1e-4, FLAT, walk), 2)
+            by_segment.append(spent / n)
             print(f"  segments of 1 mm {n:6d}: {spent * 1e3:8.1f} ms, {spent / n * 1e6:.1f} us each")
         for diameter in (0.002, 0.004, 0.008, 0.016):
             tool = Cutter("flat", diameter)
@@ -111,6 +114,8 @@ def test_growth(capsys):
             ramp = wander(4000) - np.outer(np.sin(np.arange(4000) / 300), [0, 0, 1e-3])
             spent = best_of(lambda tool=tool, ramp=ramp: cut(STOCK, 1e-4, tool, ramp), 1)
             print(f"  {kind} 8 mm ramping, 4000 segments: {spent * 1e3:8.1f} ms")
+    assert by_cell[-1] < 1.33 * by_cell[0]
+    assert by_segment[-1] < 1.33 * by_segment[0]
 
 
 def test_a_million_segments(capsys):

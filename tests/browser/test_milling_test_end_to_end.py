@@ -128,6 +128,7 @@ def test_saving_and_opening_gives_the_same_project(page: Any, tmp_path: Path) ->
     page.wait_for_selector("text=move the tip 0.264 mm in Y")
     page.get_by_test_id("stSidebarNavLink").first.click()
     page.wait_for_selector("text=The groove is 0.26 mm off in Y")
+    assert page.locator("text=0.23 mm off in Y").count() == 0
 
 
 def test_first_screen_within_three_seconds_of_a_warm_server(page: Any, url: str) -> None:

@@ -34,6 +34,33 @@ def test_gain_is_that_of_the_butterworth_run_twice_and_nothing_is_shifted(freque
     np.testing.assert_allclose(smooth.F[middle, 1], gain * wave[middle], atol=1e-6)
 
 
+def by_recurrence(b, a, wave):
+    """A second-order filter step by step, begun at rest in the first value."""
+    out = np.empty_like(wave)
+    x1 = x2 = y1 = y2 = wave[0]
+    for i, x in enumerate(wave):
+        y = b[0] * x + b[1] * x1 + b[2] * x2 - a[1] * y1 - a[2] * y2
+        x2, x1, y2, y1, out[i] = x1, x, y1, y, y
+    return out
+
+
+@pytest.mark.parametrize(("cutoff", "mirrored"), [(50.0, 20), (170.0, 6), (400.0, 6), (20.0, 40), (2.0, 40)])
+def test_the_filter_is_a_recurrence_run_both_ways_over_ends_mirrored_for_a_period(cutoff, mirrored):
+    """Mirrored over a period of the cut-off: at least three times the order, at most the record."""
+    x = T[300:341]
+    wave = np.random.default_rng(0).normal(size=len(x)) + 50 * (x - x[0])
+    # Butterworth by the bilinear transform of 1 / (s^2 + sqrt(2) s + 1).
+    c = 1.0 / np.tan(np.pi * cutoff / 1000)
+    whole = 1 + np.sqrt(2) * c + c * c
+    b, a = np.array([1, 2, 1]) / whole, np.array([whole, 2 - 2 * c * c, 1 - np.sqrt(2) * c + c * c]) / whole
+    before, after = 2 * wave[0] - wave[mirrored:0:-1], 2 * wave[-1] - wave[-2 : -2 - mirrored : -1]
+    there = by_recurrence(b, a, np.concatenate([before, wave, after]))
+    back = by_recurrence(b, a, there[::-1])[::-1]
+    smooth = record(wave, x).low_pass(cutoff)
+    np.testing.assert_allclose(smooth.x, x, atol=1e-12)
+    np.testing.assert_allclose(smooth.F[:, 1], back[mirrored:-mirrored], atol=1e-9)
+
+
 def test_a_step_keeps_its_place():
     step = np.where(T >= 2.0, 100.0, 0.0)
     smooth = record(step).low_pass(50.0).F[:, 1]

@@ -194,6 +194,18 @@ def test_bounded_fit_is_that_of_nnls_and_says_what_is_on_the_bound():
     assert any("sign" in f.message for f in result.findings)
 
 
+@pytest.mark.parametrize("turned", [(), (2,), (0, 4)])
+def test_those_and_only_those_on_the_bound_are_told(turned):
+    tests = simulated_tests(ROBOT, *three_directions(poses(ROBOT, 10), 250.0))
+    A = build_system(ROBOT, tests, Model()).A
+    C_theta = ROBOT.C_theta.copy()
+    C_theta[list(turned)] *= -0.1  # hardly seen against the others, so that none of them is pushed to zero too
+    b = (A @ C_theta).reshape(len(tests), 3)
+    result = identify(ROBOT, LoadTests(tests.wrench, b, theta=tests.theta))
+    assert result.active_bounds == tuple(f"joint {i + 1}" for i in turned)
+    np.testing.assert_array_equal(np.flatnonzero(result.C_theta == 0), turned)
+
+
 def test_column_scaling_shows_in_the_condition_number_only():
     theta, F = three_directions(nine_points(), 250.0)
     result = identify(ROBOT, simulated_tests(ROBOT, theta, F, noise=1e-6))

@@ -62,10 +62,12 @@ def test_refusals_name_the_row(fields, words):
 def test_a_partly_measured_displacement_and_a_pure_moment_are_tests():
     half = MOVED.copy()
     half[2, :2] = np.nan
-    LoadTests(F, half, theta=THETA)
+    kept = LoadTests(F, half, theta=THETA).displacement
+    np.testing.assert_array_equal(np.isfinite(kept).sum(axis=1), [3, 3, 1, 3, 3, 3])
+    assert kept[2, 2] == MOVED[2, 2]
     wrench = np.zeros((6, 6))
     wrench[:, 4] = 10.0
-    LoadTests(wrench, MOVED, theta=THETA)
+    np.testing.assert_array_equal(LoadTests(wrench, MOVED, theta=THETA).wrench, wrench)
 
 
 def test_selecting_joining_and_leaving_out():

@@ -8,6 +8,7 @@ import time
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
@@ -77,7 +78,7 @@ def run(count: int, seed: int) -> tuple[int, float]:
     programs, accepted, slowest = seeds(), 0, 0.0
     for _ in range(count):
         text = mutate(r.choice(programs), r)
-        began = time.perf_counter()
+        began = time.process_time()
         try:
             data = text.encode("utf-8", "surrogatepass")
             if r.random() < 0.05:
@@ -88,7 +89,7 @@ def run(count: int, seed: int) -> tuple[int, float]:
                 to_toolpath(program, 1e-3)
         except GCodeError:
             pass
-        slowest = max(slowest, time.perf_counter() - began)
+        slowest = max(slowest, time.process_time() - began)
     return accepted, slowest
 
 
@@ -118,9 +119,9 @@ def test_mutated_programs_are_read_or_refused() -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("small_budgets")
 def test_a_hundred_thousand_mutated_programs() -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     accepted, slowest = run(100_000, seed=2)
-    print(f"{accepted} of 100000 accepted, slowest {slowest:.2f} s, {time.perf_counter() - began:.0f} s in all")
+    print(f"{accepted} of 100000 accepted, slowest {slowest:.2f} s, {time.process_time() - began:.0f} s in all")
     assert slowest < 10.0
 
 
@@ -149,16 +150,16 @@ def test_a_hundred_thousand_mutated_programs() -> None:
 )
 @pytest.mark.usefixtures("small_budgets")
 def test_bombs_are_refused_or_read_in_time(text: str) -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     with contextlib.suppress(GCodeError):
         interpret(text)
-    assert time.perf_counter() - began < 5.0
+    assert time.process_time() - began < 5.0
 
 
 def test_telling_apt_files_takes_no_time() -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     assert not is_apt(b"\n" * 300_000 + b" " * 300_000)
-    assert time.perf_counter() - began < 2.0
+    assert time.process_time() - began < 2.0
 
 
 def test_mutated_apt_files() -> None:
@@ -166,6 +167,11 @@ def test_mutated_apt_files() -> None:
     base = (
         "PARTNO/X\nUNITS/MM\nFROM/0,0,5,0,0,1\nFEDRAT/60,MMPM\nSPINDL/900,CLW\nGOTO/1,2,3,0,0.1,1\nRAPID\nGOTO/4,5,6\n"
     )
+    read = 0
     for _ in range(400):
         with contextlib.suppress(GCodeError):
-            read_apt(mutate(base, r).encode("utf-8", "surrogatepass"))
+            path = read_apt(mutate(base, r).encode("utf-8", "surrogatepass"))
+            assert np.isfinite(path.p).all()
+            np.testing.assert_allclose(np.linalg.norm(path.k, axis=1), 1.0, atol=1e-12)
+            read += 1
+    assert 10 < read < 390, "both happen: read, and refused"

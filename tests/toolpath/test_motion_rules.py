@@ -11,6 +11,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
+from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.motion_rules import swept
 
 # G17 written in another plane: x, y, z become first, second and third axis.
@@ -228,4 +229,6 @@ def test_huge_numbers_are_read_or_refused(text: str, fast: bool, monkeypatch: py
             monkeypatch.setattr(f"robomill.toolpath.gcode.stretches.{name}", 0)
     for huge in ("9" * 15, "9" * 40, "9" * 308):
         with contextlib.suppress(GCodeError):
-            ends("G21 F1\n" + text.format(huge=huge))
+            path = to_toolpath(ends("G21 F1\n" + text.format(huge=huge)))
+            assert np.isfinite(path.p).all()
+            assert np.isfinite(path.v_f).all()

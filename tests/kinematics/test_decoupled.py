@@ -1,0 +1,25 @@
+"""The closed form's structure: branches are named after the arm as it stands at home, whatever its signs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("at", [0.7, -0.7, 0.0])
+def test_the_arm_at_home_stands_in_front_with_its_wrist_plus(name, sign, at):
+    robot = rm.load_robot(name)
+    turned, limits = robot.sign.copy(), robot.limits.copy()
+    turned[4], limits[4] = sign * turned[4], [at - 0.5, at + 0.5]  # without zero: home is the middle
+    robot = robot.replace(sign=turned, limits=limits)
+    assert robot.home[4] == pytest.approx(at)
+    past = robot.home.copy()
+    past[4] += 0.05 if at == 0.0 else 0.0  # a straight wrist is told by what lies a little past it
+    there = rm.inverse_kinematics(robot, rm.tool_pose(robot, past), near=past, spin="fixed")
+    np.testing.assert_allclose(there.theta, past, atol=1e-8)
+    assert "front" in there.branch
+    assert "wrist +" in there.branch
