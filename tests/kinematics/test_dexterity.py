@@ -23,13 +23,34 @@ def test_five_axis_rows_are_those_of_the_paper_at_a_vertical_tool():
 
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "planar_3r"])
-def test_measures_agree_with_each_other(name):
+def test_measures_are_those_of_the_square_jacobian(name):
     robot = rm.load_robot(name)
     theta = np.random.default_rng(1).uniform(robot.limits[:, 0], robot.limits[:, 1], (4, 25, robot.n))
-    det = dexterity.determinant(robot, theta)
-    values = dexterity.singular_values(robot, theta)
-    np.testing.assert_allclose(np.abs(det), dexterity.manipulability(robot, theta), atol=1e-7)
-    np.testing.assert_allclose(np.abs(det), values.prod(axis=-1), atol=1e-12)
+    J = rm.geometric_jacobian(robot, theta)
+    if robot.n == 5:
+        task = np.empty((4, 25, 5, 5))
+        for at in np.ndindex(4, 25):
+            R = rm.tool_pose(robot, theta[at])[:3, :3]
+            k = R[:, 2]
+            A, B = np.arctan2(-k[1], k[2]), np.arcsin(k[0])
+            x = np.array([np.cos(B), np.sin(A) * np.sin(B), -np.cos(A) * np.sin(B)])
+            task[at] = np.vstack([J[at][:3], x @ J[at][3:], np.cross(k, x) @ J[at][3:]])
+    else:
+        task = J if robot.n == 6 else J[..., [0, 1, 5], :]
+    np.testing.assert_allclose(dexterity.determinant(robot, theta), np.linalg.det(task), atol=1e-12)
+    gram = task @ np.swapaxes(task, -1, -2)
+    # A root of a determinant of squares: half the digits.
+    np.testing.assert_allclose(dexterity.manipulability(robot, theta) ** 2, np.linalg.det(gram), atol=1e-11)
+    values = np.sqrt(np.abs(np.linalg.eigvalsh(gram)[..., ::-1]))
+    np.testing.assert_allclose(dexterity.singular_values(robot, theta), values, atol=1e-7)
+
+
+def test_six_axes_are_asked_for_all_six_rows_even_where_they_move_in_a_plane_only():
+    zero, limits = np.zeros(6), np.tile([-2.0, 2.0], (6, 1))
+    flat = rm.Robot("flat", "standard", zero, np.full(6, 0.2), zero, zero, limits, np.full(6, 1e-7))
+    assert dexterity.square_rows(flat) == dexterity.ROWS
+    assert dexterity.determinant_unit(flat) == "m3"
+    assert dexterity.determinant(flat, np.full(6, 0.3)) == pytest.approx(0.0, abs=1e-15)
 
 
 def test_singular_configurations_show():
