@@ -76,24 +76,27 @@ class Move:
         w = x - self.start
         z, dz = w @ self.k, float(way @ self.k)
         across, d = w - np.outer(z, self.k), way - dz * self.k
+        # Squared distance from the axis: a s^2 - 2 b s + c + R^2, at most R^2 from low to high.
         a, b, c = float(d @ d), across @ d, np.einsum("ij,ij->i", across, across) - R**2
         if a > 1e-24:
             root = np.sqrt(np.maximum(b * b - a * c, 0.0))
             low, high = np.clip((b - root) / a, 0.0, 1.0), np.clip((b + root) / a, 0.0, 1.0)
-            reached = (b * b > a * c) & (b + root >= 0.0) & (b - root <= a)
+            near = (b * b > a * c) & (b + root >= 0.0) & (b - root <= a)
         else:
-            low, high, reached = np.zeros(len(x)), np.ones(len(x)), c <= 0.0
+            low, high, near = np.zeros(len(x)), np.ones(len(x)), c <= 0.0
+        near &= z >= min(dz, 0.0)
+        b, c, z, low, high = b[near], c[near], z[near], low[near], high[near]
 
         def gap(s: Floats) -> Floats:
             r = np.sqrt(np.maximum(c + R**2 - 2.0 * b * s + a * s * s, 0.0))
             return _lowest(self.cutter, r) - (z - s * dz)
 
-        for _ in range(50):
+        for _ in range(40):
             left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
             falls = gap(right) < gap(left)
             low, high = np.where(falls, left, low), np.where(falls, high, right)
-        best = np.minimum(np.minimum(gap(low), gap(high)), gap(0.5 * (low + high)))
-        return reached & (best <= 0.0)
+        near[near] = np.minimum(np.minimum(gap(low), gap(high)), gap(0.5 * (low + high))) <= 0.0
+        return near
 
 
 def _surface(cutter: Cutter, reach: float, n: int) -> Iterable[tuple[Floats, Floats, Floats, Floats, float]]:
