@@ -75,7 +75,8 @@ def parser() -> argparse.ArgumentParser:
 
     gcode = verb("gcode", run_gcode, "Read a program: moves, lengths, extents, findings.")
     gcode.add_argument("file")
-    gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, or CSV tool,diameter_mm,length_mm")
+    gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
+    gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
     gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
 
@@ -167,8 +168,9 @@ def run_ik(arguments: Any) -> int:
 
 
 def run_gcode(arguments: Any) -> int:
+    from robomill.io.tool_tables import read_tool_table
     from robomill.report.plain import gcode_lines
-    from robomill.report.records import path_record
+    from robomill.report.records import finding_record, path_record
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
@@ -176,8 +178,10 @@ def run_gcode(arguments: Any) -> int:
     if _reads_as_apt(file):
         record = path_record(read_apt(file))
     else:
-        program = interpret(file, dialect=arguments.dialect, tools=arguments.tools)
+        tools = read_tool_table(arguments.tools, unit=arguments.tools_unit) if arguments.tools else None
+        program = interpret(file, dialect=arguments.dialect, tools=tools)
         record = gcode_report(program)
+        record["findings"] += [finding_record(f) for f in tools.findings] if tools is not None else []
         if arguments.moves:
             write_moves_jsonl(program, arguments.moves)
     return say(arguments, record, gcode_lines(record))

@@ -94,28 +94,50 @@ def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> t
     Raises the layout's error with file, row and column.
     """
     text, name = read_text(given, layout.error, "a CSV table", name)
+    body, remarks = _body(text, layout, name)
+    known, passed_over = _known(body.names, layout, body.place)
+    if len(body.lines) < layout.fewest:
+        found = (
+            f"{len(body.lines)} row{'s' * (len(body.lines) > 1)} of numbers"
+            if body.lines
+            else f"only a header (row {body.place.head}) and nothing below it"
+        )
+        raise layout.error(f"{name or layout.subject}: found {found}; expected at least {layout.fewest}.")
+    values = _numbers(body, list(known.values()))
+    in_si = {column.quantity: to_si(values[:, i], column.unit) for i, column in enumerate(known.values())}
+    return Columns(in_si, known, body.row, passed_over, remarks, body.place), name
+
+
+def read_cells(text: str, layout: Layout, name: str = "") -> list[tuple[str, dict[str, str]]]:
+    """The rows of a table that holds words too: where each stands, and its cells by header; empty ones are left out.
+
+    Numbers have points in them, whatever the file wrote. Raises the layout's error for a row of another width.
+    """
+    body, _ = _body(text, layout, name)
+    rows = []
+    for k, line in enumerate(body.lines):
+        _check_width(body, k)
+        cells = (cell.strip() for cell in _cells(line, body.mark))
+        if body.mark != ",":
+            cells = (cell.replace(",", ".") if _number(cell.replace(",", ".")) is not None else cell for cell in cells)
+        at = f"row {body.row[k]}"
+        rows.append((f"{name}, {at}" if name else at, {key: cell for key, cell in zip(body.names, cells) if cell}))
+    return rows
+
+
+def _body(text: str, layout: Layout, name: str) -> tuple[_Body, str]:
+    """What is below the header, and the remarks."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     remarks = "\n".join(line.strip().lstrip("# ") for line in lines if line.lstrip().startswith("#"))
     kept = [(k, line) for k, line in enumerate(lines, 1) if line.strip(" \t,;") and not line.lstrip().startswith("#")]
-    subject = name or layout.subject
     if not kept:
+        subject = name or layout.subject
         raise layout.error(f"{subject}: the file is empty; give a header ({layout.example}) and the numbers below it.")
-    (head, header), body = kept[0], kept[1:]
-    place = Place(name, head, layout.error)
+    (head, header), below = kept[0], kept[1:]
     mark = next((mark for mark in "\t;" if mark in header), ",")
     names = [cell.strip() for cell in _cells(header, mark)]
-    known, passed_over = _known(names, layout, place)
-    if len(body) < layout.fewest:
-        found = (
-            f"{len(body)} row{'s' * (len(body) > 1)} of numbers"
-            if body
-            else f"only a header (row {head}) and nothing below it"
-        )
-        raise layout.error(f"{subject}: found {found}; expected at least {layout.fewest}.")
-    row = np.array([k for k, _ in body])
-    values = _numbers(_Body([line for _, line in body], row, names, mark, place), list(known.values()))
-    in_si = {column.quantity: to_si(values[:, i], column.unit) for i, column in enumerate(known.values())}
-    return Columns(in_si, known, row, passed_over, remarks, place), name
+    row = np.array([k for k, _ in below])
+    return _Body([line for _, line in below], row, names, mark, Place(name, head, layout.error)), remarks
 
 
 # ---- the header ----------------------------------------------------------------------------------------------------

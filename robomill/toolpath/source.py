@@ -14,11 +14,12 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
+from robomill.toolpath.tools import Tools
 from robomill.units import format_si, format_significant, from_si
 
 MAX_KEPT = 4
@@ -39,16 +40,22 @@ class GCodeSource:
         return split_lines(self.text)
 
     def read(
-        self, progress: Callable[[float], None] | None = None, cancel: Callable[[], bool] | None = None
+        self,
+        tools: Tools | None = None,
+        progress: Callable[[float], None] | None = None,
+        cancel: Callable[[], bool] | None = None,
     ) -> Toolpath:
         """The path; raises GCodeError naming the line that cannot be read, or if ``cancel()`` is true.
 
+        ``tools`` is the table that its T, H and D words mean; none or an empty one accepts every tool, of unknown size.
         The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again.
         """
+        tools = tools or None
+        key = (self, digest(tools))
         with _LOCK:
-            if self in _KEPT:
-                _KEPT.move_to_end(self)
-                return _KEPT[self]
+            if key in _KEPT:
+                _KEPT.move_to_end(key)
+                return _KEPT[key]
         from robomill.toolpath.apt import is_apt, read_apt  # the readers load only where a program is read
         from robomill.toolpath.gcode import read_gcode
 
@@ -56,15 +63,15 @@ class GCodeSource:
         if is_apt(data):
             path = read_apt(data)
         else:
-            path = read_gcode(data, dialect=self.dialect, progress=progress, cancel=cancel)
+            path = read_gcode(data, dialect=self.dialect, tools=tools, progress=progress, cancel=cancel)
         with _LOCK:
-            _KEPT[self] = path
+            _KEPT[key] = path
             while len(_KEPT) > MAX_KEPT:
                 _KEPT.popitem(last=False)
         return path
 
 
-_KEPT: OrderedDict[GCodeSource, Toolpath] = OrderedDict()
+_KEPT: OrderedDict[tuple[GCodeSource, str], Toolpath] = OrderedDict()
 _LOCK = threading.Lock()
 
 
@@ -85,8 +92,8 @@ class LinesSource:
             value = as_floats(getattr(self, name), f"lines, {name}", shape, error=ToolpathError)
             object.__setattr__(self, name, frozen(value))
 
-    def read(self) -> Toolpath:
-        """The path; raises ToolpathError naming the row that cannot be cut."""
+    def read(self, tools: Tools | None = None) -> Toolpath:
+        """The path, which names no ``tools``; raises ToolpathError naming the row that cannot be cut."""
         return toolpath_from_lines(self.start, self.end, self.v_f, self.n_s)
 
     def block_texts(self) -> list[str]:
@@ -104,8 +111,8 @@ class SketchSource:
     kind: ClassVar[Literal["sketch"]] = "sketch"
     block_name: ClassVar[str] = "shape"
 
-    def read(self) -> Toolpath:
-        """The path; raises ToolpathError where nothing is drawn."""
+    def read(self, tools: Tools | None = None) -> Toolpath:
+        """The path, which names no ``tools``; raises ToolpathError where nothing is drawn."""
         return self.sketch.toolpath()
 
     def block_texts(self) -> list[str]:

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import GCodeError
+from robomill.io.tool_tables import read_tool_table
 from robomill.toolpath.gcode import gcode_report, interpret, read_gcode
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES
@@ -36,7 +37,7 @@ def reference(row: dict) -> list[dict]:
 
 
 def read(row: dict):
-    return interpret(Path(FOLDER) / row["file"], tools=Path(FOLDER) / "tools_mm.tbl")
+    return interpret(Path(FOLDER) / row["file"], tools=read_tool_table(Path(FOLDER) / "tools_mm.tbl"))
 
 
 @pytest.mark.parametrize("row", files("accept"))
@@ -82,7 +83,7 @@ def test_programs_without_motion_run(row: dict) -> None:
     assert len(program) == 0
     assert program.dwells == row["moves"]["dwell"]
     with pytest.raises(GCodeError, match="no motion"):
-        read_gcode(Path(FOLDER) / row["file"], tools=Path(FOLDER) / "tools_mm.tbl")
+        read_gcode(Path(FOLDER) / row["file"], tools=read_tool_table(Path(FOLDER) / "tools_mm.tbl"))
 
 
 @pytest.mark.parametrize("row", files("reject"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, read_tool_table, write_moves_jsonl
+from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, write_moves_jsonl
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.text import MAX_BYTES, as_plain_bytes
 
@@ -124,27 +124,9 @@ def test_messages_show_parameters() -> None:
     assert program.messages == ((2, " hello"), (3, " 2.500000 and ###### and 0.000000"))
 
 
-def test_tool_tables(tmp_path: Path) -> None:
-    tbl, table = tmp_path / "tools.tbl", tmp_path / "tools.csv"
-    tbl.write_text("T1 P1 D+6.0 Z+20.5 ;six\n;\nT4 P2 Z-1.5 D.5 Q2\n")
-    table.write_text("tool,diameter_mm,length_mm\n1,6,20.5\n")
-    assert read_tool_table(tbl)[1] == read_tool_table(table)[1] == Tool(1, 6e-3, (0.0, 0.0, 20.5e-3))
-    assert read_tool_table(tbl)[4].orientation == 2
-    head = "tool,diameter_mm,length_mm\n"
-    for text, says in (
-        ("", "no tools"),
-        ("X1 Y2\n", "line 1"),
-        ("tool,diameter_mm\n1,2\n", "length_mm"),
-        (head + "1,a,2\n", "line 2"),
-        (head + "1,1,2\n1,1,2\n", "twice"),
-    ):
-        tbl.write_text(text)
-        with pytest.raises(GCodeError, match=says):
-            read_tool_table(tbl)
-    with pytest.raises(GCodeError, match="cannot be read"):
-        read_tool_table(tmp_path / "none.tbl")
+def test_a_tool_that_the_table_lacks_is_refused() -> None:
     with pytest.raises(GCodeError, match="tool 9 is not in the tool table"):
-        interpret("T9 M6\n", tools=table)
+        interpret("T9 M6\n", tools={1: Tool(1)})
 
 
 def test_report_and_moves(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.gcode.reading import interpret, read_gcode
 from robomill.toolpath.gcode.report import gcode_report, write_moves_jsonl
-from robomill.toolpath.gcode.tools import Tool, read_tool_table
+from robomill.toolpath.tools import Tool
 
 __all__ = [
     "CHORD_ERROR",
@@ -15,6 +15,5 @@ __all__ = [
     "gcode_report",
     "interpret",
     "read_gcode",
-    "read_tool_table",
     "write_moves_jsonl",
 ]

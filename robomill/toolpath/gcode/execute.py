@@ -9,8 +9,8 @@ from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
 from robomill.toolpath.gcode import words as modal
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import MOST, set_rates
-from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import Block, g_name
+from robomill.toolpath.tools import Tool
 
 _DIRECTIONS = {3: 1, 4: -1, 5: 0, 19: 0}
 

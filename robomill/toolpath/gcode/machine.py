@@ -14,8 +14,8 @@ from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
-from robomill.toolpath.gcode.tools import Tool, ToolTable
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.tools import Tool, Tools, own_copy
 from robomill.units import from_si, to_si
 
 UNITS = {200: "in", 210: "mm"}
@@ -47,11 +47,11 @@ class Machine:
     stands and answers with that, as LinuxCNC's preview does. ``waited`` are the seconds of dwells since the last move.
     """
 
-    def __init__(self, tools: ToolTable | None) -> None:
+    def __init__(self, tools: Tools | None) -> None:
         self.store = Parameters(self.provided)
         self.findings = Findings()
         self.recorder = Recorder()
-        self.tools = None if tools is None else dict(tools)
+        self.tools = None if tools is None else own_copy(tools)
         self.unit_code, self.units_said = 210, ""
         self.factor = to_si(1.0, "mm")
         self.p, self.sent = [0.0] * 6, [0.0] * 6

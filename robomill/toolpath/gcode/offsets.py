@@ -5,8 +5,8 @@ from __future__ import annotations
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.motion_rules import rotate
-from robomill.toolpath.gcode.tools import Tool
 from robomill.toolpath.gcode.words import COMPENSATION, Block, g_name
+from robomill.toolpath.tools import Tool
 from robomill.units import from_si, to_si
 
 SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}

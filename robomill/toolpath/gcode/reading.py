@@ -17,9 +17,9 @@ from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import ARC, FEED, Program
 from robomill.toolpath.gcode.stretches import Lines
-from robomill.toolpath.gcode.tools import ToolTable, read_tool_table
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
+from robomill.toolpath.tools import Tools
 from robomill.units import format_si, to_si
 
 LIKELY = (0.008, 3.0)
@@ -31,7 +31,7 @@ def read_gcode(
     *,
     chord_error: float = CHORD_ERROR,
     dialect: str = "auto",
-    tools: ToolTable | str | Path | None = None,
+    tools: Tools | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Toolpath:
@@ -47,21 +47,19 @@ def interpret(
     source: Source,
     *,
     dialect: str = "auto",
-    tools: ToolTable | str | Path | None = None,
+    tools: Tools | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     partial: bool = False,
 ) -> Program:
     """Canonical moves of a program: a path, the text itself, or its bytes (see ``read_source``).
 
-    ``tools`` is a tool table or its file; without one every tool is accepted, of unknown size. ``progress`` is
+    ``tools`` is a tool table by number; without one every tool is accepted, of unknown size. ``progress`` is
     called with the share that is done, ``cancel`` asked whether to stop. Raises GCodeError naming the line that is
     refused; with ``partial`` the moves before it are returned instead, and the refusal is an error among the findings.
     """
     data, name = read_source(source)
     lines = Lines(data)
-    if isinstance(tools, str | Path):
-        tools = read_tool_table(tools)
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     machine = Machine(tools)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")

@@ -36,7 +36,7 @@ class Reading:
 
     def _run(self) -> None:
         try:
-            self.source.read(self._progress, self.stop.is_set)
+            self.source.read(progress=self._progress, cancel=self.stop.is_set)
         except RobomillError as exc:
             self.error = exc
         except Exception as exc:  # shown by the page that asked: a thread has nobody to raise to

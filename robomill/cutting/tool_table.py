@@ -1,0 +1,116 @@
+"""The tools of a program by number: what cuts, how long each is, and what of it nobody has stated. SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import CuttingError
+from robomill.provenance import Finding
+from robomill.quantities import quantities, quantity, settle, whole
+
+ASKED = ("kind", "flutes", "helix_angle")
+"""Fields of a cutter that a force needs and a table of a machine does not say; without a word they are assumed."""
+
+
+@dataclass(frozen=True)
+class TableTool:
+    """A tool as T and H words call it by its ``number``.
+
+    ``cutter`` is None where the table does not say its diameter: such a tool can be measured and carried, not cut with.
+    ``length`` is what G43 H counts along Z. ``compensates`` is the diameter that G41 and G42 count with where it is
+    not the cutter's (below 0: to the other side). ``assumed`` names the fields of the cutter that nobody has stated.
+    """
+
+    number: int = whole("Tool", least=0)
+    cutter: Cutter | None = None
+    length: float = quantity("Length", "mm", default=0.0, step=1.0)
+    offset_x: float = quantity("Offset X", "mm", default=0.0, boxed=False)
+    offset_y: float = quantity("Offset Y", "mm", default=0.0, boxed=False)
+    orientation: int = whole("Orientation of the nose", default=0, least=0, most=9, boxed=False)
+    compensates: float | None = quantity("Diameter of compensation", "mm", optional=True, boxed=False)
+    assumed: tuple[str, ...] = ()
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        settle(self, CuttingError, f"Tool {self.number}")
+        unknown = sorted(set(self.assumed) - set(quantities(Cutter)))
+        if unknown:
+            known = ", ".join(quantities(Cutter))
+            raise CuttingError(
+                f"Tool {self.number}, assumed: a cutter has no {unknown[0]!r}; known are {known}.", where="assumed"
+            )
+
+    @property
+    def diameter(self) -> float:
+        """What G41 and G42 count with, m; 0 where it is not known."""
+        if self.compensates is not None:
+            return self.compensates
+        return 0.0 if self.cutter is None else self.cutter.diameter
+
+    @property
+    def offset(self) -> tuple[float, float, float]:
+        """What G43 counts along X, Y and Z, m."""
+        return self.offset_x, self.offset_y, self.length
+
+
+@dataclass(frozen=True)
+class ToolTable(Mapping[int, TableTool]):
+    """Tools by number, in the order of their numbers; empty: no table. ``findings`` say what was odd in its file.
+
+    Raises CuttingError for a number that stands there twice.
+    """
+
+    tools: tuple[TableTool, ...] = ()
+    findings: tuple[Finding, ...] = field(default=(), compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "tools", tuple(sorted(self.tools, key=lambda tool: tool.number)))
+        for before, after in zip(self.tools, self.tools[1:], strict=False):
+            if before.number == after.number:
+                raise CuttingError(f"Tool table: tool {after.number} is there twice; keep one.", where="number")
+
+    @cached_property
+    def _by_number(self) -> dict[int, TableTool]:
+        return {tool.number: tool for tool in self.tools}
+
+    def __getitem__(self, number: int) -> TableTool:
+        return self._by_number[number]
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._by_number)
+
+    def __len__(self) -> int:
+        return len(self.tools)
+
+    def cutter(self, number: int) -> Cutter:
+        """What tool ``number`` cuts with. Raises CuttingError where the table does not hold it or does not know it."""
+        if number not in self:
+            known = ", ".join(str(n) for n in self)
+            raise CuttingError(
+                f"Tool {number} cuts and is not in the tool table (there are: {known or 'none'}); add it.",
+                where=f"tool {number}",
+            )
+        cutter = self[number].cutter
+        if cutter is None:
+            raise CuttingError(
+                f"Tool {number} cuts, but the tool table does not say its diameter; give it.", where=f"tool {number}"
+            )
+        return cutter
+
+    def notes(self, numbers: Iterable[int]) -> tuple[str, ...]:
+        """What a reader must know of the tools ``numbers`` that cut: what of them is assumed, one sentence a tool."""
+        declared = quantities(Cutter)
+        said = []
+        for number in sorted({*numbers} & {*self}):
+            tool = self[number]
+            if tool.cutter is None or not tool.assumed:
+                continue
+            fields = (declared[name] for name in tool.assumed)
+            assumed = ", ".join(
+                f"{each.label.lower()} {each.short(getattr(tool.cutter, each.name))}" for each in fields
+            )
+            said.append(f"Tool {number}: {assumed} assumed; its table does not say.")
+        return tuple(said)

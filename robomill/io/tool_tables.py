@@ -1,0 +1,162 @@
+"""Tool tables: LinuxCNC's ``.tbl``, CSV and TOML; the [[tools]] of a set-up. Each tool is read by its declared fields.
+
+    [[tools]]                                  tool,kind,diameter_mm,flutes,length_mm
+    number = 1                                 1,ball,6,2,62.5
+    kind = "ball"
+    diameter_mm = 6                            T1 P1 D6.0 Z62.5 ; a .tbl knows no kind and no flutes
+    flutes = 2
+    length_mm = 62.5
+
+What force needs and the file does not say (``tool_table.ASKED``) is assumed as a cutter's default, and marked so.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
+from robomill.errors import CuttingError
+from robomill.io.columns import Layout, read_cells
+from robomill.io.declared import from_table, to_table
+from robomill.io.tables import Table, parse_toml
+from robomill.io.texts import read_text
+from robomill.provenance import Finding
+from robomill.quantities import quantities
+from robomill.units import format_si, from_si, to_si
+
+UNITS = ("mm", "in")
+LAYOUT = Layout("Tool table", CuttingError, {}, "tool,kind,diameter_mm,flutes,length_mm")
+NAMES = {"tool": "number", "t": "number"}
+ASSUMED_KIND = "flat"
+SMALL = 1.6e-3
+"""m: a table whose largest cutter is smaller than this may count in inches."""
+
+_WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?=$|[\s;A-Za-z])\s*")
+_OF_TBL = {"T": "number", "X": "offset_x_mm", "Y": "offset_y_mm", "Z": "length_mm", "Q": "orientation"}
+_SILENT = frozenset("PABCUVWIJ")
+_LENGTHS = "XYZD"
+
+
+def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = "") -> ToolTable:
+    """The table of a file, its text or its bytes. ``unit`` is that of a ``.tbl``, which does not say it.
+
+    Raises CuttingError naming the file and the line or tool.
+    """
+    text, name = read_text(given, CuttingError, "a tool table (.tbl, .csv or .toml)", name)
+    place = name or "Tool table"
+    if unit not in UNITS:
+        raise CuttingError(f"{place}: the unit is {unit!r}; expected one of {', '.join(UNITS)}.")
+    first = next((line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#;"), "")
+    if first.startswith("[") or "=" in first:
+        return tools_from_table(Table(parse_toml(text, place, CuttingError), place, CuttingError))
+    if re.search(r"[,;\t]", first) and not re.match(r"[Tt]\s*\d", first):
+        tools, passed_over = _from_csv(text, name)
+    else:
+        tools, passed_over = _from_tbl(text, place, unit), []
+    if not tools:
+        raise CuttingError(f"{place}: found no tools; expected lines such as 'T1 P1 D3.0 Z12.5'.")
+    left_out = f"{', '.join(passed_over)}: not a column of a tool table, left out"
+    return _whole(tools, place, *[Finding("ignored", 0, left_out, code="column-left-out")] * bool(passed_over))
+
+
+def tools_from_table(top: Table, folder: Path | None = None) -> ToolTable:
+    """The ``tools`` of a document: [[tools]] entries, or the name of a tool table's file in ``folder``; empty without.
+
+    A ``.tbl`` counts in mm unless ``tools_unit`` says "in".
+    """
+    unit = top.choice("tools_unit", UNITS, "mm")
+    if isinstance(top.data.get("tools"), str):
+        return read_tool_table((folder or Path()) / top.text("tools"), unit=unit)
+    return _whole([_tool(entry) for entry in top.tables("tools")], top.where)
+
+
+def tools_to_tables(tools: ToolTable) -> list[dict[str, Any]]:
+    """The [[tools]] that ``tools_from_table`` reads back."""
+    return [to_table(tool) | ({} if tool.cutter is None else to_table(tool.cutter)) for tool in tools.tools]
+
+
+def _whole(tools: list[TableTool], place: str, *findings: Finding) -> ToolTable:
+    sizes = [tool.cutter.diameter for tool in tools if tool.cutter is not None]
+    largest = max(sizes, default=SMALL)
+    if largest < SMALL:
+        inches = format_si(to_si(from_si(largest, "mm"), "in"), "mm")
+        shown = f"the largest tool is {format_si(largest, 'mm')} across; if the table counts in inches, it is {inches}"
+        findings += (Finding("suspicious", 0, shown, code="tool-units"),)
+    try:
+        return ToolTable(tuple(tools), findings)
+    except CuttingError as exc:
+        raise CuttingError(f"{place}: {exc}", where=exc.where) from None
+
+
+def _tool(table: Table) -> TableTool:
+    """A tool from its keys: the table's own and those of a Cutter beside them."""
+    keys = {name: declared.key for name, declared in quantities(Cutter).items()}
+    said = {key: value for key, value in table.data.items() if key in keys.values()}
+    table.asked.update(keys.values())
+    assumed, cutter = tuple(table.words("assumed")), None
+    if said:
+        assumed += tuple(name for name in ASKED if keys[name] not in said and name not in assumed)
+        cutter = from_table(Table({keys["kind"]: ASSUMED_KIND} | said, table.where, table.error), Cutter)
+    return from_table(table, TableTool, given={"cutter": cutter, "assumed": assumed})
+
+
+def _from_tbl(text: str, place: str, unit: str) -> list[TableTool]:
+    tools = []
+    for line, raw in enumerate(text.splitlines(), 1):
+        code, _, comment = raw.partition(";")
+        if not code.strip():
+            continue
+        where = f"{place}, line {line}"
+        if not re.fullmatch(rf"(?:{_WORD.pattern})+", code.strip()):
+            raise CuttingError(f"{where}: found {code.strip()[:40]!r}; expected words such as 'T1 P1 D3.0 Z12.5'.")
+        words = {letter.upper(): float(value) for letter, value in _WORD.findall(code.strip())}
+        unknown = sorted(set(words) - set(_OF_TBL) - _SILENT - {"D"})
+        if "T" not in words or unknown:
+            found = f"{unknown[0]}, which no tool has" if unknown else "no T, the tool's number"
+            raise CuttingError(f"{where}: found {found}; expected words such as 'T1 P1 D3.0 Z12.5'.")
+        lengths = {letter: from_si(to_si(words[letter], unit), "mm") for letter in _LENGTHS if letter in words}
+        entry: dict[str, Any] = {
+            _OF_TBL[letter]: value for letter, value in (words | lengths).items() if letter in _OF_TBL
+        }
+        entry |= {key: int(entry[key]) for key in ("number", "orientation") if key in entry and entry[key].is_integer()}
+        diameter = lengths.get("D", 0.0)
+        if diameter:
+            entry["diameter_mm"] = abs(diameter)
+        if diameter < 0.0:
+            entry["compensates_mm"] = diameter
+        tools.append(_tool(Table({**entry, "name": comment.strip()}, where, CuttingError)))
+    return tools
+
+
+def _from_csv(text: str, name: str) -> tuple[list[TableTool], list[str]]:
+    """The tools, and the headers of the columns that are left out."""
+    known = {declared.key for cls in (TableTool, Cutter) for declared in quantities(cls).values()} | {"name"}
+    tools = []
+    passed_over: dict[str, None] = {}
+    for where, cells in read_cells(text, LAYOUT, name):
+        entry: dict[str, Any] = {}
+        for header, cell in cells.items():
+            key = re.sub(r"[\s()\[\]]+", "_", header.lower()).strip("_")
+            key = NAMES.get(key, key)
+            value = cell if key == "name" else _value(cell)
+            if key.endswith("_in") and isinstance(value, int | float):
+                key, value = f"{key[:-2]}mm", from_si(to_si(float(value), "in"), "mm")
+            if key in known:
+                entry[key] = value
+            else:
+                passed_over[header] = None
+        tools.append(_tool(Table(entry, where, CuttingError)))
+    return tools, list(passed_over)
+
+
+def _value(cell: str) -> int | float | str:
+    """A cell as TOML would hold it."""
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            continue
+    return cell.lower()

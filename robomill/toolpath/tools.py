@@ -1,0 +1,36 @@
+"""Tools as a program knows them: numbers, lengths and diameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool, in m: ``offset`` x, y, z (z is the length), ``diameter``, lathe ``orientation`` 0..9."""
+
+    number: int
+    diameter: float = 0.0
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    orientation: int = 0
+
+
+class Sized(Protocol):
+    """What a table says of a tool; a Tool, or whatever else has these."""
+
+    @property
+    def diameter(self) -> float: ...
+    @property
+    def offset(self) -> tuple[float, float, float]: ...
+    @property
+    def orientation(self) -> int: ...
+
+
+Tools = Mapping[int, Sized]
+
+
+def own_copy(tools: Tools) -> dict[int, Tool]:
+    """The tools of a table, to be changed by G10."""
+    return {number: Tool(number, tool.diameter, tool.offset, tool.orientation) for number, tool in tools.items()}

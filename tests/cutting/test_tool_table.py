@@ -1,0 +1,46 @@
+"""A table of tools as a value: order, what is missing, what is assumed."""
+
+from __future__ import annotations
+
+import pytest
+
+from robomill.arrays import digest
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import TableTool, ToolTable
+from robomill.errors import CuttingError
+
+SIX, EIGHT = Cutter("flat", 6e-3), Cutter("ball", 8e-3)
+
+
+def test_tools_stand_in_the_order_of_their_numbers() -> None:
+    one, two = TableTool(1, SIX), TableTool(2, EIGHT)
+    assert list(ToolTable((two, one))) == [1, 2]
+    assert ToolTable((two, one)) == ToolTable((one, two))
+    assert digest(ToolTable((two, one))) == digest(ToolTable((one, two))) != digest(ToolTable((one,)))
+    assert not ToolTable()
+
+
+def test_what_is_missing_is_asked_for_by_number() -> None:
+    table = ToolTable((TableTool(1, SIX), TableTool(3)))
+    assert table.cutter(1) == SIX
+    with pytest.raises(CuttingError, match="Tool 2 cuts and is not in the tool table"):
+        table.cutter(2)
+    with pytest.raises(CuttingError, match="Tool 3 cuts, but the tool table does not say its diameter"):
+        table.cutter(3)
+    with pytest.raises(CuttingError, match="tool 1 is there twice"):
+        ToolTable((TableTool(1, SIX), TableTool(1, EIGHT)))
+
+
+def test_what_is_assumed_is_said_of_the_tools_that_cut() -> None:
+    table = ToolTable((TableTool(1, SIX, assumed=("kind", "flutes")), TableTool(2, EIGHT), TableTool(3, SIX)))
+    (note,) = table.notes([2, 1, 1])
+    assert note.startswith("Tool 1:")
+    assert "flutes 2" in note
+    assert table.notes([2, 3, 9]) == ()
+
+
+def test_the_diameter_of_compensation() -> None:
+    assert TableTool(1, SIX).diameter == 6e-3
+    assert TableTool(1, SIX, compensates=-6e-3).diameter == -6e-3
+    assert TableTool(1, length=0.05, offset_x=1e-3).offset == (1e-3, 0.0, 0.05)
+    assert TableTool(1).diameter == 0.0
