@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.viz import solids
-from robomill.viz.theme import axis3d, figure, palette, rgba
+from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +47,25 @@ def arm_figure(
     reach = solids.yardstick(scene.frames)
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     if scene.ghost is not None:
-        fig.add_traces(_arm_traces(scene.ghost, scene.cutter_radius, dark, ghost=True))
-    fig.add_traces(_pedestal(scene, reach, dark))
-    fig.add_traces(_arm_traces(scene.frames, scene.cutter_radius, dark))
-    fig.add_traces(solids.frame(np.eye(4), "M", 0.16 * reach, dark))
-    fig.add_traces(_part_traces(scene, reach, dark))
-    tip = scene.frames[-1][:3, 3]
-    width = 0.0065 * reach
+        links, joints = solids.limbs(scene.ghost)
+        fig.add_trace(solids.trace([*links, *joints], p.muted, "before", opacity=0.18))
+    tip, width, name_colour = scene.frames[-1][:3, 3], 0.0065 * reach, axis_colours(dark)["z"]
+    opaque = [*_arm(scene, dark), *_foot(scene, reach, dark), *solids.frame(np.eye(4), 0.16 * reach, dark)]
+    said: list[solids.Said] = [(np.array([0.0, 0.0, 0.208 * reach]), "{M}", name_colour)]
+    if scene.T_MW is not None:
+        opaque += solids.frame(scene.T_MW, 0.075 * reach, dark)
+        beside = scene.T_MW @ np.array([-0.1275 * reach, -0.045 * reach, 0.0, 1.0])
+        said.append((beside[:3], "{W}", name_colour))
     if scene.force is not None:
         vector = _sized(scene.force, 0.20 * reach)
-        fig.add_traces(solids.arrow(tip - vector, vector * 0.96, p.accent, "force", "", width))
-        fig.add_trace(solids.word(tip - 1.12 * vector, scene.force_label, rgba(p.accent, 1.0)))
+        opaque += solids.arrow(tip - vector, vector * 0.96, p.accent, width)
+        said.append((tip - 1.12 * vector, scene.force_label, p.accent))
     if scene.displacement is not None:
         vector = _sized(scene.displacement, 0.17 * reach)
-        fig.add_traces(solids.arrow(tip, vector, p.warm, "displacement", scene.displacement_label, width))
+        opaque += solids.arrow(tip, vector, p.warm, width)
+        said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
+    fig.add_traces([solids.painted(opaque, "arm"), _joint_hover(scene.frames, p.text), solids.words(said)])
+    fig.add_traces(_part_traces(scene, reach, dark))
     fig.update_layout(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
     return fig
 
@@ -104,21 +109,13 @@ def _bounds(fig: go.Figure, reach: float) -> FloatArray:
     return np.stack([np.floor(low / step - 0.2), np.ceil(high / step + 0.2)]) * step
 
 
-def _arm_traces(frames: FloatArray, cutter_radius: float, dark: bool, ghost: bool = False) -> list[Any]:
-    p, reach = palette(dark), solids.yardstick(frames)
+def _arm(scene: ArmScene, dark: bool) -> list[solids.Painted]:
+    p, frames = palette(dark), scene.frames
+    reach, tip, k = solids.yardstick(frames), frames[-1][:3, 3], frames[-1][:3, 2]
     links, joints = solids.limbs(frames)
-    if ghost:
-        return [solids.trace([*links, *joints], p.muted, "before", opacity=0.18)]
-    tip, k = frames[-1][:3, 3], frames[-1][:3, 2]
-    spindle = [solids.tube(tip + 0.035 * reach * k, tip + 0.13 * reach * k, 0.016 * reach, 0.024 * reach)]
-    cutter = [solids.tube(tip, tip + 0.04 * reach * k, max(cutter_radius, 0.004 * reach))]
-    return [
-        solids.trace(links, p.link, "links"),
-        solids.trace(joints, p.joint, "joints"),
-        solids.trace(spindle, p.joint, "spindle"),
-        solids.trace(cutter, p.warm, "cutter"),
-        _joint_hover(frames, p.text),
-    ]
+    spindle = solids.tube(tip + 0.035 * reach * k, tip + 0.13 * reach * k, 0.016 * reach, 0.024 * reach)
+    cutter = solids.tube(tip, tip + 0.04 * reach * k, max(scene.cutter_radius, 0.004 * reach))
+    return [*((m, p.link) for m in links), *((m, p.joint) for m in joints), (spindle, p.joint), (cutter, p.warm)]
 
 
 def _joint_hover(frames: FloatArray, colour: str) -> go.Scatter3d:
@@ -135,24 +132,20 @@ def _joint_hover(frames: FloatArray, colour: str) -> go.Scatter3d:
     )
 
 
-def _pedestal(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
+def _foot(scene: ArmScene, reach: float, dark: bool) -> list[solids.Painted]:
     """A foot under {M}; drawn for orientation only, no dimension of it is used."""
-    p = palette(dark)
-    axis = np.array([0.0, 0.0, 1.0])
-    base = scene.frames[0][:3, 3]
+    axis, base, colour = np.array([0.0, 0.0, 1.0]), scene.frames[0][:3, 3], palette(dark).link
     if abs(scene.frames[0][2, 2]) < 0.5:
         return []
     foot = base - 0.19 * reach * axis
-    meshes = [solids.tube(base - 0.05 * reach * axis, foot, 0.045 * reach, 0.07 * reach)]
-    meshes.append(solids.tube(foot, foot - 0.02 * reach * axis, 0.115 * reach))
-    return [solids.trace(meshes, p.link, "foot")]
+    column = solids.tube(base - 0.05 * reach * axis, foot, 0.045 * reach, 0.07 * reach)
+    return [(column, colour), (solids.tube(foot, foot - 0.02 * reach * axis, 0.115 * reach), colour)]
 
 
 def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
+    """What is clear or a line: part, table and path."""
     p = palette(dark)
     traces: list[Any] = []
-    if scene.T_MW is not None:
-        traces += solids.frame(scene.T_MW, "W", 0.075 * reach, dark, label=(-1.7, -0.6, 0.0))
     if scene.part is not None and scene.T_MW is not None:
         lower, upper = (np.asarray(corner, dtype=float) for corner in scene.part)
         traces.append(

@@ -65,5 +65,5 @@ def ellipsoid_traces(
             p.caution,
             "soft direction",
         ),
-        solids.word(end, "softest", p.caution),
+        solids.words([(end, "softest", p.caution)]),
     ]

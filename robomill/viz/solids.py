@@ -1,6 +1,7 @@
 """Triangle meshes for 3-D figures: tubes, cones, boxes and coordinate frames, as plotly traces.
 
-Points in m, in the frame of the figure. Meshes are merged, so that an arm is two or three traces and not thirty.
+Points in m, in the frame of the figure. What is opaque goes into one trace and so do the words: the browser prepares
+each trace by itself, and thirty of them take it a second.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from robomill.arrays import FloatArray
 from robomill.viz.theme import axis_colours
 
 Mesh = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
+Painted = tuple[Mesh, str]  # a mesh in its colour
+Said = tuple[FloatArray, str, str]  # where (3,), the word, its colour
 LIGHTING = {"ambient": 0.74, "diffuse": 0.55, "specular": 0.18, "roughness": 0.55, "fresnel": 0.08}
 
 
@@ -92,7 +95,13 @@ def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Mesh
     return points, np.array(faces, dtype=float)
 
 
-def trace(meshes: Sequence[Mesh], colour: str, name: str, **more: Any) -> go.Mesh3d:
+def painted(solids: Sequence[Painted], name: str) -> go.Mesh3d:
+    """One Mesh3d trace of opaque solids, each in its own colour."""
+    colours = [colour for mesh, colour in solids for _ in mesh[1]]
+    return trace([mesh for mesh, _ in solids], None, name, facecolor=colours)
+
+
+def trace(meshes: Sequence[Mesh], colour: str | None, name: str, **more: Any) -> go.Mesh3d:
     """One Mesh3d trace of several meshes in one colour."""
     points = np.vstack([m[0] for m in meshes])
     shift = np.cumsum([0, *[len(m[0]) for m in meshes[:-1]]])
@@ -110,35 +119,29 @@ def trace(meshes: Sequence[Mesh], colour: str, name: str, **more: Any) -> go.Mes
     return go.Mesh3d(x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
 
 
-def word(at: FloatArray, text: str, colour: str, **more: Any) -> go.Scatter3d:
-    """A word in a scene."""
-    x, y, z = ([float(v)] for v in at)
-    font = {"color": colour, "size": 13}
-    quiet = {"hoverinfo": "skip", "showlegend": False}
-    return go.Scatter3d(x=x, y=y, z=z, mode="text", text=[text], textfont=font, **quiet, **more)
+def words(said: Sequence[Said], **more: Any) -> go.Scatter3d:
+    """Words in a scene."""
+    x, y, z = np.array([at for at, _, _ in said], dtype=float).T
+    font = {"color": [colour for _, _, colour in said], "size": 13}
+    quiet = {"hoverinfo": "skip", "showlegend": False, "name": "words"}
+    return go.Scatter3d(x=x, y=y, z=z, mode="text", text=[w for _, w, _ in said], textfont=font, **quiet, **more)
 
 
-def arrow(start: ArrayLike, vector: ArrayLike, colour: str, name: str, label: str, width: float) -> list[Any]:
-    """A solid arrow from ``start`` along ``vector`` with a word at its head; nothing for a zero vector."""
+def arrow(start: ArrayLike, vector: ArrayLike, colour: str, width: float) -> list[Painted]:
+    """A solid arrow from ``start`` along ``vector``; nothing for a zero vector."""
     a, v = np.asarray(start, dtype=float), np.asarray(vector, dtype=float)
     length = float(np.linalg.norm(v))
     if length < 1e-9 or not np.isfinite(length):
         return []
     head = min(0.35 * length, 5.5 * width)
     neck = a + v * (1 - head / length)
-    meshes = [tube(a, neck, width, sides=14), tube(neck, a + v, 2.4 * width, 0.0, sides=18)]
-    return [trace(meshes, colour, name), word(a + 1.12 * v, label, colour, name=name)]
+    return [(tube(a, neck, width, sides=14), colour), (tube(neck, a + v, 2.4 * width, 0.0, sides=18), colour)]
 
 
-def frame(
-    T: FloatArray, name: str, size: float, dark: bool, label: tuple[float, float, float] = (0, 0, 1.3)
-) -> list[Any]:
-    """The axes of a coordinate frame with its name at ``label`` (in axis lengths, in the frame itself)."""
-    colours = axis_colours(dark)
-    origin = T[:3, 3]
-    traces: list[Any] = []
-    for column, axis in enumerate("xyz"):
-        end = origin + size * T[:3, column]
-        traces.append(trace([tube(origin, end, 0.035 * size, sides=10)], colours[axis], name))
-    at = origin + size * T[:3, :3] @ np.asarray(label, dtype=float)
-    return [*traces, word(at, f"{{{name}}}", colours["z"], name=name)]
+def frame(T: FloatArray, size: float, dark: bool) -> list[Painted]:
+    """The axes of a coordinate frame T (4, 4), each in its colour and ``size`` m long."""
+    origin, colours = T[:3, 3], axis_colours(dark)
+    return [
+        (tube(origin, origin + size * T[:3, column], 0.035 * size, sides=10), colours[axis])
+        for column, axis in enumerate("xyz")
+    ]

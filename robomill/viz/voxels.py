@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.viz.maps import Scale
-from robomill.viz.solids import LIGHTING, word
+from robomill.viz.solids import LIGHTING, words
 from robomill.viz.theme import colour_bar, palette
 
 # The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
@@ -96,7 +96,7 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
             hoverinfo="name",
             showlegend=False,
         ),
-        word(np.array([upper[0], lower[1], upper[2]]), label, colour, textposition="top center"),
+        words([(np.array([upper[0], lower[1], upper[2]]), label, colour)], textposition="top center"),
     ]
 
 
