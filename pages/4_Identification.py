@@ -26,7 +26,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
     if result is not None:
         ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length)))
-    left, right = ui.split([1, 2.3], "page", gap="large")
+    left, right = ui.split([1, 2.3], "steps", gap="large")
     with left:
         inputs.source(kept, robot)
         inputs.said(tests, refusal, inputs.findings(tests, result, robot))

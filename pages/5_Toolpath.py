@@ -27,7 +27,7 @@ result = ui.attempt(view.simulated, setup) if reach is not None else None
 view.headline(source, path, reach, result, unit)
 view.tiles(source, path, reach, result, unit)
 
-left, right = ui.thirds() if source.kind == "program" else ui.split([1.2, 1.75], "page", gap="large")
+left, right = ui.split([1, 2] if source.kind == "program" else [1.2, 1.75], "steps", gap="large")
 with left:
     kind_switch()
     if source.kind == "program":

@@ -51,10 +51,10 @@ def _tile(tile: Tile) -> str:
     if tile.was and tile.was != tile.value:
         moved = f" · {html.escape(tile.change)}" if tile.change else ""
         note = f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}'
-    mark = badge(tile.kind) if tile.kind else ""
+    mark = f"{badge(tile.kind)} " if tile.kind else ""
     return (
-        f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label"><span>{subscripts(tile.label)}</span>'
-        f'{mark}</div><div class="rm-value">{value}</div><div class="rm-sub">{note}</div></div>'
+        f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
+        f'<div class="rm-value">{value}</div><div class="rm-sub">{mark}{note}</div></div>'
     )
 
 

@@ -78,7 +78,7 @@ def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
 
 def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
     span = np.ptp(bounds, axis=0)
-    ratio = 2.5 * zoom * span / np.linalg.norm(span)
+    ratio = 2.35 * zoom * span / np.linalg.norm(span)
     axes = {
         f"{name}axis": axis3d(f"{name.upper()}<sub>M</sub>, m", dark=dark, range=bounds[:, i].tolist())
         for i, name in enumerate("xyz")

@@ -18,6 +18,7 @@ from robomill.workspace.quantities import Colours, Quantity
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
 LEFT, RIGHT = 62, 84  # px for tick labels and colour bar, fixed: measuring them would draw everything twice
+LINE = 15  # px of a line of a panel's title
 BAR_ROOM = 110  # px of height that a colour bar with its title beside it needs; bars with less stand side by side
 
 
@@ -105,7 +106,8 @@ def sheet_figure(
 ) -> go.Figure:
     """All panels of ``sheet`` in one figure; panning and zooming one moves all."""
     n_rows, n_columns = len(sheet.rows), max(len(row) for row in sheet.rows)
-    top, bottom = 26, 44
+    lines = 1 + max(m.title.count("<br>") for row in sheet.rows for m in row if m is not None)
+    top, bottom, gap_y = 11 + LINE * lines, 44, gap_y + LINE * (lines - 1)
     height = top + n_rows * panel_height + (n_rows - 1) * gap_y + bottom
     inner = height - top - bottom
     width = (1.0 - gap_x * (n_columns - 1)) / n_columns
@@ -255,7 +257,7 @@ def _decorate(
     ):
         half = _half_step(points)
         layout[f"{letter}axis{name}"] = {
-            **axis("", dark=dark, showgrid=False, nticks=5),
+            **axis("", dark=dark, showgrid=False, nticks=5 if len(sheet.rows[0]) < 3 or letter == "y" else 3),
             **({} if index == 0 else {"matches": letter}),
             "domain": domain,
             "anchor": f"{other}{name}",
