@@ -102,7 +102,7 @@ def parser() -> argparse.ArgumentParser:
     run = verb("simulate", run_simulate, "Run a set-up: deviation, groove, verdict.")
     run.add_argument("setup", help="a set-up (.toml) or a sample's folder")
     run.add_argument("--program", help="another program than the set-up's")
-    run.add_argument("--tol", type=float, metavar="MM", help="another tolerance, mm")
+    run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")
     run.add_argument("--out", metavar="DIR", help="write the result there: CSV tables, JSON, STL")
     return top
@@ -258,7 +258,7 @@ def run_simulate(arguments: Any) -> int:
     if arguments.program:
         setup = setup.replace(source=read_program(arguments.program))
     if arguments.tol is not None:
-        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"))
+        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"), floor_tolerance=None, feed_tolerance=None)
     setup = setup.replace(robot=_with_set(setup.robot, arguments))
     result = simulate(setup)
     record = simulation_record(result)

@@ -28,13 +28,14 @@ from robomill.io.workpiece import (
 )
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import TOLERANCES, SimulationSetup
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 
 FORMAT = "robomill-setup"
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
-NUMERICS = tuple(name for name in NUMBERS if name != "tolerance")  # in [numerics]; the tolerance stands at the top
+ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as tolerance_mm: one number, or three
+NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numerics]
 PROGRAMS = (".nc", ".ngc", ".tap", ".gcode", ".cnc")
 
 
@@ -69,7 +70,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
-        tolerance=read_quantity(top, NUMBERS["tolerance"]),
+        **_tolerances(top),
         robot=robot,
         source=_source(top.table("path"), folder),
         T_MW=part_from_table(top.table("part", {})),
@@ -124,6 +125,26 @@ def _source(table: Table, folder: Path | None) -> PathSource:
     return source
 
 
+def _tolerances(top: Table) -> dict[str, Any]:
+    """``tolerance_mm`` as one number, or as a table of wall, floor and feed (the last two may be left out)."""
+    key = NUMBERS["tolerance"].key
+    if not isinstance(top.data.get(key), dict):
+        return {"tolerance": read_quantity(top, NUMBERS["tolerance"])}
+    table = top.table(key)
+    found = {field: table.number(name, "mm") for name, field in zip(TOLERANCES, ALLOWED) if table.has(name)}
+    if "tolerance" not in found:
+        raise table.refuse("wall", "it is missing; give one number, or wall and what else is judged: floor, feed.")
+    table.asked.update(TOLERANCES)
+    table.finish()
+    return found
+
+
+def _tolerance_table(setup: SimulationSetup) -> Any:
+    given = {name: getattr(setup, field) for name, field in zip(TOLERANCES, ALLOWED)}
+    written = {name: shown(value, "mm") for name, value in given.items() if value is not None}
+    return written if len(written) > 1 else written["wall"]
+
+
 def _numerics(table: Table) -> dict[str, Any]:
     values = {name: read_quantity(table, NUMBERS[name]) for name in NUMERICS}
     table.finish()
@@ -144,7 +165,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "version": VERSION,
         "name": setup.name,
         "description": setup.description,
-        NUMBERS["tolerance"].key: write_quantity(NUMBERS["tolerance"], setup.tolerance),
+        NUMBERS["tolerance"].key: _tolerance_table(setup),
         "robot": _robot_table(setup.robot),
         "path": _source_table(setup.source),
         "part": part_to_table(T_MW),

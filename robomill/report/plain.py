@@ -69,7 +69,13 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     ]
     lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
     lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
+    lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
     lines.append(f"reached   {record['reached']['count']} of {record['reached']['of']} points")
+    lost = record["not_judged"]
+    if lost["count"]:
+        named = ", ".join(map(str, lost["blocks"][:5])) + (" and more" if len(lost["blocks"]) > 5 else "")
+        lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named}")
+        lines += [f"          {reason['why']} ({reason['count']} points)" for reason in lost["reasons"]]
     lines.append("groove    station    width    depth   centre off   floor off   (mm)")
     for g in record["groove"]:
         lines.append(
@@ -78,6 +84,14 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         )
     lines += [f"note      {note}" for note in record["notes"]]
     return lines
+
+
+def _reading(found: dict[str, Any]) -> str:
+    """One quantity of the verdict: its largest value, where, and how much of its tolerance it uses."""
+    if found["line"] is None:
+        return "none is left to measure"
+    value, allowed = format_value(found["value_mm"], "mm", sign=True), format_value(found["tolerance_mm"], "mm", 2)
+    return f"{value} at line {found['line']}, {100 * found['share']:.0f} % of {allowed}"
 
 
 def map_lines(record: dict[str, Any]) -> list[str]:

@@ -145,6 +145,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "force_share_mm": {
             name: shown(result.delta_component[i, c] if i >= 0 else nan3, "mm") for c, name in enumerate(COMPONENTS)
         },
+        "joint_shares_add_up": result.setup.measured_map is None,
         **_uncertain(result, i),
         "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
         "worst_block": result.worst_block,
@@ -158,10 +159,40 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "surface": surface_record(result),
         "verdict": verdict.level,
         "verdict_sentence": verdict.sentence,
+        **judged_record(result),
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
         "notes": [*result.notes, *result.surface_notes],
         "findings": [finding_record(f) for f in result.setup.toolpath.findings],
         "digest": result.setup.digest(),
+    }
+
+
+def judged_record(result: SimulationResult) -> dict[str, Any]:
+    """What a gauge would read, each quantity against its tolerance, and what is not judged and why."""
+    verdict, path = result.verdict, result.path
+    readings = {"wall": verdict.wall, "floor": verdict.floor, "feed": verdict.feed, "end": verdict.end}
+    lost = result.not_judged
+    return {
+        **{
+            name: {
+                "value_mm": float(from_si(reading.value, "mm")),
+                "tolerance_mm": float(from_si(reading.tolerance, "mm")),
+                "share": reading.share,
+                "length_out_of_tolerance_share": reading.share_out,
+                "line": int(path.block[reading.worst]) if reading.worst >= 0 else None,
+                "station_mm": float(from_si(path.s[reading.worst], "mm")) if reading.worst >= 0 else None,
+            }
+            for name, reading in readings.items()
+        },
+        "not_judged": {
+            "count": int(lost.sum()),
+            "of": int(path.cutting.sum()),
+            "blocks": sorted(set(path.block[lost].tolist())),
+            "reasons": [
+                {"code": each.code, "why": each.why, "count": int((each.where & lost).sum())}
+                for each in result.unjudged
+            ],
+        },
     }
 
 
@@ -214,14 +245,16 @@ def _extreme(field: Field, which: Any) -> float:
 
 
 def surface_record(result: SimulationResult) -> dict[str, Any]:
-    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance."""
-    error = result.error
+    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance: seen from above, and walls by
+    their length and height."""
+    error, walls, verdict = result.error, result.gauge.walls, result.verdict
+    out, wall = error.area_out(verdict.floor.tolerance)[0] + walls.area(verdict.wall.tolerance), walls.area()
     return {
         "removed_volume_mm3": float(from_si(result.machined.removed_volume, "mm3")),
         "ideal_volume_mm3": float(from_si(result.ideal.removed_volume, "mm3")),
         "excess_volume_mm3": float(from_si(error.excess_volume, "mm3")),
         "gouge_volume_mm3": float(from_si(error.gouge_volume, "mm3")),
-        "area_out_of_tolerance_share": error.area_out(result.setup.tolerance)[1],
+        "area_out_of_tolerance_share": out / (error.cut_area + wall) if error.cut_area + wall else 0.0,
         "cells": int(result.machined.z.size),
     }
 

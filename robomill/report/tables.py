@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from robomill.arrays import FloatArray
@@ -12,29 +14,37 @@ Columns = dict[str, FloatArray]
 
 
 def deviation_columns(result: SimulationResult) -> Columns:
-    """Along the path: where, how far off in {M}, by which joint, under which force."""
+    """Along the path: where, how far off in {M} and in the axes of the cut, by which joint, under which force.
+
+    Under a measured map there are no joints: their model's shares would not add up to what was measured.
+    """
     path = result.path
-    p_M = result.setup.in_base(path.p)
     columns: Columns = {
         "line": path.block.astype(float),
+        "tool": path.tool.astype(float),
         "cutting": path.cutting.astype(float),
         "reached": result.reached.astype(float),
+        "not_judged": result.not_judged.astype(float),
         "station_mm": from_si(path.s, "mm"),
     }
-    for i, axis in enumerate("xyz"):
-        columns[f"{axis.upper()}_M_mm"] = from_si(p_M[:, i], "mm")
-    for i, axis in enumerate("xyz"):
-        columns[f"delta_{axis}_mm"] = from_si(result.delta[:, i], "mm")
+    columns |= _vectors("{axis}_M_mm", result.setup.in_base(path.p), "mm", "XYZ")
+    columns |= _vectors("delta_{axis}_mm", result.delta, "mm")
     columns["deviation_mm"] = from_si(result.deviation, "mm")
-    for i, axis in enumerate("xyz"):
-        columns[f"F_{axis}_N"] = result.F[:, i]
-    for j, number in enumerate(result.setup.robot.joint_numbers):
-        for i, axis in enumerate("xyz"):
-            columns[f"joint{number}_{axis}_mm"] = from_si(result.delta_joint[:, j, i], "mm")
-    for k, spring in enumerate(result.setup.springs):
-        for i, axis in enumerate("xyz"):
-            columns[f"{spring.name.replace(' ', '_')}_{axis}_mm"] = from_si(result.delta_spring[:, k, i], "mm")
+    columns |= _vectors("{axis}_mm", result.delta_in_cut, "mm", ("feed", "wall", "floor"))
+    columns |= _vectors("F_{axis}_N", result.F, "N")
+    if result.setup.measured_map is None:
+        for j, number in enumerate(result.setup.robot.joint_numbers):
+            columns |= _vectors(f"joint{number}_{{axis}}_mm", result.delta_joint[:, j], "mm")
+        for k, spring in enumerate(result.setup.springs):
+            columns |= _vectors(f"{spring.name.replace(' ', '_')}_{{axis}}_mm", result.delta_spring[:, k], "mm")
+    if result.sag is not None and result.setup.add_sag:
+        columns |= _vectors("sag_{axis}_mm", result.sag.sum(axis=-2), "mm")
     return columns
+
+
+def _vectors(name: str, values: FloatArray, unit: str, axes: Sequence[str] = "xyz") -> Columns:
+    """A column for each component of values (m, 3), named by its axis."""
+    return {name.format(axis=axis): from_si(values[:, i], unit) for i, axis in enumerate(axes)}
 
 
 def section_columns(result: SimulationResult) -> Columns:

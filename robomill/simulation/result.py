@@ -4,40 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
+from robomill.cutting.tooling import Tooling
+from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.inverse import IKResult
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
+from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.verdict import Verdict, judge
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
-from robomill.units import format_si
-
-TIGHT_FROM = 0.8
-Level = Literal["ok", "tight", "out", "unreached", "missed"]
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """``level`` ok | tight | out | unreached | missed; ``share`` of the tolerance used; one sentence for a foreman."""
-
-    level: Level
-    share: float
-    sentence: str
-
-    @property
-    def red(self) -> bool:
-        return self.level in ("out", "unreached", "missed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +39,7 @@ class SimulationResult:
     sag            (m, n, 3) m, joint shares of the sag under gravity; None where no masses are given
     conditions     feed, speed, engagement at each sample
     coupling       how force and deflection were brought to agree; None for a one-pass run
+    unjudged       steps that have no number, each group with its reason: their delta is NaN
     """
 
     setup: SimulationSetup
@@ -69,11 +56,22 @@ class SimulationResult:
     delta: FloatArray
     sag: FloatArray | None = None
     coupling: FixedPoint | None = None
+    unjudged: tuple[Unjudged, ...] = ()
 
     @cached_property
     def force_components(self) -> FloatArray:
         """(m, 3) N: feed, feed-normal, axial components of the force on the tool."""
         return np.einsum("mij,mi->mj", self.R_MF, self.F)
+
+    @cached_property
+    def delta_in_cut(self) -> FloatArray:
+        """(m, 3) m: the deviation along the feed, to its left and along the tool axis."""
+        return np.einsum("mij,mi->mj", self.R_MF, self.delta)
+
+    @property
+    def tooling(self) -> Tooling:
+        """Which cutter makes which step."""
+        return Tooling.single(self.setup.cutter, len(self.path))
 
     @cached_property
     def delta_component(self) -> FloatArray:
@@ -84,6 +82,15 @@ class SimulationResult:
     def answered(self) -> BoolArray:
         """(m,) points with an answer: reached and, where a measured map is used, inside it."""
         return np.asarray(self.reached & np.isfinite(self.delta).all(axis=1))
+
+    @cached_property
+    def not_judged(self) -> BoolArray:
+        """(m,) points of the cut that are reached and have no number: no model holds there."""
+        lost = np.zeros(len(self.path), dtype=bool)
+        for each in self.unjudged:
+            lost |= each.where
+        lost |= ~np.isfinite(self.F).all(axis=1)
+        return np.asarray(lost & self.path.cutting & self.reached)
 
     @property
     def theta(self) -> FloatArray:
@@ -206,31 +213,11 @@ class SimulationResult:
         return self.grooves(self.stations)
 
     @cached_property
+    def gauge(self) -> Gauge:
+        """What a gauge would read on the walls, floors and ends that the run leaves."""
+        return gauge(self)
+
+    @cached_property
     def verdict(self) -> Verdict:
-        tolerance = self.setup.tolerance
-        missed = int((~self.answered).sum())
-        if self.worst < 0:
-            if self.answered[self.path.cutting].any():
-                return Verdict("missed", float("nan"), "The path never touches the stock: move the stock or the path.")
-            if self.reached.any():
-                return Verdict("unreached", float("nan"), "No point of the cut lies inside the measured map.")
-            return Verdict("unreached", float("nan"), "No point of the cut can be reached: move the part zero.")
-        share = self.max_deviation / tolerance
-        sentence = (
-            f"Max {format_si(self.max_deviation, 'mm', 2)} at line {self.worst_block}, "
-            f"{100 * share:.0f} % of the {format_si(tolerance, 'mm', 2)} allowed"
-        )
-        if missed:
-            lines = sorted(set(self.path.block[~self.answered].tolist()))
-            why = "cannot be reached" if not self.reached.all() else "lie outside the measured map"
-            named = ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")
-            return Verdict(
-                "unreached",
-                share,
-                f"{missed} of {len(self.path)} points {why} (line {named}); of the rest: {sentence}.",
-            )
-        if share > 1.0:
-            return Verdict("out", share, f"{sentence}: out of tolerance.")
-        if share >= TIGHT_FROM:
-            return Verdict("tight", share, f"{sentence}: within tolerance, tight.")
-        return Verdict("ok", share, f"{sentence}: within tolerance.")
+        """Walls and floors against their tolerances, in one sentence."""
+        return judge(self, self.gauge)

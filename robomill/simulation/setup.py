@@ -24,6 +24,8 @@ from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 
+TOLERANCES = ("wall", "floor", "feed")
+
 
 @dataclass(frozen=True, eq=False)
 class SimulationSetup:
@@ -33,7 +35,9 @@ class SimulationSetup:
     source      the program or table the path is read from
     T_MW        (4, 4) where the part zero {W} lies in {M}
     cutter, force, stock   stock None: the path's bounds with a margin
-    tolerance   m, largest accepted path deviation
+    tolerance   m, largest accepted deviation of walls, and of floors where ``floor_tolerance`` is None; or three
+                numbers (wall, floor, feed), as a sequence or as a mapping by these names
+    feed_tolerance   m, of the ends of cuts along the feed (None: told, not judged)
     step        m, longest piece of path between two evaluations
     cell        m, cell size of the surfaces
     engagement  True: the force follows the arc of engagement found from the stock as it stands
@@ -53,6 +57,22 @@ class SimulationSetup:
     force: ForceModel
     stock: Stock | None = None
     tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, step=0.05)
+    floor_tolerance: float | None = quantity(
+        "Tolerance of floors",
+        "mm",
+        optional=True,
+        above=0.0,
+        step=0.05,
+        hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
+    )
+    feed_tolerance: float | None = quantity(
+        "Tolerance along the feed",
+        "mm",
+        optional=True,
+        above=0.0,
+        step=0.05,
+        hint="Where a cut begins or ends in the material. Left out: given, but not judged.",
+    )
     step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, step=0.5)
     cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, step=0.05, digits=4)
     engagement: bool = switch(
@@ -84,6 +104,7 @@ class SimulationSetup:
         if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:
             raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
         object.__setattr__(self, "T_MW", frozen(T_MW))
+        self._take_tolerances()
         settle(self, SetupError)
         # A process force is computed for the cutter that cuts; a changed cutter changes it too.
         object.__setattr__(self, "force", self.force.cut_by(self.cutter))
@@ -97,6 +118,21 @@ class SimulationSetup:
             raise SetupError("Sag: no link masses are given; add them or leave the sag out.")
         if self.coupling and not self.engagement:
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
+
+    def _take_tolerances(self) -> None:
+        """One number, or three: wall, floor, feed."""
+        given: Any = self.tolerance
+        if isinstance(given, Mapping):
+            given = [given.get(name) for name in TOLERANCES]
+        if np.ndim(given) == 0:
+            return
+        if len(given) != len(TOLERANCES) or given[0] is None:
+            raise SetupError(
+                f"Tolerance: found {given!r:.60}; expected one number, or three for {', '.join(TOLERANCES)}.",
+                where="tolerance",
+            )
+        for name, value in zip(("tolerance", "floor_tolerance", "feed_tolerance"), given, strict=True):
+            object.__setattr__(self, name, value)
 
     @cached_property
     def toolpath(self) -> Toolpath:

@@ -16,10 +16,11 @@ WORDS = {
     "ok": "In tolerance",
     "tight": "Tight",
     "out": "Out of tolerance",
+    "unjudged": "Not judged",
     "unreached": "Out of reach",
     "missed": "Misses the stock",
 }
-TONES = {"ok": "ok", "tight": "tight", "out": "out", "unreached": "out", "missed": "out"}
+TONES = {"ok": "ok", "tight": "tight", "out": "out", "unjudged": "out", "unreached": "out", "missed": "out"}
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:

@@ -135,3 +135,25 @@ def test_a_stock_from_a_mesh_survives_saving(setup, tmp_path) -> None:
     assert meshed.stock.triangles is not None
     assert meshed.stock.upper == pytest.approx(setup.stock.upper, abs=1e-9)
     assert setup_from_toml(setup_to_toml(meshed)).digest() == meshed.digest()
+
+
+@pytest.mark.parametrize("given", [0.4e-3, (0.3e-3, 0.1e-3, 0.5e-3), (0.3e-3, None, 0.5e-3), {"wall": 0.3e-3}])
+def test_one_tolerance_or_three_come_back_from_their_file(given):
+    setup = load_setup(samples_dir() / "paper_flute").replace(tolerance=given)
+    again = setup_from_toml(setup_to_toml(setup))
+    names = ("tolerance", "floor_tolerance", "feed_tolerance")
+    assert [getattr(again, name) for name in names] == pytest.approx([getattr(setup, name) for name in names])
+    assert again.digest() == setup.digest()
+
+
+def test_three_tolerances_are_read_by_name():
+    text = setup_to_toml(load_setup(samples_dir() / "paper_flute"))
+    three = text.replace("tolerance_mm = 0.3\n", "tolerance_mm = {wall = 0.3, floor = 0.1, feed = 0.5}\n")
+    found = setup_from_toml(three)
+    assert (found.tolerance, found.floor_tolerance, found.feed_tolerance) == pytest.approx((0.3e-3, 0.1e-3, 0.5e-3))
+    for wrong, word in (("{floor = 0.1}", "wall"), ("{wall = 0.3, depth = 1}", "depth"), ("{wall = -1}", "more than 0")):
+        with pytest.raises(RobomillError, match=word):
+            setup_from_toml(text.replace("tolerance_mm = 0.3\n", f"tolerance_mm = {wrong}\n"))
+    for wrong in ((0.1, 0.2), (None, 1.0, 1.0), {"floor": 0.1}):
+        with pytest.raises(RobomillError, match="one number, or three"):
+            found.replace(tolerance=wrong)

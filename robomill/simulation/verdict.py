@@ -1,0 +1,172 @@
+"""The verdict of a milled part: its walls and floors against their tolerances, as a gauge would read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from robomill.simulation.gauge import Gauge, Readings
+from robomill.simulation.seen import Run
+from robomill.units import format_percent, format_si
+
+TIGHT_FROM = 0.8
+MANY = 3  # lines named in a sentence
+Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One quantity of the verdict: its largest value (signed, m) at sample ``worst`` (-1: the cut leaves none, value
+    NaN), its ``tolerance`` (m) and the ``share`` of it that is used; ``share_out`` is the share of the length out of
+    tolerance."""
+
+    worst: int
+    value: float
+    tolerance: float
+    share_out: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """Of the tolerance; NaN where there is no value."""
+        return abs(self.value) / self.tolerance
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``level`` ok | tight | out | unjudged | unreached | missed; ``share`` of the tolerance used by what decides; one
+    sentence for a foreman.
+
+    wall    across the feed, left of it +: walls that are on the part in the end
+    floor   along the tool axis, up +: floors that are on the part in the end
+    feed    along the feed, ahead +: the largest on the path. It leaves no mark on a straight groove; at corners it
+            moves a wall and counts there
+    end     along the feed, where a cut begins or ends in the material: how far its end wall is moved. It decides only
+            where a tolerance of its own is stated for the feed
+    """
+
+    level: Level
+    share: float
+    sentence: str
+    wall: Reading
+    floor: Reading
+    feed: Reading
+    end: Reading
+
+    @property
+    def red(self) -> bool:
+        return self.level in ("out", "unjudged", "unreached", "missed")
+
+
+def judge(result: Run, gauge: Gauge) -> Verdict:
+    """The verdict of a run. What has no model or no answer is counted and never green."""
+    readings = _readings(result, gauge)
+    wall, floor, feed, end = readings
+    stated = result.setup.feed_tolerance is not None
+    deciding = [r for r in (wall, floor, *([end] if stated else [])) if r.worst >= 0]
+    share = max((r.share for r in deciding), default=float("nan"))
+    if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
+        share = result.max_deviation / wall.tolerance
+    level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
+    said = _said(result, readings, share)
+    missed, unjudged = result.path.cutting & ~result.answered & ~result.not_judged, result.not_judged
+    missed |= ~result.reached
+    if result.worst < 0:
+        level, said = _nothing(result)
+    elif missed.any():
+        why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
+        where = named_lines(result.path.block[missed].tolist())
+        level, said = (
+            "unreached",
+            f"{int(missed.sum())} of {len(result.path)} points {why} ({where}); of the rest: {said}.",
+        )
+    elif unjudged.any() and level != "out":
+        level, said = "unjudged", f"{_count(result)}; of the rest: {said}."
+    elif unjudged.any():
+        said = f"{said}: out of tolerance. {_count(result)}."
+    else:
+        said += {"out": ": out of tolerance.", "tight": ": within tolerance, tight."}.get(level, ": within tolerance.")
+    return Verdict(level, share, said, *readings)
+
+
+def named_lines(blocks: Sequence[int]) -> str:
+    """Source lines in words, the first few: ``"line 3, 7, 9 and more"``."""
+    lines = sorted(set(blocks))
+    return "line " + ", ".join(map(str, lines[:MANY])) + (" and more" if len(lines) > MANY else "")
+
+
+def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:
+    setup, i = result.setup, result.judged
+    wall_tolerance = setup.tolerance
+    floor_tolerance, feed_tolerance = (
+        wall_tolerance if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance)
+    )
+    along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
+    feed = int(np.argmax(along)) if i.any() else -1
+    value = float(result.delta_in_cut[feed, 0]) if feed >= 0 else float("nan")
+    return (
+        _reading(gauge.walls, wall_tolerance),
+        _reading(gauge.floors, floor_tolerance),
+        Reading(feed, value, feed_tolerance),
+        _reading(gauge.ends, feed_tolerance),
+    )
+
+
+def _reading(found: Readings, tolerance: float) -> Reading:
+    q = found.worst
+    if q < 0:
+        return Reading(-1, float("nan"), tolerance)
+    return Reading(int(found.sample[q]), float(found.error[q]), tolerance, found.share_out(tolerance))
+
+
+def _said(result: Run, readings: tuple[Reading, Reading, Reading, Reading], share: float) -> str:
+    """What a gauge would read, without the judgement; the larger share of its tolerance comes first."""
+    wall, floor, _, end = readings
+    parts = []
+    if wall.worst >= 0:
+        way = "left" if wall.value > 0 else "right"
+        parts.append((wall.share, f"wall {_size(wall)} to the {way} {_of(result, wall)}"))
+    if floor.worst >= 0:
+        way = "too high" if floor.value > 0 else "too deep"
+        parts.append((floor.share, f"floor {_size(floor)} {way} {_of(result, floor)}"))
+    parts.sort(key=lambda part: -part[0])
+    if end.worst >= 0 and result.setup.feed_tolerance is not None:
+        parts.append((end.share, f"end {_size(end)} along the feed {_of(result, end)}"))
+    if not parts:
+        largest, allowed = (format_si(v, "mm", 2) for v in (result.max_deviation, result.setup.tolerance))
+        where = f"at line {result.worst_block} ({format_percent(share)} of {allowed})"
+        return f"No wall or floor is left to measure; the tip is {largest} off {where}"
+    text = ", ".join(words for _, words in parts)
+    return text[0].upper() + text[1:]
+
+
+def _size(reading: Reading) -> str:
+    return format_si(abs(reading.value), "mm", 2)
+
+
+def _of(result: Run, reading: Reading) -> str:
+    line = f"at line {int(result.path.block[reading.worst])}"
+    return f"{line} ({format_percent(reading.share)} of {format_si(reading.tolerance, 'mm', 2)})"
+
+
+def _count(result: Run) -> str:
+    """How many points of the cut are not judged, on which lines, and why."""
+    lost = result.not_judged
+    why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
+    more = f" (and {len(result.unjudged) - 1} more reasons)" if len(result.unjudged) > 1 else ""
+    lines = named_lines(result.path.block[lost].tolist())
+    total = int(result.path.cutting.sum())
+    return f"{int(lost.sum())} of {total} points of the cut are not judged ({lines}): {why.rstrip('.')}{more}"
+
+
+def _nothing(result: Run) -> tuple[Level, str]:
+    """Level and sentence where not one sample counts."""
+    if result.answered[result.path.cutting].any():
+        return "missed", "The path never touches the stock: move the stock or the path."
+    if result.not_judged.any():
+        return "unjudged", f"{_count(result)}."
+    if result.reached.any():
+        return "unreached", "No point of the cut lies inside the measured map."
+    return "unreached", "No point of the cut can be reached: move the part zero."

@@ -1,0 +1,187 @@
+"""Where the walls and floors that a path leaves stand, asked at single places, exactly and without a grid; compiled.
+
+At a place of the path (tip c, tool axis k, direction u across it) the tracks of all moves near are looked at in the
+plane across k at a height h above c. Each straight move covers a capsule there; along the line c + w u the union of
+the capsules around the tool ends at the wall. Along k through c + offset u the lowest track is the floor. Moves whose
+axis differs from k are taken as if they had it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from robomill.compiled import In1, In2, Out1, Out2, OutInt1, kernel, part
+from robomill.surface.envelope_kernels import (
+    CHAMFER,
+    FLAT,
+    Shape,
+    clip,
+    move_between,
+    nearest,
+    radius_at,
+    swept_height,
+)
+
+ROUNDS = 6  # of growing the union along a line: a wall seldom stands behind more than two tracks
+TOUCH = 1e-7  # m: tracks this close are one
+LEVEL = 1e-15  # m: less is no motion
+
+
+class Tracks(NamedTuple):
+    """Moves sorted by the square of the plan they lie in: ends (n, 6) m, shapes (t, 5) of the cutters and which of them
+    each move has (n,), the first move of each square (nx ny + 1,), and the squares: corner, size m, how many each way.
+    """
+
+    ends: Out2
+    shapes: Out2
+    cutter: OutInt1
+    first: OutInt1
+    corner: Out1
+    size: float
+    squares: OutInt1
+
+
+class Seen(NamedTuple):
+    """A move seen from a place: start and span along u, across it (v) and along the tool axis, m."""
+
+    u: float
+    v: float
+    z: float
+    du: float
+    dv: float
+    dz: float
+
+
+@part
+def shape_of(tracks: Tracks, n: int) -> Shape:
+    """The cutter of a move."""
+    row = tracks.shapes[tracks.cutter[n]]
+    return Shape(int(row[0]), row[1], row[2], row[3], row[4])
+
+
+@part
+def seen_from(place: In1, ends: In1) -> Seen:
+    """A move in the axes of a place (c, k, u, ...)."""
+    cx, cy, cz, kx, ky, kz, ux, uy, uz = (
+        place[0],
+        place[1],
+        place[2],
+        place[3],
+        place[4],
+        place[5],
+        place[6],
+        place[7],
+        place[8],
+    )
+    vx, vy, vz = ky * uz - kz * uy, kz * ux - kx * uz, kx * uy - ky * ux
+    ax, ay, az = ends[0] - cx, ends[1] - cy, ends[2] - cz
+    bx, by, bz = ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]
+    return Seen(
+        ax * ux + ay * uy + az * uz,
+        ax * vx + ay * vy + az * vz,
+        ax * kx + ay * ky + az * kz,
+        bx * ux + by * uy + bz * uz,
+        bx * vx + by * vy + bz * vz,
+        bx * kx + by * ky + bz * kz,
+    )
+
+
+@part
+def furthest(move: Seen, rho: float, way: float) -> float:
+    """End of a capsule of radius rho on the line v = 0, furthest in the sense ``way`` (+1, -1) of u; NaN if missed.
+
+    It is the largest of u(t) + sqrt(rho^2 - v(t)^2) over the move, a concave function of t.
+    """
+    du, dv = way * move.du, move.dv
+    length = math.hypot(du, dv)
+    if length < LEVEL or abs(dv) < 1e-12 * length:
+        if abs(move.v) > rho:
+            return math.nan
+        return way * (way * move.u + max(du, 0.0) + math.sqrt(rho * rho - move.v * move.v))
+    low, high = (-rho - move.v) / dv, (rho - move.v) / dv
+    if low > high:
+        low, high = high, low
+    low, high = max(low, 0.0), min(high, 1.0)
+    if low > high:
+        return math.nan
+    t = clip((math.copysign(rho * du / length, du * dv) - move.v) / dv, low, high)
+    v = move.v + t * dv
+    return way * (way * move.u + t * du + math.sqrt(max(rho * rho - v * v, 0.0)))
+
+
+@part
+def squares_near(tracks: Tracks, x: float, y: float) -> tuple[int, int, int, int]:
+    """(first, end) of the rows and columns of squares around a point."""
+    i = math.floor((x - tracks.corner[0]) / tracks.size)
+    j = math.floor((y - tracks.corner[1]) / tracks.size)
+    return max(i - 1, 0), min(i + 2, tracks.squares[0]), max(j - 1, 0), min(j + 2, tracks.squares[1])
+
+
+@part
+def wall_at(tracks: Tracks, place: In1, height: float, start: float) -> float:
+    """How far out along u the tracks around the tool reach at a height above its tip, m; ``start`` lies within."""
+    i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
+    out, found = start, False
+    for _ in range(ROUNDS):
+        grown = False
+        for i in range(i0, i1):
+            row = i * tracks.squares[1]
+            for n in range(tracks.first[row + j0], tracks.first[row + j1]):
+                move = seen_from(place, tracks.ends[n])
+                rise = height - (move.z + 0.5 * move.dz)
+                if rise <= 0.0:
+                    continue
+                rho = radius_at(shape_of(tracks, n), rise)
+                end = furthest(move, rho, 1.0)
+                if end > out and furthest(move, rho, -1.0) <= out + TOUCH:
+                    out, grown, found = end, True, True
+        if not grown:
+            break
+    return out if found else math.nan
+
+
+@part
+def upright_part(shape: Shape, r: float) -> float:
+    """Part along the axis of the normal of a cutter's surface at radius r: 1 on its flat."""
+    e = max(r - shape.r0, 0.0)
+    if e == 0.0 or shape.kind == FLAT:
+        return 1.0
+    if shape.kind == CHAMFER:
+        return 1.0 / math.sqrt(1.0 + shape.slope * shape.slope)
+    return math.sqrt(max(shape.rc * shape.rc - e * e, 0.0)) / shape.rc
+
+
+@part
+def floor_at(tracks: Tracks, place: In1, offset: float) -> tuple[float, float]:
+    """(height of the lowest track above the tip, part of the surface's normal along k there) at c + offset u."""
+    i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
+    lowest, upright = math.inf, 1.0
+    for i in range(i0, i1):
+        row = i * tracks.squares[1]
+        for n in range(tracks.first[row + j0], tracks.first[row + j1]):
+            seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks, n)
+            move = move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
+            ex, ey = nearest(move, offset, 0.0)
+            if math.hypot(ex, ey) > shape.R:
+                continue
+            height = swept_height(shape, move, offset, 0.0)
+            if height < lowest:
+                lowest, upright = height, upright_part(shape, math.hypot(ex, ey))
+    return lowest, upright
+
+
+@kernel
+def walls_left(tracks: Tracks, places: In2, result: Out2) -> None:
+    """Column 0 of result: how far out along u (m) the wall stands from the tip, at places (q, 11): c, k, u, the height
+    above the tip, and a point of the line within the tool's own track; NaN where no track is."""
+    for q in range(len(places)):
+        result[q, 0] = wall_at(tracks, places[q], places[q, 9], places[q, 10])
+
+
+@kernel
+def floors_left(tracks: Tracks, places: In2, result: Out2) -> None:
+    """result (q, 2): height of the floor above the tip (m, inf where no track is) and the upward part of its normal,
+    at places (q, 10): c, k, u and the offset along u."""
+    for q in range(len(places)):
+        result[q, 0], result[q, 1] = floor_at(tracks, places[q], places[q, 9])

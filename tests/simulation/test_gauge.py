@@ -1,0 +1,214 @@
+"""What a gauge reads: against outlines drawn by another library, and against parts whose errors are plain to see."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import shapely
+
+import robomill as rm
+from robomill.cutting.forces.along_path import PathForce
+from robomill.io.samples import samples_dir
+from robomill.surface.stock import Stock
+from robomill.toolpath.source import GCodeSource
+
+R = 4e-3
+BLOCK = Stock([-30e-3, -20e-3, -10e-3], [30e-3, 20e-3, 0.0])
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(
+    cell=5e-4, step=1e-3, stock=BLOCK, force=PathForce(feed_normal=10.0)
+)
+
+
+def run(*lines: str, **changes):
+    text = "\n".join(["G21 G90 S12000 M3", *lines, "M2", ""])
+    return rm.simulate(SETUP.replace(source=GCodeSource(text), **changes))
+
+
+def pushed(result, along=0.0, left=0.0, up=0.0):
+    """The run with another deviation (m), given in the axes of the cut: numbers, or one a sample."""
+    m = len(result.path)
+    d = np.stack([np.broadcast_to(v, (m,)) for v in (along, left, up)], axis=1)
+    d = np.where(result.path.cutting[:, None], d, 0.0)
+    return dataclasses.replace(result, delta=np.einsum("mij,mj->mi", result.R_MF, d))
+
+
+def swept(p, cutting, depth) -> shapely.Geometry:
+    """What a flat mill covers at a depth, as a polygon of many corners."""
+    pieces = []
+    for a, b, on in zip(p[:-1], p[1:], cutting[1:], strict=True):
+        if on and 0.5 * (a[2] + b[2]) < depth:
+            line = shapely.LineString([a[:2], b[:2]]) if np.hypot(*(a - b)[:2]) > 0 else shapely.Point(a[:2])
+            pieces.append(line.buffer(R, quad_segs=400))
+    return shapely.union_all(pieces)
+
+
+def beyond(covered, point, u) -> float:
+    """How far from a point along u what is covered reaches, where it covers the tool around the point."""
+    ray = shapely.LineString([point - 3e-3 * u, point + 3e-3 * u])
+    inside = shapely.intersection(covered, ray)
+    for piece in getattr(inside, "geoms", [inside]):
+        ends = [(np.array(c) - point) @ u for c in piece.coords]
+        if min(ends) < -2.9e-3:
+            return max(ends)
+    return np.nan
+
+
+def truth(result, depth):
+    """Signed wall errors by polygons: (sample, error), left of the feed +."""
+    told = swept(result.path.p, result.removes, depth)
+    left = swept(result.p_machined, result.removes, depth)
+    stock = shapely.box(*BLOCK.lower[:2], *BLOCK.upper[:2])
+    found = {}
+    for i in np.flatnonzero(result.judged & (result.path.step_length > 0)):
+        p = result.path.p
+        e = (p[i] - p[i - 1])[:2] / np.linalg.norm((p[i] - p[i - 1])[:2])
+        for sign in (1.0, -1.0):
+            u = sign * np.array([-e[1], e[0]])
+            rim = p[i, :2] + R * u
+            beside = shapely.Point(rim + 2e-5 * u)
+            if not shapely.contains(stock, beside) or shapely.contains(told, beside):
+                continue
+            found[i, sign] = sign * (beyond(left, rim, u) - beyond(told, rim, u))
+    return found
+
+
+PARTS = {
+    "slot": ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X20 F1800"],
+    "shoulder": ["G0 X-40 Y-18 Z5", "G0 Z-2", "G1 X40 F1800"],
+    "rough and finish": ["G0 X-40 Y-1 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5", "G0 X-40 Y0", "G0 Z-2", "G1 X40 F1800"],
+    "spring pass": ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "G1 X-40"],
+    "arc": ["G0 X-20 Y-10 Z5", "G0 Z-2", "G1 X0 F1800", "G3 X0 Y10 J10", "G1 X-20"],
+    "crossing": ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5", "G0 X0 Y-30", "G0 Z-2", "G1 Y30"],
+    "rib": ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5", "G0 Y9.2", "G0 Z-2", "G1 X-40"],
+}
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_walls_stand_where_the_polygons_end(name):
+    result = run(*PARTS[name])
+    rng = np.random.default_rng(3)
+    s = result.path.s / result.path.s[-1]
+    wave = [0.2e-3 * rng.uniform(-1, 1) + 0.1e-3 * np.sin(2 * np.pi * s + 6 * rng.uniform()) for _ in range(2)]
+    bent = pushed(result, wave[0], wave[1], -0.05e-3)
+    expected = truth(bent, -1.9e-3)
+    walls = bent.gauge.walls
+    _, ends = (
+        (bent.path.cutting & ~np.append(False, bent.path.cutting[:-1])),
+        bent.path.cutting & ~np.append(bent.path.cutting[1:], False),
+    )
+    found = {}
+    for i, error, length in zip(walls.sample, walls.error, walls.length, strict=True):
+        if length > 0 and not ends[i]:
+            found.setdefault(i, []).append(error)
+    found = {i: np.unique(np.round(errors, 12)).tolist() for i, errors in found.items()}
+    assert sum(map(len, found.values())) > 15
+    places = {}
+    for (i, _), error in expected.items():
+        if not ends[i] and np.isfinite(error):
+            places.setdefault(i, []).append(error)
+    compared = 0
+    for i in set(found) & set(places):
+        for error in places[i]:
+            compared += min(abs(error - other) for other in found[i]) < 1.5e-6
+    assert compared > 0.95 * sum(map(len, places.values()))
+
+
+def test_a_straight_slot_is_off_by_the_tips_own_deviation():
+    bent = pushed(run(*PARTS["slot"]), along=-0.1e-3, left=0.21e-3, up=-0.12e-3)
+    verdict = bent.verdict
+    assert verdict.wall.value == pytest.approx(0.21e-3, abs=1e-9)
+    assert verdict.floor.value == pytest.approx(-0.12e-3, abs=1e-9)
+    assert verdict.feed.value == pytest.approx(-0.1e-3, abs=1e-9)
+    assert verdict.share == pytest.approx(0.7)
+    assert verdict.level == "ok"
+    section = bent.groove(30e-3)
+    assert section.centre_offset == pytest.approx(verdict.wall.value, abs=1e-7)
+    assert section.floor_error == pytest.approx(verdict.floor.value, abs=1e-7)
+
+
+def test_pure_feed_force_is_green_on_a_straight_groove_and_moves_its_end():
+    bent = pushed(run(*PARTS["slot"]), along=-0.9e-3)
+    assert bent.max_deviation == pytest.approx(0.9e-3)
+    verdict = bent.verdict
+    assert (verdict.level, verdict.red) == ("ok", False)
+    assert abs(verdict.wall.value) < 1e-9
+    assert abs(verdict.floor.value) < 1e-9
+    assert verdict.feed.value == pytest.approx(-0.9e-3)
+    # it starts in the air and ends in the block
+    assert verdict.end.value == pytest.approx(-0.9e-3)
+    assert set(bent.gauge.ends.sample.tolist()) == {len(bent.path) - 1}
+    three = dataclasses.replace(bent, setup=bent.setup.replace(tolerance={"wall": 0.3e-3, "feed": 0.5e-3}))
+    assert three.verdict.level == "out"
+    assert three.verdict.share == pytest.approx(1.8)
+    through = pushed(run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800"), along=-0.9e-3)
+    assert through.verdict.end.worst == -1
+
+
+def test_at_a_corner_the_feed_error_is_a_wall_error():
+    lines = ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X10 F1800", "G1 Y40"]
+    bent = pushed(run(*lines), along=0.25e-3)
+    assert bent.verdict.wall.value == pytest.approx(0.25e-3, abs=2e-6) or bent.verdict.wall.value == pytest.approx(
+        -0.25e-3, abs=2e-6
+    )
+    assert bent.path.p[bent.verdict.wall.worst, :2] == pytest.approx([10e-3, 0.0], abs=1e-9)
+    only = pushed(run(*lines), along=np.where(run(*lines).path.block == 4, 0.25e-3, 0.0))
+    assert abs(only.verdict.wall.value) == pytest.approx(0.25e-3, abs=2e-6)
+
+
+def test_facing_leaves_a_floor_and_no_wall():
+    wide = SETUP.cutter.replace(diameter=60e-3)
+    lines = ["G0 X-80 Y0 Z5", "G0 Z-1", "G1 X80 F1800"]
+    bent = pushed(run(*lines, cutter=wide), left=0.5e-3, up=0.02e-3)
+    assert bent.verdict.wall.worst == -1
+    assert np.isnan(bent.verdict.wall.value)
+    assert bent.verdict.floor.value == pytest.approx(0.02e-3)
+    assert bent.verdict.level == "ok"
+
+
+@pytest.mark.parametrize(("y", "side"), [(-18.0, 1), (18.0, -1)])
+def test_a_shoulder_has_one_wall_where_material_stays(y, side):
+    result = run(f"G0 X-40 Y{y} Z5", "G0 Z-2", "G1 X40 F1800")
+    walls = pushed(result, left=side * 0.1e-3).gauge.walls
+    assert walls.length.sum() == pytest.approx(60e-3, abs=1.5e-3)
+    np.testing.assert_allclose(walls.error, side * 0.1e-3)
+
+
+def test_what_a_later_pass_removes_is_not_on_the_part():
+    """A rough pass 0.2 mm beside and 0.1 mm above what the last one makes; its own error does not reach through."""
+    lines = ["G0 X-40 Y-0.2 Z5", "G0 Z-1.9", "G1 X40 F1800", "G0 Z5", "G0 X-40 Y0.2", "G1 Z-1.9", "G1 X40"]
+    lines += ["G0 Z5", "G0 X-40 Y-0.4", "G0 Z-2", "G1 X40", "G0 Z5", "G0 X-40 Y0.4", "G0 Z-2", "G1 X40"]
+    result = run(*lines)
+    rough = result.path.block < 10
+    bent = pushed(result, left=np.where(rough, 0.15e-3, 0.02e-3), up=np.where(rough, -0.08e-3, -0.01e-3))
+    assert bent.verdict.wall.value == pytest.approx(0.02e-3, abs=1e-8)
+    assert bent.verdict.floor.value == pytest.approx(-0.01e-3, abs=1e-8)
+    assert bent.max_deviation > 0.15e-3
+    # and one that does reach through is seen: 0.35 mm aside where 0.2 mm were left to the last pass
+    deep = pushed(result, left=np.where(rough, 0.35e-3, 0.02e-3))
+    assert deep.verdict.wall.value == pytest.approx(0.15e-3, abs=1e-8)
+
+
+def test_a_hole_is_judged_by_where_it_stands():
+    result = run("G0 X0 Y0 Z5", "G1 Z-6 F600", "G0 Z5")
+    bent = pushed(result, along=0.12e-3, left=0.05e-3, up=0.03e-3)
+    assert abs(bent.verdict.wall.value) == pytest.approx(0.13e-3, rel=0.02)
+    assert bent.verdict.level == "ok"
+
+
+def test_a_tilted_slot_is_judged_in_the_tools_own_axes():
+    """A slot 2 mm deep with the tool leaning 10 degrees along the feed."""
+    lines = ["G0 X-40 Y0 Z8 B10", "G0 Z-2", "G1 X20 F1800"]
+    bent = pushed(run(*lines), left=0.2e-3, up=-0.05e-3)
+    assert bent.path.k[-1] == pytest.approx([np.sin(np.radians(10)), 0, np.cos(np.radians(10))])
+    assert bent.verdict.wall.value == pytest.approx(0.2e-3, abs=1e-7)
+    assert bent.verdict.floor.value == pytest.approx(-0.05e-3, abs=1e-6)
+
+
+def test_walls_count_by_their_length():
+    bent = pushed(run(*PARTS["slot"]), left=0.4e-3)
+    assert bent.verdict.wall.share_out == 1.0
+    assert bent.verdict.level == "out"
+    half = pushed(run(*PARTS["slot"]), left=np.where(run(*PARTS["slot"]).path.p[:, 0] > -5e-3, 0.4e-3, 0.1e-3))
+    assert half.verdict.wall.share_out == pytest.approx(0.5, abs=0.03)
