@@ -151,7 +151,11 @@ def test_three_tolerances_are_read_by_name():
     three = text.replace("tolerance_mm = 0.3\n", "tolerance_mm = {wall = 0.3, floor = 0.1, feed = 0.5}\n")
     found = setup_from_toml(three)
     assert (found.tolerance, found.floor_tolerance, found.feed_tolerance) == pytest.approx((0.3e-3, 0.1e-3, 0.5e-3))
-    for wrong, word in (("{floor = 0.1}", "wall"), ("{wall = 0.3, depth = 1}", "depth"), ("{wall = -1}", "more than 0")):
+    for wrong, word in (
+        ("{floor = 0.1}", "wall"),
+        ("{wall = 0.3, depth = 1}", "depth"),
+        ("{wall = -1}", "more than 0"),
+    ):
         with pytest.raises(RobomillError, match=word):
             setup_from_toml(text.replace("tolerance_mm = 0.3\n", f"tolerance_mm = {wrong}\n"))
     for wrong in ((0.1, 0.2), (None, 1.0, 1.0), {"floor": 0.1}):
