@@ -40,6 +40,8 @@ UNITS: dict[str, Unit] = {
     "deg": Unit("°", math.pi / 180.0, 2),
     "mrad": Unit("mrad", 1e-3, 3),
     "urad": Unit("µrad", 1e-6, 1),
+    "deg/s": Unit("°/s", math.pi / 180.0, 0),
+    "deg/mm": Unit("°/mm", math.pi / 180.0 / 1e-3, 1),
     "mm/s": Unit("mm/s", 1e-3, 1),
     "mm/min": Unit("mm/min", 1e-3 / 60.0, 0),
     "in/min": Unit("in/min", 25.4e-3 / 60.0, 2),

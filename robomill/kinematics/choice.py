@@ -1,17 +1,15 @@
-"""Which of the closed form's solutions to take: the nearest within limits, or those that join along a path."""
+"""Which of the closed form's solutions of a pose to take: the nearest within limits."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.kinematics.decoupled import LIMIT_SLACK, Answer, Decoupled, Rules
+from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.kinematics.decoupled import Answer, Decoupled, Rules
 from robomill.kinematics.forward import rows
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.robot.model import Robot
 
-# Order in which shoulder and elbow are tried: as at home, other elbow, other shoulder, both.
-ARM_ORDER = np.array([0, 0, 1, 1, 2, 2, 3, 3])
 SPIN_STEPS = 24
 
 
@@ -66,85 +64,3 @@ def overshoot(robot: Robot, theta: FloatArray) -> FloatArray:
     """How far each coordinate (..., n) is past its limits: negative below, positive above, 0 inside."""
     low, high = robot.limits[:, 0], robot.limits[:, 1]
     return np.maximum(theta - high, 0.0) + np.minimum(theta - low, 0.0)
-
-
-def settle(robot: Robot, theta: FloatArray, near: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """(theta (..., n), within (...,)): angles turned towards ``near`` and, within rounding, put inside the limits."""
-    turned = turn(robot, theta, near)
-    within: BoolArray = np.all(np.abs(overshoot(robot, turned)) <= LIMIT_SLACK, axis=-1)
-    clipped = np.clip(turned, robot.limits[:, 0], robot.limits[:, 1])
-    return np.where(np.expand_dims(within, -1), clipped, turned), within
-
-
-Score = tuple[int, int, float]
-
-
-def path_score(robot: Robot, every: FloatArray, possible: BoolArray, start: FloatArray) -> Score:
-    """How well the solutions every (m, 8, n) serve a path, less is better: poses none reaches, poses the best single
-    branch misses, and that branch's sum of squared joint motions.
-    """
-    turned, within = settle(robot, every, start)
-    return _score(_unwrapped(robot, turned), within & possible, start)[0]
-
-
-def _score(turned: FloatArray, within: BoolArray, start: FloatArray) -> tuple[Score, int]:
-    missed = (~within).sum(axis=0)
-    motion = (np.diff(turned, axis=0) ** 2).sum(axis=(0, 2)) + _first_cost(turned[0], start)
-    branch = min(range(len(missed)), key=lambda k: (missed[k], motion[k]))
-    return (int((~within.any(axis=1)).sum()), int(missed[branch]), float(motion[branch])), branch
-
-
-def _first_cost(theta: FloatArray, start: FloatArray) -> FloatArray:
-    """(8,) what the first pose of a path adds: a little for its distance from home, shoulder and elbow included."""
-    return 1e-3 * ((theta - start) ** 2).sum(axis=-1) + 1e-3 * ARM_ORDER
-
-
-def join_path(robot: Robot, every: FloatArray, possible: BoolArray, start: FloatArray) -> tuple[FloatArray, IntArray]:
-    """(theta (m, n), index (m,)): one solution a pose, so that the sum of squared joint motions is least.
-
-    every (m, 8, n). A single branch that reaches all there is to reach serves the whole path; otherwise dynamic
-    programming over the solutions. Poses with none keep index -1 and are bridged.
-    """
-    turned, within = settle(robot, every, start)
-    turned, within = _unwrapped(robot, turned), within & possible
-    m = len(within)
-    (nowhere, missed, _), branch = _score(turned, within, start)
-    index = np.where(within[:, branch], branch, -1) if missed == nowhere else _least_motion(turned, within, start)
-    return turned[np.arange(m), np.maximum(index, 0)], index
-
-
-def _least_motion(turned: FloatArray, within: BoolArray, start: FloatArray) -> IntArray:
-    """index (m,) of the solutions turned (m, 8, n) by dynamic programming; -1 where none is within limits."""
-    m, k = within.shape
-    total = np.where(within[0], _first_cost(turned[0], start), np.inf)
-    came = np.zeros((m, k), dtype=np.int64)
-    last = turned[0]
-    for i in range(1, m):
-        came[i] = np.arange(k)
-        if not within[i].any():
-            continue
-        if not np.isfinite(total).any():
-            total = np.where(within[i], _first_cost(turned[i], start), np.inf)
-        else:
-            step = ((turned[i][:, None] - last[None]) ** 2).sum(axis=-1) + total
-            came[i] = np.argmin(step, axis=1)
-            total = np.where(within[i], step[np.arange(k), came[i]], np.inf)
-        last = turned[i]
-    index = np.full(m, -1)
-    current = int(np.argmin(total))
-    for i in range(m - 1, -1, -1):
-        if within[i, current]:
-            index[i] = current
-        current = int(came[i, current])
-    return index
-
-
-def _unwrapped(robot: Robot, turned: FloatArray) -> FloatArray:
-    """Each solution's angles along the path (m, 8, n) without jumps of a turn, where the limits leave room for it."""
-    wide = (robot.limits[:, 1] - robot.limits[:, 0] > 2 * np.pi) & ~robot.chain.prismatic
-    result = turned.copy()
-    for j in np.flatnonzero(wide):
-        smooth = np.unwrap(turned[..., j], axis=0)
-        inside = (smooth >= robot.limits[j, 0]) & (smooth <= robot.limits[j, 1])
-        result[..., j] = np.where(inside.all(axis=0), smooth, turned[..., j])
-    return result

@@ -2,22 +2,52 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Literal
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.choice import SPIN_STEPS, Score, every, join_path, nearest, path_score, rules, spun
+from robomill.kinematics.choice import SPIN_STEPS, every, nearest, rules, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
+from robomill.kinematics.joining import Joined, join
 from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
 from robomill.robot.model import Robot
 
 Spin = float | Literal["least motion", "fixed"]
-Found = tuple[FloatArray, IntArray, FloatArray | None]  # theta (m, n), branch (m,), spin (m,)
+SPINS = ("least motion", "fixed")
+THINNED = 200  # poses of a path by which its spins are compared
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """What is asked of inverse kinematics: poses (m, 4, 4) in runs of ``length``, what of them counts, which solution.
+
+    goal (1 or m, n) is what an answer is near to; None joins each run as a path. ``at_home``: shoulder and elbow as at
+    home before all motion.
+    """
+
+    T_MT: FloatArray
+    length: int
+    mode: Mode
+    goal: FloatArray | None
+    at_home: bool
+    branch: str | None
+    free_spin: bool
+
+
+class Found(NamedTuple):
+    """theta (m, n), branch (m,), -1 where none is within limits, how far from the poses (m,) m and rad, and the turn
+    (m,) about the tool axis that was chosen."""
+
+    theta: FloatArray
+    branch: IntArray
+    residual: FloatArray
+    angle: FloatArray
+    turn: FloatArray | None
 
 
 def inverse_kinematics(
@@ -46,47 +76,46 @@ def inverse_kinematics(
     """
     T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
     lead = T_MT.shape[:-2]
-    flat = T_MT.reshape(-1, 4, 4)
+    wish = _wish(robot, T_MT, branch, near, spin)
+    arm = decoupled(robot)
+    if arm is not None:
+        names, found = branch_names(), _closed(robot, arm, wish)
+    elif branch is None:
+        names, found = ("numerical",), _numerical(robot, wish)
+    else:
+        raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
+    reached = (found.branch >= 0) & within_residual(found.residual, found.angle, wish.mode)
+    return IKResult(
+        robot=robot,
+        T_MT=wish.T_MT.reshape(*lead, 4, 4),
+        theta=np.where(reached[:, None], found.theta, np.nan).reshape(*lead, robot.n),
+        reached=reached.reshape(lead),
+        residual=found.residual.reshape(lead),
+        branch_index=np.where(reached, found.branch, -1).reshape(lead),
+        branch_names=names,
+        asked_branch=branch,
+        free_spin=wish.free_spin,
+        spin=None if found.turn is None else found.turn.reshape(lead),
+    )
+
+
+def _wish(
+    robot: Robot, T_MT: FloatArray, branch: str | None, near: ArrayLike | Literal["path"] | None, spin: Spin
+) -> Wish:
+    """The question checked; poses turned by the angle that is asked for."""
+    lead, flat = T_MT.shape[:-2], T_MT.reshape(-1, 4, 4)
     along_path = isinstance(near, str)
     if along_path and (near != "path" or not lead):
         raise KinematicsError(f"near: expected a configuration, or 'path' for a batch of poses; found {near!r}.")
-    goal = robot.home[None] if near is None or along_path else _reference(robot, near, lead)
-    free_spin = robot.n >= 6 and spin == "least motion"
-    mode: Mode = "axis" if free_spin else task_mode(robot)
+    if isinstance(spin, str) and spin not in SPINS:
+        raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
     if robot.n >= 6 and not isinstance(spin, str):
         flat = spun(flat, float(spin))
-    elif isinstance(spin, str) and spin not in ("least motion", "fixed"):
-        raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
-    arm = decoupled(robot)
-    names = ("numerical",) if arm is None else branch_names()
-    if arm is None:
-        if branch is not None:
-            raise KinematicsError(f"{robot.name}: this arm has no named branches; leave branch out.")
-        start = bent_home(robot)[None] if near is None or along_path else goal
-        theta, index, turn = _numerical(robot, flat, start, mode, lead, along_path)
-    elif along_path:
-        theta, index, turn = _along_path(robot, arm, flat, lead[-1], branch_mask(branch), free_spin)
-    else:
-        theta, index, fit = nearest(
-            robot, arm, flat, goal, rules(robot, arm, branch_mask(branch), near is None, free_spin)
-        )
-        turn, residual, angle = (fit[:, 0] if free_spin else None), fit[:, 1], fit[:, 2]
-    if arm is None or along_path:
-        residual, angle = misfit(robot, theta, flat, mode)
-    reached = (index >= 0) & within_residual(residual, angle, mode)
-    return IKResult(
-        robot=robot,
-        T_MT=flat.reshape(*lead, 4, 4),
-        theta=np.where(reached[:, None], theta, np.nan).reshape(*lead, robot.n),
-        reached=reached.reshape(lead),
-        residual=residual.reshape(lead),
-        residual_angle=angle.reshape(lead),
-        branch_index=np.where(reached, index, -1).reshape(lead),
-        branch_names=names,
-        asked_branch=branch,
-        free_spin=free_spin,
-        spin=None if turn is None else turn.reshape(lead),
-    )
+    free_spin = robot.n >= 6 and spin == "least motion"
+    mode: Mode = "axis" if free_spin else task_mode(robot)
+    goal = None if along_path else robot.home[None] if near is None else _reference(robot, near, lead)
+    length = max(lead[-1], 1) if along_path else 1
+    return Wish(flat, length, mode, goal, near is None, branch, free_spin)
 
 
 def branch_mask(branch: str | None) -> BoolArray:
@@ -108,48 +137,54 @@ def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
     return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
 
 
-def _along_path(
-    robot: Robot, arm: Decoupled, flat: FloatArray, length: int, wanted: BoolArray, free_spin: bool
-) -> Found:
-    """Each run of ``length`` poses joined; with a free spin, one spin a run: most poses reached, then least motion."""
-    theta = np.empty((len(flat), robot.n))
-    index = np.empty(len(flat), dtype=np.int64)
-    turn = np.zeros(len(flat)) if free_spin else None
+def _closed(robot: Robot, arm: Decoupled, wish: Wish) -> Found:
+    """By closed form: pose by pose nearest to the goal, or run by run joined."""
+    wanted = branch_mask(wish.branch)
+    if wish.goal is None:
+        return _along_path(robot, arm, wish, wanted)
+    choice = rules(robot, arm, wanted, wish.at_home, wish.free_spin)
+    theta, index, fit = nearest(robot, arm, wish.T_MT, wish.goal, choice)
+    return Found(theta, index, fit[:, 1], fit[:, 2], fit[:, 0] if wish.free_spin else None)
 
-    def solutions(T_MT: FloatArray, angle: float) -> tuple[FloatArray, BoolArray]:
+
+def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> Found:
+    """Each run of poses joined; with a free spin, one spin a run: most poses reached, then the least cost."""
+    theta, index = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=np.int64)
+    turn = np.zeros(len(wish.T_MT)) if wish.free_spin else None
+    held = wish.free_spin and arm.spindle_on_last_axis
+
+    def joined(T_MT: FloatArray, angle: float) -> Joined:
         found, sound = every(robot, arm, spun(T_MT, angle))
-        if free_spin and arm.spindle_on_last_axis:
+        if held:
             found[..., 5] = robot.home[5]
-        return found, sound & wanted
+        return join(robot, found, sound & wanted, T_MT, robot.n == 6 and not held)
 
-    def score(T_MT: FloatArray, angle: float) -> Score:
-        return path_score(robot, *solutions(T_MT, angle), robot.home)
-
-    choose_it = free_spin and not arm.spindle_on_last_axis
-    for start in range(0, len(flat), max(length, 1)):
-        run = slice(start, start + length)
+    for start in range(0, len(wish.T_MT), wish.length):
+        run = slice(start, start + wish.length)
         best = 0.0
-        if choose_it:
+        if wish.free_spin and not held:
+            few = wish.T_MT[run][:: max(wish.length // THINNED, 1)]
             angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
-            best = min(angles, key=partial(score, flat[run]))
-        theta[run], index[run] = join_path(robot, *solutions(flat[run], best), robot.home)
+            ranks = {angle: (way.missed, way.cost) for angle in angles if (way := joined(few, angle))}
+            best = min(angles, key=ranks.__getitem__)
+        way = joined(wish.T_MT[run], best)
+        theta[run], index[run] = way.theta, way.branch
         if turn is not None:
             turn[run] = best
-    return theta, index, turn
+    return Found(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), turn)
 
 
-def _numerical(
-    robot: Robot, flat: FloatArray, goal: FloatArray, mode: Mode, lead: tuple[int, ...], along_path: bool
-) -> Found:
-    if not along_path:
-        theta, found = solve_numerically(robot, flat, goal, mode)
-        return theta, np.where(found, 0, -1), None
-    theta = np.empty((len(flat), robot.n))
-    found = np.empty(len(flat), dtype=bool)
-    length = lead[-1]
-    for start in range(0, len(flat), max(length, 1)):
-        near = goal
-        for i in range(start, start + length):
-            theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, flat[i : i + 1], near, mode)
+def _numerical(robot: Robot, wish: Wish) -> Found:
+    """Pose by pose from the goal, or along each run from the pose before."""
+    if wish.goal is not None:
+        start = bent_home(robot)[None] if wish.at_home else wish.goal
+        theta, found = solve_numerically(robot, wish.T_MT, start, wish.mode)
+    else:
+        theta, found = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=bool)
+        for i in range(len(wish.T_MT)):
+            if i % wish.length == 0:
+                near = bent_home(robot)[None]
+            theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, wish.T_MT[i : i + 1], near, wish.mode)
             near = theta[i : i + 1] if found[i] else near
-    return theta, np.where(found, 0, -1), None
+    index = np.where(found, 0, -1)
+    return Found(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), None)

@@ -21,8 +21,8 @@ Mode = Literal["position", "axis", "pose"]
 class IKResult:
     """Configurations for a batch of poses; every reached one has been checked by forward kinematics.
 
-    theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m and
-    residual_angle (...,) rad of the answer or of the best attempt; branch_index (...,) into branch_names, -1 where not
+    theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m
+    of the answer or of the best attempt; branch_index (...,) into branch_names, -1 where not
     reached; spin (...,) rad is the turn about the tool axis that was chosen, None where the arm does not choose one.
     ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
     """
@@ -32,7 +32,6 @@ class IKResult:
     theta: FloatArray
     reached: BoolArray
     residual: FloatArray
-    residual_angle: FloatArray
     branch_index: IntArray
     branch_names: tuple[str, ...]
     asked_branch: str | None = None
@@ -93,9 +92,9 @@ def task_mode(robot: Robot) -> Mode:
 
 
 def misfit(robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode) -> tuple[FloatArray, FloatArray]:
-    """(residual m, residual_angle rad), each (m,): theta (m, n) by forward kinematics against T_MT (m, 4, 4).
+    """(residual m, angle rad), each (m,): theta (m, n) by forward kinematics against T_MT (m, 4, 4).
 
-    residual_angle is of the whole rotation ("pose") or of the tool axis; it does not count where only position does.
+    The angle is of the whole rotation ("pose") or of the tool axis; it does not count where only position does.
     """
     from robomill.kinematics import kernels
 

@@ -13,11 +13,13 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.inverse import IKResult
+from robomill.provenance import Finding
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.steadiness import steadiness
 from robomill.simulation.verdict import Verdict, judge
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
@@ -156,7 +158,13 @@ class SimulationResult:
         found = list(cut_notes(self.setup, self.conditions))
         if self.coupling is not None:
             found.append(self.coupling.sentence)
+        found += [f"Line {f.line}: {f.message}" for f in self.steadiness]
         return tuple(found)
+
+    @cached_property
+    def steadiness(self) -> tuple[Finding, ...]:
+        """Where a joint must run or the arm passes a singular configuration, by the program's lines."""
+        return steadiness(self.path, self.ik)
 
     @cached_property
     def removes(self) -> BoolArray:

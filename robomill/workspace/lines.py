@@ -11,8 +11,9 @@ from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.errors import WorkspaceError
-from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.inverse import IKResult, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.kinematics.steadiness import hasty_turns, passages
 from robomill.kinematics.transforms import axis_from_tilt, pose_from_world
 from robomill.robot.model import Robot
 from robomill.units import format_si
@@ -31,9 +32,24 @@ class LineDeviation:
     feed: FloatArray
     normal: FloatArray
     F: FloatArray
-    theta: FloatArray
-    reached: BoolArray
+    ik: IKResult
     delta_joint: FloatArray
+
+    @property
+    def theta(self) -> FloatArray:
+        """(m, n) rad."""
+        return self.ik.theta
+
+    @property
+    def reached(self) -> BoolArray:
+        """(m,)."""
+        return self.ik.reached
+
+    def notes(self) -> list[str]:
+        """Where along the line, m from its start, a joint must run or the arm passes a singular configuration."""
+        found = [(haste.worst, haste.sentence()) for haste in hasty_turns(self.ik)]
+        found += [(passage.at, passage.sentence()) for passage in passages(self.ik)]
+        return [f"{self.name or 'line'}, after {_mm(self.s[at])}: {words}" for at, words in sorted(found)]
 
     @property
     def delta(self) -> FloatArray:
@@ -83,7 +99,7 @@ def line_deviation(
     J_v = geometric_jacobian(robot, found.theta)[:, :3]
     F = force * normal
     delta_joint = deflection(joint_contributions(J_v, robot.C_theta), F)
-    return LineDeviation(name, p, feed, normal, F, found.theta, found.reached, delta_joint)
+    return LineDeviation(name, p, feed, normal, F, found, delta_joint)
 
 
 def border_and_middle_lines(

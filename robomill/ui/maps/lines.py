@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,8 @@ def show(region: Region) -> None:
         caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
         "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
     )
+    for words in [words for line in found for words in line.notes()]:
+        pieces.note(html.escape(words))
 
 
 def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:

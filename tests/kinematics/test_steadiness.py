@@ -1,0 +1,85 @@
+"""Haste and singular passages along a path: against the axes of the arm and joints moved by hand."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.kinematics.forward import joint_frames
+from robomill.kinematics.steadiness import hasty_turns, passages
+
+ROBOT = rm.load_robot("slavkovic_5r")
+
+
+def line(start, end, points, **asked):
+    x_M = np.array(start) + np.linspace(0, 1, points)[:, None] * (np.array(end) - start)
+    return rm.inverse_kinematics(ROBOT, rm.pose_from_world(x_M), near="path", **asked)
+
+
+FLIP = ([-0.656, -0.339, -0.974, 0, 0], [-0.840, -1.094, -0.888, 0, 0], 783)
+
+
+def test_a_wrist_that_flips_is_one_haste_with_its_joint_place_and_rate():
+    result = line(*FLIP, branch="wrist -")
+    turn = np.abs(np.diff(result.theta, axis=0))
+    step, joint = np.unravel_index(turn.argmax(), turn.shape)
+    way = np.linalg.norm(result.T_MT[step + 1, :3, 3] - result.T_MT[step, :3, 3])
+    (haste,) = hasty_turns(result)
+    assert (haste.first, haste.last, haste.worst, haste.joint) == (step + 1, step + 1, step + 1, joint + 1)
+    assert haste.turn == pytest.approx(np.pi, abs=1e-6)
+    assert haste.way == pytest.approx(way)
+    assert haste.rate == pytest.approx(turn[step, joint] / way)
+
+
+def test_the_smooth_way_has_no_haste_but_says_that_it_passes_a_singular_wrist():
+    result = line(*FLIP)
+    assert hasty_turns(result) == []
+    # Axis 4 stands along the tool there: the sine of the angle between them changes its sign.
+    axis_4 = joint_frames(ROBOT, result.theta)[:, 3, :3, 2]
+    lean = axis_4[:, :2] @ (result.T_MT[-1, :2, 3] - result.T_MT[0, :2, 3])
+    (expected,) = np.flatnonzero(lean[1:] * lean[:-1] < 0) + 1
+    (passage,) = passages(result)
+    assert passage.at == expected
+    assert {passage.before, passage.after} == {"front, elbow up, wrist +", "front, elbow up, wrist -"}
+
+
+def test_a_way_through_the_papers_box_says_nothing():
+    result = line([-0.6, -1.6, -0.4, 0, 0], [0.6, -1.0, 0.1, 0.2, -0.2], 200)
+    assert hasty_turns(result) == []
+    assert passages(result) == []
+
+
+def test_a_tool_turned_on_the_spot_may_turn_the_joints():
+    """Without any length only what goes beyond twice the tool's own turn is haste."""
+    result = line([0.1, -1.3, 0, -0.3, 0.2], [0.1, -1.3, 0, 0.3, 0.2], 50)
+    assert hasty_turns(result) == []
+    # A tilt swept past a wrist that is nearly straight.
+    near = rm.tool_pose(ROBOT, np.array([0.0, -0.3, 0.2, 0.02, 0.1]))
+    centre = rm.world_from_pose(near)
+    swing = np.array([0, 0, 0, 0.3, 0])
+    sweep = line(centre - swing, centre + swing, 400)
+    turn, tool = np.abs(np.diff(sweep.theta, axis=0)), 0.6 / 399
+    fast = (turn > 2 * tool + 1e-6).any(axis=0)
+    assert {haste.joint for haste in hasty_turns(sweep)} == set(np.flatnonzero(fast) + 1)
+    assert all(np.isinf(haste.rate) for haste in hasty_turns(sweep))
+
+
+def test_nothing_is_said_across_a_gap():
+    result = line([0, -1.5, 0, 0, 0], [0, -3.0, 0, 0, 0], 300)
+    assert not result.reached.all()
+    assert hasty_turns(result) == []
+
+
+def test_joints_of_a_planar_arm_near_its_stretch_run_away():
+    """Two links nearly in line: theta_2 = acos((r^2 - l1^2 - l2^2) / (2 l1 l2)) turns without bound at r = l1 + l2."""
+    robot = rm.load_robot("planar_2r")
+    r = np.linspace(0.85, 0.9 - 1e-7, 51)
+    T_MT = rm.pose_from_world(np.column_stack([r, np.zeros((51, 4))]))
+    found = hasty_turns(rm.inverse_kinematics(robot, T_MT, near="path"))
+    theta_2 = np.arccos((r**2 - 0.41) / 0.4)
+    fast = np.abs(np.diff(theta_2)) > np.radians(2.0) * np.diff(r) / 1e-3
+    assert fast.any()
+    assert [haste for haste in found if haste.joint == 2]
+    (haste,) = [haste for haste in found if haste.joint == 2]
+    assert haste.first == np.flatnonzero(fast)[0] + 1
+    assert haste.last == 50
+    assert haste.turn == pytest.approx(np.abs(np.diff(theta_2))[fast].sum(), rel=1e-6)

@@ -1,0 +1,15 @@
+"""What is said of a line: where its joints run, where the arm passes a singular configuration."""
+
+import robomill as rm
+from robomill.workspace.lines import border_and_middle_lines, line_deviation
+
+
+def test_a_line_through_a_singular_wrist_is_smooth_and_says_so():
+    line = line_deviation(rm.load_robot("slavkovic_5r"), [-0.656, -0.339, -0.974], [-0.840, -1.094, -0.888], name="it")
+    (note,) = line.notes()
+    assert note.startswith("it, after 4")  # at 491 of 782 mm, to a step of 13 mm
+    assert "singular" in note
+
+
+def test_the_papers_lines_say_nothing():
+    assert not [note for line in border_and_middle_lines(rm.load_robot("slavkovic_5r")) for note in line.notes()]
