@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.compiled import In1, In2, In3, InBool2
+from robomill.kinematics.course import FROM_HOME, Course
 from robomill.kinematics.transforms import angle_between
 from robomill.robot.model import Robot
 
@@ -22,20 +22,6 @@ EASY_PER_LENGTH = float(np.radians(2.0)) * 1e3  # rad/m
 EASY_PER_TURN = 2.0
 # Order in which shoulder and elbow are tried: as at home, other elbow, other shoulder, both.
 ARM_ORDER = np.array([0, 0, 1, 1, 2, 2, 3, 3])
-FROM_HOME = 1e-3  # of the first configuration's squared distance from home, and of its posture's order
-
-
-class Course(NamedTuple):
-    """All that may be stood in along a path: solutions theta (m, 8, n) in (-pi, pi], whether they are possible (m, 8),
-    the turn (m,) a joint may easily make in the step to each pose, limits (n, 2), and what the first pose is near to:
-    start (n,), at the extra cost of its branch (8,)."""
-
-    theta: In3
-    possible: InBool2
-    easy: In1
-    limits: In2
-    start: In1
-    first: In1
 
 
 class Joined(NamedTuple):

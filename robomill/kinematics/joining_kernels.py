@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.compiled import Out2, OutInt1, kernel, part
+from robomill.kinematics.course import FROM_HOME, Course
 from robomill.kinematics.decoupled import LIMIT_SLACK
 from robomill.kinematics.inverse_kernels import TURN
-from robomill.kinematics.joining import FROM_HOME, Course
 
 STANDS_OUT = 1e3  # rad: what is turned beyond the easy turn counts before all other motion
 
