@@ -109,3 +109,15 @@ def test_tilted_axis_turns_in_small_steps() -> None:
     assert path.k[-1] == pytest.approx((math.sin(b), -math.sin(a) * math.cos(b), math.cos(a) * math.cos(b)))
     dots = np.einsum("ij,ij->i", path.k[1:], path.k[:-1])
     assert np.degrees(np.arccos(dots)).max() < 3.0
+
+
+@pytest.mark.parametrize("turns", [3.0, 40.0, 1000.0])
+def test_the_chord_error_that_a_refusal_names_is_one_that_fits(turns: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robomill.toolpath.gcode.arcs.MAX_POINTS", 100_000)
+    sweep, radius = np.array([2 * math.pi * turns, 1.0]), np.array([0.05, 2.0])
+    with pytest.raises(GCodeError, match="at most 100000 fit") as refused:
+        chord_counts(sweep, radius, 1e-14)
+    named = float(str(refused.value).split("use ")[1].split(" mm")[0]) * 1e-3
+    assert chord_counts(sweep, radius, 1.06 * named).sum() <= 100_000  # it is named to two digits
+    with pytest.raises(GCodeError, match="at most 100000 fit"):
+        chord_counts(sweep, radius, 0.9 * named)
