@@ -79,6 +79,10 @@ class Spring:
         """Itself as ``cutter`` has it, for springs that know one; what differs is offered on the page."""
         return self
 
+    def of_tool(self, cutter: Cutter, longer: float) -> Self:
+        """Itself with another tool in the spindle, ``longer`` (m) than the one it was stated for."""
+        return self
+
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M} from joint frames (..., n + 1, 4, 4) in {M}; the last frame is {T}."""
         raise NotImplementedError

@@ -10,6 +10,7 @@ import tomli_w
 
 from robomill.compliance.gravity import LinkMasses
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.io.declared import from_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
@@ -20,6 +21,7 @@ from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.texts import read_text
+from robomill.io.tool_tables import tools_from_table, tools_to_tables
 from robomill.io.workpiece import (
     part_from_table,
     part_to_table,
@@ -66,7 +68,8 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     if version != VERSION:
         raise top.refuse("version", f"this file is version {version}; this robomill reads version {VERSION}.")
     robot = _robot(top.table("robot"), folder)
-    cutter = from_table(top.table("cutter"), Cutter)
+    tools = tools_from_table(top, folder)
+    cutter = _cutter(top, tools)
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
@@ -75,6 +78,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         source=_source(top.table("path"), folder),
         T_MW=part_from_table(top.table("part", {})),
         cutter=cutter,
+        tools=tools,
         stock=stock_from_table(top.table("stock"), folder) if top.has("stock") else None,
         force=force_from_table(top.table("force"), cutter, folder),
         provenance=_provenance(top.table("provenance", {})),
@@ -83,9 +87,18 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
-    top.asked.update(("stock", "links", "measured_map"))
+    top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit"))
     top.finish()
     return setup
+
+
+def _cutter(top: Table, tools: ToolTable) -> Cutter:
+    """[cutter], or the first of [[tools]] that is one."""
+    known = [tool.cutter for tool in tools.tools if tool.cutter is not None]
+    if known and not top.has("cutter"):
+        top.asked.add("cutter")
+        return known[0]
+    return from_table(top.table("cutter"), Cutter)
 
 
 def _robot(table: Table, folder: Path | None) -> Robot:
@@ -176,6 +189,8 @@ def setup_to_toml(setup: SimulationSetup) -> str:
     }
     if setup.stock is not None:
         data["stock"] = stock_to_table(setup.stock)
+    if setup.tools:
+        data["tools"] = tools_to_tables(setup.tools)
     if setup.springs:
         data["springs"] = [spring_to_table(spring) for spring in setup.springs]
     if setup.measured_map is not None:

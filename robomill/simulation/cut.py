@@ -11,6 +11,7 @@ from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_share
 from robomill.simulation.samples import at_starts
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.tools import one_cutter, tooling
 from robomill.toolpath.path import Toolpath
 
 
@@ -37,7 +38,7 @@ def cut_conditions(
         return CutConditions.steady(a_p=np.nan_to_num(a_p), **common)
     from robomill.surface.engagement import engage
 
-    found = engage(setup.stock_block, setup.cell, setup.cutter, tip, path.k, cutting)
+    found = engage(setup.stock_block, setup.cell, one_cutter(tooling(setup, path)), tip, path.k, cutting)
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex")}
     return CutConditions(**arc, **common)
 

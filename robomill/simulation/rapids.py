@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.tools import one_cutter, tooling
 from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
@@ -22,7 +23,9 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     feed, rapid = moves & path.cutting, moves & ~path.cutting
     rapid[0] = False
     low, high = setup.stock_block.lower, setup.stock_block.upper
-    reach = np.array([setup.cutter.radius, setup.cutter.radius, 0.0])
+    tools = tooling(setup, path)
+    widest = max(cutter.radius for cutter in tools.cutters)
+    reach = np.array([widest, widest, 0.0])
     ends = np.stack([np.roll(path.p, 1, axis=0), path.p])
     near = (ends.min(axis=0) <= high + reach).all(axis=1) & (ends.max(axis=0)[:, :2] >= (low - reach)[:2]).all(axis=1)
     suspects = np.flatnonzero(rapid & near)
@@ -32,7 +35,7 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     def volume(chosen: np.ndarray) -> float:
         if not chosen.any():
             return 0.0
-        zmap = cut(setup.stock_block, setup.cell, setup.cutter, path.p, path.k, chosen, must_touch=False)
+        zmap = cut(setup.stock_block, setup.cell, one_cutter(tools), path.p, path.k, chosen, must_touch=False)
         return zmap.removed_volume
 
     def with_rapids(indices: np.ndarray) -> float:

@@ -20,6 +20,7 @@ from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
+from robomill.simulation.tools import one_cutter, tool_notes, tooling
 from robomill.simulation.verdict import Verdict, judge
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
@@ -70,10 +71,10 @@ class SimulationResult:
         """(m, 3) m: the deviation along the feed, to its left and along the tool axis."""
         return np.einsum("mij,mi->mj", self.R_MF, self.delta)
 
-    @property
+    @cached_property
     def tooling(self) -> Tooling:
         """Which cutter makes which step."""
-        return Tooling.single(self.setup.cutter, len(self.path))
+        return tooling(self.setup, self.path)
 
     @cached_property
     def delta_component(self) -> FloatArray:
@@ -112,7 +113,7 @@ class SimulationResult:
         """(m,) samples where the cutter is within the block of the stock: what is further off cuts air."""
         block, p = self.setup.stock_block, self.path.p
         outside = np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2]
-        beside = np.linalg.norm(outside, axis=1) >= self.setup.cutter.radius - 1e-9
+        beside = np.linalg.norm(outside, axis=1) >= self.tooling.each("radius") - 1e-9
         return np.asarray(~beside & (p[:, 2] < block.upper[2] - 1e-9))
 
     @cached_property
@@ -155,7 +156,7 @@ class SimulationResult:
     @cached_property
     def notes(self) -> tuple[str, ...]:
         """What a reader of the numbers must know, one sentence each."""
-        found = list(cut_notes(self.setup, self.conditions))
+        found = [*cut_notes(self.setup, self.conditions), *tool_notes(self.setup, self.path)]
         if self.coupling is not None:
             found.append(self.coupling.sentence)
         found += [f"Line {f.line}: {f.message}" for f in self.steadiness]
@@ -198,7 +199,7 @@ class SimulationResult:
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
-        return cut(setup.stock_block, setup.cell, setup.cutter, p, self.path.k, self.removes)
+        return cut(setup.stock_block, setup.cell, one_cutter(self.tooling), p, self.path.k, self.removes)
 
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
@@ -209,7 +210,7 @@ class SimulationResult:
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
         run = CutPath(path.p, moved, path.cutting, path.k, path.block)
-        return groove_sections(self.setup.stock_block, self.setup.cutter, run, stations)
+        return groove_sections(self.setup.stock_block, one_cutter(self.tooling), run, stations)
 
     @cached_property
     def stations(self) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
-from robomill.compliance.gravity import gravity_sag
+from robomill.compliance.gravity import LinkMasses, gravity_sag
 from robomill.compliance.spring import extra_contributions
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
@@ -21,6 +21,7 @@ from robomill.simulation.cut import cut_conditions, moved_points
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import at_starts, sampled
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.tools import farther, held
 from robomill.toolpath.path import Toolpath
 
 COUPLING_TOLERANCE = 1e-8
@@ -36,10 +37,10 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     path = sampled(setup.toolpath, setup.step)
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
-    ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path), near="path")
-    C_joint, C_spring = compliances(setup, ik.theta)
+    ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path, farther(setup, path)), near="path")
+    C_joint, C_spring = compliances(setup, path, ik.theta)
     C = total_compliance(setup, path, C_joint, C_spring)
-    sag = None if setup.links is None else gravity_sag(setup.robot, ik.theta, setup.links)
+    sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
     R_MF = feed_directions(setup, path)
     conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
@@ -61,11 +62,24 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     )
 
 
-def compliances(setup: SimulationSetup, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+def compliances(setup: SimulationSetup, path: Toolpath, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Shares of the joints (m, n, 3, 3) and of the springs beside them (m, k, 3, 3), m/N, eqs. (13), (14)."""
-    J = geometric_jacobian(setup.robot, theta)
-    C_joint = joint_contributions(J[..., :3, :], setup.robot.C_theta)
-    return C_joint, extra_contributions(setup.springs, joint_frames(setup.robot, theta))
+    m = len(path)
+    C_joint, C_spring = np.empty((m, setup.robot.n, 3, 3)), np.empty((m, len(setup.springs), 3, 3))
+    for tool in held(setup, path):
+        at = theta[tool.steps]
+        J = geometric_jacobian(tool.robot, at)
+        C_joint[tool.steps] = joint_contributions(J[..., :3, :], setup.robot.C_theta)
+        C_spring[tool.steps] = extra_contributions(tool.springs, joint_frames(tool.robot, at))
+    return C_joint, C_spring
+
+
+def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkMasses) -> FloatArray:
+    """(m, n, 3) m: shares of the joints in the sag of the tip."""
+    sag = np.empty((len(path), setup.robot.n, 3))
+    for tool in held(setup, path):
+        sag[tool.steps] = gravity_sag(tool.robot, theta[tool.steps], links)
+    return sag
 
 
 def total_compliance(setup: SimulationSetup, path: Toolpath, C_joint: FloatArray, C_spring: FloatArray) -> FloatArray:
@@ -111,11 +125,11 @@ def bend(C: FloatArray, F: FloatArray) -> FloatArray:
     return np.einsum("mij,mj->mi", C, F)
 
 
-def tool_frames(path: Toolpath) -> FloatArray:
-    """(m, 4, 4) T_WT: tip at p, z_T = k, spin about z_T as R_x(A) R_y(B) gives it."""
+def tool_frames(path: Toolpath, back: FloatArray | float = 0.0) -> FloatArray:
+    """(m, 4, 4) T_WT: the point ``back`` (m,) m behind the tip p, z_T = k, spin about z_T as R_x(A) R_y(B) gives it."""
     A = np.arctan2(-path.k[:, 1], path.k[:, 2])
     B = np.arcsin(np.clip(path.k[:, 0], -1.0, 1.0))
-    return pose_from_world(np.column_stack([path.p, A, B]))
+    return pose_from_world(np.column_stack([path.p + np.reshape(back, (-1, 1)) * path.k, A, B]))
 
 
 def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -15,6 +15,7 @@ from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.provenance import Provenance
@@ -24,6 +25,7 @@ from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 
+NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
 
@@ -35,6 +37,7 @@ class SimulationSetup:
     source      the program or table the path is read from
     T_MW        (4, 4) where the part zero {W} lies in {M}
     cutter, force, stock   stock None: the path's bounds with a margin
+    tools       the tools of the program by number; empty: ``cutter`` for all (and where the program names none)
     tolerance   m, largest accepted deviation of walls, and of floors where ``floor_tolerance`` is None; or three
                 numbers (wall, floor, feed), as a sequence or as a mapping by these names
     feed_tolerance   m, of the ends of cuts along the feed (None: told, not judged)
@@ -87,6 +90,7 @@ class SimulationSetup:
         hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
         "from the part.",
     )
+    tools: ToolTable = NO_TOOLS
     springs: tuple[Spring, ...] = ()
     measured_map: MeasuredField | None = None
     links: LinkMasses | None = None
@@ -137,14 +141,17 @@ class SimulationSetup:
     @cached_property
     def toolpath(self) -> Toolpath:
         """The path read from its source, in {W}."""
-        return self.source.read()
+        return self.source.read(self.tools)
 
     @cached_property
     def stock_block(self) -> Stock:
         """The stock as given, or the path's bounds with a margin."""
         if self.stock is not None:
             return self.stock
-        return Stock.from_path(self.toolpath.p, self.cutter)
+        path = self.toolpath
+        used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
+        widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
+        return Stock.from_path(path.p, widest)
 
     def in_base(self, p: FloatArray) -> FloatArray:
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""

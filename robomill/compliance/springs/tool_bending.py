@@ -79,6 +79,11 @@ class ToolBending(Spring):
         """With the diameter of ``cutter``."""
         return replace(self, diameter=cutter.diameter)
 
+    def of_tool(self, cutter: Cutter, longer: float) -> Self:
+        """With the diameter and stick-out of ``cutter``; where that is not given, sticking out as much more."""
+        stick_out = cutter.stick_out or max(self.stick_out + longer, cutter.diameter)
+        return replace(self, diameter=cutter.diameter, stick_out=stick_out)
+
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M}."""
         return about_tool(frames, self.lateral, 0.0)

@@ -1,0 +1,117 @@
+"""Several tools: which cutter makes which step, how far its tip stands from the first one's, and which springs it has.
+
+The robot's tool frame is that of one tool: of the first that cuts. The tip of a longer one stands farther along the
+tool axis by the difference of their lengths, so the arm holds its flange farther back; springs of the tool follow it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.compliance.spring import Spring
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
+from robomill.errors import SetupError
+from robomill.robot.model import Robot
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_si
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What a tool changes: the robot with its tip, its springs, and the steps (m,) bool that it makes."""
+
+    robot: Robot
+    springs: tuple[Spring, ...]
+    steps: BoolArray
+
+
+def cutting_numbers(path: Toolpath) -> IntArray:
+    """Numbers of the tools that cut, in the order in which they begin to; 0 where the program does not say."""
+    numbers = path.tool[path.cutting]
+    _, first = np.unique(numbers, return_index=True)
+    return np.asarray(numbers[np.sort(first)])
+
+
+def tooling(setup: SimulationSetup, path: Toolpath) -> Tooling:
+    """The cutter of every step; rapids of tools that never cut count as the first one's.
+
+    Raises SetupError where a program cuts with several tools and no table says which they are, and CuttingError for a
+    number that the table does not hold.
+    """
+    numbers = cutting_numbers(path)
+    if not setup.tools:
+        known = numbers[numbers > 0]
+        if len(known) > 1:
+            named = ", ".join(f"T{n}" for n in known)
+            raise SetupError(
+                f"Tools: the program cuts with {named}, and the set-up knows one cutter ({setup.cutter.title}); give a "
+                "tool table with each of them.",
+                where="tools",
+            )
+        return Tooling.single(setup.cutter, len(path))
+    cutters = tuple(setup.cutter if n == 0 else setup.tools.cutter(int(n)) for n in numbers) or (setup.cutter,)
+    index = np.zeros(len(path), dtype=np.int64)
+    for i, n in enumerate(numbers):
+        index[path.tool == n] = i
+    return Tooling(cutters, index)
+
+
+def one_cutter(tools: Tooling) -> Cutter:
+    """The cutter of surfaces, which know one. Raises SetupError where there are several."""
+    if len(tools.cutters) > 1:
+        raise SetupError("Tools: surfaces are cut with one cutter; run the operations of each tool by themselves.")
+    return tools.cutters[0]
+
+
+def farther(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+    """(m,) m: how much farther along its axis the tip of each step's tool stands than that of the first that cuts."""
+    numbers = cutting_numbers(path)
+    lengths = {n: tool.length for n, tool in setup.tools.items()}
+    first = lengths.get(int(numbers[0]), 0.0) if len(numbers) else 0.0
+    out = np.zeros(len(path))
+    for n in np.unique(path.tool):
+        if int(n) in lengths and len(numbers) and int(numbers[0]) in lengths:
+            out[path.tool == n] = lengths[int(n)] - first
+    return out
+
+
+def held(setup: SimulationSetup, path: Toolpath) -> Iterator[Held]:
+    """Every tool with what it changes; one for all where there is one."""
+    made, beyond = tooling(setup, path), farther(setup, path)
+    kinds = np.unique(np.column_stack([made.of_step, beyond]), axis=0)
+    for n, longer in kinds:
+        steps = (made.of_step == n) & (beyond == longer)
+        springs = setup.springs
+        if len(kinds) > 1 and (n > 0 or longer):
+            springs = tuple(spring.of_tool(made.cutters[int(n)], float(longer)) for spring in springs)
+        yield Held(_reaching(setup.robot, float(longer)), springs, steps)
+
+
+def _reaching(robot: Robot, farther: float) -> Robot:
+    """The robot with a tool whose tip stands ``farther`` (m) along its axis, away from the spindle."""
+    if farther == 0.0:
+        return robot
+    shift = np.eye(4)
+    shift[2, 3] = -farther
+    return robot.replace(T_tool=robot.T_tool @ shift)
+
+
+def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[str, ...]:
+    """What a reader must know of the tools."""
+    if not setup.tools:
+        return ()
+    numbers = [int(n) for n in cutting_numbers(path)]
+    found = [finding.message for finding in setup.tools.findings] + list(setup.tools.notes(numbers))
+    if farther(setup, path).any():
+        length = format_si(setup.tools[numbers[0]].length, "mm", 2)
+        found.append(
+            f"The robot's tool frame is taken as that of tool {numbers[0]} ({length} long), the first that cuts; the "
+            "tips of the others stand as much farther as they are longer."
+        )
+    return tuple(found)

@@ -1,0 +1,88 @@
+"""Several tools: each block with its own, its tip as far out as it is long, its springs its own; none is guessed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.tool_table import TableTool, ToolTable
+from robomill.errors import CuttingError, RobomillError, SetupError
+from robomill.io.projects import setup_from_toml, setup_to_toml
+from robomill.io.samples import samples_dir
+from robomill.kinematics.forward import tool_pose
+from robomill.simulation.run import simulate
+from robomill.simulation.tools import cutting_numbers, farther, tooling
+from robomill.toolpath.source import GCodeSource
+
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=4e-3)
+PROGRAM = GCodeSource(
+    "G21 G90 S12000 M3\nT1 M6\nG0 X-40 Y-8 Z5\nG0 Z-2\nG1 X40 F1800\nG0 Z50\n"
+    "T2 M6\nG0 X-40 Y8\nG0 Z-1\nG1 X40 F1200\nG0 Z50\nM2\n"
+)
+SMALL, LARGE = SETUP.cutter, SETUP.cutter.replace(diameter=12e-3, flutes=4)
+TABLE = ToolTable((TableTool(1, SMALL, 60e-3), TableTool(2, LARGE, 95e-3)))
+
+
+def test_a_program_with_two_tools_asks_for_a_table_by_their_numbers():
+    with pytest.raises(SetupError, match=r"T1, T2.*tool table"):
+        simulate(SETUP.replace(source=PROGRAM))
+    with pytest.raises(RobomillError, match="ool 2 .*is not in the tool table"):
+        simulate(SETUP.replace(source=PROGRAM, tools=ToolTable((TableTool(1, SMALL),))))
+    with pytest.raises(CuttingError, match="Tool 2 cuts, but the tool table does not say its diameter"):
+        simulate(SETUP.replace(source=PROGRAM, tools=ToolTable((TableTool(1, SMALL), TableTool(2)))))
+
+
+def test_one_tool_by_its_number_or_by_none_is_the_cutter():
+    one = GCodeSource("G21 G90 S12000 M3\nT7 M6\nG0 X-40 Y0 Z5\nG0 Z-2\nG1 X40 F1800\nM2\n")
+    assert simulate(SETUP.replace(source=one)).tooling.cutters == (SMALL,)
+    tabled = simulate(SETUP.replace(source=one, tools=ToolTable((TableTool(7, LARGE, 0.2),))))
+    assert tabled.tooling.cutters == (LARGE,)
+    plain = simulate(SETUP.replace(source=one, cutter=LARGE))
+    np.testing.assert_array_equal(tabled.delta, plain.delta)
+    np.testing.assert_array_equal(tabled.machined.z, plain.machined.z)
+
+
+def test_each_step_has_the_tool_of_its_block():
+    path = SETUP.replace(source=PROGRAM).toolpath
+    assert cutting_numbers(path).tolist() == [1, 2]
+    made = tooling(SETUP.replace(source=PROGRAM, tools=TABLE), path)
+    for n, cutting, index in zip(path.tool, path.cutting, made.of_step, strict=True):
+        if cutting:
+            assert made.cutters[index] == {1: SMALL, 2: LARGE}[int(n)]
+    beyond = farther(SETUP.replace(source=PROGRAM, tools=TABLE), path)
+    assert beyond[path.tool == 2] == pytest.approx(35e-3)
+    assert not beyond[path.tool == 1].any()
+
+
+def test_a_set_up_with_tools_comes_back_from_its_file():
+    setup = SETUP.replace(source=PROGRAM, tools=TABLE)
+    again = setup_from_toml(setup_to_toml(setup))
+    assert again.digest() == setup.digest()
+    assert again.tools[2].cutter.diameter == pytest.approx(12e-3)
+    text = setup_to_toml(setup)
+    without = text[: text.index("[cutter]")] + text[text.index("[force]") :]
+    assert setup_from_toml(without).cutter == SMALL
+
+
+def test_a_longer_tool_bends_more_and_the_arm_holds_it_farther_back():
+    long = ToolTable((TableTool(1, SMALL, 60e-3), TableTool(2, LARGE, 95e-3)))
+    spring = ToolBending(SMALL.diameter, 30e-3)
+    run = simulate(SETUP.replace(source=PROGRAM, tools=long, springs=(spring,)))
+    first, second = (run.path.cutting & (run.path.tool == n) for n in (1, 2))
+    robot = run.setup.robot
+    told = run.setup.in_base(run.path.p)
+    reached = tool_pose(robot, run.theta)[:, :3, 3]
+    np.testing.assert_allclose(reached[first], told[first], atol=1e-9)
+    np.testing.assert_allclose(reached[second], told[second] + [0, 0, 35e-3], atol=1e-9)
+    # An arm whose own tool is 35 mm longer, at the same point: the truth of the second tool.
+    T_tool = robot.T_tool.copy()
+    T_tool[:3, 3] -= 35e-3 * T_tool[:3, 2]
+    only = GCodeSource(PROGRAM.text.replace("G1 X40 F1800", "G0 X40"))
+    bent = ToolBending(LARGE.diameter, 65e-3)
+    alone = simulate(SETUP.replace(source=only, robot=robot.replace(T_tool=T_tool), cutter=LARGE, springs=(bent,)))
+    np.testing.assert_allclose(run.delta[second], alone.delta[alone.path.cutting], rtol=1e-9)
+    np.testing.assert_allclose(run.delta_spring[second], alone.delta_spring[alone.path.cutting], rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(run.delta_joint[second], alone.delta_joint[alone.path.cutting], rtol=1e-9, atol=1e-15)
+    assert any("tool 1" in note and "as much farther" in note for note in run.notes)
