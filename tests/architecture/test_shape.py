@@ -42,6 +42,7 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
+    "steps_of_each",  # until surfaces take several tools
     *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
 }
