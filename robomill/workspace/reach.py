@@ -15,6 +15,8 @@ from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 
+Axes = tuple[FloatArray, FloatArray, FloatArray]
+
 
 @dataclass(frozen=True, eq=False)
 class Box:
@@ -57,17 +59,25 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
 def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
     """The largest axis-aligned box all of whose grid points are True in ``mask`` (nx, ny, nz); None if there is none.
 
-    Largest by volume, exact over the grid; an axis with a single point counts as one unit of length. Every height in z
-    and width in x is tried for all positions at once, and the longest run in y taken.
+    Largest by volume, exact over the grid; an axis with a single point counts as one unit of length.
+    """
+    axes = (grid.x, grid.y, grid.z)
+    return largest_of(mask, axes, axes)
+
+
+def largest_of(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
+    """The largest box of things all True in ``mask`` (nx, ny, nz), each from ``low`` to ``high`` along an axis.
+
+    Every height in z and width in x is tried for all positions at once, and the longest run in y taken.
     """
     nx, ny, nz = mask.shape
-    longest_x, longest_y = _extents(grid.x, nx).max(), _extents(grid.y, ny).max()
+    longest_x, longest_y = _extents(low[0], high[0], nx).max(), _extents(low[1], high[1], ny).max()
     best, corners = 0.0, None
     layers = np.ones((nz + 1, nx, ny), dtype=bool)
     stack = np.ascontiguousarray(mask.transpose(2, 0, 1))
     for h in range(1, nz + 1):
         layers = layers[:-1] & stack[h - 1 :]
-        heights = _extents(grid.z, h)
+        heights = _extents(low[2], high[2], h)
         if not layers.any():
             break
         if heights.max() * longest_x * longest_y <= best:
@@ -75,16 +85,19 @@ def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
         slabs = np.ones((len(layers), nx + 1, ny), dtype=bool)
         for w in range(1, nx + 1):
             slabs = slabs[:, :-1] & layers[:, w - 1 :]
-            widths = _extents(grid.x, w)
+            widths = _extents(low[0], high[0], w)
             if not slabs.any():
                 break
             if heights.max() * widths.max() * longest_y <= best:
                 continue
-            volume, (k, i, j, j_end) = _longest_run(slabs, grid.y, heights[:, None] * widths[None, :])
+            volume, (k, i, j, j_end) = _longest_run(slabs, low[1], high[1], heights[:, None] * widths[None, :])
             if volume > best:
                 best, corners = (
                     volume,
-                    ((grid.x[i], grid.y[j], grid.z[k]), (grid.x[i + w - 1], grid.y[j_end], grid.z[k + h - 1])),
+                    (
+                        (low[0][i], low[1][j], low[2][k]),
+                        (high[0][i + w - 1], high[1][j_end], high[2][k + h - 1]),
+                    ),
                 )
     return None if corners is None else Box(frozen(corners[0]), frozen(corners[1]))
 
@@ -94,19 +107,21 @@ def against_paper(box: Box) -> dict[str, float | bool]:
     return {"holds_paper_box": box.holds(PAPER_BOX_SIZE), "volume_ratio": box.volume / float(np.prod(PAPER_BOX_SIZE))}
 
 
-def _extents(axis: FloatArray, count: int) -> FloatArray:
-    """Length of every run of ``count`` consecutive points of an axis, m; 1 for an axis that is a single point."""
-    if len(axis) == 1:
+def _extents(low: FloatArray, high: FloatArray, count: int) -> FloatArray:
+    """Length of every run of ``count`` consecutive things of an axis, m; 1 for an axis without any length."""
+    if high[-1] == low[0]:
         return np.ones(1)
-    return axis[count - 1 :] - axis[: len(axis) - count + 1]
+    return high[count - 1 :] - low[: len(low) - count + 1]
 
 
-def _longest_run(slabs: BoolArray, y: FloatArray, section: FloatArray) -> tuple[float, tuple[int, int, int, int]]:
+def _longest_run(
+    slabs: BoolArray, low: FloatArray, high: FloatArray, section: FloatArray
+) -> tuple[float, tuple[int, int, int, int]]:
     """(volume, (k, i, j, j_end)): the best run along y in slabs (nk, ni, ny), times ``section`` (nk, ni) m^2."""
-    places = np.arange(len(y))
+    places = np.arange(len(low))
     last_gap = np.maximum.accumulate(np.where(slabs, -1, places), axis=-1)
     first = np.minimum(last_gap + 1, places)
-    length = np.where(slabs, y[places] - y[first] if len(y) > 1 else 1.0, 0.0)
+    length = np.where(slabs, high[places] - low[first] if high[-1] > low[0] else 1.0, 0.0)
     volume = length * section[..., None]
     k, i, j_end = np.unravel_index(int(np.argmax(volume)), volume.shape)
     return float(volume[k, i, j_end]), (int(k), int(i), int(first[k, i, j_end]), int(j_end))

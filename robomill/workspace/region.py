@@ -8,8 +8,9 @@ from robomill.arrays import FloatArray, frozen
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import tool_pose
 from robomill.robot.model import Robot
+from robomill.workspace.clear import largest_clear_box
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
-from robomill.workspace.reach import Box, largest_box, reach
+from robomill.workspace.reach import Box, reach
 
 FLAT = 1e-6  # m: an arm that spans less than this along an axis moves in a plane
 SAMPLES = 20_000
@@ -62,12 +63,12 @@ def holds_paper_box(robot: Robot) -> bool:
 
 
 def largest_region(robot: Robot, A: float = 0.0, B: float = 0.0) -> Box | None:
-    """The largest machining box in reach on a coarse grid over everything in reach; None where nothing is."""
+    """The largest machining box in reach that holds no singular configuration, on a coarse grid; None without one."""
     extent = reach_extent(robot, A, B)
     if extent is None:
         return None
     grid = coarse_grid(robot, extent.lower, extent.upper)
-    return largest_box(reach(robot, grid, ((A, B),)), grid)
+    return largest_clear_box(robot, grid, A, B)
 
 
 def _tips(robot: Robot) -> FloatArray:

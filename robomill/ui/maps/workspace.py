@@ -132,7 +132,10 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     rows = []
     digits = 0 if unit == "mm" else 1
     flat = fields.flat(robot) is not None
-    for name, box, kind in (("largest in reach", largest, "computed"), ("the paper's", Box(*PAPER_BOX), "paper")):
+    for name, box, kind in (
+        ("largest without a singularity", largest, "computed"),
+        ("the paper's", Box(*PAPER_BOX), "paper"),
+    ):
         if box is None or (flat and kind == "paper"):
             continue
         corner = format_many(box.lower, unit, digits, with_unit=False)
@@ -147,7 +150,9 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
             icon=":material/crop_free:",
             key="maps.largest",
         )
-    pieces.note("Sides along the axes of {M}, on a coarse grid: true to about one cell.")
+    pieces.note(
+        "Sides along the axes of {M}, to about one cell of a coarse grid; reached in one posture, without a singularity."
+    )
 
 
 @st.fragment

@@ -1,0 +1,83 @@
+"""Boxes without a singular configuration: det(J) minimised inside, singular places put between grid points."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import robomill as rm
+from robomill.workspace.clear import clear_cells
+from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
+from robomill.workspace.region import largest_region
+from tests.kinematics.oracles import numeric_jacobian, pose
+
+
+def det(robot, theta):
+    """det of the task Jacobian by differences of the pose: the tip, and the tool axis on two axes square to it."""
+    J, k = numeric_jacobian(robot, theta), pose(robot, theta)[:3, 2]
+    if robot.n == 6:
+        return np.linalg.det(J)
+    x = np.cross(np.cross(k, [1.0, 0, 0]), k)  # R_x(A) R_y(B) has its x axis in the plane of k and X
+    x /= np.linalg.norm(x)
+    return np.linalg.det(np.vstack([J[:3], x @ J[3:], np.cross(k, x) @ J[3:]]))
+
+
+@pytest.mark.parametrize(
+    ("name", "A", "B"),
+    [("slavkovic_5r", 0, 0), ("slavkovic_5r", 0.3, 0.2), ("kuka_kr500", 0, 0), ("kuka_kr500", 0.2, -0.4)],
+)
+def test_nowhere_in_the_box_is_the_arm_singular(name, A, B):
+    robot = rm.load_robot(name)
+    box = largest_region(robot, A, B)
+
+    def at(u):
+        x = box.lower + np.clip(u, 0, 1) * box.size
+        ik = rm.inverse_kinematics(robot, rm.pose_from_world([*x, A, B]))
+        assert ik.reached
+        return det(robot, ik.theta)
+
+    rng = np.random.default_rng(4)
+    places = [*rng.random((200, 3)), *map(np.array, itertools.product([0.0, 0.5, 1.0], repeat=3))]
+    found = np.array([at(u) for u in places])
+    assert (np.sign(found) == np.sign(found[0])).all()
+    for k in np.argsort(np.abs(found))[:3]:  # downhill from the smallest
+        least = minimize(lambda u: abs(at(u)), places[k], method="Nelder-Mead", options={"maxiter": 150})
+        assert at(least.x) * found[0] > 0
+        assert abs(at(least.x)) > 0.01 * np.abs(found).max()
+
+
+def test_the_papers_box_fits_into_the_largest_of_its_arm():
+    assert largest_region(rm.load_robot("slavkovic_5r")).holds(PAPER_BOX_SIZE)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_singular_place_between_grid_points_is_seen(seed):
+    """The tool along axis 4: joint 4 turns nothing. The tilt is that of the pose; the place lies within a cell."""
+    robot = rm.load_robot("slavkovic_5r")
+    rng = np.random.default_rng(seed)
+    while True:
+        theta = np.array(
+            [rng.uniform(-1, 1), *rng.uniform([-0.9, -0.6], [0.3, 0.6]), rng.uniform(-0.5, 0.5), np.pi / 2]
+        )
+        X, Y, Z, A, B = rm.world_from_pose(pose(robot, theta))
+        if max(abs(A), abs(B)) < 1.0:
+            break
+    assert abs(det(robot, theta)) < 1e-7
+    step, offset = 0.12, rng.uniform(0.2, 0.8, 3)
+    grid = Grid(*(centre + step * (np.arange(-1, 3) - f) for centre, f in zip((X, Y, Z), offset, strict=True)))
+    clear = clear_cells(robot, grid, A, B)
+    assert not clear[1, 1, 1]
+    assert clear.shape == (3, 3, 3)
+
+
+def test_cells_of_a_plane_and_of_a_planar_arm():
+    robot = rm.load_robot("planar_2r")
+    axis = np.linspace(-0.85, 0.85, 35)
+    clear = clear_cells(robot, Grid(axis, axis, [0.0]))
+    assert clear.shape == (34, 34, 1)
+    middle = 0.5 * (axis[1:] + axis[:-1])
+    r = np.hypot(*np.meshgrid(middle, middle, indexing="ij"))
+    assert not clear[r > 0.9].any()
+    assert not clear[r < 0.1].any()
+    assert clear.any()
