@@ -17,7 +17,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
-from robomill.workspace.reach import Box, largest_of
+from robomill.workspace.reach import Box, largest_box
 
 NEAR = 0.02  # of the largest |det(J)|: below it a singular configuration is near
 SWING = np.pi / 2  # rad along an edge
@@ -33,7 +33,7 @@ def largest_clear_box(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) 
     """
     clear = clear_cells(robot, grid, A, B)
     for _ in range(ROUNDS):
-        box = _largest_of_cells(clear, grid)
+        box = _largest_box_cells(clear, grid)
         if box is None:
             return None
         fine = _finer(grid, box)
@@ -96,12 +96,12 @@ def _cells(parts: BoolArray, axes: list[int]) -> BoolArray:
     return parts.copy()
 
 
-def _largest_of_cells(clear: BoolArray, grid: Grid) -> Box | None:
+def _largest_box_cells(clear: BoolArray, grid: Grid) -> Box | None:
     """The box of most volume all of whose cells are clear."""
     x, y, z = grid.x, grid.y, grid.z
     near = (x[:-1] if len(x) > 1 else x, y[:-1] if len(y) > 1 else y, z[:-1] if len(z) > 1 else z)
     far = (x[1:] if len(x) > 1 else x, y[1:] if len(y) > 1 else y, z[1:] if len(z) > 1 else z)
-    return largest_of(clear, near, far)
+    return largest_box(clear, near, far)
 
 
 def _finer(grid: Grid, box: Box) -> Grid:

@@ -56,19 +56,11 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
     return mask.reshape(grid.shape)
 
 
-def largest_box(mask: BoolArray, grid: Grid) -> Box | None:
-    """The largest axis-aligned box all of whose grid points are True in ``mask`` (nx, ny, nz); None if there is none.
+def largest_box(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
+    """The largest box of things that are all True in ``mask`` (nx, ny, nz); None without one.
 
-    Largest by volume, exact over the grid; an axis with a single point counts as one unit of length.
-    """
-    axes = (grid.x, grid.y, grid.z)
-    return largest_of(mask, axes, axes)
-
-
-def largest_of(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
-    """The largest box of things all True in ``mask`` (nx, ny, nz), each from ``low`` to ``high`` along an axis.
-
-    Every height in z and width in x is tried for all positions at once, and the longest run in y taken.
+    Along each axis a thing reaches from ``low`` to ``high``. Largest by volume, exactly; an axis without length counts
+    as one unit. Every height in z and width in x is tried for all positions at once, and the longest run in y taken.
     """
     nx, ny, nz = mask.shape
     longest_x, longest_y = _extents(low[0], high[0], nx).max(), _extents(low[1], high[1], ny).max()

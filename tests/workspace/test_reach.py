@@ -12,6 +12,12 @@ from robomill.workspace.lines import border_and_middle_lines, line_deviation
 from robomill.workspace.reach import Box, against_paper, largest_box, reach
 
 
+def corners(grid):
+    """Points as things without length: low and high are the same."""
+    axes = (grid.x, grid.y, grid.z)
+    return axes, axes
+
+
 def brute_force(mask, grid):
     best = 0.0
     axes = (grid.x, grid.y, grid.z)
@@ -31,7 +37,7 @@ def test_largest_box_against_brute_force(seed):
     shape = [(5, 6, 4), (7, 1, 5), (1, 1, 6), (6, 6, 1)][seed % 4]
     grid = Grid(*(np.cumsum(rng.uniform(0.5, 2, n)) for n in shape))
     mask = rng.random(shape) < 0.8
-    box = largest_box(mask, grid)
+    box = largest_box(mask, *corners(grid))
     expected = brute_force(mask, grid)
     if expected == 0.0:
         assert box is None
@@ -49,10 +55,10 @@ def test_the_paper_box_is_inside_the_reach():
     robot = rm.load_robot("slavkovic_5r")
     assert reach(robot, box_grid(*PAPER_BOX, 0.1)).all()
     grid = box_grid([-1.5, -2.3, -1.0], [1.5, 0.0, 1.5], 0.1)
-    box = largest_box(reach(robot, grid), grid)
+    box = largest_box(reach(robot, grid), *corners(grid))
     assert against_paper(box)["holds_paper_box"]
     assert against_paper(box)["volume_ratio"] > 1
-    tilted = largest_box(reach(robot, grid, [(0, 0), (0.5, 0), (0, 0.5)]), grid)
+    tilted = largest_box(reach(robot, grid, [(0, 0), (0.5, 0), (0, 0.5)]), *corners(grid))
     assert tilted.volume < box.volume
 
 

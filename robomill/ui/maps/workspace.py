@@ -150,9 +150,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
             icon=":material/crop_free:",
             key="maps.largest",
         )
-    pieces.note(
-        "Sides along the axes of {M}, to about one cell of a coarse grid; reached in one posture, without a singularity."
-    )
+    pieces.note("Sides along the axes of {M}, true to about one cell; reached in one posture, without a singularity.")
 
 
 @st.fragment
