@@ -36,6 +36,21 @@ def process() -> SimulationResult:
     return simulate(load_setup(samples_dir() / "paper_flute" / "setup_process.toml"))
 
 
+def test_the_part_itself_tells_walls_sideways_and_not_as_heights(process: SimulationResult) -> None:
+    shown = enlarged(process, 1.0)
+    i = int(np.argmin(np.abs(shown.drawn.x)))
+    most = float(np.linalg.norm(process.delta[nearest_feed(process, 0.05)])) + 0.5 * shown.drawn.cell
+    left_over = (shown.drawn.z[i] >= -1e-9) & (shown.ideal.z[i] < -1e-3)
+    cut_off = (shown.ideal.z[i] >= -1e-9) & (shown.drawn.z[i] < -1e-3)
+    assert left_over.any()
+    assert cut_off.any()
+    # Each cell's own distance from the commanded surface: no further than the tip was off, and half a cell.
+    assert (shown.error[i][left_over] > 0).all()
+    assert (shown.error[i][left_over] <= most).all()
+    assert (shown.error[i][cut_off] < 0).all()
+    assert (shown.error[i][cut_off] >= -most).all()
+
+
 @pytest.mark.parametrize("times", [5.0, 50.0])
 def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(process: SimulationResult, times: float) -> None:
     shown = enlarged(process, times)

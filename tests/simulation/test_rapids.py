@@ -1,0 +1,64 @@
+"""Rapids through material: told where a drawing of block and cutter shows them in it, and nowhere else."""
+
+from __future__ import annotations
+
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.rapids import rapids_through_material
+from robomill.surface.stock import Stock
+from robomill.toolpath.source import GCodeSource
+
+SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(
+    stock=Stock([-40e-3, -20e-3, -10e-3], [40e-3, 20e-3, 0.0]), cutter=Cutter("flat", 8e-3), cell=2e-4
+)
+SLOT = "G1 X-60 Y0 F600\nG1 Z-1\nG1 X60\n"  # lines 3 to 5: outside, down, through
+
+
+def told(text):
+    setup = SETUP.replace(source=GCodeSource(f"G21 G90\nG0 X-60 Y0 Z5\n{text}M2\n", "part.nc"))
+    return rapids_through_material(setup, setup.source.read())
+
+
+@pytest.mark.parametrize(
+    ("way", "lines"),
+    [
+        ("G0 Z-1\nG0 X60\n", (4,)),  # through the middle
+        ("G0 Z0.1\nG0 X60\n", ()),  # over it
+        ("G0 Y24.5\nG0 Z-1\nG0 X60\n", ()),  # beside it, by more than the radius
+        ("G0 Y23.5\nG0 Z-1\nG0 X60\n", (5,)),
+        ("G0 Y-24.5\nG0 Z-1\nG0 X60\n", ()),
+        ("G0 Y-23.5\nG0 Z-1\nG0 X60\n", (5,)),
+        ("G0 X-44.5\nG0 Z-1\nG0 Y30\n", ()),
+        ("G0 X-43.5\nG0 Z-1\nG0 Y30\n", (4, 5)),  # it comes down into the edge, and goes along it
+        ("G0 X44.5\nG0 Z-1\nG0 Y30\n", ()),
+        ("G0 X0\nG0 Z-1\nG0 Z5\n", (4, 5)),  # straight down, and up again: each alone would be in it
+        ("G0 X-60 Z-1\nG0 X-50\nG0 X-60\n", ()),  # towards it, and back
+    ],
+)
+def test_where_the_cutter_would_be_in_the_block(way, lines):
+    assert told(way) == lines
+
+
+@pytest.mark.parametrize(
+    ("back", "found"),
+    [
+        ("G0 X-60\n", False),  # the way it was cut
+        ("G0 Z-0.5\nG0 X-60\n", False),
+        ("G0 Z-1.1\nG0 X-60\n", True),  # deeper
+        ("G0 Y1\nG0 X-60\n", True),  # to the side
+        ("G0 Z5\nG0 X0\nG0 Z-0.9\n", False),  # down into the slot
+        ("G0 Z5\nG0 X0\nG0 Z-1.2\n", True),
+        ("G0 Z5\nG0 X0 Y3\nG0 Z-0.9\n", True),
+    ],
+)
+def test_what_was_cut_before_is_no_material(back, found):
+    lines = told(SLOT + back)
+    assert (len(lines) > 0) == found
+    assert all(line > 5 for line in lines), "feed moves are meant to cut"
+
+
+def test_every_bad_line_is_named_once_and_in_order():
+    assert told("G0 Z-1\nG0 X60\nG0 Y10\nG0 X-60 Z-2\nG0 Z5\nG0 Y0\nG0 X0\nG0 Z-3\n") == (4, 6, 10)
