@@ -158,12 +158,13 @@ def test_progress_and_cancel() -> None:
         interpret(text, cancel=lambda: True)
 
 
-def test_subroutines_in_files_beside_the_program(tmp_path: Path) -> None:
+def test_subroutines_in_files_beside_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "hole.ngc").write_text("O<hole> sub\nG0 X#1\nO<hole> endsub\nM2\n")
     main = tmp_path / "main.ngc"
     main.write_text("G21\nO<hole> call [5]\nG0 Y1\nM2\n")
-    program = interpret(main)
-    assert program.end[-1] * 1e3 == pytest.approx((5, 1, 0))
+    for source in (main, str(main)):
+        assert interpret(source).end[-1] * 1e3 == pytest.approx((5, 1, 0))
+    monkeypatch.chdir(tmp_path)  # a text lies beside nothing
     with pytest.raises(GCodeError, match="no Ohole sub"):
         interpret(main.read_text())
 
