@@ -57,10 +57,6 @@ def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: Fl
 def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, ...]:
     """What a reader of the numbers must know about cutter, stock and force."""
     notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.notes]
-    if setup.measured_map is not None:
-        notes += [finding.message for finding in setup.measured_map.findings]
-        if setup.springs:
-            notes.append("The measured map holds whatever gives; the springs beside the joints are shown, not added.")
     if not setup.engagement and hasattr(setup.force, "material"):
         notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
     if conditions.a_p.any():

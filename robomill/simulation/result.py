@@ -17,6 +17,7 @@ from robomill.provenance import Finding
 from robomill.simulation.coupling import FixedPoint
 from robomill.simulation.cut import cut_notes, moved_points
 from robomill.simulation.gauge import Gauge, gauge
+from robomill.simulation.mapped import map_notes
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
@@ -157,6 +158,7 @@ class SimulationResult:
     def notes(self) -> tuple[str, ...]:
         """What a reader of the numbers must know, one sentence each."""
         found = [*cut_notes(self.setup, self.conditions), *tool_notes(self.setup, self.path)]
+        found += map_notes(self.setup, self.path)
         if self.coupling is not None:
             found.append(self.coupling.sentence)
         found += [f"Line {f.line}: {f.message}" for f in self.steadiness]

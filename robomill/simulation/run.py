@@ -18,6 +18,7 @@ from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.transforms import pose_from_world
 from robomill.simulation.coupling import FixedPoint, fixed_point
 from robomill.simulation.cut import cut_conditions, moved_points
+from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import at_starts, sampled
 from robomill.simulation.setup import SimulationSetup
@@ -59,6 +60,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
         delta=bend(C, F) + offset,
         sag=sag,
         coupling=coupling,
+        unjudged=beyond_map(setup, path, ik.reached),
     )
 
 
@@ -80,15 +82,6 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
     for tool in held(setup, path):
         sag[tool.steps] = gravity_sag(tool.robot, theta[tool.steps], links)
     return sag
-
-
-def total_compliance(setup: SimulationSetup, path: Toolpath, C_joint: FloatArray, C_spring: FloatArray) -> FloatArray:
-    """C (m, 3, 3) m/N that the deflection is computed with: all shares, or at feed what was measured, if it was."""
-    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
-    if setup.measured_map is None:
-        return C
-    measured = setup.measured_map.compliance(setup.in_base(path.p))
-    return np.where(path.cutting[:, None, None], measured, C)
 
 
 def forces(

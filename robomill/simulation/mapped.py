@@ -1,0 +1,64 @@
+"""Compliance in force along a path: the shares of joints and springs, or what was measured, where a map holds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.cutting.unjudged import Unjudged
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_si, to_si
+
+MOST_TURNED = to_si(2.0, "deg")
+"""A map holds for the tool axis it was measured with. Stated, not derived: on the paper's arm 2 degrees change the
+compliance by a few per cent; 30 degrees can change it by times."""
+NOTICED = to_si(0.1, "deg")
+
+
+def total_compliance(setup: SimulationSetup, path: Toolpath, C_joint: FloatArray, C_spring: FloatArray) -> FloatArray:
+    """C (m, 3, 3) m/N that the deflection is computed with: all shares, or at feed what was measured, if it was.
+
+    NaN outside the map and where the tool stands more than ``MOST_TURNED`` off the one it was measured with.
+    """
+    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
+    if setup.measured_map is None:
+        return C
+    measured = setup.measured_map.compliance(setup.in_base(path.p))
+    measured[turned(setup, path) > MOST_TURNED] = np.nan
+    return np.where(path.cutting[:, None, None], measured, C)
+
+
+def turned(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+    """(m,) rad at feed: how far the tool stands off the one the map was measured with; 0 elsewhere, or without one."""
+    if setup.measured_map is None:
+        return np.zeros(len(path))
+    angle = setup.measured_map.turned(setup.in_base(path.p), path.k @ setup.T_MW[:3, :3].T)
+    return np.where(path.cutting, angle, 0.0)
+
+
+def beyond_map(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> tuple[Unjudged, ...]:
+    """Steps at which the map in force says nothing because the tool leans otherwise than when it was measured."""
+    angle = turned(setup, path)
+    where = (angle > MOST_TURNED) & reached
+    if not where.any():
+        return ()
+    why = (
+        f"the tool stands up to {format_si(angle.max(), 'deg', 1)} off the axis the measured map was taken with, and "
+        f"beyond {format_si(MOST_TURNED, 'deg', 0)} it does not hold: measure at this axis, or use the joints' model."
+    )
+    return (Unjudged("map-axis", where, why),)
+
+
+def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[str, ...]:
+    """What a reader must know of the map in force."""
+    if setup.measured_map is None:
+        return ()
+    notes = [finding.message for finding in setup.measured_map.findings]
+    if setup.springs:
+        notes.append("The measured map holds whatever gives; the springs beside the joints are shown, not added.")
+    largest = float(turned(setup, path).max())
+    if NOTICED < largest <= MOST_TURNED:
+        off = format_si(largest, "deg", 1)
+        notes.append(f"The tool stands up to {off} off the axis the measured map was taken with; it is used as it is.")
+    return tuple(notes)

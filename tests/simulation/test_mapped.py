@@ -1,0 +1,67 @@
+"""A measured map under a tool that leans otherwise: never used in silence. The truth is its own joint model's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.cartesian import cartesian_compliance
+from robomill.identification.measured_field import MeasuredField
+from robomill.io.samples import samples_dir
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import pose_from_world
+from robomill.toolpath.source import GCodeSource
+
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=5e-3)
+
+
+def model_map(B: float = 0.0) -> MeasuredField:
+    """C of the arm's own joints on a grid over the slot, with the tool tilted by B."""
+    x, y, z = np.meshgrid([-0.06, 0.0, 0.06], [-1.32, -1.28], [-0.01, 0.02], indexing="ij")
+    p = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    AB = np.tile([0.0, B], (len(p), 1))
+    ik = inverse_kinematics(SETUP.robot, pose_from_world(np.hstack([p, AB])))
+    assert ik.reached.all()
+    return MeasuredField(p, cartesian_compliance(SETUP.robot, ik.theta), AB)
+
+
+def leaning(degrees: float, field: MeasuredField | None):
+    text = f"G21 G90 S12000 M3\nG0 X-40 Y0 Z5 B{degrees}\nG0 Z-2\nG1 X40 F1800\nM2\n"
+    return rm.simulate(SETUP.replace(source=GCodeSource(text), measured_map=field))
+
+
+def test_the_map_says_something_else_under_a_leaning_tool():
+    """What goes wrong without the limit, so that the limit is known to matter."""
+    truth = leaning(28.6, None)
+    mid = len(truth.path) // 2
+    upright = np.einsum("ij,j->i", model_map().compliance(SETUP.in_base(truth.path.p))[mid], truth.F[mid])
+    assert abs(truth.delta[mid, 2] - upright[2]) > 15e-6
+
+
+@pytest.mark.parametrize("degrees", [2.5, 28.6])
+def test_beyond_the_limit_nothing_is_judged_and_it_is_said(degrees):
+    run = leaning(degrees, model_map())
+    cutting = run.path.cutting
+    assert np.isnan(run.delta[cutting]).all()
+    assert run.not_judged[cutting].all()
+    assert run.verdict.level == "unjudged"
+    assert run.verdict.red
+    assert [reason.code for reason in run.unjudged] == ["map-axis"]
+
+
+@pytest.mark.parametrize("B", [0.0, np.radians(28.6)])
+def test_a_map_measured_at_this_axis_is_used(B):
+    degrees = float(np.degrees(B))
+    run, truth = leaning(degrees, model_map(B)), leaning(degrees, None)
+    assert not run.unjudged
+    cutting = run.path.cutting
+    np.testing.assert_allclose(run.delta[cutting], truth.delta[cutting], rtol=0.03, atol=2e-6)
+
+
+def test_a_little_off_is_used_and_said():
+    run = leaning(1.0, model_map())
+    truth = leaning(1.0, None)
+    assert not run.not_judged.any()
+    assert np.abs(run.delta - truth.delta)[run.judged].max() < 0.05 * truth.max_deviation
+    assert any("1.0°" in note for note in run.notes)
