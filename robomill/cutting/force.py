@@ -107,6 +107,20 @@ class ForceModel:
         """Its numbers in words, for the report."""
         return described(self) + (" in {M}" if self.frame == "M" else "")
 
+    @property
+    def in_time(self) -> bool:
+        """Whether it runs by the clock, so that the time of rapids and dwells must be known."""
+        return False
+
+    @property
+    def turns_with_part(self) -> bool:
+        """Whether its axes are the part's, so that a turned part turns it."""
+        return False
+
+    def placed(self, R_MW: FloatArray) -> Self:
+        """The same model for a part whose axes in {M} are R_MW (3, 3); itself where it does not depend on them."""
+        return self
+
     def cut_by(self, cutter: Cutter) -> Self:
         """The same model for another cutter; itself where it does not depend on one."""
         return self

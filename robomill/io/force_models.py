@@ -51,7 +51,8 @@ def _read_record(table: Table, name: str, around: Around) -> ForceRecord:
     if table.has("file"):
         file = table.text("file")
         side: Any = table.choice("force_on", ("tool", "part"), "tool")
-        return read_forces((around.folder or Path()) / file, on=side, source=file)
+        turns: Any = table.choice("force_axes", ("robot", "part"), "robot")
+        return read_forces((around.folder or Path()) / file, on=side, turns_with=turns, source=file)
     inner = table.table("record")
     axis: Any = inner.text("axis")
     frame: Any = inner.text("frame")
@@ -79,5 +80,5 @@ def _others_of_its_alloy(table: Table, name: str, around: Around) -> tuple[Mater
 FORCE_CODECS: dict[Any, Codec] = CODECS | {
     Material: Codec(("material", "material_definition"), _read_material, _write_material),
     tuple[Material, ...]: Codec((), _others_of_its_alloy, lambda name, rows: {}),
-    ForceRecord: Codec(("file", "record", "force_on"), _read_record, _write_record),
+    ForceRecord: Codec(("file", "record", "force_on", "force_axes"), _read_record, _write_record),
 }

@@ -1,7 +1,7 @@
 """Measured force from a CSV file: time or path length against force. Every refusal names row and column.
 
 Columns, units included: ``t_s`` or ``s_mm``; ``F_feed_N``, ``F_feed_normal_N``, ``F_axial_N`` (following the path) or
-``F_x_N``, ``F_y_N``, ``F_z_N`` (in {M}).
+``F_x_N``, ``F_y_N``, ``F_z_N`` (in {M}, or in the part's axes where the sensor turns with the part: ``turns_with``).
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ from typing import Literal
 
 import numpy as np
 
-from robomill.cutting.force import Frame
-from robomill.cutting.forces.measured import FEWEST, Axis, ForceRecord
+from robomill.cutting.forces.measured import FEWEST, Axis, ForceRecord, RecordFrame
 from robomill.errors import CuttingError
 from robomill.io.columns import Columns, Layout, read_columns
 from robomill.units import from_si
 
 AXES: dict[str, Axis] = {"t": "time", "s": "path"}
-COMPONENTS: dict[Frame, tuple[str, str, str]] = {
+COMPONENTS: dict[RecordFrame, tuple[str, str, str]] = {
     "path": ("f_feed", "f_feed_normal", "f_axial"),
     "M": ("f_x", "f_y", "f_z"),
 }
@@ -40,12 +39,14 @@ def read_forces(
     path_or_text: str | Path | bytes,
     *,
     on: Literal["tool", "part"] = "tool",
+    turns_with: Literal["robot", "part"] = "robot",
     source: str = "",
     trust_units: bool = False,
 ) -> ForceRecord:
     """The record of a CSV file, its text (anything with a line break) or its bytes; force ON the tool, SI.
 
     ``on`` says what the sensor felt: a dynamometer under the part gives the force on the part, which is turned round.
+    ``turns_with`` says whose axes x, y and z are: the robot's base, or the part's, on which the sensor sits.
     Components without a column are 0 and noted, columns that are not known are noted. ``trust_units`` accepts sizes
     that look like another unit. Raises CuttingError with file, row and column.
     """
@@ -61,10 +62,12 @@ def read_forces(
     absent = [component[2:].replace("_", "-") for component in COMPONENTS[frame] if component not in table]
     notes = [f"{name}: no {word} force was recorded; it is taken as 0." for word in absent]
     notes += [f"{name}: the column {column!r} is not used." for column in table.passed_over]
+    if frame == "M" and turns_with == "part":
+        frame = "W"
     return ForceRecord(table.values[axis], F if on == "tool" else -F, AXES[axis], frame, name, tuple(notes))
 
 
-def _kind(table: Columns) -> tuple[str, Frame]:
+def _kind(table: Columns) -> tuple[str, RecordFrame]:
     """The quantity that the rows go along, and the frame of the force."""
     header = ", ".join((*(column.written for column in table.known.values()), *table.passed_over))[:80]
     axes = [axis for axis in AXES if axis in table]

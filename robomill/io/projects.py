@@ -184,7 +184,11 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         "part": part_to_table(T_MW),
         "cutter": to_table(setup.cutter),
         "force": force_to_table(setup.force),
-        "numerics": {NUMBERS[name].key: write_quantity(NUMBERS[name], getattr(setup, name)) for name in NUMERICS},
+        "numerics": {
+            NUMBERS[name].key: write_quantity(NUMBERS[name], getattr(setup, name))
+            for name in NUMERICS
+            if getattr(setup, name) is not None
+        },
         "provenance": {key: {"kind": p.kind, "source": p.source} for key, p in setup.provenance.items()},
     }
     if setup.stock is not None:

@@ -9,10 +9,14 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_share
-from robomill.simulation.samples import at_starts
+from robomill.errors import SetupError
+from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import one_cutter, tooling
 from robomill.toolpath.path import Toolpath
+from robomill.units import format_short
+
+SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
 
 
 def cut_conditions(
@@ -28,7 +32,7 @@ def cut_conditions(
         "v_f": path.v_f,
         "n_s": path.n_s,
         "s": path.s,
-        "t": path.t,
+        "t": record_time(setup, path) if setup.force.in_time else path.t,
         "cutting": cutting,
         "across": at_starts(path, feed_share(path.p, path.k)),
         "block": path.block,
@@ -41,6 +45,38 @@ def cut_conditions(
     found = engage(setup.stock_block, setup.cell, one_cutter(tooling(setup, path)), tip, path.k, cutting)
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex")}
     return CutConditions(**arc, **common)
+
+
+def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+    """(m,) s in a record that began with the first cut. Raises SetupError where the time of a rapid is not known."""
+    t = clock(path, setup.rapid_rate)
+    unknown = np.flatnonzero(path.cutting & np.isnan(t))
+    if len(unknown):
+        raise SetupError(
+            f"Force: the record runs over time, and before line {path.block[unknown[0]]} a rapid takes a time that is "
+            "not known; give the machine's rapid rate (rapid_rate_mm_min), or a record over path length.",
+            where="rapid_rate",
+        )
+    return np.nan_to_num(t)
+
+
+def suspicions(setup: SimulationSetup, pull: FloatArray) -> tuple[str, ...]:
+    """What looks wrong in a measured force; ``pull`` (k, 3) N are its components along the path where it is judged."""
+    force, found = setup.force, []
+    if force.provenance.kind != "measured" or not len(pull):
+        return ()
+    size, along = float(np.linalg.norm(pull, axis=1).mean()), float(pull[:, 0].mean())
+    if along > SUSPECTED * size:
+        found.append(
+            f"Force: on average it pulls the tool along its feed, with {format_short(along, 'N')}; a cut holds it back, "
+            "but for some climb cuts. Did the sensor feel the force on the part (force_on), or in other axes?"
+        )
+    if force.frame == "M" and not force.turns_with_part and np.abs(setup.T_MW[:3, :3] - np.eye(3)).max() > 1e-6:
+        found.append(
+            "Force: its x, y and z are taken as the robot's, and the part is turned against them; where the sensor "
+            "turns with the part, say so (force_axes)."
+        )
+    return tuple(found)
 
 
 def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: FloatArray) -> FloatArray:

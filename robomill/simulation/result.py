@@ -15,7 +15,7 @@ from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.inverse import IKResult
 from robomill.provenance import Finding
 from robomill.simulation.coupling import FixedPoint
-from robomill.simulation.cut import cut_notes, moved_points
+from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.rapids import rapids_through_material
@@ -159,6 +159,7 @@ class SimulationResult:
         """What a reader of the numbers must know, one sentence each."""
         found = [*cut_notes(self.setup, self.conditions), *tool_notes(self.setup, self.path)]
         found += map_notes(self.setup, self.path)
+        found += suspicions(self.setup, self.force_components[self.judged & self.conditions.engaged])
         if self.coupling is not None:
             found.append(self.coupling.sentence)
         found += [f"Line {f.line}: {f.message}" for f in self.steadiness]

@@ -31,10 +31,28 @@ def moving(path: Toolpath) -> Toolpath:
     return path if keep.all() else _chosen(path, keep)
 
 
+def clock(path: Toolpath, rapid_rate: float | None) -> FloatArray:
+    """(m,) s since the first cut began: at feed, through dwells, and through rapids at ``rapid_rate`` (m/s).
+
+    After a rapid that takes an unknown time (no rate) it is NaN.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        feed = np.where(path.v_f > 0.0, path.step_length / path.v_f, 0.0)
+        rapid = path.step_length / rapid_rate if rapid_rate else np.where(path.step_length > 0.0, np.nan, 0.0)
+    took = np.where(path.cutting, feed, rapid) + path.dwell
+    cuts = np.flatnonzero(path.cutting)
+    if len(cuts):
+        took[: cuts[0]] = 0.0
+        took[cuts[0]] -= path.dwell[cuts[0]]
+    return np.asarray(np.cumsum(took))
+
+
 def _chosen(path: Toolpath, keep: np.ndarray) -> Toolpath:
     """The entries ``keep`` (m,) bool of every array of the path."""
     found: dict[str, Any] = {each.name: getattr(path, each.name) for each in fields(path)}
     arrays = {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}
+    owner = np.minimum(np.searchsorted(np.flatnonzero(keep), np.arange(len(path))), keep.sum() - 1)
+    arrays["dwell"] = np.bincount(owner, weights=path.dwell, minlength=int(keep.sum()))  # waited before the next move
     return replace(path, **arrays)
 
 

@@ -45,6 +45,7 @@ class SimulationSetup:
     cell        m, cell size of the surfaces
     engagement  True: the force follows the arc of engagement found from the stock as it stands
     coupling    True: deflection changes the cut, iterated to a fixed point (needs engagement)
+    rapid_rate  m/s on rapids, None where not known; only a force recorded over time needs it
     springs     extra compliances beside the joints', each with its own line in the result
     measured_map  compliance measured on a grid, used instead of joints and springs (whose shares are still shown)
     links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
@@ -91,6 +92,15 @@ class SimulationSetup:
         "from the part.",
     )
     tools: ToolTable = NO_TOOLS
+    rapid_rate: float | None = quantity(
+        "Rapid rate",
+        "mm/min",
+        optional=True,
+        above=0.0,
+        step=1000.0,
+        digits=0,
+        hint="How fast the machine goes on rapids: a force recorded over time runs on meanwhile.",
+    )
     springs: tuple[Spring, ...] = ()
     measured_map: MeasuredField | None = None
     links: LinkMasses | None = None
@@ -111,7 +121,7 @@ class SimulationSetup:
         self._take_tolerances()
         settle(self, SetupError)
         # A process force is computed for the cutter that cuts; a changed cutter changes it too.
-        object.__setattr__(self, "force", self.force.cut_by(self.cutter))
+        object.__setattr__(self, "force", self.force.cut_by(self.cutter).placed(self.T_MW[:3, :3]))
         if self.stock is not None:
             stock_grid(self.stock, self.cell)  # refuses a cell size that would need too many cells
         names = [spring.name for spring in self.springs]

@@ -122,8 +122,8 @@ def test_refusals():
         MeasuredForce(record(100.0, 0.03 * T, axis="path")).components(still)
     with pytest.raises(CuttingError, match="axis is 'angle'; expected 'time' or 'path'"):
         record(100.0, axis="angle")
-    with pytest.raises(CuttingError, match="frame is 'W'; expected 'path' or 'M'"):
-        record(100.0, frame="W")
+    with pytest.raises(CuttingError, match="frame is 'W2'; expected 'path' or 'M' or 'W'"):
+        record(100.0, frame="W2")
     with pytest.raises(CuttingError, match="Low-pass cut-off: found −5 Hz; expected more than 0 Hz, or left out"):
         MeasuredForce(record(100.0), cutoff=-5.0)
     with pytest.raises(CuttingError, match="Path starts at: found nan"):

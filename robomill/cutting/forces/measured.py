@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import ClassVar, Literal, get_args
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from robomill.quantities import quantity
 from robomill.units import format_si
 
 Axis = Literal["time", "path"]
+RecordFrame = Literal["path", "M", "W"]
 AXIS_UNITS: dict[Axis, str] = {"time": "s", "path": "mm"}
 #: Cut-off of the paper's dynamometer filter, Hz (its milling test, section 5).
 PAPER_CUTOFF = 50.0
@@ -28,22 +29,23 @@ FEWEST = 4
 class ForceRecord:
     """Force ON the tool against time (s) or path length (m) from the start of the path.
 
-    x (k,) strictly increasing, F (k, 3) N in ``frame`` (feed, feed-normal, axial; or x, y, z of {M}).
+    x (k,) strictly increasing, F (k, 3) N in ``frame``: feed, feed-normal, axial ("path"); x, y, z of the robot ("M"),
+    or of the part, where the sensor turns with it ("W"). Time counts from the first cut on, rapids and dwells included.
     Raises CuttingError for shapes that differ or an x that does not increase.
     """
 
     x: FloatArray
     F: FloatArray
     axis: Axis = "time"
-    frame: Frame = "path"
+    frame: RecordFrame = "path"
     source: str = "measured force"
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for field, known in (("axis", get_args(Axis)), ("frame", get_args(Frame))):
-            if getattr(self, field) not in known:
-                expected, found = " or ".join(map(repr, known)), getattr(self, field)
-                raise CuttingError(f"{self.source}: {field} is {found!r:.40}; expected {expected}.", where=field)
+        for name, known in (("axis", get_args(Axis)), ("frame", get_args(RecordFrame))):
+            if getattr(self, name) not in known:
+                expected, found = " or ".join(map(repr, known)), getattr(self, name)
+                raise CuttingError(f"{self.source}: {name} is {found!r:.40}; expected {expected}.", where=name)
         x = as_floats(self.x, f"{self.source}, {self.axis}", (None,), error=CuttingError)
         F = as_floats(self.F, f"{self.source}, force (N)", (len(x), 3), error=CuttingError)
         if x.ndim != 1 or F.ndim != 2 or len(x) < FEWEST:
@@ -86,7 +88,7 @@ class ForceRecord:
 
 @dataclass(frozen=True, eq=False)
 class MeasuredForce(ForceModel):
-    """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the path.
+    """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the first cut.
 
     ``cutoff`` (Hz, None for no filter) applies in time; a path record is filtered at cutoff / feed, with the median
     feed of the cut.
@@ -110,6 +112,7 @@ class MeasuredForce(ForceModel):
         boxed=False,
     )
     start: float = quantity("Path starts at", default=0.0, digits=3, boxed=False)
+    R_MW: FloatArray = field(default_factory=lambda: np.eye(3))
 
     @property
     def numbers(self) -> str:
@@ -123,8 +126,22 @@ class MeasuredForce(ForceModel):
 
     @property
     def frame(self) -> Frame:
-        """Axes of the record."""
-        return self.record.frame
+        """Axes of ``components``: a record in the part's axes is turned into the robot's."""
+        return "path" if self.record.frame == "path" else "M"
+
+    @property
+    def in_time(self) -> bool:
+        """Whether the record runs over time."""
+        return self.record.axis == "time"
+
+    @property
+    def turns_with_part(self) -> bool:
+        """Whether the sensor sat on the part."""
+        return self.record.frame == "W"
+
+    def placed(self, R_MW: FloatArray) -> Self:
+        """With the axes of the part in {M}, which matter to a record in them."""
+        return self if np.array_equal(R_MW, self.R_MW) else replace(self, R_MW=frozen(R_MW))
 
     @property
     def provenance(self) -> Provenance:
@@ -161,6 +178,8 @@ class MeasuredForce(ForceModel):
         if self.cutoff is not None:
             record = record.low_pass(self.cutoff / self._speed(conditions))
         F = np.stack([np.interp(at, record.x, column) for column in record.F.T], axis=1)
+        if record.frame == "W":
+            F = F @ self.R_MW.T
         return np.where(conditions.cutting[:, None], F, 0.0)
 
     def _speed(self, conditions: CutConditions) -> float:
