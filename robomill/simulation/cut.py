@@ -68,8 +68,8 @@ def suspicions(setup: SimulationSetup, pull: FloatArray) -> tuple[str, ...]:
     size, along = float(np.linalg.norm(pull, axis=1).mean()), float(pull[:, 0].mean())
     if along > SUSPECTED * size:
         found.append(
-            f"Force: on average it pulls the tool along its feed, with {format_short(along, 'N')}; a cut holds it back, "
-            "but for some climb cuts. Did the sensor feel the force on the part (force_on), or in other axes?"
+            f"Force: on average it pulls the tool along its feed, with {format_short(along, 'N')}; a cut holds it "
+            "back, but for some climb cuts. Did the sensor feel the force on the part (force_on), or in other axes?"
         )
     if force.frame == "M" and not force.turns_with_part and np.abs(setup.T_MW[:3, :3] - np.eye(3)).max() > 1e-6:
         found.append(
