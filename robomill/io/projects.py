@@ -16,6 +16,7 @@ from robomill.io.declared import from_table, read_quantity, to_table, write_quan
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import read_program
+from robomill.io.robot_reader import ANGLE
 from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
 from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import spring_from_table, spring_to_table
@@ -28,6 +29,7 @@ from robomill.io.workpiece import (
     stock_from_table,
     stock_to_table,
 )
+from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import TOLERANCES, SimulationSetup
@@ -79,6 +81,7 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
         T_MW=part_from_table(top.table("part", {})),
         cutter=cutter,
         tools=tools,
+        spin=_spin(top),
         stock=stock_from_table(top.table("stock"), folder) if top.has("stock") else None,
         force=force_from_table(top.table("force"), cutter, folder),
         provenance=_provenance(top.table("provenance", {})),
@@ -90,6 +93,15 @@ def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None
     top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit"))
     top.finish()
     return setup
+
+
+def _spin(top: Table) -> float | str:
+    """``spin`` as a rule, or ``spin_deg`` as an angle."""
+    angle = top.measure("spin", ANGLE, None)
+    if angle is not None and top.has("spin"):
+        raise top.refuse("spin", "it is given twice, as a rule and as an angle; keep one of them.")
+    rule: float | str = top.choice("spin", RULES, LEAST_MOTION) if angle is None else float(angle)
+    return rule
 
 
 def _cutter(top: Table, tools: ToolTable) -> Cutter:
@@ -195,6 +207,8 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         data["stock"] = stock_to_table(setup.stock)
     if setup.tools:
         data["tools"] = tools_to_tables(setup.tools)
+    if setup.spin != LEAST_MOTION:
+        data["spin" if isinstance(setup.spin, str) else "spin_rad"] = setup.spin
     if setup.springs:
         data["springs"] = [spring_to_table(spring) for spring in setup.springs]
     if setup.measured_map is not None:

@@ -27,7 +27,7 @@ class Wish:
     """What is asked of inverse kinematics: poses (m, 4, 4) in runs of ``length``, what of them counts, which solution.
 
     goal (1 or m, n) is what an answer is near to; None joins each run as a path. ``at_home``: shoulder and elbow as at
-    home before all motion.
+    home before all motion. given_spin: the turn about the tool axis that was asked for; None where it is free.
     """
 
     T_MT: FloatArray
@@ -37,6 +37,7 @@ class Wish:
     at_home: bool
     branch: str | None
     free_spin: bool
+    given_spin: float | None
 
 
 class Found(NamedTuple):
@@ -95,8 +96,15 @@ def inverse_kinematics(
         branch_names=names,
         asked_branch=branch,
         free_spin=wish.free_spin,
-        spin=None if found.turn is None else found.turn.reshape(lead),
+        spin=_spins(wish, found, lead),
     )
+
+
+def _spins(wish: Wish, found: Found, lead: tuple[int, ...]) -> FloatArray | None:
+    """The turn about the tool axis (...,), as given or found."""
+    if wish.given_spin is not None:
+        return np.full(lead, wish.given_spin)
+    return None if found.turn is None else found.turn.reshape(lead)
 
 
 def _wish(
@@ -112,10 +120,11 @@ def _wish(
     if robot.n >= 6 and not isinstance(spin, str):
         flat = spun(flat, float(spin))
     free_spin = robot.n >= 6 and spin == "least motion"
+    given = None if robot.n < 6 or free_spin else 0.0 if isinstance(spin, str) else float(spin)
     mode: Mode = "axis" if free_spin else task_mode(robot)
     goal = None if along_path else robot.home[None] if near is None else _reference(robot, near, lead)
     length = max(lead[-1], 1) if along_path else 1
-    return Wish(flat, length, mode, goal, near is None, branch, free_spin)
+    return Wish(flat, length, mode, goal, near is None, branch, free_spin, given)
 
 
 def branch_mask(branch: str | None) -> BoolArray:

@@ -21,9 +21,9 @@ Mode = Literal["position", "axis", "pose"]
 class IKResult:
     """Configurations for a batch of poses; every reached one has been checked by forward kinematics.
 
-    theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m
-    of the answer or of the best attempt; branch_index (...,) into branch_names, -1 where not
-    reached; spin (...,) rad is the turn about the tool axis that was chosen, None where the arm does not choose one.
+    theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m of the answer or of
+    the best attempt; branch_index (...,) into branch_names, -1 where not reached; spin (...,) rad is the turn about the
+    tool axis that was asked for or chosen, None where there is none to choose or it came about by itself (numerically).
     ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
     """
 

@@ -13,8 +13,9 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
 from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
-from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.inverse import IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world
 from robomill.simulation.coupling import FixedPoint, fixed_point
 from robomill.simulation.cut import cut_conditions, moved_points
@@ -38,7 +39,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     path = sampled(setup.toolpath, setup.step)
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
-    ik = inverse_kinematics(setup.robot, setup.T_MW @ tool_frames(path, farther(setup, path)), near="path")
+    ik = configurations(setup, path)
     C_joint, C_spring = compliances(setup, path, ik.theta)
     C = total_compliance(setup, path, C_joint, C_spring)
     sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
@@ -62,6 +63,34 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
         coupling=coupling,
         unjudged=beyond_map(setup, path, ik.reached),
     )
+
+
+def configurations(setup: SimulationSetup, path: Toolpath) -> IKResult:
+    """How the arm stands along the sampled path: branches joined, the spin about the tool as the set-up has it."""
+    spin: Spin = setup.spin if isinstance(setup.spin, float) else "least motion"
+    if setup.spin == LEAST_DEVIATION and setup.robot.n >= 6:
+        over = deviation_over_spin(setup, path)
+        spin = float(over.angle[over.best])
+    return inverse_kinematics(setup.robot, tool_poses(setup, path), near="path", spin=spin)
+
+
+def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:
+    """The largest deviation, m, at feed along the sampled path for each spin about the tool, one spin a path.
+
+    The force is that of the uncoupled run at the spin of least motion: it does not know the arm.
+    """
+    T_MT = tool_poses(setup, path)
+    ik = inverse_kinematics(setup.robot, T_MT, near="path")
+    C = total_compliance(setup, path, *compliances(setup, path, ik.theta))
+    R_MF = feed_directions(setup, path)
+    F = forces(setup.replace(coupling=False), path, ik.reached, R_MF, C, np.zeros(3))[1]
+
+    def largest(theta: FloatArray) -> float:
+        delta = bend(total_compliance(setup, path, *compliances(setup, path, theta)), F)
+        size = np.linalg.norm(delta, axis=1)[path.cutting]
+        return float(np.nanmax(size)) if np.isfinite(size).any() else float("nan")
+
+    return over_spins(setup.robot, T_MT, largest)
 
 
 def compliances(setup: SimulationSetup, path: Toolpath, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -116,6 +145,11 @@ def forces(
 def bend(C: FloatArray, F: FloatArray) -> FloatArray:
     """delta = C F, eq. (15), along the path."""
     return np.einsum("mij,mj->mi", C, F)
+
+
+def tool_poses(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+    """(m, 4, 4) T_MT along the path, for the first tool's length."""
+    return np.asarray(setup.T_MW @ tool_frames(path, farther(setup, path)))
 
 
 def tool_frames(path: Toolpath, back: FloatArray | float = 0.0) -> FloatArray:

@@ -18,6 +18,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
+from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, settle, switch
 from robomill.robot.model import Robot
@@ -37,6 +38,8 @@ class SimulationSetup:
     source      the program or table the path is read from
     T_MW        (4, 4) where the part zero {W} lies in {M}
     cutter, force, stock   stock None: the path's bounds with a margin
+    spin        of arms with six axes or more, about the tool axis: an angle in rad by which R_x(A) R_y(B) is turned, or
+                "least_motion" of the joints, or "least_deviation"; one for the whole path
     tools       the tools of the program by number; empty: ``cutter`` for all (and where the program names none)
     tolerance   m, largest accepted deviation of walls, and of floors where ``floor_tolerance`` is None; or three
                 numbers (wall, floor, feed), as a sequence or as a mapping by these names
@@ -91,6 +94,7 @@ class SimulationSetup:
         hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
         "from the part.",
     )
+    spin: float | str = LEAST_MOTION
     tools: ToolTable = NO_TOOLS
     rapid_rate: float | None = quantity(
         "Rapid rate",
@@ -119,6 +123,7 @@ class SimulationSetup:
             raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
         object.__setattr__(self, "T_MW", frozen(T_MW))
         self._take_tolerances()
+        self._take_spin()
         settle(self, SetupError)
         # A process force is computed for the cutter that cuts; a changed cutter changes it too.
         object.__setattr__(self, "force", self.force.cut_by(self.cutter).placed(self.T_MW[:3, :3]))
@@ -132,6 +137,16 @@ class SimulationSetup:
             raise SetupError("Sag: no link masses are given; add them or leave the sag out.")
         if self.coupling and not self.engagement:
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
+
+    def _take_spin(self) -> None:
+        """An angle, or one of the rules."""
+        if self.spin in RULES:
+            return
+        if isinstance(self.spin, str) or not np.isfinite(self.spin):
+            raise SetupError(
+                f"Spin: expected an angle or one of {', '.join(RULES)}; found {self.spin!r:.40}.", where="spin"
+            )
+        object.__setattr__(self, "spin", float(self.spin))
 
     def _take_tolerances(self) -> None:
         """One number, or three: wall, floor, feed."""

@@ -12,10 +12,10 @@ from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import translation
 from robomill.robot.model import Robot
-from robomill.simulation.run import tool_frames
+from robomill.simulation.run import configurations
+from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.sampling import resample
 from robomill.units import from_si
 
 MAX_SAMPLES = 400_000
@@ -39,17 +39,15 @@ class PathReach:
 
 
 def path_reach(setup: SimulationSetup) -> PathReach:
-    """Inverse kinematics along the path; raises the refusal of reading it."""
-    path = setup.toolpath
-    return _path_reach(digest((setup.robot.digest(), setup.T_MW, setup.step, path.digest())), setup)
+    """The configurations of a run along the path; raises the refusal of reading it."""
+    return _path_reach(setup.digest(), setup)
 
 
 @st.cache_resource(max_entries=12, show_spinner=False)
 def _path_reach(key: str, _setup: SimulationSetup) -> PathReach:
     whole = _setup.toolpath
-    length = float(whole.s[-1])
-    path = resample(whole, max(_setup.step, length / MAX_SAMPLES, 1e-6))
-    ik = inverse_kinematics(_setup.robot, _setup.T_MW @ tool_frames(path))
+    path = sampled(whole, max(_setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
+    ik = configurations(_setup, path)
     limits = _setup.robot.limits
     room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
     lost = np.flatnonzero(path.cutting & ~ik.reached)
