@@ -14,9 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
-from robomill.cutting.tool import Cutter
+from robomill.cutting.engaged import EngagedPart
+from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.units import format_si
+
+#: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
+PLUNGE = 1e-6
+WHOLE = ("part", "tooling")  # fields that are values of their own
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +37,15 @@ class CutConditions:
     cutting  bool   False on rapids
     s        m      path length from the start
     t        s      time from the start
-    across   1      share of the feed across the tool axis: 1 on the level, 0 in a plunge (only this makes chips aside)
+    across   1      share of the feed across the tool axis: 1 on the level, 0 in a plunge
     block    int    source line, 0 where not stated (refusals name it)
+    along    1      part of the unit feed along the tool axis: negative on the way down
+    ccw      bool   True where the spindle runs counter-clockwise seen from above (M4)
+    part            the engaged part of the cutter, where it was found from the stock (None: the arc over the depth)
+    reach    m      highest engaged place above the tip (None: a_p)
+    tooling         which cutter makes which step (None: one for all)
+
+    The spindle's speed is NaN where it is not known (it turns, but who knows how fast): such steps are not judged.
 
     Raises CuttingError for lengths that differ, values that are not finite, or an arc the wrong way round.
     """
@@ -47,15 +60,29 @@ class CutConditions:
     t: FloatArray
     across: FloatArray = 1.0  # type: ignore[assignment]
     block: IntArray = 0  # type: ignore[assignment]
+    along: FloatArray = 0.0  # type: ignore[assignment]
+    ccw: BoolArray = False  # type: ignore[assignment]
+    part: EngagedPart | None = None
+    reach: FloatArray | None = None
+    tooling: Tooling | None = None
 
     def __post_init__(self) -> None:
-        m = max(np.size(getattr(self, field.name)) for field in fields(self))
-        for field in fields(self):
-            value = as_floats(getattr(self, field.name), f"cutting conditions, {field.name}", (), error=CuttingError)
+        names = [
+            field.name for field in fields(self) if field.name not in WHOLE and getattr(self, field.name) is not None
+        ]
+        m = max(np.size(getattr(self, name)) for name in names)
+        for name in names:
+            value = as_floats(
+                getattr(self, name),
+                f"cutting conditions, {name}",
+                (),
+                error=CuttingError,
+                finite=name != "n_s",
+            )
             if value.shape not in ((), (1,), (m,)):
-                raise CuttingError(f"Cutting conditions, {field.name}: expected {m} values, found shape {value.shape}.")
-            dtype: Any = {"cutting": bool, "block": np.int64}.get(field.name, np.float64)
-            object.__setattr__(self, field.name, frozen(np.broadcast_to(value, (m,)), dtype))
+                raise CuttingError(f"Cutting conditions, {name}: expected {m} values, found shape {value.shape}.")
+            dtype: Any = {"cutting": bool, "ccw": bool, "block": np.int64}.get(name, np.float64)
+            object.__setattr__(self, name, frozen(np.broadcast_to(value, (m,)), dtype))
         self._check_signs()
 
     def _check_signs(self) -> None:
@@ -83,11 +110,14 @@ class CutConditions:
 
     @property
     def engaged(self) -> BoolArray:
-        """(m,) True where the cutter is in the material."""
-        return self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st)
+        """(m,) True where the cutter cuts material; not where it only stands in it or is drawn out of it."""
+        if self.part is not None:
+            return np.asarray(self.cutting & self.part.touches)
+        down = (self.across > PLUNGE) | (self.along < 0.0)
+        return np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down)
 
-    def f_z(self, flutes: int) -> FloatArray:
-        """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material.
+    def f_z(self, flutes: ArrayLike) -> FloatArray:
+        """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material, NaN where the speed is not known.
 
         Raises CuttingError where the tool is in the material with its spindle stopped or without a feed.
         """
@@ -101,7 +131,7 @@ class CutConditions:
                     where=name,
                 )
         result = np.zeros(len(self))
-        return np.divide(self.v_f, self.n_s * flutes, out=result, where=engaged)
+        return np.divide(self.v_f, self.n_s * np.asarray(flutes), out=result, where=engaged)
 
     @classmethod
     def steady(
@@ -119,22 +149,26 @@ class CutConditions:
 
 
 def cut_warnings(cutter: Cutter, conditions: CutConditions) -> tuple[str, ...]:
-    """What deserves a word though it can be computed: depth beyond the flutes, plunging in the material."""
+    """What deserves a word though it can be computed: depth beyond the flutes, and what the force of a plunge is."""
     found = []
     engaged = conditions.engaged
-    if cutter.flute_length is not None:
-        deep = np.flatnonzero(engaged & (conditions.a_p > cutter.flute_length * (1.0 + 1e-9)))
+    tooling = Tooling.of(conditions.tooling or cutter, len(conditions))
+    highest = conditions.a_p if conditions.reach is None else conditions.reach
+    for each, made in tooling.steps_of_each():
+        if each.flute_length is None:
+            continue
+        deep = np.flatnonzero(engaged & made & (highest > each.flute_length * (1.0 + 1e-9)))
         if deep.size:
-            worst = deep[np.argmax(conditions.a_p[deep])]
-            depth = format_si(conditions.a_p[worst], "mm")
+            worst = deep[np.argmax(highest[deep])]
             found.append(
-                f"{conditions.place(worst)}: depth {depth} is beyond the flute length "
-                f"{format_si(cutter.flute_length, 'mm')}; the shank would rub ({deep.size} steps)."
+                f"{conditions.place(worst)}: depth {format_si(highest[worst], 'mm')} is beyond the flute length "
+                f"{format_si(each.flute_length, 'mm')}; the shank would rub ({deep.size} steps)."
             )
-    plunging = np.flatnonzero(engaged & (conditions.across < 1e-6))
-    if plunging.size:
+    drills = np.array([each.kind == "drill" for each in tooling.cutters])[tooling.of_step]
+    down = np.flatnonzero(engaged & (conditions.along < -DISH) & ~drills)
+    if down.size:
         found.append(
-            f"{conditions.place(plunging[0])}: the tool plunges into the material; the thrust of a plunge "
-            f"is not modelled and taken as 0 ({plunging.size} steps)."
+            f"{conditions.place(down[0])}: the tool goes down into the material; its thrust is that of the end teeth, "
+            f"to the centre, by the same coefficients as the flank: not measured ({down.size} steps)."
         )
     return tuple(found)

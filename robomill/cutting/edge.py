@@ -9,7 +9,8 @@ with h = c sin(phi) sin(kappa) and db = dz / sin(kappa): c is the feed per tooth
 (clockwise from the left of the feed) and kappa the angle between the tool axis and the normal of the cutter's
 surface (90 deg on a cylinder). Mechanistic models have the terms e = 1 (chip) and e = 0 (edge), Kienzle's has
 e = 1 - mc. Source: Altintas, Manufacturing Automation, ch. 2; Engin and Altintas 2001 for general cutters.
-The arc is taken to be the same over the depth. Axes of all results: feed, feed-normal (left), axial (z_T).
+Here the arc is the same over the depth, as in a slot; ``engaged`` has the part of the cutter as it is.
+Axes of all results: feed, feed-normal (left), axial (z_T).
 """
 
 from __future__ import annotations
@@ -22,9 +23,6 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
-
-#: Pieces of the depth over which the lag of the helix is taken as one.
-SLICES = 48
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def depth_moment(cutter: Cutter, depth: ArrayLike, p: float, q: int) -> FloatArr
     return side + rho * np.sin(kappa) ** (p + 2.0) / (p + 2.0)
 
 
-def _depth_sums(
+def depth_sums(
     term: EdgeTerm, cutter: Cutter, depth: FloatArray, pull: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Tangential, radial (into the axis) and axial (along +z_T) force per h-power, summed over the depth."""
@@ -117,54 +115,11 @@ def mean_force(
     for term in terms:
         plain, sine, cosine = arc_moments(term.exponent, st, ex)
         load = c**term.exponent
-        tangential, radial, axial = (load * part for part in _depth_sums(term, cutter, a_p, cutter.pull))
+        tangential, radial, axial = (load * part for part in depth_sums(term, cutter, a_p, cutter.pull))
         force[..., 0] -= tangential * cosine + radial * sine
         force[..., 1] += tangential * sine - radial * cosine
         force[..., 2] += axial * plain
     force *= cutter.flutes / (2.0 * np.pi)
-    if mirror:
-        force[..., 1] *= -1.0
-    return force
-
-
-def force_over_pitch(
-    terms: tuple[EdgeTerm, ...],
-    cutter: Cutter,
-    c: ArrayLike,
-    a_p: ArrayLike,
-    arc: tuple[ArrayLike, ArrayLike],
-    instants: int = 120,
-) -> FloatArray:
-    """Force ON the tool at ``instants`` evenly spread over one tooth pitch, (..., instants, 3) N, with helix lag.
-
-    ``arc`` is (phi_st, phi_ex). The depth is cut into ``SLICES``; the edge lags by z tan(helix angle) / R (constant
-    lead). The pattern repeats every pitch (teeth alike, no run-out), so its mean is ``mean_force`` and its extremes
-    are those of a revolution.
-    """
-    c, a_p, st, ex = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64)[..., None] for v in (c, a_p, *arc)))
-    mirror = cutter.hand == "left"
-    if mirror:
-        st, ex = np.pi - ex, np.pi - st
-    pitch = 2.0 * np.pi / cutter.flutes
-    turn = (np.arange(instants) + 0.5) * (pitch / instants)
-    lag_per_depth = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
-    force = np.zeros((*c.shape[:-1], instants, 3))
-    for i in range(SLICES):
-        low, high = a_p * (i / SLICES), a_p * ((i + 1) / SLICES)
-        lag = 0.5 * (low + high) * lag_per_depth
-        loads = []
-        for term in terms:
-            above, below = (_depth_sums(term, cutter, depth, cutter.pull) for depth in (high, low))
-            loads.append([c**term.exponent * (x - y) for x, y in zip(above, below, strict=True)])
-        for tooth in range(cutter.flutes):
-            phi = (turn + tooth * pitch - lag) % (2.0 * np.pi)
-            inside = (phi >= st) & (phi <= ex)
-            sine, cosine = np.sin(np.minimum(phi, np.pi)), np.cos(phi)
-            for term, (tangential, radial, axial) in zip(terms, loads, strict=True):
-                power = np.where(inside, np.maximum(sine, 0.0) ** term.exponent, 0.0)
-                force[..., 0] -= power * (tangential * cosine + radial * sine)
-                force[..., 1] += power * (tangential * sine - radial * cosine)
-                force[..., 2] += power * axial
     if mirror:
         force[..., 1] *= -1.0
     return force

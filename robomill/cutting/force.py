@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
-from robomill.cutting.conditions import CutConditions
+from robomill.cutting.conditions import PLUNGE, CutConditions
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
+from robomill.cutting.unjudged import Unjudged
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import described, settle
 
-#: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
-PLUNGE = 1e-6
 BY_HAND = Provenance("user", "entered by hand")
 
 Frame = Literal["path", "M"]
@@ -121,6 +120,15 @@ class ForceModel:
         """The same model for a part whose axes in {M} are R_MW (3, 3); itself where it does not depend on them."""
         return self
 
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """Exponents of the chip thickness that its law has; the engaged part is summed for them."""
+        return ()
+
+    def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
+        """Steps in the material whose force it has no model for, reason by reason; each is NaN in ``force_on_tool``."""
+        return ()
+
     def cut_by(self, cutter: Cutter) -> Self:
         """The same model for another cutter; itself where it does not depend on one."""
         return self
@@ -146,6 +154,17 @@ def feed_share(p: ArrayLike, k: ArrayLike) -> FloatArray:
     step, across = _moves(p, k)
     length = np.linalg.norm(step, axis=1)
     return np.divide(np.linalg.norm(across, axis=1), length, out=np.ones(len(length)), where=length > 0.0)
+
+
+def feed_along(p: ArrayLike, k: ArrayLike) -> FloatArray:
+    """Part (m,) of every unit move along the tool axis: 0 on the level, -1 straight down, 0 where nothing moves.
+
+    ``p`` (m, 3) m tips, ``k`` (m, 3) unit tool axes, both in one frame; entry i is the move p[i-1] -> p[i].
+    """
+    step, across = _moves(p, k)
+    length = np.linalg.norm(step, axis=1)
+    along = np.sum((step - across) * as_floats(k, "tool axis", (None, 3), error=CuttingError), axis=1)
+    return np.divide(along, length, out=np.zeros(len(length)), where=length > 0.0)
 
 
 def feed_frame(p: ArrayLike, k: ArrayLike) -> FloatArray:
@@ -187,14 +206,17 @@ def _moves(p: ArrayLike, k: ArrayLike) -> tuple[FloatArray, FloatArray]:
 
 
 def force_on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike) -> FloatArray:
-    """Force ON the tool F (m, 3) N in {M}; ``R_MF`` (m, 3, 3) are the feed frames in {M}. Exactly 0 on rapids.
+    """Force ON the tool F (m, 3) N in {M}; ``R_MF`` (m, 3, 3) are the feed frames in {M}. Exactly 0 on rapids, NaN
+    where the model does not know it (``ForceModel.unjudged``).
 
     Models that know the engagement give 0 in air by themselves; constant ones push wherever the path cuts.
     """
     frames = as_floats(R_MF, "feed frames", (3, 3), error=CuttingError)
     if frames.shape != (len(conditions), 3, 3):
         raise CuttingError(f"Feed frames: expected shape ({len(conditions)}, 3, 3), found {frames.shape}.")
-    F = model.components(conditions)
+    F = np.array(model.components(conditions))
+    for unknown in model.unjudged(conditions):
+        F[unknown.where] = np.nan
     if model.frame == "path":
         F = np.einsum("mij,mj->mi", frames, F)
     return np.where(conditions.cutting[:, None], F, 0.0)

@@ -108,6 +108,11 @@ class Material:
         return self.Kac is not None or self.axial_ratio is not None
 
     @property
+    def knows_radial(self) -> bool:
+        """Whether its source gives what pushes normal to the cutter's surface."""
+        return self.Krc is not None or self.radial_ratio is not None
+
+    @property
     def terms(self) -> tuple[EdgeTerm, ...]:
         """The row as force law of the edge; unknown coefficients as 0 (see ``notes``)."""
         if self.kind == "mechanistic":

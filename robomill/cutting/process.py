@@ -7,16 +7,22 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.edge import force_over_pitch, mean_force
-from robomill.cutting.force import PLUNGE, ForceModel, ForceSpread
+from robomill.cutting.course import Course, force_over_pitch
+from robomill.cutting.edge import EdgeTerm, mean_force
+from robomill.cutting.engaged import FACING, full_slot
+from robomill.cutting.force import ForceModel, ForceSpread
 from robomill.cutting.materials import Material
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.tooling import Tooling
+from robomill.cutting.unjudged import Unjudged
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import switch
 
+#: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
+DRILL_THRUST = 0.5
 #: Cuts whose revolution is computed at once, to bound the memory.
 CASES = 2048
 
@@ -72,10 +78,33 @@ class ProcessForce(ForceModel):
         """The same material cut by another cutter."""
         return self if cutter == self.cutter else replace(self, cutter=cutter)
 
-    def components(self, conditions: CutConditions) -> FloatArray:
-        """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air, on rapids and in a plunge.
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """Those of the material and of its alternatives."""
+        rows = (self.material, *self.alternatives)
+        return tuple(sorted({term.exponent for row in rows for term in row.terms}, reverse=True))
 
-        Only the feed across the tool axis makes chips aside; the thrust of a plunge is not modelled.
+    def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
+        """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, thrusts unknown."""
+        tooling, engaged = self._tooling(conditions), conditions.engaged
+        left, drill = (
+            np.array([test(each) for each in tooling.cutters])[tooling.of_step]
+            for test in (lambda each: each.hand == "left", lambda each: each.kind == "drill")
+        )
+        reasons = [
+            ("spindle_sense", conditions.ccw != left, "the spindle turns against the cutter's hand: it does not cut"),
+            ("spindle_speed", ~np.isfinite(conditions.n_s), "the spindle's speed is not known, so the chip is not"),
+            ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
+        ]
+        if not self.material.knows_radial:
+            down = ~drill & (conditions.along < -DISH)
+            reasons.append(("thrust", down, f"{self.material.title} gives no radial coefficient, which a thrust needs"))
+        found = (Unjudged(code, engaged & where, why) for code, where, why in reasons)
+        return tuple(each for each in found if each.where.any())
+
+    def components(self, conditions: CutConditions) -> FloatArray:
+        """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air and on rapids.
+
         Raises CuttingError where the tool cuts with its spindle stopped or without feed.
         """
         return self._mean(self.material, conditions)
@@ -87,40 +116,71 @@ class ProcessForce(ForceModel):
     def peak(self, conditions: CutConditions) -> ForceSpread:
         """Extremes over a revolution, with the lag of the helix (teeth alike, no run-out); 0 where ``components`` is.
 
-        Steps that cut alike (feed, depth and arc within a thousandth of the largest) are computed once.
+        The course is that of the engaged part sector by sector, about the mean force. Steps that cut alike (within a
+        thousandth of the largest) are computed once.
         """
         zeros = np.zeros((len(conditions), 3))
         spread = ForceSpread(zeros.copy(), zeros.copy(), zeros.copy())
-        load, index = self._loads(conditions)
-        if not index.size:
-            return spread
-        scale = np.max(np.abs(load), axis=0) * 1e-3
-        alike = np.round(load / np.where(scale > 0.0, scale, 1.0))
-        _, first, inverse = np.unique(alike, axis=0, return_index=True, return_inverse=True)
-        cases = load[first]
-        for start in range(0, len(cases), CASES):
-            part = cases[start : start + CASES]
-            c, a_p, *arc = part.T
-            turns = force_over_pitch(self.material.terms, self.cutter, c, a_p, (arc[0], arc[1]))
-            turns[..., 2] *= self.axial
-            rows = np.flatnonzero((inverse >= start) & (inverse < start + len(part)))
-            case = inverse[rows] - start
-            largest = np.argmax(np.linalg.norm(turns, axis=-1), axis=-1)
-            spread.low[index[rows]] = turns.min(-2)[case]
-            spread.high[index[rows]] = turns.max(-2)[case]
-            spread.at_peak[index[rows]] = turns[case, largest[case]]
+        mean = self.components(conditions)
+        for cutter, made in self._tooling(conditions).steps_of_each():
+            index = np.flatnonzero(made & np.isfinite(mean).all(axis=1) & conditions.engaged)
+            if not index.size:
+                continue
+            course = Course.of(conditions, cutter, index)
+            first, inverse = course.alike()
+            for start in range(0, len(first), CASES):
+                cases = first[start : start + CASES]
+                turns = force_over_pitch(edge_terms(self.material, cutter), cutter, course.at(cases))
+                turns[..., 2] *= self.axial
+                turns += (mean[index[cases]] - turns.mean(axis=-2))[:, None]
+                rows = np.flatnonzero((inverse >= start) & (inverse < start + len(cases)))
+                case = inverse[rows] - start
+                largest = np.argmax(np.linalg.norm(turns, axis=-1), axis=-1)
+                spread.low[index[rows]] = turns.min(-2)[case]
+                spread.high[index[rows]] = turns.max(-2)[case]
+                spread.at_peak[index[rows]] = turns[case, largest[case]]
         return spread
 
-    def _loads(self, conditions: CutConditions) -> tuple[FloatArray, np.ndarray]:
-        """Feed per tooth, depth and arc (k, 4) of the steps that make chips aside, and their indices (k,)."""
-        c = conditions.f_z(self.cutter.flutes) * conditions.across
-        index = np.flatnonzero(conditions.engaged & (conditions.across > PLUNGE))
-        ends = (np.clip(phi[index], 0.0, np.pi) for phi in (conditions.phi_st, conditions.phi_ex))
-        return np.stack([c[index], conditions.a_p[index], *ends], axis=1), index
+    def _tooling(self, conditions: CutConditions) -> Tooling:
+        return Tooling.of(conditions.tooling or self.cutter, len(conditions))
 
     def _mean(self, material: Material, conditions: CutConditions) -> FloatArray:
-        load, index = self._loads(conditions)
+        tooling = self._tooling(conditions)
+        c = conditions.f_z(tooling.each("flutes"))
         result = np.zeros((len(conditions), 3))
-        result[index] = mean_force(material.terms, self.cutter, *load.T)
+        for cutter, made in tooling.steps_of_each():
+            index = np.flatnonzero(made & conditions.engaged)
+            if index.size:
+                result[index] = _mean_of(material, cutter, conditions, (index, c[index]))
         result[:, 2] *= self.axial
         return result
+
+
+def edge_terms(material: Material, cutter: Cutter) -> tuple[EdgeTerm, ...]:
+    """The material's law on the edges of a cutter.
+
+    On the lips of a drill the tangential part is the material's; what pushes along their normal is half of it, which
+    makes the handbook's thrust 0.5 k_c f (D / 2) sin(half the point angle) (Sandvik Coromant, Metal cutting technology:
+    drilling formulas). The chisel edge and the margins are left out.
+    """
+    if cutter.kind != "drill":
+        return material.terms
+    return tuple(EdgeTerm(term.exponent, term.Kt, DRILL_THRUST * term.Kt, 0.0) for term in material.terms)
+
+
+def _mean_of(
+    material: Material, cutter: Cutter, conditions: CutConditions, steps: tuple[IntArray, FloatArray]
+) -> FloatArray:
+    """Mean force (k, 3) N of some steps (their indices and feeds per tooth) that one cutter makes."""
+    index, c = steps
+    terms = edge_terms(material, cutter)
+    if conditions.part is not None:
+        return conditions.part.at(index).force(terms, cutter, c)
+    a_p, along = conditions.a_p[index], conditions.along[index]
+    arc = (np.clip(phi[index], 0.0, np.pi) for phi in (conditions.phi_st, conditions.phi_ex))
+    force = mean_force(terms, cutter, c * conditions.across[index], a_p, *arc)
+    steep = np.flatnonzero(np.abs(along) > FACING)
+    if steep.size:
+        exponents = tuple(term.exponent for term in terms)
+        force[steep] = full_slot(cutter, exponents, a_p[steep], along[steep]).force(terms, cutter, c[steep])
+    return force

@@ -14,22 +14,28 @@ from robomill.errors import CuttingError
 from robomill.quantities import choice, quantity, settle, whole
 from robomill.units import format_si, to_si
 
-CutterKind = Literal["flat", "ball", "bull", "chamfer"]
+#: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
+#: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
+DISH = math.sin(to_si(0.5, "deg"))
+
+CutterKind = Literal["flat", "ball", "bull", "chamfer", "drill"]
 Hand = Literal["right", "left"]
 HANDS = {"right": "right", "left": "left"}
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A family of cutters: what people call it, and which numbers it needs beside those of every cutter."""
+    """A family of cutters: what people call it, which numbers it needs beside those of every cutter, and the angle of
+    its point to start from."""
 
     short: str
     title: str
     needs: tuple[str, ...] = ()
+    point: float = to_si(90.0, "deg")
 
     def first(self, diameter: float) -> dict[str, float]:
         """A value to start from for each number in ``needs``, for a cutter of that diameter."""
-        first = {"corner_radius": diameter / 8, "tip_angle": to_si(90.0, "deg"), "tip_diameter": 0.0}
+        first = {"corner_radius": diameter / 8, "tip_angle": self.point, "tip_diameter": 0.0}
         return {name: first[name] for name in self.needs}
 
 
@@ -38,6 +44,7 @@ SHAPES: dict[str, Shape] = {
     "ball": Shape("Ball", "ball-nose mill"),
     "bull": Shape("Bull", "bull-nose mill", ("corner_radius",)),
     "chamfer": Shape("Chamfer", "chamfer mill", ("tip_angle", "tip_diameter")),
+    "drill": Shape("Drill", "drill", ("tip_angle",), point=to_si(118.0, "deg")),
 }
 
 
@@ -47,7 +54,7 @@ class Cutter:
 
     ``hand`` is the direction of cut: a right-hand cutter turns clockwise seen from the spindle (M3).
     ``helix`` is the hand of the flutes. ``corner_radius`` belongs to bull-nose mills (a ball nose has R).
-    ``tip_angle`` is the full angle of a chamfer mill's cone, ``tip_diameter`` the flat at its end.
+    ``tip_angle`` is the full angle of a chamfer mill's cone or a drill's point, ``tip_diameter`` the flat at its end.
     ``flute_length`` and ``stick_out`` may be None (not given): depth is then not checked, bending not computed.
     ``helix_angle`` enters the peak force (lag along the edge); 0 means straight flutes, which pull nowhere.
     Raises CuttingError for a cutter that cannot be.

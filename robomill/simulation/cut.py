@@ -8,7 +8,8 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
-from robomill.cutting.force import feed_share
+from robomill.cutting.engaged import EngagedPart
+from robomill.cutting.force import feed_along, feed_share
 from robomill.errors import SetupError
 from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
@@ -35,16 +36,22 @@ def cut_conditions(
         "t": record_time(setup, path) if setup.force.in_time else path.t,
         "cutting": cutting,
         "across": at_starts(path, feed_share(path.p, path.k)),
+        "along": at_starts(path, feed_along(path.p, path.k)),
+        "ccw": path.ccw,
         "block": path.block,
     }
     if not setup.engagement:
         a_p = np.maximum(setup.stock_block.upper[2] - tip[:, 2], 0.0)
         return CutConditions.steady(a_p=np.nan_to_num(a_p), **common)
     from robomill.surface.engagement import engage
+    from robomill.surface.march import March
 
-    found = engage(setup.stock_block, setup.cell, one_cutter(tooling(setup, path)), tip, path.k, cutting)
-    arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex")}
-    return CutConditions(**arc, **common)
+    exponents = setup.force.exponents or (0.0,)
+    cutter = one_cutter(tooling(setup, path))
+    found = engage(March(setup.stock_block, setup.cell, cutter, path.p, path.k, cutting, exponents, tip))
+    arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex", "reach")}
+    sums = (at_starts(path, each) for each in (found.part.moments, found.part.spans))
+    return CutConditions(**arc, **common, part=EngagedPart(found.part.exponents, *sums))
 
 
 def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -123,7 +123,7 @@ def forces(
         conditions = cut_conditions(setup, path, reached, p)
         force = force_on_tool(setup.force, conditions, R_MF)
         if setup.engagement and setup.force.ends_with_material:
-            force = np.where((conditions.a_p > 0.0)[:, None], force, 0.0)  # a stated force ends with the material
+            force = np.where(conditions.engaged[:, None], force, 0.0)  # a stated force ends with the material
         return conditions, force
 
     conditions, F = pushed(None)

@@ -97,16 +97,6 @@ def lower_row(shape: Shape, move: Move, x: float, y: float, dy: float, row: Floa
 
 
 @part
-def cut_centres(shape: Shape, move: Move, tile: Heights) -> None:
-    """Cut a move of an upright cutter into the heights at cell centres alone."""
-    first, end = rows_near(move, shape.R, tile)
-    for i in range(first, end):
-        x = tile.x0 + i * tile.dx
-        j, j_end = columns_near(move, shape.R, x, tile)
-        lower_row(shape, move, x, tile.y0 + j * tile.dy, tile.dy, tile.z[i, j:j_end])
-
-
-@part
 def cut_upright(shape: Shape, move: Move, tile: Heights, edge: EdgeRecord) -> None:
     """Cut a move of an upright cutter: cells wholly inside its track at once, those the edge may cross one by one."""
     half = 0.5 * math.hypot(tile.dx, tile.dy)

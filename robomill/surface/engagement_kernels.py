@@ -1,112 +1,344 @@
-"""How much of the cutter is in the material on one step, and the march of a path through the stock, compiled."""
+"""The engaged part of the cutter on one step, compiled: over the angle and along the profile, ends found to sub-cell.
+
+A point of the cutter's surface cuts where its outward normal n faces the unit feed v and material lies just before it.
+Over that part the kernel sums (v . n)^e times the directions in which the edge's forces act, for every exponent e of
+the force law (``cutting.engaged``). The feed has its part along the axis, so ramps, helices and plunges are steps like
+others: the end of a flat mill faces the feed where it goes down.
+
+The angle phi runs clockwise from the left of the feed; along the profile the end face (radius), the nose (arc or cone)
+and the flank (height) follow one another. Over the angle Gauss' rule of two points, in panels finer towards the sides;
+where the engaged length jumps from one angle to the next, the jump is followed by halving.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from robomill.compiled import Out2, kernel, part
-from robomill.surface.cells_kernels import Heights, Hidden, cut_centres, cut_tilted
-from robomill.surface.envelope_kernels import FLAT, Shape, move_between, profile, radius_at
-from robomill.surface.tilt_kernels import UPRIGHT, TiltedMoves
+from robomill.arrays import FloatArray
+from robomill.compiled import Out1, Out2, part
+from robomill.cutting.tool import DISH
+from robomill.surface.envelope_kernels import CHAMFER, FLAT, Shape
+from robomill.surface.material_kernels import World, is_solid, top_over
 
-ANGLES = 180  # sectors of the half turn ahead of the tool
-ALONG_AXIS = 0.98  # a step that goes this much along the tool axis (cosine) has no arc of engagement
-LOOK = 0.75  # cells: how far ahead of the rim, and inside its sides, material is looked up
-NEAR_TOP = 0.98  # of the depth in the material: where a rounded or pointed cutter's radius is taken
-TOUCH = 1e-12  # m: material this high above the cutter's edge is rounding
+PANELS = 16  # of a half turn
+GAUSS = 0.5 - math.sqrt(3.0) / 6.0  # first node of Gauss' rule of two points on 0..1
+HALVINGS = 8  # of the angle across which the engaged length jumps
+JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
+ENDS = 10  # halvings of a piece of the profile in which material begins or ends
+END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 16, 96  # of each stretch of the profile, at most
+SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
+INSIDE = 1e-3  # of a piece: how far inside the ends of a stretch is looked
+FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
+SECTORS = 18  # of the half turn, for the course of the force over a revolution
+MOMENTS = 8
+# of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
+PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
+# what is measured at one angle: sums for each exponent, then the engaged length, its height along the axis, where it
+# begins and ends along the axis, and its largest radius
+LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, EXTRA = range(6)
 
 
-class Heading(NamedTuple):
-    """A step seen from the tool: its middle, unit vectors along the feed (x) and to its left (y) in the tool's tip
-    plane, and the part of the tool axis along z_W; all in {W}, m."""
+class Step(NamedTuple):
+    """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
+    and the parts of the unit feed across and along the axis."""
 
-    mx: float
-    my: float
-    mz: float
-    xx: float
-    xy: float
-    xz: float
-    yx: float
-    yy: float
-    yz: float
-    rise: float
+    x: float
+    y: float
+    z: float
+    fx: float
+    fy: float
+    fz: float
+    lx: float
+    ly: float
+    lz: float
+    kx: float
+    ky: float
+    kz: float
+    across: float
+    along: float
+
+
+class Room(NamedTuple):
+    """Room for what is measured (arrays in a tuple count as written, to the compiler).
+
+    exponents (e,), four angles of a panel (4, 3 e + 5) and three between two of them, and the part being summed:
+    moments and the rest (8 e + 6,) and, of each sector, where it begins and ends along the axis (36,), m.
+    """
+
+    exponents: Out1
+    panel: Out2
+    between: Out2
+    sum: Out1
+    spans: Out1
 
 
 @part
-def depth_ahead(heading: Heading, ahead: float, aside: float, tile: Heights, bottom: float) -> float:
-    """Material above a point of the tip plane, along the tool axis, m; 0 outside the stock."""
-    x = heading.mx + ahead * heading.xx + aside * heading.yx
-    y = heading.my + ahead * heading.xy + aside * heading.yy
-    z = heading.mz + ahead * heading.xz + aside * heading.yz
-    i, j = math.floor((x - tile.x0) / tile.dx + 0.5), math.floor((y - tile.y0) / tile.dy + 0.5)
-    if i < 0 or j < 0 or i >= tile.z.shape[0] or j >= tile.z.shape[1] or tile.z[i, j] <= bottom:
-        return 0.0
-    return max(tile.z[i, j] - max(z, bottom), 0.0) / heading.rise
+def step_between(ends: FloatArray, k: FloatArray, v: FloatArray) -> Step:
+    """The middle of a step ``ends`` (6,) m of a tool along k (3,) that is fed along the unit vector v (3,)."""
+    along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
+    fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
+    across = math.sqrt(fx * fx + fy * fy + fz * fz)
+    if across < FACING:  # straight along the axis: any direction across it
+        across = 0.0
+        fx, fy, fz = (k[2], 0.0, -k[0]) if abs(k[0]) < 0.9 else (-k[1], k[0], 0.0)
+    size = math.sqrt(fx * fx + fy * fy + fz * fz)
+    fx, fy, fz = fx / size, fy / size, fz / size
+    return Step(
+        0.5 * (ends[0] + ends[3]),
+        0.5 * (ends[1] + ends[4]),
+        0.5 * (ends[2] + ends[5]),
+        fx,
+        fy,
+        fz,
+        k[1] * fz - k[2] * fy,
+        k[2] * fx - k[0] * fz,
+        k[0] * fy - k[1] * fx,
+        k[0],
+        k[1],
+        k[2],
+        across,
+        along,
+    )
 
 
 @part
-def cutting_radius(shape: Shape, heading: Heading, look: float, tile: Heights, bottom: float) -> float:
-    """Radius at which the cutter meets the material: near the top of the deepest material ahead; 0 in air, m."""
-    if shape.kind == FLAT:
-        return shape.R
-    depth = 0.0
-    for ring in range(3):
-        for n in range(ANGLES):
-            phi, r = (n + 0.5) * math.pi / ANGLES, 0.5 * ring * shape.R
-            depth = max(depth, depth_ahead(heading, r * math.sin(phi) + look, r * math.cos(phi), tile, bottom))
-    return radius_at(shape, NEAR_TOP * depth) if depth > 0.0 else 0.0
+def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, float, float]:
+    """A point of a stretch of the profile (0 end, 1 nose, 2 flank), s m along it: radius, height, sine and cosine of
+    the angle between the axis and the normal."""
+    if stretch == 0:
+        return s, 0.0, 0.0, 1.0
+    if stretch == 2:
+        return shape.R, s, 1.0, 0.0
+    if shape.kind == CHAMFER:
+        slant = math.sqrt(1.0 + shape.slope**2)
+        return shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant
+    sine, cosine = math.sin(s / shape.rc), math.cos(s / shape.rc)
+    return shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine
 
 
 @part
-def arc_of(shape: Shape, heading: Heading, tile: Heights, bottom: float) -> tuple[float, float, float, float]:
-    """(phi_st, phi_ex, a_p, a_e) of one step; see ``engagement.Engagement``."""
-    look = LOOK * max(tile.dx, tile.dy)
-    r = cutting_radius(shape, heading, look, tile, bottom)
-    if r == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    least, lateral, step = profile(shape, r) + TOUCH, max(r - look, 0.0), math.pi / ANGLES
-    first, last, total, width = -1, -1, 0.0, 0.0
-    for n in range(ANGLES):
-        aside = lateral * math.cos((n + 0.5) * step)
-        inner = max(abs(aside) - look, 0.0)
-        depth = depth_ahead(heading, math.sqrt(r * r - inner * inner) + look, aside, tile, bottom)
-        if depth > least:
-            first = n if first < 0 else first
-            last = n
-            total += depth
-            width += r * (math.cos(n * step) - math.cos((n + 1) * step))
-    if first < 0:
-        return 0.0, 0.0, 0.0, 0.0
-    return first * step, (last + 1) * step, total / (last + 1 - first), width
+def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float]:
+    """(from, to) m of a stretch of the profile, up to height ``reach`` above the tip."""
+    nose = 0.0
+    if shape.kind == CHAMFER:
+        nose = shape.slope * (shape.R - shape.r0)
+    elif shape.kind != FLAT:
+        nose = shape.rc
+    if stretch == 0:
+        return 0.0, shape.r0
+    if stretch == 2:
+        return nose, max(nose, reach)
+    if shape.kind == CHAMFER:
+        return 0.0, min(nose, max(reach, 0.0)) / shape.slope * math.sqrt(1.0 + shape.slope**2)
+    if shape.kind == FLAT or reach <= 0.0:
+        return 0.0, 0.0
+    return 0.0, shape.rc * (math.acos(1.0 - reach / shape.rc) if reach < shape.rc else 0.5 * math.pi)
 
 
-@kernel
-def engage_moves(shape: Shape, moves: TiltedMoves, tile: Heights, hidden: Hidden, bottom: float, result: Out2) -> None:
-    """Engagement (phi_st, phi_ex, a_p, a_e) of moves into result (n, 4), cutting each into the heights."""
-    for n in range(len(moves.ends)):
-        ax, ay, az, bx, by, bz = moves.ends[n]
-        kx, ky, kz = moves.axes[n]
-        fx, fy, fz = bx - ax, by - ay, bz - az
-        length = math.sqrt(fx * fx + fy * fy + fz * fz)
-        along = fx * kx + fy * ky + fz * kz
-        if abs(along) < ALONG_AXIS * length:
-            across = math.sqrt(length * length - along * along)
-            fx, fy, fz = (fx - along * kx) / across, (fy - along * ky) / across, (fz - along * kz) / across
-            heading = Heading(
-                0.5 * (ax + bx),
-                0.5 * (ay + by),
-                0.5 * (az + bz),
-                fx,
-                fy,
-                fz,
-                ky * fz - kz * fy,
-                kz * fx - kx * fz,
-                kx * fy - ky * fx,
-                kz,
-            )
-            result[n, 0], result[n, 1], result[n, 2], result[n, 3] = arc_of(shape, heading, tile, bottom)
-        if math.hypot(kx, ky) > UPRIGHT:
-            cut_tilted(shape, moves.ends[n], moves.axes[n], moves.boxes[n], tile, hidden)
+@part
+def cuts_at(world: World, shape: Shape, step: Step, turn: tuple[float, float], at: tuple[int, float]) -> bool:
+    """Whether the cutter cuts at a place of its profile (stretch, s m along it), at the angle of (sine, cosine)."""
+    r, t, sine, cosine = on_profile(shape, at[0], at[1])
+    if step.across * turn[0] * sine - step.along * cosine <= FACING:
+        return False
+    ahead, aside = r * turn[0], r * turn[1]
+    x = step.x + ahead * step.fx + aside * step.lx + t * step.kx
+    y = step.y + ahead * step.fy + aside * step.ly + t * step.ky
+    z = step.z + ahead * step.fz + aside * step.lz + t * step.kz
+    return is_solid(world, (x, y, z))
+
+
+@part
+def add_stretch(
+    room: Room, row: FloatArray, shape: Shape, step: Step, turn: tuple[float, float], piece: tuple[int, float, float]
+) -> None:
+    """Add an engaged piece (stretch, from, to) of the profile to what is measured at one angle."""
+    stretch, a, b = piece
+    if b <= a:
+        return
+    count = len(room.exponents)
+    for node in range(2):
+        s = a + (GAUSS if node == 0 else 1.0 - GAUSS) * (b - a)
+        _, _, sine, cosine = on_profile(shape, stretch, s)
+        facing = max(step.across * turn[0] * sine - step.along * cosine, 0.0)
+        for n in range(count):
+            e = room.exponents[n]
+            load = 0.5 * (b - a) * (1.0 if e == 0.0 else facing if e == 1.0 else facing**e)
+            row[3 * n] += load
+            row[3 * n + 1] += load * sine
+            row[3 * n + 2] += load * cosine
+    r_a, t_a, _, _ = on_profile(shape, stretch, a)
+    r_b, t_b, _, _ = on_profile(shape, stretch, b)
+    rest = 3 * count
+    row[rest + LENGTH] += b - a
+    row[rest + HEIGHT] += t_b - t_a
+    row[rest + LOWEST] = min(row[rest + LOWEST], t_a)
+    row[rest + HIGHEST] = max(row[rest + HIGHEST], t_b)
+    row[rest + WIDEST] = max(row[rest + WIDEST], r_a, r_b)
+
+
+@part
+def measure(room: Room, row: FloatArray, world: World, shape: Shape, step: Step, phi: float) -> None:
+    """What is engaged at one angle, into ``row``."""
+    turn = (math.sin(phi), math.cos(phi))
+    rest = 3 * len(room.exponents)
+    row[:] = 0.0
+    row[rest + LOWEST] = math.inf
+    top = world.block.z_high
+    reach = (top - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
+    plain = world.columns.top.shape[2] == 1 and step.kx == 0.0 and step.ky == 0.0
+    for stretch in range(3):
+        start, end = stretch_ends(shape, stretch, reach)
+        if end <= start or (stretch == 0 and step.along >= -DISH) or (stretch == 2 and turn[0] * step.across <= FACING):
+            continue
+        if stretch == 2 and plain:
+            x = step.x + shape.R * (turn[0] * step.fx + turn[1] * step.lx)
+            y = step.y + shape.R * (turn[0] * step.fy + turn[1] * step.ly)
+            material = top_over(world, x, y)
+            low = max(start, world.block.z_low - step.z)
+            add_stretch(room, row, shape, step, turn, (2, low, material - step.z))
+            continue
+        pieces = END_PIECES if stretch == 0 else NOSE_PIECES
+        if stretch == 2:
+            pieces = int(min(max((end - start) / world.columns.dx, 8.0), 1.0 * FLANK_PIECES))
+        width = (end - start) / pieces
+        since = cuts_at(world, shape, step, turn, (stretch, start + INSIDE * width))
+        for n in range(pieces):
+            a = start + n * width
+            b = a + width
+            cuts = cuts_at(world, shape, step, turn, (stretch, b - INSIDE * width if n == pieces - 1 else b))
+            if cuts != since:
+                low, high = a, b
+                for _ in range(ENDS):
+                    middle = 0.5 * (low + high)
+                    if cuts_at(world, shape, step, turn, (stretch, middle)) == since:
+                        low = middle
+                    else:
+                        high = middle
+                a, b = (a, low) if since else (low, b)
+            if cuts or since:
+                add_stretch(room, row, shape, step, turn, (stretch, a, b))
+            since = cuts
+
+
+@part
+def add_angle(room: Room, row: FloatArray, phi: float, width: float) -> None:
+    """Add what was measured at one angle, for a piece of the turn ``width`` rad wide, to the part."""
+    count = len(room.exponents)
+    rest, total = row[3 * count :], room.sum[MOMENTS * count :]
+    if rest[LENGTH] <= 0.0:
+        return
+    sine, cosine = math.sin(phi), math.cos(phi)
+    for n in range(count):
+        plain, upright, lying = width * row[3 * n], width * row[3 * n + 1], width * row[3 * n + 2]
+        moments = room.sum[MOMENTS * n : MOMENTS * (n + 1)]
+        moments[0] += plain * cosine
+        moments[1] += plain * sine
+        moments[2] += upright * sine
+        moments[3] += upright * cosine
+        moments[4] += lying
+        moments[5] += lying * sine
+        moments[6] += lying * cosine
+        moments[7] += upright
+    total[SIZE] += rest[LENGTH] * width
+    total[REACH] = max(total[REACH], rest[HIGHEST])
+    if phi > math.pi:
+        return
+    total[PHI_ST], total[PHI_EX] = min(total[PHI_ST], phi - 0.5 * width), max(total[PHI_EX], phi + 0.5 * width)
+    total[DEPTH] += rest[HEIGHT] * width
+    total[WIDTH] += rest[WIDEST] * sine * width
+    sector = int(min(phi / math.pi * SECTORS, SECTORS - 1.0))
+    room.spans[2 * sector] = min(room.spans[2 * sector], rest[LOWEST])
+    room.spans[2 * sector + 1] = max(room.spans[2 * sector + 1], rest[HIGHEST])
+
+
+@part
+def copy(source: FloatArray, to: FloatArray) -> None:
+    """Copy numbers."""
+    for n in range(source.size):
+        to[n] = source[n]
+
+
+@part
+def jumps(a: float, b: float) -> bool:
+    """Whether two engaged lengths at neighbouring angles differ by more than what is smooth."""
+    return abs(a - b) > JUMP * max(a, b)
+
+
+@part
+def panel_end(n: int) -> float:
+    """Where the n-th panel of the turn begins, rad; finer towards the sides of the tool."""
+    return math.pi * (n // PANELS + 0.5 - 0.5 * math.cos(math.pi * (n % PANELS) / PANELS))
+
+
+@part
+def add_panel(room: Room, world: World, shape: Shape, step: Step, panel: int) -> None:
+    """Add the engaged part of the n-th panel of the turn. Its last angle is the first of the next."""
+    start, end = panel_end(panel), panel_end(panel + 1)
+    at, length = 3 * len(room.exponents) + LENGTH, end - start
+    first, second = start + GAUSS * length, end - GAUSS * length
+    fresh, last = panel % PANELS == 0, panel % PANELS == PANELS - 1
+    rough = False
+    copy(room.panel[3], room.panel[0])
+    for n in range(0 if fresh else 1, 4):
+        phi = first if n == 1 else second
+        if n == 0:
+            phi = start + SIDE
+        if n == 3:
+            phi = end - SIDE if last else end
+        measure(room, room.panel[n], world, shape, step, phi)
+        rough = rough or (n > 0 and jumps(room.panel[n, at], room.panel[n - 1, at]))
+    if not rough:
+        add_angle(room, room.panel[1], first, 0.5 * length)
+        add_angle(room, room.panel[2], second, 0.5 * length)
+        return
+    for n in range(3):
+        a = start if n == 0 else first if n == 1 else second
+        b = first if n == 0 else second if n == 1 else end
+        follow_jump(room, world, shape, step, (n, a, b))
+
+
+@part
+def follow_jump(room: Room, world: World, shape: Shape, step: Step, between: tuple[int, float, float]) -> None:
+    """Add what lies between two measured angles (row of the first, from, to), halving where the length jumps."""
+    n, a, b = between
+    at = 3 * len(room.exponents) + LENGTH
+    left, right, middle = room.between[0], room.between[1], room.between[2]
+    copy(room.panel[n], left)
+    copy(room.panel[n + 1], right)
+    halvings = 0
+    while halvings < HALVINGS and jumps(left[at], right[at]):
+        halvings += 1
+        phi, quarter = 0.5 * (a + b), 0.25 * (b - a)
+        measure(room, middle, world, shape, step, phi)
+        if abs(middle[at] - left[at]) < abs(middle[at] - right[at]):
+            add_angle(room, left, a + 0.5 * quarter, quarter)
+            add_angle(room, middle, phi - 0.5 * quarter, quarter)
+            copy(middle, left)
+            a = phi
         else:
-            cut_centres(shape, move_between(ax, ay, az, bx, by, bz), tile)
+            add_angle(room, middle, phi + 0.5 * quarter, quarter)
+            add_angle(room, right, b - 0.5 * quarter, quarter)
+            copy(middle, right)
+            b = phi
+    quarter = 0.25 * (b - a)
+    add_angle(room, left, a + quarter, 2.0 * quarter)
+    add_angle(room, right, b - quarter, 2.0 * quarter)
+
+
+@part
+def add_part(room: Room, world: World, shape: Shape, step: Step) -> None:
+    """The engaged part of one step, into ``room.sum`` and ``room.spans``."""
+    rest = room.sum[MOMENTS * len(room.exponents) :]
+    room.sum[:] = 0.0
+    rest[PHI_ST], rest[PHI_EX] = math.inf, -math.inf
+    room.spans[0::2] = math.inf
+    room.spans[1::2] = -math.inf
+    for n in range(PANELS * (2 if step.along < -FACING else 1)):
+        add_panel(room, world, shape, step, n)
+    if rest[PHI_EX] < rest[PHI_ST]:
+        rest[PHI_ST] = rest[PHI_EX] = 0.0
+        return
+    rest[PHI_ST], rest[PHI_EX] = max(rest[PHI_ST], 0.0), min(rest[PHI_EX], math.pi)
+    rest[DEPTH] /= rest[PHI_EX] - rest[PHI_ST]

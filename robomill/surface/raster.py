@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.surface.stock import Stock
+from robomill.surface.stock import Cells, Stock
+
+if TYPE_CHECKING:
+    from robomill.surface.material_kernels import Mesh
+
+SQUARES = 64  # along the longer side of a mesh
 
 
 def stock_heights(stock: Stock, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -22,12 +28,20 @@ def stock_heights(stock: Stock, x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def skin(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Upper skin (nx, ny) m of triangles (t, 3, 3) over grid points, -inf where there is none, and layers crossed.
+    """Upper skin (nx, ny) m of triangles (t, 3, 3) over grid points, -inf where there is none, and layers crossed."""
+    top = np.full(len(x) * len(y), -np.inf)
+    cell, z = crossings(triangles, x, y)
+    np.maximum.at(top, cell, z)
+    layers = np.bincount(cell, minlength=len(top))
+    return top.reshape(len(x), len(y)), layers.reshape(len(x), len(y))
+
+
+def crossings(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Where upright lines through grid points cross triangles (t, 3, 3): flat cell numbers (c,) and heights (c,) m.
 
     A point on an edge shared by two triangles counts for one of them only (points are nudged off the edges).
     """
-    top = np.full((len(x), len(y)), -np.inf)
-    layers = np.zeros(top.shape, dtype=np.int64)
+    cells, heights = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
     nudge = 1e-9
     x, y = x + nudge * 0.7548776662466927, y + nudge * 0.5698402909980532
     low, high = triangles[:, :, :2].min(axis=1), triangles[:, :, :2].max(axis=1)
@@ -40,11 +54,56 @@ def skin(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArra
         X, Y = (x[rows] - triangles[n, 0, 0])[:, None], (y[columns] - triangles[n, 0, 1])[None, :]
         u = (X * e2[n, 1] - Y * e2[n, 0]) / area[n]
         v = (Y * e1[n, 0] - X * e1[n, 1]) / area[n]
-        inside = (u >= 0) & (v >= 0) & (u + v <= 1)
-        height = triangles[n, 0, 2] + u * e1[n, 2] + v * e2[n, 2]
-        top[rows, columns] = np.where(inside, np.maximum(top[rows, columns], height), top[rows, columns])
-        layers[rows, columns] += inside
-    return top, layers
+        i, j = np.nonzero((u >= 0) & (v >= 0) & (u + v <= 1))
+        cells.append((i + i_low[n]) * len(y) + j + j_low[n])
+        heights.append(triangles[n, 0, 2] + u[i, j] * e1[n, 2] + v[i, j] * e2[n, 2])
+    return np.concatenate(cells), np.concatenate(heights)
+
+
+def stock_layers(stock: Stock, cells: Cells) -> tuple[FloatArray, FloatArray, Mesh]:
+    """The material of a stock over cells, top down: upper ends (nx, ny, layers) m, lower ends likewise, and its mesh.
+
+    A block is one layer down to its bottom, whose lower ends need no room ((1, 1, 1)); -inf and inf where a mesh has
+    no more layers. Crossings of a mesh that do not pair (an open mesh) reach down to the bottom.
+    """
+    from robomill.surface.material_kernels import Mesh
+
+    if stock.triangles is None:
+        top = np.full((cells.nx, cells.ny, 1), float(stock.upper[2]))
+        nothing = np.zeros(0, dtype=np.int64)
+        return top, np.full((1, 1, 1), np.inf), Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
+    cell, z = crossings(stock.triangles, cells.x, cells.y)
+    order = np.lexsort((-z, cell))
+    cell, z = cell[order], z[order]
+    number = np.arange(len(cell)) - np.searchsorted(cell, cell)
+    layers = max(1, (int(number.max(initial=0)) + 2) // 2)
+    top, low = np.full((cells.nx * cells.ny, layers), -np.inf), np.full((cells.nx * cells.ny, layers), np.inf)
+    upper = number % 2 == 0
+    top[cell[upper], number[upper] // 2] = z[upper]
+    low[cell[upper], number[upper] // 2] = float(stock.lower[2])
+    low[cell[~upper], number[~upper] // 2] = z[~upper]
+    shape = cells.nx, cells.ny, layers
+    return top.reshape(shape), low.reshape(shape), binned(stock)
+
+
+def binned(stock: Stock) -> Mesh:
+    """A mesh with its triangles sorted into squares of its plan, so that few are asked of one point."""
+    from robomill.surface.material_kernels import Mesh
+
+    triangles = np.array(stock.triangles)
+    size = float(stock.size[:2].max()) / SQUARES
+    rows, columns = (int(side / size) + 1 for side in stock.size[:2])
+    low, high = (
+        np.floor((ends - stock.lower[:2]) / size).astype(np.int64).clip(0, [rows - 1, columns - 1])
+        for ends in (triangles[:, :, :2].min(axis=1) - 1e-9, triangles[:, :, :2].max(axis=1) + 1e-9)
+    )
+    squares: list[list[int]] = [[] for _ in range(rows * columns)]
+    for n, ((i, j), (i_end, j_end)) in enumerate(zip(low, high, strict=True)):
+        for a in range(i, i_end + 1):
+            for b in range(a * columns + j, a * columns + j_end + 1):
+                squares[b].append(n)
+    first = np.cumsum([0, *map(len, squares)], dtype=np.int64)
+    return Mesh(triangles, first, np.array([n for square in squares for n in square], dtype=np.int64), size)
 
 
 def skin_on_line(stock: Stock, centre: FloatArray, normal: FloatArray) -> Callable[[FloatArray], FloatArray]:

@@ -45,6 +45,7 @@ DEAD = {
     "steps_of_each",  # until surfaces take several tools
     *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
+    "meet",  # the coupling that marches will ask each step what it meets
 }
 
 

@@ -11,6 +11,7 @@ import shapely
 from robomill.cutting.tool import Cutter
 from robomill.surface.engagement import engage
 from robomill.surface.groove import groove_sections
+from robomill.surface.march import March
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import cut
@@ -138,7 +139,7 @@ def test_paper_slot_sections_and_engagement(capsys):
     stations = np.linspace(0.005, 0.095, 19)
     sections = best_of(lambda: groove_sections(stock, FLAT, CutPath(p, moved, x > -0.05), stations), 3)
     both = best_of(lambda: [cut(stock, 1e-4, FLAT, q) for q in (p, moved)], 3)
-    arcs = best_of(lambda: engage(stock, 1e-4, FLAT, p), 2)
+    arcs = best_of(lambda: engage(March(stock, 1e-4, FLAT, p)), 2)
     with capsys.disabled():
         print(f"\nPaper's slot: both surfaces {both * 1e3:.0f} ms,", end=" ")
         print(f"19 sections {sections * 1e3:.0f} ms, engagement {arcs * 1e3:.1f} ms")

@@ -8,7 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.cutting.conditions import CutConditions, cut_warnings
-from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, force_over_pitch, mean_force, sine_integral
+from robomill.cutting.course import Course
+from robomill.cutting.course import force_over_pitch as over_pitch
+from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, mean_force, sine_integral
+from robomill.cutting.force import force_on_tool
+from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import Material, alternatives
@@ -29,6 +33,12 @@ CUTTERS = [
     Cutter("chamfer", 8e-3, tip_angle=math.radians(80), tip_diameter=1e-3),
 ]
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(40)
+
+
+def force_over_pitch(terms, cutter, c, a_p, arc, instants=120):
+    """The course of one arc over the whole depth, (instants, 3) N."""
+    course = Course(np.array([c]), np.array([arc]), np.array([[[0.0, a_p]]]))
+    return over_pitch(terms, cutter, course, instants)[0]
 
 
 def gauss(low, high, panels=40):
@@ -236,14 +246,98 @@ def test_batch_equals_loop_and_rest_is_zero_in_air():
     np.testing.assert_array_equal(force.peak(CutConditions(**values)).high[idle], 0.0)
 
 
-def test_ramps_make_the_chip_of_their_level_part_and_plunges_none():
+@pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
+@pytest.mark.parametrize("slope", [-90.0, -40.0, -3.0, 25.0])
+def test_ramps_and_plunges_make_the_chip_of_the_whole_feed(cutter, slope):
+    """Every bit of surface that faces the feed, in a full slot: added up point by point, the end face with it."""
+    v = np.array([np.cos(np.radians(slope)), 0.0, np.sin(np.radians(slope))])
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, across=v[0], along=v[2])
+    expected = push_of_surface(REF190, cutter, 0.03 / 200.0 / cutter.flutes, 2e-3, v)
+    found = MechanisticForce(cutter, REF190).components(conditions)[0]
+    np.testing.assert_allclose(found, expected, atol=4e-3 * np.linalg.norm(expected))
+
+
+def push_of_surface(row, cutter, c, depth, v, pieces=600):
+    """Mean force of a right-hand cutter buried to a depth and fed along v: a cloud of points with their normals."""
+    r = np.concatenate([np.linspace(0, cutter.radius, 4 * pieces + 1), np.full(pieces, cutter.radius)])
+    nose = np.linspace(0, cutter.radius, 4 * pieces + 1)
+    z = np.concatenate([cutter.profile(nose), np.linspace(cutter.nose_height, max(depth, cutter.nose_height), pieces)])
+    dr, dz = np.diff(r), np.diff(z)
+    ds = np.hypot(dr, dz)
+    keep = (ds > 0) & (0.5 * (z[1:] + z[:-1]) < depth)
+    sine, cosine, ds = (dz[keep] / ds[keep]), (dr[keep] / ds[keep]), ds[keep]
+    total, turns = np.zeros(3), 360
+    for phi in (np.arange(turns) + 0.5) * 2 * np.pi / turns:
+        e, motion = np.array([np.sin(phi), np.cos(phi), 0]), np.array([np.cos(phi), -np.sin(phi), 0])
+        n = sine[:, None] * e - cosine[:, None] * np.array([0, 0, 1.0])
+        down = -sine[:, None] * np.array([0, 0, 1.0]) - cosine[:, None] * e
+        facing = n @ v
+        h, bit = c * facing, np.where(facing > 1e-6, ds, 0.0)[:, None]
+        K = [np.asarray(a * h + b)[:, None] for a, b in ((row.Ktc, row.Kte), (row.Krc, row.Kre), (row.Kac, row.Kae))]
+        total += np.sum(bit * (-K[0] * motion - K[1] * n + cutter.pull * K[2] * down), axis=0)
+    return total * cutter.flutes / turns
+
+
+def test_drawn_out_or_standing_a_tool_does_not_cut_and_a_plunge_is_said():
     force = MechanisticForce(MILL, REF190)
-    ramp = force.components(CutConditions.steady(0.03, 200.0, 2e-3, across=0.5))
-    level = force.components(CutConditions.steady(0.015, 200.0, 2e-3))
-    np.testing.assert_allclose(ramp, level)
-    plunge = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, block=[7])
-    np.testing.assert_array_equal(force.components(plunge), 0.0)
-    assert "Line 7: the tool plunges" in cut_warnings(MILL, plunge)[0]
+    out = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, along=1.0)
+    np.testing.assert_array_equal(force.components(out), 0.0)
+    assert not out.engaged.any()
+    plunge = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, along=-1.0, block=[7])
+    # the whole end face advances by f_z: N R (Krc f_z + Kre)
+    assert force.components(plunge)[0] == pytest.approx([0, 0, 3 * 4e-3 * (REF190.Krc * CHIP + REF190.Kre)], rel=1e-9)
+    assert len(cut_warnings(MILL, plunge)) == 1
+
+
+def test_the_end_of_a_mill_cuts_only_beyond_its_dish():
+    """Teeth are ground hollow: on a slope of 0.3 degrees the face does not rub, at 1 degree it does."""
+    thrust = [
+        MechanisticForce(MILL, REF190).components(
+            CutConditions.steady(0.03, 200.0, 2e-3, across=np.cos(a), along=-np.sin(a))
+        )[0, 2]
+        for a in np.radians([0.0, 0.3, 1.0])
+    ]
+    assert thrust[1] == pytest.approx(thrust[0], rel=1e-4)
+    assert thrust[2] - thrust[0] > 3 * 4e-3 * REF190.Kre
+
+
+def test_a_drill_pushes_as_the_handbook_says():
+    """F_f = 0.5 k_c f (D / 2) sin(kappa_r), k_c = kc1.1 h^-mc with h = f_z sin(kappa_r) in mm; full point engaged."""
+    row = load_material("al_wrought_cured_kienzle")
+    drill = Cutter("drill", 6e-3, tip_angle=math.radians(118.0), flutes=2)
+    conditions = CutConditions.steady(0.005, 50.0, 10e-3, across=0.0, along=-1.0)
+    f, kappa = 0.1e-3, math.radians(59.0)
+    k_c = row.kc11 * (0.5 * f * math.sin(kappa) * 1e3) ** -row.mc
+    expected = 0.5 * k_c * f * 3e-3 * math.sin(kappa)
+    assert KienzleForce(drill, row).components(conditions)[0] == pytest.approx([0, 0, expected], rel=1e-6)
+    assert 50.0 < expected < 500.0
+
+
+def reasons(force, **changes):
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, **changes)
+    frame = np.eye(3)[None]
+    found = {unknown.code for unknown in force.unjudged(conditions)}
+    assert np.isnan(force_on_tool(force, conditions, frame)).all() == bool(found)
+    return found
+
+
+def test_what_has_no_model_is_said_and_not_a_number():
+    mill, drill = MechanisticForce(MILL, REF190), MechanisticForce(Cutter("drill", 8e-3, tip_angle=2.0), REF190)
+    assert reasons(mill) == set()
+    assert reasons(mill, ccw=True) == {"spindle_sense"}
+    assert reasons(MechanisticForce(MILL.replace(hand="left"), REF190), ccw=True) == set()
+    assert reasons(MechanisticForce(MILL.replace(hand="left"), REF190)) == {"spindle_sense"}
+    assert reasons(drill) == {"drill_sideways"}
+    assert reasons(drill, across=0.0, along=-1.0) == set()
+    assert reasons(PathForce(feed=1.0), across=0.0, along=-1.0) == {"plunge_stated"}
+    assert reasons(PathForce(feed=1.0)) == set()
+    kienzle = KienzleForce(MILL, load_material("al_wrought_cured_kienzle"))
+    assert reasons(kienzle) == set()
+    assert reasons(kienzle, across=0.0, along=-1.0) == {"thrust"}
+    unknown = CutConditions(
+        **{**{n: getattr(SLOT, n) for n in ("v_f", "a_p", "phi_st", "phi_ex", "cutting", "s", "t")}, "n_s": np.nan}
+    )
+    assert [each.code for each in mill.unjudged(unknown)] == ["spindle_speed"]
 
 
 def test_depth_beyond_the_flutes_is_warned_of():

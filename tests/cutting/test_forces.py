@@ -86,7 +86,7 @@ def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
     for start in SHAPES:
         cutter = Cutter("flat", 8e-3, flutes=3, stick_out=30e-3).reshaped(start).reshaped(kind)
         assert (cutter.kind, cutter.diameter, cutter.flutes, cutter.stick_out) == (kind, 8e-3, 3, 30e-3)
-        expected = {"flat": 0.0, "ball": 4e-3, "bull": 1e-3, "chamfer": 0.0}[kind]
+        expected = {"flat": 0.0, "ball": 4e-3, "bull": 1e-3, "chamfer": 0.0, "drill": 0.0}[kind]
         assert cutter.corner_radius == pytest.approx(expected)
-        assert cutter.half_angle == pytest.approx(math.pi / 4 if kind == "chamfer" else 0.0)
-        assert cutter.conical == (kind == "chamfer")
+        assert cutter.half_angle == pytest.approx({"chamfer": math.pi / 4, "drill": math.radians(59.0)}.get(kind, 0.0))
+        assert cutter.conical == (kind in ("chamfer", "drill"))

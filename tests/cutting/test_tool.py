@@ -68,7 +68,7 @@ def test_title():
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"kind": "drill"}, "Cutter, Kind: found 'drill'; expected flat, ball, bull or chamfer."),
+        ({"kind": "saw"}, "Cutter, Kind: found 'saw'; expected flat, ball, bull, chamfer or drill."),
         ({"flutes": 0}, "Cutter, Flutes: found 0; expected 1 or more."),
         ({"flutes": 2.5}, "Flutes: found 2.5; expected 1 or more"),
         ({"flutes": "three"}, "Flutes: found 'three'"),

@@ -182,12 +182,16 @@ def test_a_path_beside_the_stock_misses_it(setup) -> None:
     assert "never touches the stock" in run.verdict.sentence
 
 
-def test_a_plunge_is_not_pushed_sideways(setup) -> None:
+def test_a_plunge_is_not_pushed_by_a_force_stated_along_the_path(setup) -> None:
+    """It says nothing of a way straight down: not known rather than 0."""
     text = "G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F600\nG1 X40 F1800\nM2\n"
     force = PathForce(feed=-10.0, feed_normal=100.0, axial=-20.0)
     run = simulate(setup.replace(source=GCodeSource(text), force=force))
     plunge = run.path.cutting & (run.path.block == 3)
-    assert run.F[plunge] == pytest.approx(np.tile([0.0, 0.0, -20.0], (int(plunge.sum()), 1)), abs=1e-9)
+    inside = plunge & run.conditions.engaged
+    assert inside.any()
+    assert np.isnan(run.F[inside]).all()
+    assert run.F[plunge & ~inside] == pytest.approx(np.tile([0.0, 0.0, -20.0], (int((plunge & ~inside).sum()), 1)))
     assert run.F[run.path.block == 4] == pytest.approx(
         np.tile([-10.0, 100.0, -20.0], (int((run.path.block == 4).sum()), 1)), abs=1e-9
     )

@@ -13,6 +13,7 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import joint_frames
 from robomill.surface.engagement import engage
+from robomill.surface.march import March
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=10e-3, cell=4e-4)
 PROCESS = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4)
@@ -84,7 +85,11 @@ def test_coupled_runs_agree_with_themselves(sag):
     single = rm.simulate(PROCESS.replace(**changes))
     assert single.coupling is None
     assert run.coupling.converged
-    found = engage(run.setup.stock_block, 4e-4, run.setup.cutter, run.p_machined, run.path.k, run.path.cutting)
+    found = engage(
+        March(
+            run.setup.stock_block, 4e-4, run.setup.cutter, run.path.p, run.path.k, run.path.cutting, (), run.p_machined
+        )
+    )
     cutting = run.path.cutting & (run.path.step_length > 0)
     np.testing.assert_allclose(run.conditions.a_p[cutting], found.a_p[cutting], atol=1e-7)
     assert np.abs(run.conditions.a_p - single.conditions.a_p)[cutting].max() > 1e-5

@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import BY_HAND, PLUNGE, ForceModel, MeanForce
+from robomill.cutting.conditions import PLUNGE, CutConditions
+from robomill.cutting.force import BY_HAND, ForceModel, MeanForce
+from robomill.cutting.unjudged import Unjudged
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
 from robomill.units import format_short
@@ -45,6 +46,12 @@ class PathForce(ForceModel):
     @property
     def _vector(self) -> tuple[float, float, float]:
         return (self.feed, self.feed_normal, self.axial)
+
+    def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
+        """Plunges: stated along a path, it says nothing of a way straight down."""
+        where = conditions.engaged & (conditions.across <= PLUNGE)
+        why = "a force stated along the path says nothing of a plunge"
+        return (Unjudged("plunge_stated", where, why),) if where.any() else ()
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""

@@ -1,0 +1,191 @@
+"""A stock that steps of a path are cut into one after the other, each asked first what it meets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
+from robomill.errors import SurfaceError
+from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, tool_axes
+from robomill.surface.raster import stock_layers
+from robomill.surface.stock import Stock, stock_grid
+
+SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
+
+
+@dataclass(frozen=True, eq=False)
+class March:
+    """A path p (m, 3) m through a stock: ``meet`` says what a step meets, ``cut`` cuts it, ``run`` does both for all.
+
+    The path gives feeds, axes and tools: entry i is the move p[i-1] -> p[i], k (3,) or (m, 3) unit tool axis (None:
+    upright), cutting (m,) bool. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays
+    that of the feed it is told. Steps that are not finite, not at feed or do not move cut nothing. Steps are cut in
+    the order of the path; ``meet`` and ``cut`` take their ends anew, ``run`` knows straight runs of them as one move.
+    Raises SurfaceError for a cell size that does not fit and a tool axis too close to level.
+    """
+
+    stock: Stock
+    cell: float
+    cutter: Cutter | Tooling
+    p: ArrayLike
+    k: ArrayLike | None = None
+    cutting: ArrayLike | None = None
+    exponents: tuple[float, ...] = (1.0, 0.0)
+    really: ArrayLike | None = None
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """(m, 3) m."""
+        return as_floats(self.p, "toolpath points", (None, 3), error=SurfaceError, finite=False)
+
+    @cached_property
+    def tips(self) -> FloatArray:
+        """(m, 3) m, where the tip goes."""
+        given = self.p if self.really is None else self.really
+        return as_floats(given, "toolpath points", (len(self.points), 3), error=SurfaceError, finite=False)
+
+    @cached_property
+    def tooling(self) -> Tooling:
+        """The cutter of every step."""
+        return Tooling.of(self.cutter, len(self.points))
+
+    @cached_property
+    def steps(self) -> IntArray:
+        """(n,) entries of the path that cut."""
+        used = moves_at_feed(self.points, self.cutting)
+        span = np.diff(self.points, axis=0, prepend=self.points[:1])
+        with np.errstate(invalid="ignore"):
+            used &= np.isfinite(span).all(axis=1) & (np.linalg.norm(span, axis=1) > 0.0)
+        known = np.asarray(np.isfinite(self.tips).all(axis=1))
+        return np.flatnonzero(used & known & np.append(False, known[:-1]))
+
+    @cached_property
+    def _ends(self) -> FloatArray:
+        return np.hstack([self.tips[self.steps - 1], self.tips[self.steps]])
+
+    @cached_property
+    def _feed(self) -> FloatArray:
+        span = self.points[self.steps] - self.points[self.steps - 1]
+        return np.asarray(span / np.linalg.norm(span, axis=1, keepdims=True))
+
+    @cached_property
+    def _axes(self) -> FloatArray:
+        axes = tool_axes(self.k, len(self.points))
+        middle = axes[self.steps - 1] + axes[self.steps]
+        middle /= np.linalg.norm(middle, axis=1, keepdims=True)
+        check_rise(middle)
+        middle[~leaning(middle)] = 0.0, 0.0, 1.0
+        return middle
+
+    @cached_property
+    def _begins(self) -> BoolArray:
+        """(n,) bool: steps that do not go straight on from the one before, with the same tool and axis."""
+        n, ends, axes = self.steps, self._ends, self._axes
+        begins = np.ones(len(n), dtype=bool)
+        if len(n) > 1:
+            tool = self.tooling.of_step[n]
+            feed = ends[:, 3:] - ends[:, :3]
+            feed = feed / np.maximum(np.linalg.norm(feed, axis=1, keepdims=True), 1e-15)
+            begins[1:] = (
+                (ends[:-1, 3:] != ends[1:, :3]).any(axis=1)
+                | (np.linalg.norm(np.cross(feed[:-1], feed[1:]), axis=1) > STRAIGHT)
+                | (np.einsum("ni,ni->n", feed[:-1], feed[1:]) <= 0.0)
+                | (axes[:-1] != axes[1:]).any(axis=1)
+                | (tool[:-1] != tool[1:])
+            )
+        return begins
+
+    @cached_property
+    def _stepwise(self) -> tuple[Any, Any]:
+        """The state of ``meet`` and ``cut``."""
+        return self._state(np.ones(len(self.steps), dtype=bool))
+
+    def _state(self, first: BoolArray) -> tuple[Any, Any]:
+        """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
+        the steps that begin a run."""
+        from robomill.surface.engagement_kernels import EXTRA, REST, SECTORS, Room
+        from robomill.surface.envelope_kernels import cutter_shape
+        from robomill.surface.material_kernels import NOBODY, Block, Columns, Runs, World
+
+        cells = stock_grid(self.stock, self.cell)
+        top, low, mesh = stock_layers(self.stock, cells)
+        if leaning(self._axes).any() or len(mesh.triangles):
+            wide = (*top.shape[:2], top.shape[2] + SPARE_LAYERS)
+            layered = np.full(wide, -np.inf), np.full(wide, np.inf)
+            layered[0][:, :, : top.shape[2]], layered[1][:, :, : low.shape[2]] = top, low
+            if not len(mesh.triangles):
+                layered[1][:, :, 0] = float(self.stock.lower[2])
+            top, low = layered
+        by, under, beside = (np.full(each.shape, NOBODY, dtype=np.int32) for each in (top, low, top[:, :, 0]))
+        columns = Columns(
+            top, low, by, under, beside, np.zeros(1, dtype=np.int64), cells.x0, cells.y0, cells.dx, cells.dy
+        )
+        shapes = np.array([[float(n) for n in cutter_shape(cutter)] for cutter in self.tooling.cutters])
+        tool = np.ascontiguousarray(self.tooling.of_step[self.steps][first])
+        axes = np.ascontiguousarray(self._axes[first])
+        runs = Runs(np.zeros((len(tool), 6)), axes, tool, shapes, np.zeros(1, dtype=np.int64))
+        world = World(columns, runs, Block(*map(float, (*self.stock.lower, *self.stock.upper))), mesh)
+        e = len(self.exponents)
+        room = Room(
+            np.array(self.exponents, dtype=float),
+            np.zeros((4, 3 * e + EXTRA)),
+            np.zeros((3, 3 * e + EXTRA)),
+            np.zeros(8 * e + REST),
+            np.zeros(2 * SECTORS),
+        )
+        return world, room
+
+    @cached_property
+    def _number(self) -> IntArray:
+        """(m,) which of ``steps`` an entry of the path is."""
+        number = np.full(len(self.points), -1, dtype=np.int64)
+        number[self.steps] = np.arange(len(self.steps))
+        return number
+
+    def run(self) -> tuple[FloatArray, FloatArray, int]:
+        """Meet and cut every step: rows (m, 8 n_e + 6) and spans (m, sectors, 2) of what they meet, and how often a gap
+        between layers of material was closed because a column had no room for another."""
+        state, begins = self._state(self._begins), self._begins
+        n = np.arange(len(self.steps))
+        rows, spans = self._march(state, n, self._ends, (np.cumsum(begins) - 1, begins), (True, True))
+        all_rows = np.zeros((len(self.points), rows.shape[1]))
+        all_spans = np.empty((len(self.points), *spans.shape[1:]))
+        all_spans[...] = np.inf, -np.inf
+        all_rows[self.steps], all_spans[self.steps] = rows, spans
+        return all_rows, all_spans, int(state[0].columns.lost[0])
+
+    def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What step ``i`` meets when it runs from a (3,) to b (3,) m: its row (8 n_e + 6,) and spans; cuts nothing."""
+        rows, spans = self._one(i, np.concatenate([a, b]), (True, False))
+        return rows[0], spans[0]
+
+    def cut(self, i: int, a: FloatArray, b: FloatArray) -> None:
+        """Cut step ``i`` from a (3,) to b (3,) m; every step is cut once, in the order of the path."""
+        self._one(i, np.concatenate([a, b]), (False, True))
+
+    def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, FloatArray]:
+        n = self._number[[i]]
+        return self._march(self._stepwise, n, ends[None], (n, np.ones(1, dtype=bool)), do)
+
+    def _march(
+        self,
+        state: tuple[Any, Any],
+        n: IntArray,
+        ends: FloatArray,
+        runs: tuple[IntArray, BoolArray],
+        do: tuple[bool, bool],
+    ) -> tuple[FloatArray, FloatArray]:
+        from robomill.surface.march_kernels import Steps, march
+
+        world, room = state
+        found, spans = np.zeros((len(n), len(room.sum))), np.zeros((len(n), len(room.spans)))
+        steps = Steps(np.ascontiguousarray(ends), self._feed[n], runs[0], runs[1].astype(np.int64))
+        march(world, room, steps, found, spans, do)
+        return found, spans.reshape(len(n), spans.shape[1] // 2, 2)
