@@ -13,7 +13,7 @@ from robomill.cutting.force import feed_along, feed_share
 from robomill.errors import SetupError
 from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.tools import one_cutter, tooling
+from robomill.simulation.tools import tooling
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_short
 
@@ -39,6 +39,7 @@ def cut_conditions(
         "along": at_starts(path, feed_along(path.p, path.k)),
         "ccw": path.ccw,
         "block": path.block,
+        "tooling": tooling(setup, path),
     }
     if not setup.engagement:
         a_p = np.maximum(setup.stock_block.upper[2] - tip[:, 2], 0.0)
@@ -47,8 +48,7 @@ def cut_conditions(
     from robomill.surface.march import March
 
     exponents = setup.force.exponents or (0.0,)
-    cutter = one_cutter(tooling(setup, path))
-    found = engage(March(setup.stock_block, setup.cell, cutter, path.p, path.k, cutting, exponents, tip))
+    found = engage(March(setup.stock_block, setup.cell, common["tooling"], path.p, path.k, cutting, exponents, tip))
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex", "reach")}
     sums = (at_starts(path, each) for each in (found.part.moments, found.part.spans))
     return CutConditions(**arc, **common, part=EngagedPart(found.part.exponents, *sums))

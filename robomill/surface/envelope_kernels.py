@@ -70,6 +70,17 @@ def profile(shape: Shape, r: float) -> float:
 
 
 @part
+def radius_at(shape: Shape, height: float) -> float:
+    """Radius of the cutter ``height`` > 0 above its tip, m: the inverse of its profile."""
+    if shape.kind == FLAT:
+        return shape.R
+    if shape.kind == CHAMFER:
+        return min(shape.R, shape.r0 + height / shape.slope)
+    h = min(height, shape.rc)
+    return shape.r0 + math.sqrt(h * (2.0 * shape.rc - h))
+
+
+@part
 def contact_lag(shape: Shape, m: float, v2: float) -> float:
     """How far behind a point (along the move) the cutter stands when it cuts lowest there, m.
 

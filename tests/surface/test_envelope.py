@@ -11,6 +11,7 @@ from robomill.surface.envelope_kernels import (
     cutter_shape,
     move_between,
     profile,
+    radius_at,
     row_interval,
     swept_height,
 )
@@ -96,8 +97,14 @@ def test_full_corner_is_a_ball_and_no_corner_is_flat():
 
 
 @pytest.mark.parametrize("kind", CUTTERS)
-def test_profile_is_the_cutters(kind):
+def test_profile_is_the_cutters_and_radius_at_its_inverse(kind):
     cutter = CUTTERS[kind]
     shape = cutter_shape(cutter)
     r = np.linspace(0.0, cutter.radius, 41)
     np.testing.assert_allclose([profile(shape, q) for q in r], cutter.profile(r), atol=1e-15)
+    for height in (1e-5, 4e-4, 1.4e-3, 2.9e-3, 5e-3):
+        found = radius_at(shape, height)
+        reached = r[cutter.profile(r) <= height].max()
+        assert reached <= found + 1e-12 <= reached + r[1] + 1e-12
+        if found < cutter.radius:
+            assert float(cutter.profile(found)) == pytest.approx(height, abs=1e-12)
