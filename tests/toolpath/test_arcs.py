@@ -121,3 +121,72 @@ def test_the_chord_error_that_a_refusal_names_is_one_that_fits(turns: float, mon
     assert chord_counts(sweep, radius, 1.06 * named).sum() <= 100_000  # it is named to two digits
     with pytest.raises(GCodeError, match="at most 100000 fit"):
         chord_counts(sweep, radius, 0.9 * named)
+
+
+def sampled(program, row: int, count: int = 200_001) -> np.ndarray:
+    """(count, 3) points of an arc from its definition: radius, angle and height all run evenly from start to end."""
+    first, second, third = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[int(program.plane[row])]
+    start, end, centre = program.start[row], program.end[row], program.centre[row]
+    (u0, v0), (u1, v1) = ((q - centre)[[first, second]] for q in (start, end))
+    f = np.linspace(0.0, 1.0, count)
+    radius = math.hypot(u0, v0) + f * (math.hypot(u1, v1) - math.hypot(u0, v0))
+    angle = math.atan2(v0, u0) + f * program.sweep[row]
+    p = np.empty((count, 3))
+    p[:, first], p[:, second] = centre[first] + radius * np.cos(angle), centre[second] + radius * np.sin(angle)
+    p[:, third] = start[third] + f * (end - start)[third]
+    return p
+
+
+def spiral(r: np.random.Generator) -> str:
+    """A program with one arc whose radii differ as far as is allowed, in any plane, somewhere, of any sweep."""
+    plane = int(r.choice([17, 18, 19]))
+    a, b, c, i, j, *_ = PLANES[plane]
+    radius = 10.0 ** r.uniform(-1.3, 4)
+    allowed = min(max(0.0282, 1e-3 * radius), 2.8)
+    other = max(radius + r.uniform(-1, 1) * allowed * 0.9, 0.02)
+    t0, sweep = r.uniform(0, 6.3), r.choice([1e-3, 0.3, 2.0, 4.5, 6.28]) * r.uniform(0.5, 1) * r.choice([-1, 1])
+    centre = r.uniform(-500, 500, 2)
+    start = centre + radius * np.array([math.cos(t0), math.sin(t0)])
+    end = centre + other * np.array([math.cos(t0 + sweep), math.sin(t0 + sweep)])
+    turns = f" P{r.integers(1, 4)}" if r.random() < 0.3 else ""
+    code = "G2" if sweep < 0 else "G3"
+    shift = f"G92 X{r.uniform(-9, 9):.3f} Y3\n" if r.random() < 0.3 else ""
+    return (
+        f"G21 G{plane} F100\n{shift}G0 {a}{start[0]:.9f} {b}{start[1]:.9f}\n{code} {a}{end[0]:.9f} {b}{end[1]:.9f} "
+        f"{c}{r.uniform(-3, 3):.3f} {i}{centre[0] - start[0]:.9f} {j}{centre[1] - start[1]:.9f}{turns}\nM2\n"
+    )
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_extents_length_and_chords_of_spirals_are_those_of_what_is_drawn(seed: int) -> None:
+    program = interpret(spiral(np.random.default_rng(seed)))
+    points = sampled(program, len(program) - 1)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    missed = steps.max() * 1e-2 + 1e-12  # what the farthest point may lie beyond the nearest sample
+    lower, upper = program.extents
+    assert lower == pytest.approx(points.min(axis=0), abs=missed)
+    assert upper == pytest.approx(points.max(axis=0), abs=missed)
+    assert program.length[-1] == pytest.approx(steps.sum(), rel=1e-5)
+    chords = to_toolpath(program, 1e-6).p[len(program) - 1 :]  # one point a move before, then the arc's
+    assert distance_to_polyline(sampled(program, len(program) - 1, 50_001), chords).max() < 1.02e-6
+
+
+def distance_to_polyline(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(m,) from each point to the nearest straight piece, both in the order in which they are passed."""
+    best = np.full(len(points), np.inf)
+    share = np.linspace(0, len(corners) - 1, len(points))
+    for shift in (-1, 0, 1):
+        k = np.clip(share.astype(int) + shift, 0, len(corners) - 2)
+        a, d = corners[k], corners[k + 1] - corners[k]
+        t = np.clip(np.einsum("ij,ij->i", points - a, d) / np.einsum("ij,ij->i", d, d), 0, 1)
+        best = np.minimum(best, np.linalg.norm(points - a - t[:, None] * d, axis=1))
+    return best
+
+
+def test_the_top_of_a_half_turn_that_grows_narrower() -> None:
+    """Radii of 3001.4 and 2998.6 mm: the half turn's top lies between them, not at the start's radius."""
+    program = interpret("G21 F100\nG2 X6000 I3001.4\nM2\n")
+    points = sampled(program, 0)
+    assert program.extents[1][1] == pytest.approx(points[:, 1].max(), abs=1e-9)
+    assert program.extents[1][1] * 1e3 == pytest.approx(3000.0, abs=0.01)
+    assert program.extents[0] == pytest.approx(points.min(axis=0), abs=1e-9)

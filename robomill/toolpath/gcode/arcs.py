@@ -45,32 +45,49 @@ class Arcs:
         u1, v1 = (self.end - self.centre)[rows, first], (self.end - self.centre)[rows, second]
         return np.arctan2(v0, u0), np.hypot(u0, v0), np.hypot(u1, v1)
 
+    @cached_property
+    def _widening(self) -> FloatArray:
+        """(m,) m/rad, 0 or more: by how much the radius changes as a spiral turns; it does so evenly."""
+        _, r0, r1 = self._polar
+        return np.abs(r1 - r0) / np.abs(self.sweep)
+
     @property
-    def radius(self) -> FloatArray:
-        """(m,) m: the larger of the radii at both ends; they differ in spirals."""
-        return np.maximum(*self._polar[1:])
+    def bend(self) -> FloatArray:
+        """(m,) m: eight times the sagitta of a short chord over the square of its angle; a circle's radius."""
+        radius, rho = np.maximum(*self._polar[1:]), self._widening
+        return (radius**2 + 2.0 * rho**2) / np.hypot(radius, rho)
 
     @property
     def length(self) -> FloatArray:
-        """(m,) m: mean radius times sweep, and the climb."""
+        """(m,) m: along the spiral and the climb (Simpson's rule; exact for helices)."""
         _, r0, r1 = self._polar
         climb = (self.end - self.start)[np.arange(len(self)), axes(self.plane)[2]]
-        return np.hypot(0.5 * (r0 + r1) * self.sweep, climb)
+        aside = np.hypot(self._widening, climb / self.sweep)
+        pace = np.hypot(r0, aside) + 4.0 * np.hypot(0.5 * (r0 + r1), aside) + np.hypot(r1, aside)
+        return np.abs(self.sweep) * pace / 6.0
 
     @property
     def extents(self) -> tuple[FloatArray, FloatArray]:
-        """Lowest and highest corner (m, 3) of each arc, its extreme points included."""
+        """Lowest and highest corner (m, 3) of each arc, its extreme points included.
+
+        The farthest point in a direction lies in the turn next to the wider end, psi before that end, where the
+        radius r(psi) makes psi = a - atan(widening / r(psi)): Newton's method on a function that rises by 1 to 2.
+        """
         lower, upper = np.minimum(self.start, self.end), np.maximum(self.start, self.end)
-        angle, radius = self._polar[0], self.radius
-        least = np.minimum(angle, angle + self.sweep)
+        angle, r0, r1 = self._polar
+        wider, whole, rho = np.maximum(r0, r1), np.abs(self.sweep), self._widening
+        towards = np.sign(self.sweep) * np.where(r1 >= r0, 1.0, -1.0)
+        last = angle + np.where(r1 >= r0, self.sweep, 0.0)
         rows = np.arange(len(self))
         for quarter in range(4):
-            reached = np.mod(quarter * math.pi / 2.0 - least, 2.0 * math.pi) <= np.abs(self.sweep)
             axis = axes(self.plane)[quarter % 2]
-            side = self.centre[rows, axis] + (radius if quarter < 2 else -radius)
-            side = np.where(reached, side, self.start[rows, axis])
-            lower[rows, axis] = np.minimum(lower[rows, axis], side)
-            upper[rows, axis] = np.maximum(upper[rows, axis], side)
+            before = np.mod(towards * (last - quarter * math.pi / 2.0), 2.0 * math.pi)
+            for a in (before, before + 2.0 * math.pi):  # the first may lie beyond the end
+                psi = _peak(a, wider, rho, whole)
+                phi, radius = last - towards * psi, wider - rho * psi
+                side = self.centre[rows, axis] + radius * (np.sin(phi) if quarter % 2 else np.cos(phi))
+                lower[rows, axis] = np.minimum(lower[rows, axis], side)
+                upper[rows, axis] = np.maximum(upper[rows, axis], side)
         return lower, upper
 
     def chords(self, counts: IntArray) -> FloatArray:
@@ -89,6 +106,19 @@ class Arcs:
         return points
 
 
+def _peak(a: FloatArray, wider: FloatArray, rho: FloatArray, whole: FloatArray) -> FloatArray:
+    """(m,) rad from 0 to ``whole``: where psi + atan(rho / (wider - rho psi)) = a, or the nearer end."""
+    psi = np.clip(a, 0.0, whole)
+    for _ in range(20):
+        radius = np.maximum(wider - rho * psi, 1e-300)
+        off = psi + np.arctan2(rho, radius) - a
+        better = np.clip(psi - off / (1.0 + rho**2 / (radius**2 + rho**2)), 0.0, whole)
+        moved, psi = np.abs(better - psi), better
+        if moved.max(initial=0.0) < 1e-13:
+            break
+    return psi
+
+
 def steps(counts: IntArray) -> tuple[IntArray, IntArray]:
     """For each of the ``counts`` (m,) pieces of moves: its move, and its number in the move, from 1."""
     owner = np.repeat(np.arange(len(counts)), counts)
@@ -96,7 +126,7 @@ def steps(counts: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def chord_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> IntArray:
-    """Chords (m,) that keep within ``chord_error`` (m) of arcs: the sagitta is r (1 - cos(step / 2)).
+    """Chords (m,) that keep within ``chord_error`` (m) of arcs: the sagitta is r (1 - cos(step / 2)), r their ``bend``.
 
     Raises GCodeError if the chord error is not positive or would need more than ``MAX_POINTS`` points.
     """

@@ -65,7 +65,7 @@ def _pieces(program: Program, rows: IntArray, chord_error: float) -> IntArray:
     """Straight pieces of each move; ``rows`` are the arcs."""
     counts = np.ones(len(program), dtype=np.int64)
     turns = program.arcs_of(rows)
-    counts[rows] = arcs.chord_counts(turns.sweep, turns.radius, chord_error)
+    counts[rows] = arcs.chord_counts(turns.sweep, turns.bend, chord_error)
     if program.rotary.any() or program.rotary0.any():
         tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / MAX_TILT_STEP - 1e-4)
         if tilt.sum() > arcs.MAX_POINTS:
