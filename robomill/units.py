@@ -33,6 +33,7 @@ UNITS: dict[str, Unit] = {
     "1": Unit("", 1.0, 3),
     "%": Unit("%", 1e-2, 1),
     "m": Unit("m", 1.0, 4),
+    "cm": Unit("cm", 1e-2, 2),
     "mm": Unit("mm", 1e-3, 3),
     "um": Unit("µm", 1e-6, 1),
     "in": Unit("in", 25.4e-3, 4),

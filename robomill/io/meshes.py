@@ -15,9 +15,9 @@ from robomill.surface.zmap import ZMap
 from robomill.units import format_si, from_si, to_si
 
 FORMATS = ("stl", "ply", "glb", "vtp")
-UNITS_OF_STL = ("mm", "in", "m")
-# A part outside these sizes was hardly meant, m: such a stock is questioned.
-SMALLEST, LARGEST = 2e-3, 5.0
+UNITS_OF_STL = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres"}
+# A part shorter than this many numbers, or longer than this, was hardly meant: such a stock is questioned.
+SMALLEST_MM, LARGEST = 25.0, 5.0  # mm, m
 
 
 def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> bytes:
@@ -47,8 +47,8 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
     faces = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
     surface = pyvista.PolyData(from_si(mesh.vertices, "mm"), faces)
     if error is not None:
-        field = np.full(len(mesh.vertices), np.nan)
-        field[: mesh.skin] = from_si(error[np.ix_(*kept_cells(zmap.z.shape, max_faces))], "um").ravel()
+        of_cells = from_si(error[np.ix_(*kept_cells(zmap.z.shape, max_faces))], "um").ravel()
+        field = np.where(mesh.owner >= 0, of_cells[mesh.owner], np.nan)
         surface.point_data["error_um"] = field
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "part.vtp"
@@ -59,7 +59,7 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
 def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = "") -> tuple[Stock, tuple[str, ...]]:
     """A stock from an STL file (path or bytes), and one sentence for each thing odd about it.
 
-    STL carries no unit: ``unit`` ("mm", "in" or "m") is what its numbers are taken as. Raises SurfaceError for a
+    STL carries no unit: ``unit`` ("mm", "in", "cm" or "m") is what its numbers are taken as. Raises SurfaceError for a
     file that is empty, not STL, flat, or not watertight.
     """
     import trimesh
@@ -93,13 +93,14 @@ def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = 
 
 
 def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[str, ...]:
-    largest = float(to_si(float(np.max(extents)), unit))
-    if unit == "mm" and largest < SMALLEST:
+    longest = float(np.max(extents))
+    shown = {name: format_si(float(to_si(longest, name)), "mm", 3 if longest < 2.0 else 0) for name in UNITS_OF_STL}
+    if to_si(longest, unit) > LARGEST:
+        return (f"{label}: the part is {shown[unit]} long if its numbers are {unit}; check the unit of the file.",)
+    if unit == "mm" and longest < SMALLEST_MM:
+        others = " or ".join(f"{shown[name]} if they are {UNITS_OF_STL[name]}" for name in ("in", "cm", "m"))
         return (
-            f"{label}: the part is only {format_si(largest, 'mm')} long if its numbers are millimetres; it looks"
-            " like metres, so choose metres if that is what was meant.",
+            f"{label}: the part is only {shown[unit]} long if its numbers are millimetres; it would be {others}: "
+            "choose the unit that was meant.",
         )
-    if largest > LARGEST:
-        size = format_si(largest, "mm", 0)
-        return (f"{label}: the part is {size} long if its numbers are {unit}; check the unit of the file.",)
     return ()

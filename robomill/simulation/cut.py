@@ -14,6 +14,7 @@ from robomill.errors import SetupError
 from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
+from robomill.surface.stock_unit import unit_doubt
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_short
 
@@ -100,6 +101,8 @@ def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: Fl
 def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, ...]:
     """What a reader of the numbers must know about cutter, stock and force."""
     notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.notes]
+    if setup.stock is not None and (doubt := unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)):
+        notes.append(doubt)
     if not setup.engagement and hasattr(setup.force, "material"):
         notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
     if conditions.a_p.any():

@@ -22,6 +22,7 @@ from robomill.surface.tilt_kernels import (
     vertical_line,
 )
 
+INSIDE = 1.0 - 1e-9  # of the way from the centre of a cell to an edge
 SAME_WALL = 0.5  # cosine: edges that turn less than 60 degrees from each other are one wall, cut again
 
 
@@ -39,8 +40,9 @@ class EdgeRecord(NamedTuple):
     """What is noted of cells that an edge crosses, arrays over the cells of a tile (inf or 0 where none does).
 
     z_centre (nx, ny) lowest height cut at the centre, z_low (nx, ny) lowest cut anywhere in the cell
-    share (nx, ny, 5)   covered by the first edge's direction; covered by edges in other directions; the first
-                        edge's normal (x, y); how far the others turn from it (cosine)
+    share (nx, ny, 11)  covered by the first edge's direction; covered by edges in other directions; the first
+                        edge's normal (x, y); how far the others turn from it (cosine); of the edge of each of the two
+                        that covers most its normal (x, y) and how far inside of it the centre lies
     cells (nx ny,) their flat indices, noted (1,) how many there are
     """
 
@@ -153,7 +155,9 @@ def cut_edge_cell(shape: Shape, move: Move, i: int, j: int, tile: Heights, edge:
     if d >= 0.0:
         edge.z_centre[i, j] = min(edge.z_centre[i, j], height)
     edge.z_low[i, j] = min(edge.z_low[i, j], height)
-    note_share(edge.share[i, j], covered_share(d, ex, ey, tile.dx, tile.dy), ex, ey)
+    steps = swept_height(shape, move, x + INSIDE * d * ex, y + INSIDE * d * ey) < z[i, j]  # a round nose may run out
+    wall = (ex, ey, d if steps else math.nan)
+    note_share(edge.share[i, j], covered_share(d, ex, ey, tile.dx, tile.dy), wall)
 
 
 @part
@@ -169,16 +173,20 @@ def covered_share(d: float, nx: float, ny: float, dx: float, dy: float) -> float
 
 
 @part
-def note_share(record: FloatArray, covered: float, ex: float, ey: float) -> None:
-    """Note in a cell's ``EdgeRecord.share`` what an edge with unit normal (ex, ey) covers of it."""
+def note_share(record: FloatArray, covered: float, wall: tuple[float, float, float]) -> None:
+    """Note in a cell's ``EdgeRecord.share`` what an edge covers of it; ``wall``: its unit normal, and d."""
+    ex, ey, d = wall
     if record[2] == 0.0 and record[3] == 0.0:
         record[0], record[2], record[3] = covered, ex, ey
+        record[5], record[6], record[7] = ex, ey, d
         return
     turn = ex * record[2] + ey * record[3]
     if turn > SAME_WALL:
-        record[0] = max(record[0], covered)
+        if covered > record[0]:
+            record[0], record[5], record[6], record[7] = covered, ex, ey, d
     elif covered > record[1]:
         record[1], record[4] = covered, turn
+        record[8], record[9], record[10] = ex, ey, d
 
 
 @part
@@ -190,13 +198,15 @@ def union_share(record: FloatArray) -> float:
 
 
 @kernel
-def settle(tile: Heights, edge: EdgeRecord, mean: Out1) -> None:
-    """Write heights at the centres of edge cells into z and their mean heights into ``mean``; clean the record."""
+def settle(tile: Heights, edge: EdgeRecord, mean: Out1, wall: Out2) -> None:
+    """Write heights at the centres of edge cells into z, their means and walls (NaN: none left); clean the record."""
     columns = tile.z.shape[1]
     for n in range(edge.noted[0]):
         i, j = edge.cells[n] // columns, edge.cells[n] % columns
         top = tile.z[i, j]
         mean[n] = top - union_share(edge.share[i, j]) * max(0.0, top - edge.z_low[i, j])
+        for column in range(6):
+            wall[n, column] = edge.share[i, j, 5 + column] if top > edge.z_low[i, j] else math.nan
         tile.z[i, j] = min(top, edge.z_centre[i, j])
         edge.z_centre[i, j] = edge.z_low[i, j] = math.inf
         edge.share[i, j] = 0.0

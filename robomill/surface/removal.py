@@ -16,10 +16,18 @@ TILE_CELLS = 250_000
 
 @dataclass(frozen=True)
 class EdgeCells:
-    """Cells whose mean height is not their height at the centre: flat index (e,) and mean height (e,) m."""
+    """Cells whose mean height is not their height at the centre.
+
+    index  (e,)      flat index of the cell
+    mean   (e,) m    mean height
+    wall   (e, 6)    the one or two walls through the cell, of each its unit normal (x, y) into the material and how
+                     far (m) inside of it the centre lies (below 0: in the material); 0 where there is no second one,
+                     NaN where a later cut took them away
+    """
 
     index: IntArray
     mean: FloatArray
+    wall: FloatArray
 
 
 def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -> EdgeCells:
@@ -32,9 +40,9 @@ def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -
     low = np.minimum(ends[:, 0], ends[:, 3]) - reach
     high = np.maximum(ends[:, 0], ends[:, 3]) + reach
     size = rows_of_tile(z.shape), z.shape[1]
-    z_centre, z_low, share = np.full(size, np.inf), np.full(size, np.inf), np.zeros((*size, 5))
+    z_centre, z_low, share = np.full(size, np.inf), np.full(size, np.inf), np.zeros((*size, 11))
     flat = np.empty(size[0] * size[1], dtype=np.int64)
-    index, mean = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
+    index, mean, wall = [np.zeros(0, dtype=np.int64)], [np.zeros(0)], [np.zeros((0, 6))]
     for i, chosen in _tiles(z.shape, cells, low, high):
         part = z[i : i + size[0]]
         n = len(part)
@@ -42,10 +50,12 @@ def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -
         edge = EdgeRecord(z_centre[:n], z_low[:n], share[:n], flat, np.zeros(1, dtype=np.int64))
         cut_moves(shape, ends, chosen, tile, edge)
         heights = np.empty(edge.noted[0])
-        settle(tile, edge, heights)
+        walls = np.empty((edge.noted[0], 6))
+        settle(tile, edge, heights, walls)
         index.append(flat[: edge.noted[0]] + i * z.shape[1])
         mean.append(heights)
-    return EdgeCells(np.concatenate(index), np.concatenate(mean))
+        wall.append(walls)
+    return EdgeCells(np.concatenate(index), np.concatenate(mean), np.concatenate(wall))
 
 
 def cut_tilted(z: FloatArray, cells: Cells, cutter: Cutter, moves: tuple[FloatArray, FloatArray]) -> BoolArray:

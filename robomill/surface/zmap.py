@@ -124,12 +124,12 @@ def cut(
         before = z.reshape(-1)[edge.index]
         overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans])).sum())
         kept = z.reshape(-1)[edge.index] == before
-        edge = EdgeCells(edge.index[kept], edge.mean[kept])
+        edge = EdgeCells(edge.index[kept], edge.mean[kept], edge.wall[kept])
     bottom = float(stock.lower[2])
     below = bool((z < bottom).any())
     if below:
         np.maximum(z, bottom, out=z)
-    edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)))
+    edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)), frozen(edge.wall))
     z.flags.writeable = False
     result = ZMap(x, y, cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
     if must_touch and result.removed_volume <= 0.0:

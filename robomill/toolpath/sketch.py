@@ -213,5 +213,5 @@ def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise
 
     sweep = motion_rules.swept(start, end, centre, -1 if clockwise else 1, motion_rules.FULL_TURN)
     arc = arcs.Arcs(lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([sweep]))
-    counts = arcs.chord_counts(arc.sweep, arc.radius, arcs.CHORD_ERROR)
+    counts = arcs.chord_counts(arc.sweep, arc.bend, arcs.CHORD_ERROR)
     return np.vstack([lifted(start), arc.chords(counts)])[:, :2]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import pyvista
 import trimesh
 
 from robomill.cutting.tool import Cutter
@@ -95,7 +96,7 @@ def test_broken_stocks_are_refused_or_questioned():
     with pytest.raises(SurfaceError, match=r"no triangles|not an STL"):
         read_stl_stock(b"G1 X0 Y0\n" * 30)
     _, findings = read_stl_stock(stl(trimesh.creation.box((0.03, 0.02, 0.01))))
-    assert "looks like metres" in findings[0]
+    assert "30.000 mm if they are metres" in findings[0]
     stock, findings = read_stl_stock(stl(trimesh.creation.box((0.03, 0.02, 0.01))), unit="m")
     assert findings == ()
     assert stock.size[0] == pytest.approx(0.03)
@@ -105,7 +106,7 @@ def test_broken_stocks_are_refused_or_questioned():
 def test_a_stock_that_is_no_file_or_in_no_unit_is_refused(tmp_path):
     with pytest.raises(SurfaceError, match=r"^none.stl: cannot be opened \(No such file or directory\)"):
         read_stl_stock(tmp_path / "none.stl")
-    with pytest.raises(SurfaceError, match=r"^STL: the unit is 'ft'; expected one of mm, in, m\.$"):
+    with pytest.raises(SurfaceError, match=r"^STL: the unit is 'ft'; expected one of mm, in, cm, m\.$"):
         read_stl_stock(stl(trimesh.creation.box((30.0, 20.0, 10.0))), unit="ft")
 
 
@@ -113,7 +114,9 @@ def test_a_stock_that_is_no_file_or_in_no_unit_is_refused(tmp_path):
     ("unit", "longest", "said"),
     [
         ("mm", 1.9, "only 1.900 mm long if its numbers are millimetres"),
-        ("mm", 2.1, ""),
+        ("mm", 4.0, "102 mm if they are inches or 40 mm if they are centimetres"),
+        ("mm", 26.0, ""),
+        ("cm", 1.9, ""),
         ("in", 1.9, ""),
         ("m", 1.9e-3, ""),
         ("mm", 4900.0, ""),
@@ -126,7 +129,7 @@ def test_a_stock_that_is_no_file_or_in_no_unit_is_refused(tmp_path):
 def test_sizes_that_were_hardly_meant_are_said(unit, longest, said, tmp_path):
     file = tmp_path / "stock.stl"
     file.write_bytes(stl(trimesh.creation.box((longest, longest / 2, longest / 4))))
-    one = {"mm": 1e-3, "in": 25.4e-3, "m": 1.0}[unit]
+    one = {"mm": 1e-3, "cm": 1e-2, "in": 25.4e-3, "m": 1.0}[unit]
     stock, findings = read_stl_stock(file, unit=unit)
     np.testing.assert_allclose(stock.size, np.array([1, 0.5, 0.25]) * longest * one, rtol=1e-6)
     if said:
@@ -143,3 +146,22 @@ def test_a_corner_that_is_no_number_is_refused():
     raw[84 + 12 : 84 + 16] = np.float32(np.inf).tobytes()
     with pytest.raises(SurfaceError, match=r"not numbers|not watertight|cannot be read|can be read"):
         read_stl_stock(bytes(raw))
+
+
+@pytest.mark.parametrize("kind", ["stl", "ply", "glb", "vtp"])
+def test_a_slice_at_half_depth_shows_the_groove_where_it_is(kind, tmp_path):
+    """The paper's groove stands 0.2295 mm beside its programmed middle, 8 mm wide, whatever the cells are."""
+    stock = Stock((0.0, -0.01, -0.006), (0.03, 0.01, 0.0))
+    p = np.array([[-0.01, 0.2295e-3, -0.002], [0.04, 0.2295e-3, -0.002]])
+    file = tmp_path / f"part.{kind}"
+    file.write_bytes(mesh_bytes(cut(stock, 1e-4, Cutter("flat", 8e-3), p), kind))
+    if kind == "vtp":
+        solid = pyvista.read(file)
+        points = solid.slice(normal="z", origin=(0.0, 0.0, -1.0)).points
+    else:
+        solid = trimesh.load(file, force="mesh")
+        points = solid.section(plane_origin=[0.0, 0.0, -1.0], plane_normal=[0.0, 0.0, 1.0]).vertices
+    walls = points[(np.abs(points[:, 1]) < 9.9) & (points[:, 0] > 0.1) & (points[:, 0] < 29.9), 1]
+    left, right = walls[walls > 0], walls[walls < 0]
+    assert left == pytest.approx(4.2295, abs=3e-4)
+    assert right == pytest.approx(-3.7705, abs=3e-4)

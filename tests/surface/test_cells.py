@@ -30,10 +30,10 @@ def test_two_edges_of_a_cell_cover_their_union(turn):
     """Opposite walls add up, crossing ones overlap as if independent, and one wall cut again counts once."""
     cell, angle = shapely.box(-0.5, -0.5, 0.5, 0.5), 0.0
     for d, e in ((-0.2, -0.1), (-0.1, -0.4), (0.1, -0.3)):
-        record = np.zeros(5)
+        record = np.zeros(11)
         edges = ((d, angle), (e, angle + turn))
         for depth, a in edges:
-            note_share(record, covered_share(depth, np.cos(a), np.sin(a), 1.0, 1.0), np.cos(a), np.sin(a))
+            note_share(record, covered_share(depth, np.cos(a), np.sin(a), 1.0, 1.0), (np.cos(a), np.sin(a), depth))
         one, two = (half_plane(depth, a).intersection(cell) for depth, a in edges)
         both = one.union(two).area
         expected = max(one.area, two.area) if turn == 0.3 else both

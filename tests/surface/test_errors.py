@@ -8,7 +8,7 @@ from robomill.surface.metrology import GrooveProfile, compare_profile, fit_line
 from robomill.surface.removal import EdgeCells
 from robomill.surface.zmap import ZMap
 
-NONE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0))
+NONE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 6)))
 DX, DY = 1e-3, 1.3e-3
 
 
@@ -57,8 +57,8 @@ def test_volumes_count_mean_heights_at_walls():
     """Machined less ideal, cell by cell, where a wall's cell has its mean height instead."""
     ideal, machined = np.full((3, 4), -0.002), np.full((3, 4), -0.002)
     machined[0, 1], machined[2, 3] = -0.001, -0.0045
-    walls = EdgeCells(np.array([1 * 4 + 2]), np.array([-0.0004]))
-    other = EdgeCells(np.array([1 * 4 + 0]), np.array([-0.0013]))
+    walls = EdgeCells(np.array([1 * 4 + 2]), np.array([-0.0004]), np.full((1, 6), np.nan))
+    other = EdgeCells(np.array([1 * 4 + 0]), np.array([-0.0013]), np.full((1, 6), np.nan))
     found = deviation(surface(ideal, other), surface(machined, walls))
     mean_machined, mean_ideal = machined.copy(), ideal.copy()
     mean_machined[1, 2], mean_ideal[1, 0] = -0.0004, -0.0013

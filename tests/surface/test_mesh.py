@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from scipy.spatial import ConvexHull
 
 from robomill.cutting.tool import Cutter
@@ -39,15 +40,56 @@ def test_the_skin_is_the_map_and_its_volume_the_maps():
     inner = mesh.vertices[: mesh.skin].reshape(nx, ny, 3)[1:-1, 1:-1]
     np.testing.assert_array_equal(inner[:, 0, 0], SURFACE.x[1:-1])
     np.testing.assert_array_equal(inner[0, :, 1], SURFACE.y[1:-1])
-    x, y = np.array(SURFACE.x), np.array(SURFACE.y)
+
+
+def test_the_volume_of_a_part_without_walls_is_that_under_its_skin():
+    shallow = cut(STOCK, 1e-3, Cutter("ball", 0.006), np.array([[0.004, 0.005, -0.001], [0.015, 0.008, -0.002]]))
+    mesh = to_mesh(shallow)
+    x, y = np.array(shallow.x), np.array(shallow.y)
     x[[0, -1]], y[[0, -1]] = (0.0, 0.02), (0.0, 0.012)
     under = 0.0
-    for i in range(nx - 1):
-        for j in range(ny - 1):  # two prisms a cell
+    for i in range(len(x) - 1):
+        for j in range(len(y) - 1):  # two prisms a cell
             area = 0.5 * (x[i + 1] - x[i]) * (y[j + 1] - y[j])
-            z = SURFACE.z[i : i + 2, j : j + 2] - STOCK.lower[2]
+            z = shallow.z[i : i + 2, j : j + 2] - STOCK.lower[2]
             under += area * (z[0, 0] + z[1, 0] + z[1, 1]) / 3 + area * (z[0, 0] + z[1, 1] + z[0, 1]) / 3
     assert volume(mesh) == pytest.approx(under, rel=1e-12)
+
+
+PLATE = Stock((-0.012, -0.01, -0.006), (0.012, 0.01, 0.0))
+TURN = np.linspace(0.2, 4.0, 300)
+TRACKS = {
+    "beside the cells": [[-0.006, 0.0002295], [0.006, 0.0002295]],
+    "out of both sides": [[-0.03, 0.00023], [0.03, 0.00023]],
+    "across at 7 degrees": [[-0.03, -0.0036], [0.03, 0.0038]],
+    "at 30 degrees": [[-0.005, -0.0029], [0.005, 0.0029]],
+    "over a corner": [[0.005, -0.02], [0.02, 0.005]],
+    "an arc": np.column_stack([np.cos(TURN), np.sin(TURN)]) * 0.005,
+    "a corner": [[-0.006, -0.004], [0.003, -0.004], [0.0042, 0.005]],
+}
+
+
+@pytest.mark.parametrize(("cell", "max_faces"), [(1e-4, 2_000_000), (2.5e-4, 2_000_000), (1e-4, 20_000)])
+@pytest.mark.parametrize("track", TRACKS)
+def test_walls_stand_where_the_cutter_left_them(track, cell, max_faces):
+    """Every wall point against the boundary of the exact track; the volume against its area times the depth."""
+    radius, depth = 0.003, 0.002
+    plan = np.array(TRACKS[track])
+    surface = cut(PLATE, cell, Cutter("flat", 2 * radius), np.column_stack([plan, np.full(len(plan), -depth)]))
+    mesh = to_mesh(surface, max_faces=max_faces)
+    edges = np.sort(np.concatenate([mesh.faces[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    grid = (PLATE.size[0] / (mesh.shape[0] - 1) + PLATE.size[1] / (mesh.shape[1] - 1)) / 2
+    floor = shapely.LineString(plan).buffer(radius, quad_segs=500)
+    block = shapely.box(*PLATE.lower[:2], *PLATE.upper[:2])
+    walls = mesh.vertices[mesh.skin :][mesh.owner[mesh.skin :] >= 0]
+    away = shapely.distance(floor.boundary, shapely.points(walls[:, :2]))
+    sharp = {"a corner": 6, "over a corner": 1}.get(track, 0)  # one cell holds the corner of tracks or of the block
+    assert (away > 2e-3 * grid + grid**2 / (4 * radius)).sum() <= 2 * sharp
+    exact = block.area * PLATE.size[2] - block.intersection(floor).area * depth
+    assert volume(mesh) == pytest.approx(exact, abs=grid**2 / (12 * radius) * floor.length * depth)
+    plain = 4 * mesh.skin
+    assert len(mesh.faces) < 1.6 * plain
 
 
 def test_thinning_keeps_the_rim_and_the_number_of_faces():

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import streamlit as st
 
-from robomill.io.meshes import read_stl_stock
+from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
 from robomill.surface.stock import Stock
 from robomill.ui import declared, inputs, pieces, session
 from robomill.units import format_count, format_many
 
 STOCKS = {"path": "Around the path", "block": "Block", "stl": "From STL"}
-STL_UNITS = {"mm": "mm", "in": "inch", "m": "m"}
 FILE, UNIT = "milling.stock.file", "milling.stock.unit"
 PENDING, ODD = "milling.stock.pending", "milling.stock.odd"
 MAX_STL_MB = 80
@@ -62,7 +61,7 @@ def _switch_stock(kind: str) -> None:
 
 def _stl(stock: Stock | None) -> None:
     look = inputs.Look(hint="STL carries no unit.")
-    inputs.choice("Unit of the file", UNIT, STL_UNITS, session.kept(UNIT, "mm"), _take_unit, look)
+    inputs.choice("Unit of the file", UNIT, UNITS_OF_STL, session.kept(UNIT, "mm"), _take_unit, look)
     inputs.upload("Stock as a closed solid (.stl), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
     if stock is not None and stock.triangles is not None:
         for words in session.kept(ODD, ()):

@@ -1,0 +1,58 @@
+"""A stock in another unit than the program: suspected where the path lies outside of it and fits it in that unit."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robomill.arrays import FloatArray
+from robomill.surface.stock import Stock
+from robomill.units import format_si
+
+TIMES = {
+    1e-3: "millimetres read as metres",
+    1 / 25.4: "millimetres read as inches",
+    0.1: "millimetres read as centimetres",
+    10.0: "centimetres read as millimetres",
+    25.4: "inches read as millimetres",
+    1000.0: "metres read as millimetres",
+}
+HELD, LOST = 0.9, 0.5
+"""Shares of the path within the block: so much is a part that is cut, less than this one that is missed."""
+TOO_LARGE = 20.0
+LIKELY = 5.0
+"""times: a block so much wider than all that is cut in it was hardly meant; one up to so much may have been."""
+
+
+def unit_doubt(stock: Stock, p: ArrayLike, cutting: ArrayLike) -> str:
+    """A sentence where the stock seems to be in another unit than the path, with its extents in both; else "".
+
+    p (m, 3) m in {W}, cutting (m,) bool for the move that ends at p[i].
+    """
+    points, used = np.asarray(p, dtype=np.float64), np.asarray(cutting, dtype=bool)
+    ends = points[used | np.append(used[1:], False)]
+    if not len(ends):
+        return ""
+    now, span = _held(stock, ends, 1.0), float(np.ptp(ends[:, :2], axis=0).max())
+    large = now >= HELD and float(stock.size[:2].min()) > TOO_LARGE * max(span, 1e-3)
+    if now >= LOST and not large:
+        return ""
+    for times, what in TIMES.items():
+        fits = float(stock.size[:2].max()) * times <= LIKELY * span and _held(stock, ends, times) >= HELD
+        if (times < 1.0) == large and fits:
+            found = "most of the path lies outside of it" if not large else "the path needs a small part of it"
+            return (
+                f"Stock: it is {_size(stock.size)} and {found}; were its numbers {what}, it would be "
+                f"{_size(stock.size * times)} and hold the path: check the unit."
+            )
+    return ""
+
+
+def _held(stock: Stock, ends: FloatArray, times: float) -> float:
+    """Share of points (m, 3) that lie in plan within the block grown ``times`` about the part zero."""
+    lower, upper = stock.lower[:2] * times, stock.upper[:2] * times
+    return float(((ends[:, :2] >= lower) & (ends[:, :2] <= upper)).all(axis=1).mean())
+
+
+def _size(size: FloatArray) -> str:
+    return " x ".join(format_si(float(v), "mm", 1).removesuffix(" mm") for v in size) + " mm"
