@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
+from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
@@ -147,6 +148,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         },
         "joint_shares_add_up": result.setup.measured_map is None,
         **_uncertain(result, i),
+        "over_lengths": lengths_record(result, i),
         "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {
@@ -162,9 +164,19 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         **judged_record(result),
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
         "notes": [*result.notes, *result.surface_notes],
-        "findings": [finding_record(f) for f in result.setup.toolpath.findings],
+        "findings": [finding_record(f) for f in (*result.setup.toolpath.findings, *result.steadiness)],
         "digest": result.setup.digest(),
     }
+
+
+def lengths_record(result: SimulationResult, i: int) -> dict[str, Any] | None:
+    """Least and largest deflection at the worst point with all lengths that the paper allows; None for other arms."""
+    found = over_lengths(result, i) if i >= 0 else None
+    if found is None:
+        return None
+    ends = [shown(found.min(axis=0), "mm"), shown(found.max(axis=0), "mm")]
+    named = {f"{name}_mm": [low, high] for name, low, high in zip(COMPONENTS, *ends, strict=True)}
+    return {"geometries": len(found), "tried": TRIED, **named}
 
 
 def judged_record(result: SimulationResult) -> dict[str, Any]:
