@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import streamlit as st
 
 from robomill import ui
@@ -20,10 +22,10 @@ ui.headline(
     f"At this pose 100 N along Y move the tip {format_si(100 * abs(now.C[1, 1]), view.length, 3)} in Y "
     f"and {format_si(100 * abs(now.C[2, 1]), view.length, 3)} in Z.",
 )
-cut = ui.verdict_tiles(result, view.length)[0] if result is not None else ui.Tile("Max deviation", "not computed")
+tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)
 ui.tiles(
     [
-        ui.Tile("Max deviation of the cut", cut.value, cut.note, cut.was, cut.change, kind="computed"),
+        dataclasses.replace(tip, label="Tip off its path in the cut"),
         ui.Tile(
             "C_yy at this pose",
             format_si(now.component("yy"), "um/N", 3),

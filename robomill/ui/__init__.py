@@ -44,7 +44,7 @@ from robomill.ui.inputs import number
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
 from robomill.ui.shell import begin, dark
-from robomill.ui.verdict import verdict_sentence, verdict_tiles
+from robomill.ui.verdict import tip_tile, verdict_sentence, verdict_tiles
 
 __all__ = [
     "Project",
@@ -62,6 +62,7 @@ __all__ = [
     "split",
     "thirds",
     "tiles",
+    "tip_tile",
     "verdict_sentence",
     "verdict_tiles",
 ]

@@ -27,7 +27,8 @@ class Tile:
     """One number: ``value`` as formatted text with its unit after a space, ``was`` the value before the last change.
 
     ``change`` says by how much it moved; both take the place of ``note`` while they are there.
-    ``tone`` is "", "ok", "tight" or "out" (a coloured edge; the words carry the meaning), ``kind`` a provenance.
+    ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), ``kind`` a
+    provenance.
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""The four tiles and the one sentence that start, robot and milling page share."""
+"""The verdict as start, robot, toolpath and milling show it: its tiles, its one sentence and what it leaves out."""
 
 from __future__ import annotations
 
@@ -7,76 +7,132 @@ import numpy as np
 from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import groove_error, one_groove, place_at
+from robomill.simulation.stations import one_groove, place_at
+from robomill.simulation.verdict import Reading, Verdict
 from robomill.ui import cached, session, uncertainty
 from robomill.ui.pieces import Tile
-from robomill.units import format_percent, format_si
+from robomill.units import format_count, format_percent, format_si
 
 WORDS = {
     "ok": "In tolerance",
-    "tight": "Tight",
+    "tight": "In tolerance, tight",
     "out": "Out of tolerance",
     "unjudged": "Not judged",
     "unreached": "Out of reach",
     "missed": "Misses the stock",
 }
-TONES = {"ok": "ok", "tight": "tight", "out": "out", "unjudged": "out", "unreached": "out", "missed": "out"}
+TONES = {"unreached": "out", "missed": "out"}  # the others are their own
+WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep")}
+LEFT_OUT = "Left out: run-out of the tool, ringing where a tooth enters, chatter, wear, heat."
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
-    """Max, RMS, worst line and verdict, each beside its value before the last change."""
+    """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
+    old = previous(result)
+    verdict, before = result.verdict, None if old is None else old.verdict
+    share = "nothing reached"
+    if np.isfinite(verdict.share):
+        share = f"{format_percent(verdict.share)} of the tolerance used"
+    if verdict.level == "unjudged":
+        share = lost_words(result)
+    return [
+        reading_tile("Wall error", "wall", verdict, before, unit),
+        reading_tile("Floor error", "floor", verdict, before, unit),
+        tip_tile(result, unit),
+        Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
+    ]
+
+
+def tone(verdict: Verdict) -> str:
+    """The coloured edge of a tile that says the verdict."""
+    return TONES.get(verdict.level, verdict.level)
+
+
+def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None, unit: str) -> Tile:
+    """One quantity of the verdict against its tolerance; ``name`` is "wall" or "floor"."""
+    reading: Reading = getattr(verdict, name)
+    digits = 4 if unit == "in" else 3
+    if reading.worst < 0:
+        return Tile(label, "–", f"the cut leaves no {name}" if verdict.level != "unreached" else "nothing reached")
+    allowed = format_si(reading.tolerance, unit, 2 if unit == "mm" else 4)
+    way = WAYS[name][0 if reading.value > 0 else 1]
+    was = change = ""
+    if before is not None and getattr(before, name).worst >= 0:
+        was = format_si(getattr(before, name).value, unit, digits, sign=True)
+        change = format_si(reading.value - getattr(before, name).value, unit, digits, sign=True)
+    value = format_si(reading.value, unit, digits, sign=True)
+    return Tile(label, value, f"{way} · {format_percent(reading.share)} of {allowed}", was, change, kind="computed")
+
+
+def tip_tile(result: SimulationResult, unit: str) -> Tile:
+    """How far the tip is off its path where that is most: the vector behind what is judged."""
     old = previous(result)
     digits = 4 if unit == "in" else 3
-    verdict = result.verdict
     i = result.worst
+    if i < 0:
+        return Tile("Tip off its path", "–", "nothing reached")
 
     def shown(value: float) -> str:
         return format_si(value, unit, digits)
 
-    def was(name: str) -> tuple[str, str]:
-        if old is None:
-            return "", ""
-        before = float(getattr(old, name))
-        return shown(before), format_si(float(getattr(result, name)) - before, unit, digits, sign=True)
-
-    parts = ""
-    if i >= 0:
-        parts = " · ".join(
-            f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
-        )
-    share = f"{format_percent(verdict.share)} of {format_si(result.setup.tolerance, unit, 2 if unit == 'mm' else 4)}"
-    largest = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
-    return [
-        Tile("Max deviation", largest, parts, *was("max_deviation"), kind="computed"),
-        Tile("RMS along the cut", shown(result.rms_deviation), "over the length cut", *was("rms_deviation")),
-        Tile("Worst line", f"Line {result.worst_block}" if i >= 0 else "none reached", _where(result, unit)),
-        Tile(
-            "Verdict",
-            WORDS[verdict.level],
-            share if np.isfinite(verdict.share) else "nothing reached",
-            tone=TONES[verdict.level],
-        ),
-    ]
+    was = change = ""
+    if old is not None:
+        was = shown(old.max_deviation)
+        change = format_si(result.max_deviation - old.max_deviation, unit, digits, sign=True)
+    parts = " · ".join(
+        f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
+    )
+    note = f"{parts} · line {result.worst_block} · RMS {shown(result.rms_deviation)}"
+    value = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
+    return Tile("Tip off its path", value, note, was, change)
 
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
-    """What the cut will be like, for a foreman: sideways and depth error where it is worst."""
-    i = result.worst
-    if i < 0:
-        return result.verdict.sentence
+    """What a gauge would read on the part, for a foreman; what is not known comes first."""
+    verdict = result.verdict
+    if result.worst < 0:
+        return verdict.sentence
+    if verdict.level in ("unreached", "unjudged"):
+        return _sentence(lost_words(result))
     digits = 3 if unit == "in" else 2
-    aside, depth = groove_error(result, i)
-    if np.isnan(aside):
-        return result.verdict.sentence
-    words = "too deep" if depth < 0 else "too shallow"
-    if not one_groove(result.path):
-        worst, sideways, down = (format_si(abs(v), unit, digits) for v in (result.max_deviation, aside, depth))
-        return f"At worst {worst} off, at line {result.worst_block}: {sideways} aside and {down} {words}."
-    feed = np.abs(place_at(result.path, float(result.path.s[i]))[1][:2])
+    wall, floor = verdict.wall, verdict.floor
+    if one_groove(result.path) and wall.worst >= 0 and floor.worst >= 0:
+        sideways, down = (format_si(abs(v.value), unit, digits) for v in (wall, floor))
+        return f"The groove is {sideways} off {_aside(result, wall)} and {down} {_way('floor', floor)}."
+    said = [
+        f"{name}s are up to {format_si(abs(v.value), unit, digits)} {_way(name, v)} (line {result.path.block[v.worst]})"
+        for name, v in (("wall", wall), ("floor", floor))
+        if v.worst >= 0
+    ]
+    if not said:
+        worst = format_si(result.max_deviation, unit, digits)
+        said = [f"no wall or floor is left to measure; the tip is {worst} off at line {result.worst_block}"]
+    return _sentence(", ".join(said))
+
+
+def lost_words(result: SimulationResult) -> str:
+    """How much of the cut has no answer, in a few words."""
+    total = int(result.path.cutting.sum())
+    missed = result.path.cutting & ~result.answered & ~result.not_judged
+    if result.verdict.level == "unreached":
+        why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
+        return f"{int(missed.sum())} of {format_count(total, 'point')} of the cut {why}"
+    return f"{int(result.not_judged.sum())} of {format_count(total, 'point')} of the cut are not judged"
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
+
+
+def _way(name: str, reading: Reading) -> str:
+    return WAYS[name][0 if reading.value > 0 else 1]
+
+
+def _aside(result: SimulationResult, wall: Reading) -> str:
+    """Where a straight groove goes: along an axis of the part where the feed follows the other one."""
+    feed = np.abs(place_at(result.path, float(result.path.s[wall.worst]))[1][:2])
     axis = "Y" if feed[0] > 0.999 * np.hypot(*feed) else "X" if feed[1] > 0.999 * np.hypot(*feed) else ""
-    name = f"in {axis}" if axis else ("to the left" if aside > 0 else "to the right")
-    sideways, down = (format_si(abs(v), unit, digits) for v in (aside, depth))
-    return f"The groove is {sideways} off {name} and {down} {words}."
+    return f"in {axis}" if axis else _way("wall", wall)
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:
@@ -90,9 +146,3 @@ def previous(result: SimulationResult) -> SimulationResult | None:
         return cached.result(old.setup)
     except RobomillError:
         return None
-
-
-def _where(result: SimulationResult, unit: str) -> str:
-    if result.worst < 0:
-        return ""
-    return f"after {format_si(float(result.path.s[result.worst]), unit, 1 if unit == 'mm' else 3)} of cut"

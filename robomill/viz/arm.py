@@ -78,7 +78,7 @@ def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
 
 def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
     span = np.ptp(bounds, axis=0)
-    ratio = 2.35 * zoom * span / np.linalg.norm(span)
+    ratio = 2.3 * zoom * span / np.linalg.norm(span)
     axes = {
         f"{name}axis": axis3d(f"{name.upper()}<sub>M</sub>, m", dark=dark, range=bounds[:, i].tolist())
         for i, name in enumerate("xyz")
@@ -91,7 +91,7 @@ def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) ->
         "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
         "camera": {
             "eye": {"x": 1.30, "y": -0.95, "z": 0.62},
-            "center": {"x": 0, "y": 0, "z": -0.04},
+            "center": {"x": -0.03, "y": -0.04, "z": -0.04},
             "projection": {"type": "orthographic"},
         },
     }

@@ -71,7 +71,7 @@ def test_stock_beside_the_path_is_one_sentence_and_nothing_is_lost(app: AppTest)
     assert app.number_input(key="stock.lower[1]:mm").value == 200.0
     go(app, "app")
     assert not app.exception
-    assert "0.25" in words(app)
+    assert "never touches the stock" in words(app)
 
 
 def test_cutter_kinds_and_force_kinds_switch(app: AppTest) -> None:

@@ -89,4 +89,5 @@ def _take(data: bytes, name: str) -> None:
 def judgement_inputs() -> None:
     """Tolerance, and how finely path and surface are computed."""
     declared.field("tolerance")
+    declared.in_row(("floor_tolerance", "feed_tolerance"), declared.field)
     declared.in_row(("cell", "step"), declared.field)

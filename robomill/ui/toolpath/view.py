@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import streamlit as st
 
@@ -20,10 +22,10 @@ from robomill.ui.toolpath.summary import (
     worst_first,
     written_in,
 )
+from robomill.ui.verdict import tip_tile, tone, verdict_sentence
 from robomill.units import (
     format_count,
     format_many,
-    format_percent,
     format_short_count,
     format_si,
     format_value,
@@ -76,10 +78,10 @@ def headline(
     lead = f"{format_count(summary.blocks, NOUNS[source.kind])} within {size}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
-    pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit, source), lead)
+    pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit), lead)
 
 
-def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str, source: PathSource) -> str:
+def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str) -> str:
     """The page's one sentence."""
     if reach is None:
         return "The path was read; the arm was not asked."
@@ -88,8 +90,8 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str,
         return f"{format_si(length, unit, 1)} of the cut cannot be reached."
     if result is None or result.worst < 0:
         return "The arm reaches all of the path."
-    worst = format_si(result.max_deviation, unit, 2 if unit == "mm" else 4)
-    return f"All in reach; at most {worst} off, at {source.block_name} {result.worst_block:,}."
+    said = verdict_sentence(result, unit)
+    return f"All in reach; {said[0].lower()}{said[1:]}"
 
 
 def tiles(
@@ -97,7 +99,7 @@ def tiles(
 ) -> None:
     """Length and time, reach, deviation, findings."""
     if path is None:
-        pieces.tiles([pieces.Tile(label, "–") for label in ("At feed", "Reach", "Max deviation", "Shapes")])
+        pieces.tiles([pieces.Tile(label, "–") for label in ("At feed", "Reach", "Tip off its path", "Shapes")])
         return
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
@@ -120,7 +122,7 @@ def tiles(
         found.append(
             pieces.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
         )
-    found.append(_deviation_tile(result, unit, source))
+    found.append(_deviation_tile(result, unit))
     if source.kind != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
         found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[source.kind], f"{summary.blocks:,}", words))
@@ -133,16 +135,7 @@ def tiles(
     pieces.tiles(found)
 
 
-def _deviation_tile(result: SimulationResult | None, unit: str, source: PathSource) -> pieces.Tile:
+def _deviation_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
     if result is None:
-        return pieces.Tile("Max deviation", "–", "not simulated yet")
-    if result.worst < 0:
-        return pieces.Tile("Max deviation", "–", "nothing was reached")
-    tone = {"ok": "ok", "tight": "tight"}.get(result.verdict.level, "out")
-    return pieces.Tile(
-        "Max deviation",
-        format_si(result.max_deviation, unit, 3 if unit == "mm" else 4),
-        f"{source.block_name} {result.worst_block:,} · {format_percent(result.verdict.share)} of the tolerance",
-        tone=tone,
-        kind="computed",
-    )
+        return pieces.Tile("Tip off its path", "–", "not simulated yet")
+    return dataclasses.replace(tip_tile(result, unit), tone=tone(result.verdict))
