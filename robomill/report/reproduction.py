@@ -101,16 +101,22 @@ def _table_2(evidence: Evidence) -> Found:
 def _figure_5(evidence: Evidence) -> Found:
     plane = evidence.plane
     x, values = plane.grid.x, {c: plane.values(f"C_{c}")[:, :, 0] for c in ("xx", "yy", "zz")}
-    right, inner = x >= -1e-9, np.abs(x) <= 0.4 + 1e-9
+    right = x >= -1e-9
     falls = all(
         (np.diff(values[c], axis=1) < 0).all() and (np.diff(values[c][right], axis=0) > 0).all() for c in ("xx", "zz")
     )
-    yy = bool((np.diff(values["yy"][inner], axis=1) > 0).all() and (np.diff(values["yy"][right], axis=0) < 0).all())
+    narrows = bool((np.diff(values["yy"][right], axis=0) < 0).all())
+    grows = (np.diff(values["yy"], axis=1) > 0).all(axis=1)
+    inner = float(np.abs(x[~grows]).min()) if not grows.all() else np.inf  # there C_yy no longer grows with Y
+    reach = float(np.abs(x[np.abs(x) < inner]).max(initial=0.0))
     ranges = ", ".join(f"C_{c} {_span(from_si(v, 'um/N'))}" for c, v in values.items())
-    return Found(
-        f"{ranges} µm/N; {'all trends hold' if falls and yy else 'a trend fails'}",
-        falls and yy,
-    )
+    if falls and narrows and grows.all():
+        words = "all six trends hold"
+    elif falls and narrows:
+        words = f"five of six trends hold all over; C_yy grows with Y for |X| up to {_mm(reach)} only"
+    else:
+        words = "a trend fails"
+    return Found(f"{ranges} µm/N; {words}", falls and narrows and reach > 0.0, {"reach": float(from_si(reach, "mm"))})
 
 
 def _figure_6(evidence: Evidence) -> Found:

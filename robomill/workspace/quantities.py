@@ -135,6 +135,8 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
     )
 
 
+CANCEL = "Parts of different signs cancel: without this joint the cross-compliance may be larger."
+
 _DIRECTIONS = (
     Quantity(
         "C_soft",
@@ -188,7 +190,9 @@ def _dominant(c: str) -> Quantity:
         f"joint that gives most in C_{c}",
         "1",
         f"argmax_i |C_i,{c}|",
-        "Where to stiffen first.",
+        f"Where to stiffen first, if it is C_{c} that matters."
+        if _one_sign(c)
+        else f"The largest part by size. {CANCEL}",
         lambda field: _largest(field, np.abs(field.shares[..., k])),
         colours="joints",
         rests_on="compliance",
@@ -222,7 +226,9 @@ def _share(robot: Robot, c: str, joint: int) -> Quantity:
         f"share of joint {number} in C_{c}",
         "%",
         f"C_{number},{c} / Σ_i |C_i,{c}|",
-        f"The part of C_{c} that would vanish if joint {number} were rigid.",
+        f"The part of C_{c} that would vanish if joint {number} were rigid."
+        if _one_sign(c)
+        else f"Joint {number}'s part of C_{c}, of the sum of all parts' sizes. {CANCEL}",
         law,
         colours=_signed_or_not(c),
         rests_on="compliance",
@@ -230,7 +236,12 @@ def _share(robot: Robot, c: str, joint: int) -> Quantity:
 
 
 def _signed_or_not(c: str) -> Colours:
-    return "sequential" if c[0] == c[1] else "diverging"
+    return "sequential" if _one_sign(c) else "diverging"
+
+
+def _one_sign(c: str) -> bool:
+    """Whether all joints add to a component with one sign: C_θ J_x J_x is never negative, C_θ J_x J_y may be."""
+    return c[0] == c[1]
 
 
 def _largest(field: Cells, size: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from robomill.report.paper import SLOT, TABLES
 from robomill.report.paper_lengths import OURS, TRIED, are_assumed, lengths, over_lengths
 from robomill.report.records import lengths_record
 from tests.paper import arm
-from tests.paper.lengths import LONG, SHORT, as_good, search, with_lengths
+from tests.paper.lengths import C_THETA, LONG, SHORT, X, Y, as_good, search, with_lengths
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml")
 
@@ -70,3 +70,10 @@ def test_the_record_carries_the_range():
     for name, column in zip(("feed", "feed_normal", "axial"), found.T, strict=True):
         np.testing.assert_allclose(record[f"{name}_mm"], [column.min(), column.max()], atol=1e-9)
     assert lengths_record(run, -1) is None
+
+
+def test_with_none_of_them_c_yy_grows_with_y_all_over_the_plane():
+    for each in lengths():
+        with with_lengths(*each):
+            C_yy = arm.shares(X, Y, 0.0, C_THETA).sum(axis=2)[..., 1, 1]
+        assert (np.diff(C_yy, axis=1) <= 0).any()

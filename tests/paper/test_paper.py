@@ -126,6 +126,14 @@ def figure_5(found, evidence):
         assert (np.diff(component(name)[right], axis=0) > 0).all()
     assert (np.diff(component("yy")[inner], axis=1) > 0).all()
     assert (np.diff(component("yy")[right], axis=0) < 0).all()
+    # C_yy grows with Y up to the largest |X| at which every step in Y goes up, and says so.
+    grows = [
+        x
+        for x in np.unique(np.abs(X[:, 0]).round(9))
+        if (np.diff(component("yy")[np.abs(X[:, 0]) < x + 1e-9]) > 0).all()
+    ]
+    assert numbers(found)[-1] == pytest.approx(1e3 * max(grows))
+    assert max(grows) < 0.6
 
 
 def figure_6(found, evidence):

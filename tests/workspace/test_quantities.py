@@ -188,3 +188,19 @@ def test_unknown_quantities_are_refused(name):
         "limit_distance, C_xx ... C_yz, C_soft, C_stiff, dominant, dominant_C_xx ... dominant_C_yz, C_xx_1 ... C_yz_5 "
         "or share_C_xx_1 ... share_C_yz_5."
     )
+
+
+def test_what_a_rigid_joint_does_to_direct_and_to_cross_terms():
+    """A direct share is what vanishes with the joint; a cross-compliance may grow instead, where parts cancel."""
+    robot = rm.load_robot("slavkovic_5r")
+    grid = box_grid([-0.5, -1.5, 0.0], [0.5, -1.1, 0.0], 0.1)
+    known = compliance_field(robot, grid)
+    larger = 0
+    for joint in range(5):
+        C_theta = np.where(np.arange(5) == joint, 0.0, robot.C_theta)
+        rigid = compliance_field(robot.replace(C_theta=C_theta), grid)
+        for c in ("xx", "yy", "zz"):
+            vanished = 1 - rigid.values(f"C_{c}") / known.values(f"C_{c}")
+            np.testing.assert_allclose(known.values(f"share_C_{c}_{joint + 1}"), vanished, atol=1e-12)
+        larger += int((np.abs(rigid.values("C_xy")) > np.abs(known.values("C_xy")) + 1e-12).sum())
+    assert larger > 0
