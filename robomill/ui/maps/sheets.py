@@ -260,8 +260,8 @@ def _dominant(cut: Cut) -> None:
         cut.sheet(rows, {"main": scale}),
         Words(
             "dominant",
-            "The joint with the largest share: where to stiffen first. Parts of cross terms have two signs and cancel: there "
-            "the largest by size is shown, and without it the term may grow.",
+            "The joint with the largest share: where to stiffen first. Parts of cross terms have two signs and cancel: "
+            "there the largest by size is shown, and without it the term may grow.",
             "The joint that gives most, over the plane.",
         ),
         lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
