@@ -1,98 +1,176 @@
-"""Force and deflection that depend on each other, iterated to a fixed point; what happened is part of the answer."""
+"""Force and deflection that depend on each other, solved step by step: the deflected step is cut, then comes the next.
+
+At a step the tip stands off its path by delta, the cutter meets what earlier, deflected steps have left, the force
+follows from what it meets, and C times the force is delta again. Where a deflection draws the tool in (climb cuts on a
+soft arm) going round and round does not settle, so the equation is solved as one: by Broyden's steps from the
+deflection of the step before.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
-from robomill.errors import SetupError
 from robomill.units import format_si
 
-#: Changes that grow this many times in a row are taken for divergence.
-PATIENCE = 3
+TOLERANCE = 0.5e-6  # m: force and deflection agree to this
+MOST = 40  # evaluations of the force at a step
+RESTART = 12  # evaluations after which Broyden's matrix is begun anew from the best place so far
+TURNS = 8  # of the way on which a bracket is halved
+LONGEST = 0.5e-3  # m: no correction goes further at once
 
 
 @dataclass(frozen=True, eq=False)
-class FixedPoint:
-    """Outcome of ``fixed_point``.
+class Settled:
+    """Where g(x) = x: the place x (3,) m, what is left of g(x) - x (m), how often g was asked, and how many times as
+    fast g changed as x did (``gain``, NaN where it was asked once).
 
-    value        the fixed point, or the one-pass answer where there was none
-    one_pass     the answer without coupling, from which the iteration started
-    converged    whether the last change was within the tolerance
-    iterations   how often ``step`` was evaluated
-    changes      largest change of every iteration, in order
-    contraction  last change over the one before; below 1 it closes in, NaN if there were fewer than two
+    ``mix`` are the places whose forces act there, with their weights: one, or two where the force jumps at x (the end
+    of a tool that just touches the part) and so much of either holds the tool there.
     """
 
-    value: FloatArray
-    one_pass: FloatArray
-    converged: bool
-    iterations: int
-    changes: tuple[float, ...]
-    contraction: float
+    x: FloatArray
+    rest: float
+    evaluations: int
+    gain: float
+    mix: tuple[tuple[FloatArray, float], ...]
 
     @property
-    def difference(self) -> float:
-        """Largest difference of ``value`` to the one-pass answer (0 if that was kept)."""
-        return _largest(self.value - self.one_pass)
+    def agreed(self) -> bool:
+        return self.rest <= TOLERANCE
+
+
+def settle(g: Callable[[FloatArray], FloatArray], start: FloatArray, free: FloatArray) -> Settled:
+    """Solve g(x) = x near ``start`` (3,) m, to ``TOLERANCE`` in every component; ``free`` (3,) m is x without a force.
+
+    Broyden's method on g(x) - x, whose first step is x <- g(x); where it does not close in, a bracket on the way from
+    ``free`` to where the force there would bend the tool. A g that is not a number ends it.
+    """
+    found = _by_broyden(g, start)
+    if found.agreed or not np.isfinite(found.rest):
+        return found
+    held = _by_bracket(g, free)
+    better = held if held.rest < found.rest else found
+    return replace(better, evaluations=found.evaluations + held.evaluations, gain=found.gain)
+
+
+def _by_broyden(g: Callable[[FloatArray], FloatArray], start: FloatArray) -> Settled:
+    x, H = np.array(start, dtype=float), -np.eye(3)
+    f = g(x) - x
+    best, gain, count = (x, f), float("nan"), 1
+    while np.isfinite(f).all() and np.abs(f).max() > TOLERANCE and count < MOST:
+        step = -H @ f
+        step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), LONGEST))
+        after = g(x + step) - (x + step)
+        change = after - f
+        gain = float(np.linalg.norm(change + step) / np.linalg.norm(step))
+        x, f, count = x + step, after, count + 1
+        if np.isfinite(f).all() and np.abs(f).max() < np.abs(best[1]).max():
+            best = x, f
+        along = step @ H @ change
+        if abs(along) > 1e-12 * float(step @ step):
+            H = H + np.outer(step - H @ change, step @ H) / along
+        if count % RESTART == 0:
+            (x, f), H = best, -np.eye(3) / (1.0 + count / RESTART)
+    if np.isfinite(f).all():
+        x, f = best
+    rest = float(np.abs(f).max()) if np.isfinite(f).all() else float("nan")
+    return Settled(x, rest, count, gain, ((x, 1.0),))
+
+
+def _by_bracket(g: Callable[[FloatArray], FloatArray], free: FloatArray) -> Settled:
+    """Halve the way from ``free`` to where the force would bend the tool until its ends are one place; they may push
+    differently. Where both together push another way than that, go that way."""
+    way = g(free) - free
+    found = Settled(free, float("nan"), 1, float("nan"), ((free, 1.0),))
+    for _ in range(TURNS):
+        length = float(np.linalg.norm(way))
+        if not (np.isfinite(length) and length > 0.0):
+            break
+        after, pushed = _halved(g, free, way)
+        found = replace(after, evaluations=found.evaluations + after.evaluations)
+        if found.agreed or not np.isfinite(found.rest):
+            break
+        way = (pushed - free) * (length / max(float(np.linalg.norm(pushed - free)), 1e-12))
+    return found
+
+
+def _halved(g: Callable[[FloatArray], FloatArray], free: FloatArray, way: FloatArray) -> tuple[Settled, FloatArray]:
+    """The place on a straight way (3,) m from ``free`` where g falls behind, and g there, of both sides together."""
+    length = float(np.linalg.norm(way))
+    along, low, high = way / length, 0.0, 1.0
+    at_low, at_high, count = g(free), g(free + way), 2
+    while (high - low) * length > 0.1 * TOLERANCE and count < MOST:
+        middle = 0.5 * (low + high)
+        there = g(free + middle * way)
+        count += 1
+        if (there - free) @ along > middle * length:
+            low, at_low = middle, there
+        else:
+            high, at_high = middle, there
+    x = free + 0.5 * (low + high) * way
+    apart = float((at_low - at_high) @ along)
+    weight = float(np.clip((x - at_high) @ along / apart, 0.0, 1.0)) if apart > 0.0 else 1.0
+    pushed = weight * at_low + (1.0 - weight) * at_high
+    mix = ((free + low * way, weight), (free + high * way, 1.0 - weight))
+    return Settled(x, float(np.abs(pushed - x).max()), count, float("nan"), mix), pushed
+
+
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """How force and deflection were brought to agree along a path.
+
+    settled       by step, in order     steps    (n,) their samples
+    lines         source lines where they do not agree
+    difference    m, largest difference of any component from the answer without coupling
+    """
+
+    settled: tuple[Settled, ...]
+    lines: tuple[int, ...]
+    difference: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether they agree at every step."""
+        return not self.lines
+
+    @property
+    def iterations(self) -> int:
+        """Most evaluations of the force that a step took."""
+        return max((each.evaluations for each in self.settled), default=0)
+
+    @property
+    def mean_iterations(self) -> float:
+        """Evaluations of the force a step."""
+        return float(np.mean([each.evaluations for each in self.settled])) if self.settled else 0.0
 
     @property
     def sentence(self) -> str:
-        """For the result, where the values are lengths in m."""
-        count = f"{self.iterations} iteration{'' if self.iterations == 1 else 's'}"
-        if self.converged:
-            rate = "" if np.isnan(self.contraction) else f", each change {self.contraction:.2g} of the one before"
+        """For the notes of the result."""
+        tolerance = format_si(TOLERANCE, "um", 1)
+        if not self.lines:
             return (
-                f"Coupling converged after {count}{rate}; "
-                f"it differs from one pass by at most {format_si(self.difference, 'um')}."
+                f"Coupling: force and deflection agree to {tolerance} at every step ({self.mean_iterations:.1f} "
+                f"evaluations a step, at most {self.iterations}); against one pass the deflection differs by at most "
+                f"{format_si(self.difference, 'um')}."
             )
-        if not self.changes or not np.isfinite(self.changes[-1]):
-            last = "the answer was lost (not a number)"
-        else:
-            last = f"the last change was {format_si(self.changes[-1], 'um')}"
-            if not np.isnan(self.contraction):
-                last += f", {self.contraction:.2g} of the one before"
-        return f"Coupling does not converge: after {count} {last}; the one-pass answer is kept."
+        return f"Coupling: on line {named(self.lines)} {self.why}."
+
+    @property
+    def why(self) -> str:
+        """What is left where they do not agree, and how steeply the force changes there."""
+        open_ = [each for each in self.settled if not each.agreed]
+        worst = max(open_, key=lambda each: each.rest)
+        return (
+            f"force and deflection do not agree: {format_si(worst.rest, 'um')} remain after {worst.evaluations} "
+            f"evaluations, since there the force, times the compliance, changes {worst.gain:.1f} times as fast as the "
+            "tool's place"
+        )
 
 
-def fixed_point(
-    step: Callable[[FloatArray], FloatArray], start: ArrayLike, tol: float, max_iter: int = 20
-) -> FixedPoint:
-    """Iterate x <- step(x) from ``start``, the one-pass answer, until no entry changes by more than ``tol``.
-
-    ``step`` takes and gives arrays of one shape; entries that are NaN before and after (unreached) do not count.
-    Gives up, keeping ``start``, when the changes grow ``PATIENCE`` times in a row, when a number becomes NaN or
-    infinite, or after ``max_iter`` evaluations. Raises SetupError for a tolerance that is not greater than 0 or no
-    iteration at all.
-    """
-    if not (tol > 0.0 and np.isfinite(tol)):
-        raise SetupError(f"Coupling: the tolerance is {tol:g}; it must be greater than 0.", where="tolerance")
-    if max_iter < 1:
-        raise SetupError(f"Coupling: {max_iter} iterations; it takes at least 1.", where="max_iter")
-    one_pass = x = np.array(start, dtype=np.float64)
-    changes: list[float] = []
-    iterations, grown, converged = 0, 0, False
-    while iterations < max_iter and not converged and grown < PATIENCE:
-        after = np.asarray(step(x), dtype=np.float64)
-        iterations += 1
-        changes.append(_largest(after - x, where=~(np.isnan(after) & np.isnan(x))))
-        x = after
-        if not np.isfinite(changes[-1]):
-            break
-        converged = changes[-1] <= tol
-        grown = grown + 1 if len(changes) > 1 and changes[-1] >= changes[-2] else 0
-    contraction = changes[-1] / changes[-2] if len(changes) > 1 and changes[-2] > 0.0 else np.nan
-    return FixedPoint(x if converged else one_pass, one_pass, converged, iterations, tuple(changes), contraction)
-
-
-def _largest(change: FloatArray, where: np.ndarray | None = None) -> float:
-    """Largest size of the entries; NaN entries count as infinite unless excluded (by ``where``, or all if None)."""
-    size = np.abs(change)
-    counted = size[where] if where is not None else size[~np.isnan(size)]
-    if not counted.size:
-        return 0.0
-    return float(np.max(np.where(np.isnan(counted), np.inf, counted)))
+def named(lines: tuple[int, ...]) -> str:
+    """The first few source lines: ``"3, 5, 9 and more"``."""
+    return ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from robomill.errors import SetupError
 from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
+from robomill.surface.engagement import Engagement, engage
+from robomill.surface.march import March
 from robomill.surface.stock_unit import unit_doubt
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_short
@@ -21,38 +24,41 @@ from robomill.units import format_short
 SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
 
 
-def cut_conditions(
-    setup: SimulationSetup, path: Toolpath, reached: BoolArray, p: FloatArray | None = None
-) -> CutConditions:
-    """Conditions at each sample of ``path``.
+def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> CutConditions:
+    """What the program alone says of every sample: feeds, speeds, tools, and a full slot as deep as the tip stands."""
+    a_p = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0)
+    told = CutConditions.steady(
+        path.v_f,
+        path.n_s,
+        np.nan_to_num(a_p),
+        s=path.s,
+        t=record_time(setup, path) if setup.force.in_time else path.t,
+        cutting=path.cutting & reached,
+        across=at_starts(path, feed_share(path.p, path.k)),
+        along=at_starts(path, feed_along(path.p, path.k)),
+        ccw=path.ccw,
+        block=path.block,
+    )
+    return replace(told, tooling=tooling(setup, path))
 
-    ``p`` (m, 3) m in {W}: where the tip really goes, if not where it was told to (coupled runs).
-    """
-    tip = path.p if p is None else p
-    cutting = path.cutting & reached
-    common: dict[str, Any] = {
-        "v_f": path.v_f,
-        "n_s": path.n_s,
-        "s": path.s,
-        "t": record_time(setup, path) if setup.force.in_time else path.t,
-        "cutting": cutting,
-        "across": at_starts(path, feed_share(path.p, path.k)),
-        "along": at_starts(path, feed_along(path.p, path.k)),
-        "ccw": path.ccw,
-        "block": path.block,
-        "tooling": tooling(setup, path),
-    }
-    if not setup.engagement:
-        a_p = np.maximum(setup.stock_block.upper[2] - tip[:, 2], 0.0)
-        return CutConditions.steady(a_p=np.nan_to_num(a_p), **common)
-    from robomill.surface.engagement import engage
-    from robomill.surface.march import March
 
+def cut_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> CutConditions:
+    """What is told, with what each step meets where the tool goes as it is told."""
+    return met_conditions(path, told, engage(through_stock(setup, path, told)))
+
+
+def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> March:
+    """The path through its stock, ready to be marched."""
+    assert told.tooling is not None
     exponents = setup.force.exponents or (0.0,)
-    found = engage(March(setup.stock_block, setup.cell, common["tooling"], path.p, path.k, cutting, exponents, tip))
+    return March(setup.stock_block, setup.cell, told.tooling, path.p, path.k, told.cutting, exponents)
+
+
+def met_conditions(path: Toolpath, told: CutConditions, found: Engagement) -> CutConditions:
+    """What was told, with what each step really meets; a step of no length takes that of the step it begins."""
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex", "reach")}
     sums = (at_starts(path, each) for each in (found.part.moments, found.part.spans))
-    return CutConditions(**arc, **common, part=EngagedPart(found.part.exponents, *sums))
+    return replace(told, **arc, part=EngagedPart(found.part.exponents, *sums))
 
 
 def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:
@@ -103,7 +109,7 @@ def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, .
     notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.notes]
     if setup.stock is not None and (doubt := unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)):
         notes.append(doubt)
-    if not setup.engagement and hasattr(setup.force, "material"):
+    if not setup.engagement and setup.force.follows_cut:
         notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
     if conditions.a_p.any():
         notes += cut_warnings(setup.cutter, conditions)

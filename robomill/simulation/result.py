@@ -14,7 +14,7 @@ from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.inverse import IKResult
 from robomill.provenance import Finding
-from robomill.simulation.coupling import FixedPoint
+from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
@@ -59,7 +59,7 @@ class SimulationResult:
     delta_spring: FloatArray
     delta: FloatArray
     sag: FloatArray | None = None
-    coupling: FixedPoint | None = None
+    coupling: Coupling | None = None
     unjudged: tuple[Unjudged, ...] = ()
 
     @cached_property

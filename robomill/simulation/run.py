@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.compliance.gravity import LinkMasses, gravity_sag
 from robomill.compliance.spring import extra_contributions
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import feed_frame, force_on_tool
+from robomill.cutting.force import feed_frame
+from robomill.cutting.unjudged import Unjudged
 from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world
-from robomill.simulation.coupling import FixedPoint, fixed_point
-from robomill.simulation.cut import cut_conditions, moved_points
+from robomill.simulation.coupling import Coupling
+from robomill.simulation.cut import cut_conditions, told_conditions
 from robomill.simulation.mapped import beyond_map, total_compliance
+from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import at_starts, sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import farther, held
 from robomill.toolpath.path import Toolpath
-
-COUPLING_TOLERANCE = 1e-8
-COUPLING_ITERATIONS = 40
 
 
 def simulate(setup: SimulationSetup) -> SimulationResult:
@@ -43,9 +44,9 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     C_joint, C_spring = compliances(setup, path, ik.theta)
     C = total_compliance(setup, path, C_joint, C_spring)
     sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
-    offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros(3)
-    R_MF = feed_directions(setup, path)
-    conditions, F, coupling = forces(setup, path, ik.reached, R_MF, C, offset)
+    offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
+    bent = Bent(setup, path, told_conditions(setup, path, ik.reached), C, feed_directions(setup, path), offset)
+    conditions, F, unjudged, coupling = forces(bent)
     return SimulationResult(
         setup=setup,
         path=path,
@@ -54,14 +55,14 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
         C_spring=C_spring,
         C=C,
         conditions=conditions,
-        R_MF=R_MF,
+        R_MF=bent.R_MF,
         F=F,
         delta_joint=deflection(C_joint, F),
         delta_spring=deflection(C_spring, F),
-        delta=bend(C, F) + offset,
+        delta=_known(bent.delta(F), unjudged),
         sag=sag,
         coupling=coupling,
-        unjudged=beyond_map(setup, path, ik.reached),
+        unjudged=unjudged + beyond_map(setup, path, ik.reached),
     )
 
 
@@ -82,12 +83,13 @@ def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:
     T_MT = tool_poses(setup, path)
     ik = inverse_kinematics(setup.robot, T_MT, near="path")
     C = total_compliance(setup, path, *compliances(setup, path, ik.theta))
-    R_MF = feed_directions(setup, path)
-    F = forces(setup.replace(coupling=False), path, ik.reached, R_MF, C, np.zeros(3))[1]
+    told = told_conditions(setup, path, ik.reached)
+    bent = Bent(setup.replace(coupling=False), path, told, C, feed_directions(setup, path), np.zeros((len(path), 3)))
+    F = forces(bent)[1]
 
     def largest(theta: FloatArray) -> float:
-        delta = bend(total_compliance(setup, path, *compliances(setup, path, theta)), F)
-        size = np.linalg.norm(delta, axis=1)[path.cutting]
+        C = total_compliance(setup, path, *compliances(setup, path, theta))
+        size = np.linalg.norm(replace(bent, C=C).delta(F), axis=1)[path.cutting]
         return float(np.nanmax(size)) if np.isfinite(size).any() else float("nan")
 
     return over_spins(setup.robot, T_MT, largest)
@@ -113,38 +115,23 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
     return sag
 
 
-def forces(
-    setup: SimulationSetup, path: Toolpath, reached: BoolArray, R_MF: FloatArray, C: FloatArray, offset: FloatArray
-) -> tuple[CutConditions, FloatArray, FixedPoint | None]:
-    """Conditions and force F (m, 3) N in {M}; coupled runs iterate until force and deflection agree."""
-
-    def pushed(delta: FloatArray | None) -> tuple[CutConditions, FloatArray]:
-        p = None if delta is None else moved_points(setup.T_MW, path, reached, delta)
-        conditions = cut_conditions(setup, path, reached, p)
-        force = force_on_tool(setup.force, conditions, R_MF)
-        if setup.engagement and setup.force.ends_with_material:
-            force = np.where(conditions.engaged[:, None], force, 0.0)  # a stated force ends with the material
-        return conditions, force
-
-    conditions, F = pushed(None)
+def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...], Coupling | None]:
+    """Conditions, force F (m, 3) N in {M}, what it has no model for, and how a coupled run was solved."""
+    setup, path = bent.setup, bent.path
+    conditions = bent.told if not setup.engagement else cut_conditions(setup, path, bent.told)
+    F = bent.force(conditions, bent.R_MF)
     if not setup.coupling:
-        return conditions, F, None
-
-    C = np.nan_to_num(C)
-
-    def again(delta: FloatArray) -> FloatArray:
-        return bend(C, pushed(delta)[1]) + offset
-
-    coupling = fixed_point(again, bend(C, F) + offset, COUPLING_TOLERANCE, COUPLING_ITERATIONS)
-    if not coupling.converged:
-        return conditions, F, coupling
-    conditions, F = pushed(coupling.value)
-    return conditions, F, coupling
+        return conditions, F, setup.force.unjudged(conditions), None
+    coupled = march_coupled(bent, bent.delta(F))
+    reasons = setup.force.unjudged(coupled.conditions) + coupled.unjudged
+    return coupled.conditions, coupled.F, reasons, coupled.coupling
 
 
-def bend(C: FloatArray, F: FloatArray) -> FloatArray:
-    """delta = C F, eq. (15), along the path."""
-    return np.einsum("mij,mj->mi", C, F)
+def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:
+    """``delta`` (m, 3), NaN where it is not judged."""
+    for each in unjudged:
+        delta = np.where(each.where[:, None], np.nan, delta)
+    return delta
 
 
 def tool_poses(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -41,9 +41,13 @@ class Engagement:
 
 def engage(march: March) -> Engagement:
     """March a path through its stock, from the first step to the last, and return the engagement of each step."""
-    rows, spans, lost = march.run()
-    count = len(march.exponents)
+    return engagement(march.exponents, *march.run())
+
+
+def engagement(exponents: tuple[float, ...], rows: FloatArray, spans: FloatArray, lost: int = 0) -> Engagement:
+    """Rows and spans of what steps meet (see ``March``), by name."""
+    count = len(exponents)
     moments = rows[:, : MOMENTS * count].reshape(len(rows), count, MOMENTS)
     phi_st, phi_ex, a_p, a_e, reach = (frozen(column) for column in rows[:, MOMENTS * count :].T[:5])
-    part = EngagedPart(march.exponents, moments, np.asarray(spans))
+    part = EngagedPart(exponents, moments, np.asarray(spans))
     return Engagement(phi_st, phi_ex, a_p, a_e, reach, part, lost)

@@ -1,87 +1,138 @@
-"""Fixed points: contractions with a known answer, divergence said and the one pass kept."""
+"""Coupled runs: shoulder cuts against root finding with a force integrated tooth by tooth; brackets; what is said."""
+
+from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq, fsolve
 
-from robomill.errors import SetupError
-from robomill.simulation.coupling import fixed_point
+import robomill as rm
+from robomill.io.samples import samples_dir
+from robomill.simulation.coupling import MOST, TOLERANCE, settle
+from robomill.simulation.run import simulate
+from robomill.surface.stock import Stock
+from robomill.toolpath.source import GCodeSource
 
-GOAL = np.array([1.0, -2.0, 0.5])
-
-
-@pytest.mark.parametrize("q", [0.0, 0.1, 0.5, -0.6, 0.9])
-def test_contraction_reaches_its_fixed_point(q):
-    result = fixed_point(lambda x: GOAL + q * (x - GOAL), np.zeros(3), tol=1e-9, max_iter=300)
-    assert result.converged
-    np.testing.assert_allclose(result.value, GOAL, atol=1.01e-9 * max(abs(q) / (1 - abs(q)), 1e-3))
-    assert not result.one_pass.any()
-    assert result.difference == pytest.approx(2.0, abs=1e-7)
-    if q:
-        assert result.contraction == pytest.approx(abs(q), rel=1e-3)
-        # The k-th change is 2 (1 - q) |q|^(k-1).
-        expected = 1 + np.log(1e-9 / (2 * (1 - q))) / np.log(abs(q))
-        assert result.iterations == pytest.approx(expected, abs=1.01)
+R, FEED, SPEED = 4e-3, 0.03, 200.0
+BLOCK = Stock([-20e-3, 0.0, -10e-3], [20e-3, 30e-3, 0.0])
+SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(stock=BLOCK, coupling=True)
 
 
-def test_order_of_a_smooth_contraction_and_its_message():
-    result = fixed_point(lambda x: 0.2e-3 * np.cos(x * 1e3), np.zeros((4, 3)), tol=1e-12)
-    assert result.converged
-    np.testing.assert_allclose(result.value, 0.2e-3 * np.cos(result.value * 1e3), atol=1e-12)
-    assert result.sentence.startswith(f"Coupling converged after {result.iterations} iterations, each change 0.03")
-    assert "differs from one pass by at most" in result.sentence
+def shoulder_force(setup, a_e: float, a_p: float, left: bool) -> np.ndarray:
+    """Mean force on the tool (feed, left, axial) of a shoulder, by adding up teeth over a turn; the material's own
+    coefficients, a flat mill whose right-hand helix pulls it towards the part."""
+    cutter = setup.cutter
+    width = float(np.clip(a_e, 0.0, 2 * R))
+    arc = np.arccos(1.0 - width / R)
+    low, high = (0.0, arc) if left else (np.pi - arc, np.pi)
+    n = 4000
+    phi = low + (np.arange(n) + 0.5) * (high - low) / n
+    c = FEED / (SPEED * cutter.flutes)
+    F = np.zeros(3)
+    for term in setup.force.material.terms:
+        h = (c * np.sin(phi)) ** term.exponent
+        tangential, radial, axial = term.Kt * h, term.Kr * h, term.Ka * h
+        F[0] += (-tangential * np.cos(phi) - radial * np.sin(phi)).mean()
+        F[1] += (tangential * np.sin(phi) - radial * np.cos(phi)).mean()
+        F[2] += -axial.mean()
+    return F * max(a_p, 0.0) * cutter.flutes * (high - low) / (2 * np.pi)
 
 
-@pytest.mark.parametrize("q", [-1.0, 1.3, -2.0])
-def test_divergence_is_said_and_the_one_pass_kept(q):
-    result = fixed_point(lambda x: GOAL + q * (x - GOAL), np.zeros(3), tol=1e-9, max_iter=50)
-    assert not result.converged
-    np.testing.assert_array_equal(result.value, result.one_pass)
-    assert result.iterations <= 6
-    assert result.difference == 0.0
-    assert "does not converge" in result.sentence
-    assert "the one-pass answer is kept" in result.sentence
+def shoulder(a_e: float, left: bool, a_p: float = 2e-3):
+    """A pass along the block's edge, with the material to the left (conventional) or right (climb) of the feed."""
+    y = 1e3 * (a_e - R)
+    ends = (-30, 30) if left else (30, -30)
+    text = f"G21 G90 S12000 M3\nG0 X{ends[0]} Y{y:.6f} Z5\nG0 Z-{1e3 * a_p:g}\nG1 X{ends[1]} F1800\nG0 Z5\nM2\n"
+    return simulate(SETUP.replace(source=GCodeSource(text)))
 
 
-def test_slow_convergence_stops_at_the_limit():
-    result = fixed_point(lambda x: GOAL + 0.99 * (x - GOAL), np.zeros(3), tol=1e-9, max_iter=7)
-    assert (result.converged, result.iterations, len(result.changes)) == (False, 7, 7)
-    assert "0.99 of the one before" in result.sentence
+@pytest.mark.parametrize("left", [True, False], ids=["conventional", "climb"])
+@pytest.mark.parametrize("a_e", [0.4e-3, 2e-3, 5e-3, 6.5e-3])
+def test_shoulders_agree_with_root_finding(a_e, left):
+    run = shoulder(a_e, left)
+    assert run.coupling.converged
+    for at in (-10e-3, 0.0, 10e-3):
+        i = int(np.argmin(np.abs(run.path.p[:, 0] - at) + 1.0 * ~run.path.cutting))
+        C, axes = run.C[i], run.R_MF[i]
+
+        def remains(d, C=C, axes=axes):
+            into = d[1] if left else -d[1]
+            F = shoulder_force(run.setup, a_e + into, 2e-3 - d[2], left)
+            return axes.T @ (C @ (axes @ F)) - d
+
+        truth, _, found, _ = fsolve(remains, np.zeros(3), full_output=True, xtol=1e-12)
+        if found != 1 or np.abs(remains(truth)).max() > 1e-9:  # from another start, where it does not close in
+            truth, _, found, _ = fsolve(remains, run.delta_in_cut[i], full_output=True, xtol=1e-12)
+        assert np.abs(remains(truth)).max() < 1e-9
+        np.testing.assert_allclose(run.delta_in_cut[i], truth, atol=1e-6)
 
 
-def test_numbers_lost_on_the_way():
-    calls = []
-
-    def breaks(x):
-        calls.append(x)
-        return np.full(3, np.nan) if len(calls) == 3 else GOAL * len(calls)
-
-    result = fixed_point(breaks, np.zeros(3), tol=1e-9)
-    assert not result.converged
-    np.testing.assert_array_equal(result.value, 0.0)
-    assert "not a number" in result.sentence
+def test_coupling_matters_and_says_how_much():
+    run, plain = shoulder(5e-3, False), simulate(shoulder(5e-3, False).setup.replace(coupling=False))
+    assert run.coupling.difference == pytest.approx(float(np.nanmax(np.abs(run.delta - plain.delta))), abs=1e-9)
+    assert run.coupling.difference > 3e-6
+    assert any("Coupling" in note for note in run.notes)
 
 
-def test_unreached_steps_do_not_count():
-    def step(x):
-        y = GOAL + 0.1 * (x - GOAL)
-        y[1] = np.nan
-        return y
+def test_a_later_pass_meets_what_a_deflected_one_has_left():
+    """The same shoulder cut twice: where the first pass was pushed out of the material, the second finds the rest, and
+    its own deflection is the root of the smaller cut."""
+    a_e, y = 2e-3, 1e3 * (2e-3 - R)
+    cut = f"G0 X-30 Y{y:.6f}\nG0 Z-2\nG1 X30 F1800\nG0 Z5\n"
+    run = simulate(SETUP.replace(source=GCodeSource(f"G21 G90 S12000 M3\n{cut}{cut}M2\n")))
+    assert run.coupling.converged
+    first, second = (
+        int(np.argmin(np.abs(run.path.p[:, 0]) + 1.0 * ~(run.path.cutting & (run.path.block == block))))
+        for block in (4, 8)
+    )
+    gone = run.delta_in_cut[first]
+    C, axes = run.C[second], run.R_MF[second]
+    assert gone[1] > 0.0  # into the material, deeper than told: the second pass meets a floor only where it is deeper
 
-    result = fixed_point(step, [0.0, np.nan, 0.0], tol=1e-9)
-    assert result.converged
-    np.testing.assert_allclose(result.value[[0, 2]], GOAL[[0, 2]], atol=1e-9)
-    assert np.isnan(result.value[1])
-    assert np.isfinite(result.difference)
+    def remains(push):
+        d = axes.T @ (C @ (axes @ shoulder_force(run.setup, max(push - gone[1], 0.0), 2e-3, True)))
+        return d[1] - push
+
+    assert remains(0.0) <= 0.0 or brentq(remains, 0.0, 1e-3) < gone[1]
+    assert np.linalg.norm(run.F[second]) < 0.2 * np.linalg.norm(run.F[first])
+    assert a_e > 0
 
 
-def test_no_coupling_at_all_takes_one_iteration():
-    result = fixed_point(lambda x: GOAL, GOAL, tol=1e-9)
-    assert (result.converged, result.iterations, result.difference) == (True, 1, 0.0)
-    assert result.sentence == "Coupling converged after 1 iteration; it differs from one pass by at most 0.0 µm."
+def test_the_pocket_sample_is_solved_at_every_step():
+    setup = rm.load_setup(samples_dir() / "pocket_arcs")
+    run = simulate(setup.replace(coupling=True, step=2e-3))
+    assert run.coupling.converged
+    assert not run.not_judged.any()
+    bent = np.einsum("mij,mj->mi", run.C, run.F)
+    np.testing.assert_allclose(run.delta[run.judged], bent[run.judged], atol=1e-12)
 
 
-def test_refusals():
-    with pytest.raises(SetupError, match="tolerance is 0; it must be greater than 0"):
-        fixed_point(lambda x: x, 0.0, tol=0.0)
-    with pytest.raises(SetupError, match="0 iterations; it takes at least 1"):
-        fixed_point(lambda x: x, 0.0, tol=1.0, max_iter=0)
+@pytest.mark.parametrize("q", [0.0, 0.5, -0.6, -1.0, -3.0, 0.99, -50.0])
+def test_a_straight_law_is_solved_whatever_its_slope(q):
+    """Going round and round closes in only for |q| < 1."""
+    goal = np.array([1e-4, -2e-4, 0.5e-4])
+    found = settle(lambda x: goal + q * (x - goal), np.zeros(3), np.zeros(3))
+    assert found.agreed
+    np.testing.assert_allclose(found.x, goal, atol=TOLERANCE / abs(1 - q) * 1.01)
+    assert found.evaluations < 12
+
+
+def test_a_force_that_jumps_is_held_at_the_jump():
+    """A wall at 30 um that pushes back 200 um as soon as it is touched: the tool rests on it with a part of that."""
+
+    def bends(x):
+        return np.array([50e-6, 10e-6, 0.0]) - (np.array([200e-6, 0.0, 0.0]) if x[0] > 30e-6 else 0.0)
+
+    found = settle(bends, np.zeros(3), np.zeros(3))
+    assert found.agreed
+    assert found.x[0] == pytest.approx(30e-6, abs=TOLERANCE)
+    pushed = sum(weight * bends(place) for place, weight in found.mix)
+    np.testing.assert_allclose(pushed, found.x, atol=TOLERANCE)
+    assert len(found.mix) == 2
+
+
+def test_what_is_not_a_number_ends_it():
+    found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3))
+    assert not found.agreed
+    assert np.isnan(found.rest)
+    assert found.evaluations <= MOST

@@ -14,7 +14,7 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
 from robomill.ui import pieces, session
 from robomill.ui.milling import scrubber as linked
-from robomill.units import format_si, format_significant, from_si
+from robomill.units import format_si, from_si
 from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
 
 NAMES = ("feed", "feed-normal", "axial")
@@ -157,11 +157,10 @@ def coupling_facts(result: SimulationResult) -> None:
         return
     if not coupling.converged:
         return  # said beside its switch
-    known = not np.isnan(coupling.contraction)
-    rate = f"each change {format_significant(coupling.contraction, 2)} of the last" if known else "one step sufficed"
+    rate = f"a step, {coupling.iterations} at most"
     pieces.facts(
         [
-            ("Coupling", f"{coupling.iterations} iterations", rate),
+            ("Coupling", f"{coupling.mean_iterations:.1f} evaluations", rate),
             ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
         ]
     )

@@ -1,0 +1,148 @@
+"""A coupled run: each step is solved for its deflection, cut where it stands, and the next meets what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import force_on_tool
+from robomill.cutting.tooling import Tooling
+from robomill.cutting.unjudged import Unjudged
+from robomill.simulation.coupling import Coupling, Settled, settle
+from robomill.simulation.cut import met_conditions, through_stock
+from robomill.simulation.setup import SimulationSetup
+from robomill.surface.engagement import engagement
+from robomill.surface.march import March
+from robomill.toolpath.path import Toolpath
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """What bends the tool along a path: compliance C (m, 3, 3) m/N, feed frames R_MF (m, 3, 3) and a displacement
+    ``offset`` (m, 3) m that the force does not cause, all in {M}; ``told`` are the conditions by the program alone.
+    """
+
+    setup: SimulationSetup
+    path: Toolpath
+    told: CutConditions
+    C: FloatArray
+    R_MF: FloatArray
+    offset: FloatArray
+
+    def force(self, conditions: CutConditions, R_MF: FloatArray) -> FloatArray:
+        """Force on the tool (k, 3) N in {M}; a stated force ends with the material."""
+        force = force_on_tool(self.setup.force, conditions, R_MF)
+        if self.setup.engagement and self.setup.force.ends_with_material:
+            force = np.where(conditions.engaged[:, None], force, 0.0)
+        return force
+
+    def delta(self, F: FloatArray) -> FloatArray:
+        """(m, 3) m: C F, eq. (15), and the offset."""
+        return np.asarray(np.einsum("mij,mj->mi", self.C, F) + self.offset)
+
+
+@dataclass(frozen=True, eq=False)
+class Coupled:
+    """Conditions and force F (m, 3) N of a coupled run, how they were found, and where they were not."""
+
+    conditions: CutConditions
+    F: FloatArray
+    coupling: Coupling
+    unjudged: tuple[Unjudged, ...]
+
+
+def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
+    """March the path with every step where its own force bends it to; ``one_pass`` (m, 3) m is the answer without."""
+    path, told = bent.path, bent.told
+    march = through_stock(bent.setup, path, told)
+    walk = _Walk(bent, march, np.zeros((len(path), 3)))
+    rows, spans, settled = walk.every_step()
+    found = engagement(march.exponents, rows, spans)
+    conditions = met_conditions(path, told, found)
+    F = bent.force(conditions, bent.R_MF)
+    open_ = np.zeros(len(path), dtype=bool)
+    for i, each in settled.items():
+        open_[i] = np.isfinite(each.rest) and not each.agreed
+    lines = tuple(sorted(set(path.block[open_].tolist())))
+    with np.errstate(invalid="ignore"):
+        difference = float(np.nanmax(np.abs(bent.delta(F) - one_pass)[told.cutting], initial=0.0))
+    coupling = Coupling(tuple(settled.values()), lines, difference)
+    reasons = (Unjudged("coupling", open_, coupling.why),) if lines else ()
+    return Coupled(conditions, F, coupling, reasons)
+
+
+@dataclass(frozen=True, eq=False)
+class _Walk:
+    """The steps of a march one after the other; ``moved`` (m, 3) m in {M} is where each sample went."""
+
+    bent: Bent
+    march: March
+    moved: FloatArray
+
+    def every_step(self) -> tuple[FloatArray, FloatArray, dict[int, Settled]]:
+        """Rows and spans of what each step meets, and how it was settled."""
+        first = self.march.meet(int(self.march.steps[0]), *self.march.points[[0, 0]]) if len(self.march.steps) else None
+        m = len(self.bent.path)
+        rows = np.zeros((m, 0 if first is None else len(first[0])))
+        spans = np.empty((m, *(first[1].shape if first is not None else (0, 2))))
+        spans[...] = np.inf, -np.inf
+        settled: dict[int, Settled] = {}
+        for i in map(int, self.march.steps):
+            settled[i], rows[i], spans[i] = self._step(i)
+        return rows, spans, settled
+
+    def _step(self, i: int) -> tuple[Settled, FloatArray, FloatArray]:
+        """Solve step i and cut it: how it was settled, and what it meets, row and spans."""
+        bent, p, to_W = self.bent, self.march.points, self.bent.setup.T_MW[:3, :3]
+        told = _only(bent.told, i)
+
+        def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
+            shift = np.nan_to_num(delta) @ to_W
+            return self.march.meet(i, p[i - 1] + shift, p[i] + shift)
+
+        def pushed(row: FloatArray, spans: FloatArray) -> FloatArray:
+            found = engagement(self.march.exponents, row[None], spans[None])
+            arc = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
+            return bent.force(replace(told, **arc), bent.R_MF[i : i + 1])[0]
+
+        def bends(delta: FloatArray) -> FloatArray:
+            return np.asarray(bent.C[i] @ pushed(*meets(delta)) + bent.offset[i])
+
+        found = settle(bends, self.moved[i - 1], np.nan_to_num(bent.offset[i]))
+        met = [meets(place) for place, _ in found.mix]
+        row = sum((weight * row for (_, weight), (row, _) in zip(found.mix, met)), start=np.zeros(len(met[0][0])))
+        self._move(i, pushed(row, met[0][1]))
+        self.march.cut(i, p[i - 1] + self.moved[i - 1] @ to_W, p[i] + self.moved[i] @ to_W)
+        return found, row, met[0][1]
+
+    def _move(self, i: int, F: FloatArray) -> None:
+        """Put sample i where F (3,) N bends it to, with samples of no length that begin the step; a rapid before them
+        arrives there."""
+        path = self.bent.path
+        self.moved[i] = self._bent(i, F)
+        j = i - 1
+        while j > 0 and path.cutting[j] and path.step_length[j] == 0.0:
+            self.moved[j] = self._bent(j, F)
+            j -= 1
+        if not path.cutting[j]:
+            self.moved[j] = self.moved[j + 1]
+
+    def _bent(self, i: int, F: FloatArray) -> FloatArray:
+        return np.nan_to_num(self.bent.C[i] @ F + self.bent.offset[i])
+
+
+def _only(conditions: CutConditions, i: int) -> CutConditions:
+    """The conditions of one step."""
+    values: dict[str, Any] = {}
+    for each in fields(conditions):
+        value = getattr(conditions, each.name)
+        if isinstance(value, np.ndarray):
+            values[each.name] = value[i : i + 1]
+    tooling = conditions.tooling
+    if tooling is not None:
+        values["tooling"] = Tooling(tooling.cutters, tooling.of_step[i : i + 1])
+    return replace(conditions, part=None, **values)
