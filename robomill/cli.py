@@ -91,13 +91,7 @@ def parser() -> argparse.ArgumentParser:
     grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti")
 
     fit = verb("identify", run_identify, "Joint compliances from load tests, with their intervals.")
-    fit.add_argument("robot", help="name of a robot or a .toml file")
-    fit.add_argument("tests", help="load tests (.csv)")
-    fit.add_argument(
-        "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
-    )
-    fit.add_argument("--bending-joints", default="2,3", help="joints with bending springs (default 2,3)")
-    fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
+    _identify_options(fit)
 
     run = verb("simulate", run_simulate, "Run a set-up: deviation, groove, verdict.")
     run.add_argument("setup", help="a set-up (.toml) or a sample's folder")
@@ -106,6 +100,26 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")
     run.add_argument("--out", metavar="DIR", help="write the result there: CSV tables, JSON, STL")
     return top
+
+
+def _identify_options(fit: argparse.ArgumentParser) -> None:
+    fit.add_argument("robot", help="name of a robot or a .toml file")
+    fit.add_argument("tests", help="load tests (.csv)")
+    fit.add_argument(
+        "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
+    )
+    fit.add_argument(
+        "--bending",
+        "--bending-joints",
+        default="2,3",
+        help="joints with bending springs (default 2,3), or auto: none or those that cross-validation chooses",
+    )
+    fit.add_argument("--fit-points", default="none", help="points to fit too: none (default), force, gauge or both")
+    fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
+    fit.add_argument("--weights", default="equal", help="equal (default), or size: every test by its relative error")
+    fit.add_argument("--leave-out", default="pose", help="cross-validation by pose (default) or by neighbours")
+    fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
+    fit.add_argument("--out", metavar="ROBOT.toml", help="write the robot with these compliances there")
 
 
 def say(arguments: Any, record: dict[str, Any], lines: Sequence[str], code: int = 0) -> int:
@@ -228,19 +242,29 @@ def _axis(text: str, option: str) -> Any:
 
 def run_identify(arguments: Any) -> int:
     from robomill.identification.estimate import identify
-    from robomill.identification.result import identification_report
-    from robomill.io.load_tests import read_findings, read_load_tests
-    from robomill.io.robots import load_robot
+    from robomill.identification.record import identification_record
+    from robomill.identification.treatment import Treatment
+    from robomill.io.load_tests import read_load_tests
+    from robomill.io.robots import load_robot, robot_to_toml
     from robomill.report.plain import identification_lines
     from robomill.report.records import finding_record
 
     robot = load_robot(arguments.robot)
     tests = read_load_tests(Path(arguments.tests), robot)
-    joints = [int(v) for v in _numbers(arguments.bending_joints, "--bending-joints", None, "joint numbers")]
-    result = identify(robot, tests, arguments.model, robust=arguments.robust, bending_joints=joints)
-    record = identification_report(result)
-    record["explanations"] = list(result.explanations)
-    record["findings"] = [finding_record(f) for f in (*read_findings(tests, robot), *result.findings)]
+    joints = arguments.bending if arguments.bending == "auto" else _wholes(arguments.bending, "--bending")
+    treatment = Treatment(
+        joints,
+        arguments.fit_points,
+        arguments.robust,
+        _wholes(arguments.exclude, "--exclude") if arguments.exclude else (),
+        arguments.weights,
+        arguments.leave_out,
+    )
+    result = identify(robot, tests, arguments.model, treatment)
+    record, findings = identification_record(robot, tests, result)
+    record["findings"] = [finding_record(f) for f in findings]
+    if arguments.out:
+        Path(arguments.out).write_text(robot_to_toml(result.applied_to(robot)), encoding="utf-8")
     return say(arguments, record, identification_lines(record))
 
 
@@ -294,6 +318,10 @@ def _theta(robot: Any, text: str) -> Any:
     what = f"the {robot.n} joint coordinates of {robot.name}"
     values = np.array(_numbers(text, "--theta-deg", robot.n, what))
     return np.where(robot.chain.prismatic, to_si(values, "mm"), to_si(values, "deg"))
+
+
+def _wholes(text: str, option: str) -> tuple[int, ...]:
+    return tuple(int(v) for v in _numbers(text, option, None, "whole numbers"))
 
 
 def _numbers(text: str, option: str, count: int | None, what: str) -> list[float]:

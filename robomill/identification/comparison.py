@@ -7,15 +7,17 @@ springs are there. The gap between the two errors is the over-fitting.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from robomill.errors import LoadTestError
-from robomill.identification.estimate import BENDING_JOINTS, identify
+from robomill.identification.estimate import identify
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import MODELS
+from robomill.identification.models import MODELS, Model
 from robomill.identification.result import IdentificationResult
+from robomill.identification.treatment import BENDING_JOINTS, STANDARD, Treatment
 from robomill.robot.model import Robot
 
 OVERFIT = 1.3  # cross-validated over in-sample error from which a model is said to over-fit
@@ -91,18 +93,21 @@ def compare_models(
     robot: Robot,
     tests: LoadTests,
     models: Iterable[str] = MODELS,
-    *,
-    bending_joints: Iterable[int] = BENDING_JOINTS,
-    robust: bool = False,
-    exclude: Iterable[int] = (),
+    treatment: Treatment = STANDARD,
+    **choices: Any,
 ) -> Comparison:
-    """Fit every model to the same tests. Raises LoadTestError where none can be fitted."""
+    """Fit every model to the same tests, treated alike. Raises LoadTestError where none can be fitted.
+
+    Points are fitted in those models that have a tool to fit them to.
+    """
     tests = tests.with_joints(robot)
-    joints, rows = tuple(bending_joints), tuple(exclude)
+    treatment = replace(treatment, **choices)
     results, refused = [], {}
     for name in models:
         try:
-            results.append(identify(robot, tests, name, bending_joints=joints, robust=robust, exclude=rows))
+            whole = Model(name).has("joint")
+            own = treatment if whole else replace(treatment, fit_points="none", bending=BENDING_JOINTS)
+            results.append(identify(robot, tests, name, own))
         except LoadTestError as exc:
             refused[name] = str(exc)
     if not results:

@@ -1,49 +1,127 @@
-"""Cross-validation by pose: predict the poses that were left out. In-sample residuals flatter; these do not."""
+"""Cross-validation: predict the poses that were left out. In-sample residuals flatter; these do not.
+
+All that is chosen by looking at the readings is chosen inside every fold: compliances, the points that are fitted, and
+where there is more than one candidate also the model, by a cross-validation of its own among the other folds.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
-from robomill.identification.least_squares import solve_triangle
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.identification.points import Normal, PointFit, at_shift, slopes
 from robomill.identification.system import System
 
-FOLDS = 10
+Choose = Callable[["frozenset[int]"], "Folded"]
 
 
-def fold_of_pose(poses: int, folds: int = FOLDS) -> IntArray:
-    """(poses,) fold of each pose: at most ``folds``, of equal size, spread by a fixed shuffle."""
-    order = np.random.default_rng(2013).permutation(poses)
-    fold = np.empty(poses, dtype=np.int64)
-    fold[order] = np.arange(poses) % min(folds, poses)
-    return fold
+@dataclass(frozen=True, eq=False)
+class Missed:
+    """What leaving folds out gave, equation by equation: error (e,) predicted - measured, NaN where the rest cannot
+    predict it; variance (e,) of the prediction as its own fit says; fold (e,)."""
+
+    error: FloatArray
+    variance: FloatArray
+    fold: IntArray
 
 
-def cross_validate(system: System, weights: FloatArray | None = None, folds: int = FOLDS) -> FloatArray:
-    """(poses,) |predicted - measured| / |measured| of each pose, predicted without its own fold.
+@dataclass(frozen=True, eq=False)
+class Folded:
+    """Equations cut into folds (e,), each folded into its triangular factor, so that any of them can be left out.
 
-    NaN where the rest cannot predict it (a joint seen in that fold only) or nothing moved.
+    starts: shifts (s,) from which points are sought besides the stated ones.
     """
-    poses = int(system.pose.max()) + 1
-    if poses < 2:
-        return np.full(poses, np.nan)
-    fold = fold_of_pose(poses, folds)[system.pose]
-    count = int(fold.max()) + 1
-    factors = [system.factor(weights, fold == k) for k in range(count)]
-    equations = [system.count(weights, fold == k) for k in range(count)]
-    seen = solve_triangle(np.concatenate(factors), sum(equations), system.signed).seen
-    missed = np.full(len(system.b), np.nan)
-    for k in range(count):
-        rest = np.concatenate([factor for j, factor in enumerate(factors) if j != k])
-        fit = solve_triangle(rest, sum(equations) - equations[k], system.signed)
-        inside = fold == k
-        needed = np.abs(system.A[inside]) @ (seen & ~fit.seen) > 0
-        missed[inside] = np.where(needed, np.nan, system.A[inside] @ fit.x - system.b[inside])
-    return relative_by_pose(system, missed, weights)
+
+    system: System
+    fold: IntArray
+    weights: FloatArray | None = None
+    starts: tuple[FloatArray, ...] = ()
+    kept: dict[frozenset[int], PointFit] = field(default_factory=dict, repr=False)
+    rough: dict[frozenset[int], FloatArray] = field(default_factory=dict, repr=False)
+
+    @property
+    def count(self) -> int:
+        return int(self.fold.max()) + 1
+
+    @cached_property
+    def factors(self) -> list[FloatArray]:
+        """One factor a fold."""
+        return [self.system.factor(self.weights, self.fold == k) for k in range(self.count)]
+
+    @cached_property
+    def squares(self) -> list[FloatArray]:
+        """The normal equations of each fold."""
+        return [R.T @ R for R in self.factors]
+
+    @cached_property
+    def equations(self) -> list[int]:
+        """How many equations count in each fold."""
+        return [self.system.count(self.weights, self.fold == k) for k in range(self.count)]
+
+    def without(self, left: frozenset[int]) -> PointFit:
+        """The fit of all folds but these."""
+        if left not in self.kept:
+            rest = [k for k in range(self.count) if k not in left]
+            R = np.concatenate([self.factors[k] for k in rest])
+            self.kept[left] = self.system.factored(R, sum(self.equations[k] for k in rest)).fit(self.starts)
+        return self.kept[left]
+
+    def roughly(self, left: frozenset[int]) -> FloatArray:
+        """(p + s,) the same to the digits that a choice between models needs."""
+        if left not in self.rough:
+            M = sum(square for k, square in enumerate(self.squares) if k not in left)
+            normal = Normal(np.asarray(M), self.system.signed, self.system.freed)
+            shift = self.without(frozenset()).shift  # near by: the fit without these comes to rest where it would
+            _, shift, x = normal.descend(shift)
+            self.rough[left] = np.concatenate([x, shift])
+        return self.rough[left]
+
+    @cached_property
+    def seen(self) -> BoolArray:
+        """(p + s,) what all the folds together see."""
+        return self.without(frozenset()).fit.seen
+
+    def predict(self, k: int, left: frozenset[int]) -> tuple[FloatArray, FloatArray]:
+        """Errors of fold ``k``'s equations, predicted without the folds ``left``, and the prediction's variance."""
+        system, inside = self.system, self.fold == k
+        fit, shift = self.without(left)
+        terms = system.every_term[inside]
+        A = at_shift(terms, shift, system.freed)
+        x = fit.x[: A.shape[1]]
+        columns = np.concatenate([A, slopes(terms, x, shift, system.freed)], axis=1)
+        lost = np.abs(columns) @ (self.seen & ~fit.seen) > 0
+        variance = ((columns @ np.nan_to_num(fit.covariance)) * columns).sum(axis=1)
+        return np.where(lost, np.nan, A @ x - system.b[inside]), variance
+
+    def score(self, left: frozenset[int]) -> float:
+        """Mean relative error over the poses of all folds but these, each fold predicted without itself as well."""
+        missed = np.full(len(self.system.b), np.nan)
+        for k in set(range(self.count)) - left:
+            x, inside = self.roughly(left | {k}), self.fold == k
+            p = len(self.system.signed)
+            A = at_shift(self.system.every_term[inside], x[p:], self.system.freed)
+            missed[inside] = A @ x[:p] - self.system.b[inside]
+        return headline(relative_by_pose(self.system, missed, self.weights))
+
+
+def leave_out(folds: int, choose: Choose) -> Missed:
+    """Every fold predicted by what ``choose`` takes and fits without it."""
+    whole = choose(frozenset())
+    e = len(whole.system.b)
+    missed, variance = np.full(e, np.nan), np.full(e, np.nan)
+    for k in range(folds) if folds > 1 else ():
+        left = frozenset({k})
+        inside = whole.fold == k
+        missed[inside], variance[inside] = choose(left).predict(k, left)
+    return Missed(missed, variance, whole.fold)
 
 
 def relative_by_pose(system: System, missed: FloatArray, weights: FloatArray | None = None) -> FloatArray:
-    """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved.
+    """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved or is not known.
 
     What robust weights have switched off as gross is not counted: it is no measure of the model.
     """
@@ -55,7 +133,8 @@ def relative_by_pose(system: System, missed: FloatArray, weights: FloatArray | N
         return np.where(size > 0, np.sqrt(error / size), np.nan)
 
 
-def headline(errors: FloatArray) -> float:
+def headline(errors: Sequence[float] | FloatArray) -> float:
     """The mean over the poses that could be predicted; NaN when none could."""
+    errors = np.asarray(errors)
     known = errors[np.isfinite(errors)]
     return float(known.mean()) if len(known) else float("nan")

@@ -6,78 +6,108 @@ between loaded and preloaded readings: gravity, dead weight and the gauge's zero
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
-from robomill.identification.crossvalidation import cross_validate, headline, relative_by_pose
-from robomill.identification.least_squares import Fit, RobustFit, robust_fit
+from robomill.identification.crossvalidation import Folded, Missed, headline, leave_out, relative_by_pose
+from robomill.identification.fitting import Fitted, fit_system
+from robomill.identification.folds import folds_of
+from robomill.identification.found_points import found_points
+from robomill.identification.lines_of_pull import lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.model_error import Errors, held, model_error
 from robomill.identification.models import Model
-from robomill.identification.result import Condition, IdentificationResult
+from robomill.identification.offer import offer_of
+from robomill.identification.points import Point, at_shift
+from robomill.identification.result import Band, Condition, IdentificationResult
+from robomill.identification.selection import Candidates
 from robomill.identification.suspicion import suspicions
 from robomill.identification.system import System, build_system
+from robomill.identification.treatment import AUTO, BENDING_JOINTS, STANDARD, Treatment
 from robomill.robot.model import Robot
-
-BENDING_JOINTS = (2, 3)
 
 
 def identify(
     robot: Robot,
     tests: LoadTests | JointTests,
     model: str = "joints",
-    *,
-    bending_joints: Iterable[int] = BENDING_JOINTS,
-    robust: bool = False,
-    exclude: Iterable[int] = (),
+    treatment: Treatment = STANDARD,
+    **choices: Any,
 ) -> IdentificationResult:
     """Joint compliances (and those of extra springs) from load tests, with how sure they are.
 
-    model: ``joints``, ``joints+bending``, ``joints+tool``, ``joints+bending+tool`` or ``constant``;
-    robust: weigh down tests that do not fit (Tukey's bisquare); exclude: rows left out, e.g. the flagged outliers.
+    model: ``joints``, ``joints+bending``, ``joints+tool``, ``joints+bending+tool`` or ``constant``; treatment, or its
+    fields as ``choices``: bending, fit_points, robust, exclude, weights, leave_out (see ``Treatment``).
     Raises LoadTestError where the tests cannot answer: too few equations, one pose only, poses outside the limits.
     """
-    left_out = tuple(sorted(set(exclude)))
-    if left_out:
-        tests = _without(tests, left_out)
-    if isinstance(tests, LoadTests):
-        tests = tests.with_joints(robot)
-    choice = Model(model, tuple(bending_joints))
-    fitted = _fitted(build_system(robot, tests, choice), robust)
+    treatment = replace(treatment, **choices)
+    if treatment.exclude:
+        tests = _without(tests, treatment.exclude)
+    bending = BENDING_JOINTS if treatment.bending == AUTO else treatment.bending
+    if isinstance(tests, JointTests):
+        return _of_joints(robot, tests, Model(model, bending), treatment)
+    tests = tests.with_joints(robot)
+    fold = folds_of(treatment.leave_out, tests.pose_index(), tests.theta)
+    starts = pull_starts(robot, tests, treatment.freed)
+    candidates = Candidates(robot, tests, Model(model, bending), treatment, fold, starts)
+    choice, fitted = candidates.best()
+    missed = candidates.missed()
+    result = _result(robot, tests, choice, fitted)
+    offer = offer_of(robot, tests, choice, treatment)
     return replace(
-        _result(robot, tests, choice, fitted),
-        cv_relative_error=headline(cross_validate(fitted.system, fitted.weights)),
-        excluded=left_out,
+        result,
+        findings=result.findings if offer is None else (*result.findings, offer.finding()),
+        offer=offer,
+        cv_relative_error=headline(relative_by_pose(fitted.system, missed.error, fitted.weights)),
+        points=found_points(robot, tests, treatment.freed, fitted.found),
+        band=_band(_errors(robot, tests, choice, fitted, missed), result.dof),
+        votes=tuple(map(tuple, candidates.votes())) if treatment.bending == AUTO else (),
+        treatment=treatment,
     )
 
 
-class _Fitted(NamedTuple):
-    """Equations, their fit, the robust weights (None: all one), and the springs that are counted with another."""
-
-    system: System
-    fit: Fit
-    weights: FloatArray | None
-    lumped: dict[str, str]
-
-
-def _fitted(system: System, robust: bool) -> _Fitted:
-    twins = diagnostics.twins(system)
-    system = _lump(system, twins)
-    lumped = {system.parameters[k].label: system.parameters[j].label for k, j in twins.items()}
-    if not robust:
-        return _Fitted(system, _fit(system, None, list(twins)), None, lumped)
-    gross = robust_fit(system.A / system.noise[:, None], system.b / system.noise)
-    fit, plain = (_fit(system, weights, list(twins)) for weights in (gross.weights, None))
-    return _Fitted(system, _robust_covariance(fit, plain, gross), gross.weights, lumped)
+def pull_starts(robot: Robot, tests: LoadTests, freed: tuple[Point, ...]) -> tuple[FloatArray, ...]:
+    """Another shift to search the points from: the load point by the lines of pull, which know no displacement."""
+    if "force" not in freed:
+        return ()
+    shift = lines_of_pull(robot, tests).shift
+    return () if shift is None else (np.concatenate([shift, np.zeros(3 * (len(freed) - 1))]),)
 
 
-def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: _Fitted) -> IdentificationResult:
-    system, fit, weights, lumped = fitted
+def _of_joints(robot: Robot, tests: JointTests, choice: Model, treatment: Treatment) -> IdentificationResult:
+    """Single joints: no pose, no points, and nothing that says how the tool moves."""
+    fitted = fit_system(build_system(robot, tests, choice, treatment.freed), treatment.robust)
+    fold = folds_of("pose", fitted.system.pose, None)
+    folded = Folded(fitted.small, fold, fitted.weights)
+    missed = leave_out(folded.count, lambda left: folded)
+    error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
+    return replace(_result(robot, tests, choice, fitted), cv_relative_error=error, treatment=treatment)
+
+
+def _errors(robot: Robot, tests: LoadTests, choice: Model, fitted: Fitted, missed: Missed) -> Errors:
+    """The displacements left out, with the size of the whole displacement predicted at each test."""
+    system, freed, x = fitted.system, fitted.system.freed, fitted.fit.x
+    if np.isfinite(tests.displacement[:, :3]).all():
+        size2 = np.bincount(system.test[system.linear], (system.A @ x)[system.linear] ** 2, minlength=len(tests))
+    else:
+        size2 = ((at_shift(choice.terms(robot, tests, freed)[:, :3], fitted.found.shift, freed) @ x) ** 2).sum(axis=1)
+    size = np.sqrt(size2)[system.test]
+    counted = system.linear if fitted.weights is None else system.linear & (fitted.weights > 0.0)
+    return Errors(missed.error, missed.variance, size, missed.fold).chosen(counted)
+
+
+def _band(errors: Errors, dof: int) -> Band | None:
+    spread = model_error(errors, dof)
+    return None if spread is None else Band(spread, held(errors, dof), int(np.isfinite(errors.error).sum()))
+
+
+def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: Fitted) -> IdentificationResult:
+    system, fit, weights, lumped = fitted.system, fitted.fit, fitted.weights, fitted.lumped
     share = diagnostics.shares(system, fit.x)
     residual = _residuals(system, fit.x, len(tests), 1 if isinstance(tests, JointTests) else 3)
     negative = (fit.x == 0.0) & (fit.free * np.linalg.norm(system.A, axis=0) < -1e-9 * np.linalg.norm(system.b))
@@ -108,7 +138,6 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
         explanations=tuple(diagnostics.sentence(fit, system.parameters, share, k) for k in range(len(fit.x))),
         lumped=lumped,
         findings=(*tests.findings, *suspicions(tests, robot), *found),
-        robust=weights is not None,
     )
 
 
@@ -119,40 +148,6 @@ def _without(tests: LoadTests | JointTests, rows: tuple[int, ...]) -> LoadTests 
     if set(tests.row.tolist()) <= set(rows):
         raise LoadTestError("Exclude: this leaves no test at all.")
     return tests.without(rows)
-
-
-def _lump(system: System, twins: dict[int, int]) -> System:
-    """Columns that repeat an earlier one are emptied: their spring is counted with the earlier one."""
-    if not twins:
-        return system
-    A = system.A.copy()
-    A[:, list(twins)] = 0.0
-    return replace(system, A=A)
-
-
-def _fit(system: System, weights: FloatArray | None, lumped: list[int]) -> Fit:
-    """The fit without the lumped columns, set back in place: a lumped spring is zero, not unknown."""
-    if not lumped:
-        return system.fit(weights)
-    p = system.A.shape[1]
-    kept = np.setdiff1d(np.arange(p), lumped)
-    small = replace(system, A=system.A[:, kept], parameters=tuple(system.parameters[k] for k in kept))
-    fit = small.fit(weights)
-    x, free, covariance = np.zeros(p), np.zeros(p), np.zeros((p, p))
-    x[kept], free[kept] = fit.x, fit.free
-    covariance[np.ix_(kept, kept)] = fit.covariance
-    seen = np.ones(p, dtype=bool)
-    seen[kept] = fit.seen
-    null = np.zeros((len(fit.null), p))
-    null[:, kept] = fit.null
-    return replace(fit, x=x, free=free, covariance=covariance, seen=seen, null=null)
-
-
-def _robust_covariance(fit: Fit, plain: Fit, gross: RobustFit) -> Fit:
-    """Weights that were estimated: the covariance is that of an M-estimate, not of a fit with known weights."""
-    if plain.sigma == 0.0 or gross.sigma == 0.0:
-        return fit
-    return replace(fit, covariance=plain.covariance * (gross.sigma / plain.sigma) ** 2, sigma=gross.sigma)
 
 
 def _residuals(system: System, x: FloatArray, tests: int, width: int) -> FloatArray:

@@ -11,9 +11,11 @@ import numpy as np
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.compliance.spring import Spring
 from robomill.errors import ProjectError
+from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
+from robomill.units import format_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,9 +23,10 @@ class Knowledge:
     """Compliances of a model's springs, and what is not known exactly of them, of the force and of the arm.
 
     model: the springs; parameters (p,) SI and their covariance (p, p); dof of the fit that gave it (None: known
-    exactly, normal quantiles); F (3, 3) N^2 covariance of the force, the same along a path; lengths (2 rows,) m
-    standard deviations of a_1..a_k, then d_1..d_k; what is None is taken as certain. source: from where, in words;
-    compliances: the ``compliance_digest`` of the arm it holds for, "" while it belongs to none.
+    exactly, normal quantiles); error: what the model misses besides, from poses left out (None: noise only); F (3, 3)
+    N^2 covariance of the force, the same along a path; lengths (2 rows,) m standard deviations of a_1..a_k, then
+    d_1..d_k; what is None is taken as certain. source: from where, in words; compliances: the ``compliance_digest`` of
+    the arm it holds for, "" while it belongs to none.
     """
 
     model: Model
@@ -34,6 +37,7 @@ class Knowledge:
     lengths: FloatArray | None = None
     source: str = ""
     compliances: str = ""
+    error: ModelError | None = None
 
     def __post_init__(self) -> None:
         p = np.shape(self.parameters)[-1] if np.ndim(self.parameters) else 0
@@ -58,7 +62,20 @@ class Knowledge:
             unseen = np.flatnonzero(~np.isfinite(result.stderr))
             parameters[unseen] = robot.C_theta[unseen]
             covariance[unseen, unseen] = robot.C_theta[unseen] ** 2
-        return cls(result.choice, parameters, covariance, result.dof, source=source)
+        error = None if result.band is None else result.band.error
+        return cls(result.choice, parameters, covariance, result.dof, source=source, error=error)
+
+    def noise_only(self) -> Knowledge:
+        """The same as if the model were the arm: too narrow wherever it is not, and said to be so."""
+        return replace(self, error=None)
+
+    @property
+    def made_of(self) -> str:
+        """What a band holds of the compliances' part, in words."""
+        if self.error is None:
+            return "noise of the fit only"
+        share, floor = format_si(self.error.share, "%", 1), format_si(self.error.floor, "um", 1)
+        return f"noise of the fit and error of the model ({share} of the deviation, and {floor})"
 
     def widened(self, robot: Robot, force: float = 0.0, length: float = 0.0) -> Knowledge:
         """The same with each force component unsure by ``force`` N and each D-H length by ``length`` m (one std)."""
@@ -84,6 +101,8 @@ class Knowledge:
         }
         if self.dof is not None:
             table["dof"] = int(self.dof)
+        if self.error is not None:
+            table["model_error"] = [self.error.share, self.error.floor]
         if self.F is not None:
             table["force_covariance"] = self.F.tolist()
         if self.lengths is not None:
@@ -109,6 +128,7 @@ class Knowledge:
                 given.get("force_covariance"),
                 given.get("lengths"),
                 str(table.get("words", "from load tests")),
+                error=None if "model_error" not in table else ModelError(*map(float, table["model_error"])),
             )
         except (KeyError, TypeError, ValueError) as exc:
             raise ProjectError(f"{where} cannot be used ({exc}); remove it or save the project again.") from exc

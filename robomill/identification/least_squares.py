@@ -82,9 +82,7 @@ def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma
     if len(R) > p + 1:  # stacked factors
         R = np.asarray(np.linalg.qr(R, mode="r"))
     A, b = R[:, :p], R[:, p]
-    norms = np.linalg.norm(A, axis=0)
-    top = norms.max(initial=0.0)
-    scale = np.where(norms > NULL * top, norms, np.inf if top > 0 else 1.0)
+    scale = _scale(A)
     S = A / scale
     _, values, Vt = np.linalg.svd(S, full_matrices=True)
     values = np.pad(values, (0, p - len(values)))
@@ -103,6 +101,32 @@ def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma
     covariance[~seen] = covariance[:, ~seen] = np.nan
     condition = (_condition(np.linalg.svd(A, compute_uv=False)), _condition(values))
     return Fit(bounded / scale, covariance, sigma, dof, seen, null, free / scale, condition)
+
+
+def bounded_solution(A: FloatArray, b: FloatArray, signed: BoolArray) -> FloatArray:
+    """(p,) the bounded estimate alone, of equations in full or of their factor."""
+    scale = _scale(A)
+    S = A / scale
+    return _bounded(S, b, np.asarray(np.linalg.lstsq(S, b, rcond=NULL)[0]), signed) / scale
+
+
+def bounded_normal(N: FloatArray, y: FloatArray, signed: BoolArray) -> FloatArray:
+    """(p,) the same from the normal equations N x = y: half the digits, and quick."""
+    size = np.sqrt(np.diag(N))
+    scale = np.where(size > NULL * size.max(initial=0.0), size, np.inf)
+    values, vectors = np.linalg.eigh(N / np.outer(scale, scale))
+    keep = values > 1e-12 * max(float(values[-1]), 1e-300)
+    root, turned = np.sqrt(values[keep]), vectors[:, keep]
+    b = (turned.T @ (y / scale)) / root
+    free = turned @ (b / root)
+    return _bounded((turned * root).T, b, free, signed) / scale
+
+
+def _scale(A: FloatArray) -> FloatArray:
+    """(p,) lengths of the columns; infinite for those that are zero beside the longest."""
+    norms = np.linalg.norm(A, axis=0)
+    top = norms.max(initial=0.0)
+    return np.where(norms > NULL * top, norms, np.inf if top > 0 else 1.0)
 
 
 def _free(S: FloatArray, b: FloatArray, keep: BoolArray) -> FloatArray:

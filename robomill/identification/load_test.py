@@ -99,9 +99,9 @@ class LoadTests:
         keep = ~np.isin(self.row, list(rows))
         return self.select(keep)
 
-    def select(self, chosen: ArrayLike) -> LoadTests:
-        """The tests at ``chosen`` (a mask or indices), in that order."""
-        index = np.arange(len(self))[np.asarray(chosen)]
+    def select(self, chosen: ArrayLike | slice) -> LoadTests:
+        """The tests at ``chosen`` (a mask, indices or a slice), in that order."""
+        index = np.arange(len(self))[chosen if isinstance(chosen, slice) else np.asarray(chosen)]
         return self._with({key: None if value is None else value[index] for key, value in self._arrays().items()})
 
     def joined(self, other: LoadTests) -> LoadTests:

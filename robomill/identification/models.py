@@ -22,6 +22,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
+from robomill.identification.points import Point
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
 
@@ -103,7 +104,7 @@ class Model:
         return kind in MODELS[self.name].kinds
 
     def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
-        """What is fitted, in the order of the regressor's columns."""
+        """What is fitted, in the order of the equations' columns."""
         if self.has("entry"):
             return tuple(Parameter("entry", axis=_XYZ[i] + _XYZ[j]) for i, j in _SYMMETRIC)
         slides = robot.chain.prismatic
@@ -156,19 +157,36 @@ class Model:
             return each
         return np.concatenate([each[..., :-3], each[..., -3:-1].sum(-1, keepdims=True), each[..., -1:]], axis=-1)
 
-    def regressor(self, robot: Robot, tests: LoadTests) -> FloatArray:
-        """(m, 6, p): displacement and rotation of the measuring point per unit of each parameter."""
+    def terms(self, robot: Robot, tests: LoadTests, freed: Sequence[Point] = ()) -> FloatArray:
+        """(m, 6, k, p): displacement and rotation of the measuring point per unit of each parameter.
+
+        As a sum over the k products of the shifts of the points that are ``freed`` (``points``), k = 1 where none is.
+        """
         if tests.theta is None:
             raise LoadTestError("Load tests: the poses are given in the world; call with_joints(robot) first.")
         if self.has("entry"):
-            D = np.full((len(tests), 6, len(_SYMMETRIC)), np.nan)
-            D[:, :3] = _constant(tests.wrench[:, :3])
+            if freed:
+                raise LoadTestError("One constant matrix knows no points of the tool; fit points with a joint model.")
+            D = np.full((len(tests), 6, 1, len(_SYMMETRIC)), np.nan)
+            D[:, :3, 0] = _constant(tests.wrench[:, :3])
             return D
-        at_force = self.columns(robot, tests.theta, tests.force_point)
-        same = np.array_equal(tests.force_point, tests.measuring_point)
-        at_gauge = at_force if same else self.columns(robot, tests.theta, tests.measuring_point)
-        load = np.einsum("mcs,mc->ms", at_force, tests.wrench)
-        return self._collect(at_gauge * load[:, None, :])
+        at_force = self._affine(robot, tests.theta, tests.force_point, "force" in freed)
+        same = "force" in freed or "gauge" not in freed
+        same = same and np.array_equal(tests.force_point, tests.measuring_point)
+        at_gauge = at_force if same else self._affine(robot, tests.theta, tests.measuring_point, "gauge" in freed)
+        if "gauge" not in freed:
+            at_gauge = at_gauge[:, :1]
+        load = np.einsum("mfcs,mc->mfs", at_force, tests.wrench)
+        each = np.einsum("mgcs,mfs->mcfgs", at_gauge, load)
+        return self._collect(each.reshape(*each.shape[:2], -1, each.shape[-1]))
+
+    def _affine(self, robot: Robot, theta: FloatArray, offset: FloatArray, free: bool) -> FloatArray:
+        """(m, 1 or 4, 6, s): ``columns`` at the offset and, if it is free, its change per m along x, y and z of {T}."""
+        here = self.columns(robot, theta, offset)[:, None]
+        if not free:
+            return here
+        moved = self.columns(robot, theta[:, None, :], offset[:, None, :] + np.eye(3))
+        return np.concatenate([here, moved - here], axis=1)
 
     def tip_regressor(self, robot: Robot, theta: FloatArray, F: FloatArray) -> FloatArray:
         """(..., 3, p) D with delta = D @ parameters, for a force F (..., 3) N in {M} at the tool tip."""

@@ -2,11 +2,12 @@
 
 Linear propagation. With delta = D C_theta + ..., D (3 x p) the regressor of eqs. (13)-(16),
 
-    cov(delta) = D cov(C_theta) D^T + C cov(F) C^T + L cov(lengths) L^T
+    cov(delta) = D cov(C_theta) D^T + (floor^2 + share^2 |delta|^2) I + C cov(F) C^T + L cov(lengths) L^T
 
-where L is the derivative of delta with respect to the D-H lengths a and d at fixed joint coordinates (the control
-drives the joints by its nominal table, the true lengths are what is unsure). delta is exactly linear in C_theta and
-in F apart; their product and the lengths are of second order.
+where floor and share are the model's own error as poses left out showed it (``model_error``; absent from a band of
+noise only) and L is the derivative of delta with respect to the D-H lengths a and d at fixed joint coordinates (the
+control drives the joints by its nominal table, the true lengths are what is unsure). delta is exactly linear in C_theta
+and in F apart; their product and the lengths are of second order.
 """
 
 from __future__ import annotations
@@ -30,12 +31,13 @@ STEP = 1e-6  # m, for the derivative with respect to a length
 class Uncertain:
     """A displacement with its uncertainty: delta (..., 3) m, covariance (..., 3, 3) m^2, and the part of each source.
 
-    by_compliance, by_force, by_lengths (..., 3): standard deviations (m) each source alone would give.
+    by_compliance, by_model, by_force, by_lengths (..., 3): standard deviations (m) each source alone would give.
     """
 
     delta: FloatArray
     covariance: FloatArray
     by_compliance: FloatArray
+    by_model: FloatArray
     by_force: FloatArray
     by_lengths: FloatArray
     dof: int | None = None
@@ -71,15 +73,17 @@ def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Kn
     F = as_floats(F, "F", (3,), error=RobomillError, finite=False)
     D = known.model.tip_regressor(robot, theta, F)
     delta = D @ known.parameters
-    parts = [D @ known.covariance @ np.swapaxes(D, -1, -2), np.zeros((*delta.shape, 3)), np.zeros((*delta.shape, 3))]
+    parts = [D @ known.covariance @ np.swapaxes(D, -1, -2), *(np.zeros((*delta.shape, 3)) for _ in range(3))]
+    if known.error is not None:
+        missed = np.where(np.any(F != 0.0, axis=-1), known.error.variance(np.linalg.norm(delta, axis=-1)), 0.0)
+        parts[1] = missed[..., None, None] * np.eye(3)
     if known.F is not None:
         C = known.model.compliance(robot, theta, known.parameters)
-        parts[1] = parts[1] + C @ known.F @ np.swapaxes(C, -1, -2)
+        parts[2] = parts[2] + C @ known.F @ np.swapaxes(C, -1, -2)
     if known.lengths is not None and np.any(known.lengths):
         L = length_derivative(robot, theta, F, known) * known.lengths
-        parts[2] = L @ np.swapaxes(L, -1, -2)
-    spread = [frozen(_spread(part)) for part in parts]
-    return Uncertain(frozen(delta), frozen(sum(parts)), spread[0], spread[1], spread[2], known.dof)
+        parts[3] = L @ np.swapaxes(L, -1, -2)
+    return _uncertain(delta, parts, known.dof)
 
 
 def uncertain_by_map(field: MeasuredField, p: ArrayLike, F: ArrayLike, force: FloatArray | None = None) -> Uncertain:
@@ -89,11 +93,16 @@ def uncertain_by_map(field: MeasuredField, p: ArrayLike, F: ArrayLike, force: Fl
     """
     C, F = field.compliance(p), as_floats(F, "F", (3,), error=RobomillError, finite=False)
     delta = np.einsum("...ij,...j->...i", C, F)
-    parts = [field.covariance(p, F), np.zeros((*delta.shape, 3)), np.zeros((*delta.shape, 3))]
+    parts = [field.covariance(p, F), *(np.zeros((*delta.shape, 3)) for _ in range(3))]
     if force is not None:
-        parts[1] = parts[1] + C @ force @ np.swapaxes(C, -1, -2)
-    spread = [frozen(_spread(part)) for part in parts]
-    return Uncertain(frozen(delta), frozen(sum(parts)), spread[0], spread[1], spread[2])
+        parts[2] = parts[2] + C @ force @ np.swapaxes(C, -1, -2)
+    return _uncertain(delta, parts, None)
+
+
+def _uncertain(delta: FloatArray, parts: list[FloatArray], dof: int | None) -> Uncertain:
+    """From the covariances by compliance, model, force and lengths."""
+    by_compliance, by_model, by_force, by_lengths = (frozen(_spread(part)) for part in parts)
+    return Uncertain(frozen(delta), frozen(sum(parts)), by_compliance, by_model, by_force, by_lengths, dof)
 
 
 def length_derivative(robot: Robot, theta: FloatArray, F: FloatArray, known: Knowledge) -> FloatArray:

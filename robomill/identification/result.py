@@ -12,10 +12,12 @@ from robomill.compliance.spring import Spring
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
+from robomill.identification.found_points import FoundPoint, Offer
+from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model, Parameter
+from robomill.identification.treatment import STANDARD, Treatment
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
-from robomill.units import from_si
 
 
 class Condition(NamedTuple):
@@ -43,6 +45,16 @@ class UnseenJoint:
     sentence: str
 
 
+@dataclass(frozen=True)
+class Band:
+    """What a prediction misses beyond the fit's noise, and how that was checked: the share of ``components`` left out
+    that 95 % bands held, each made without the fold it was checked on."""
+
+    error: ModelError
+    held: float
+    components: int
+
+
 @dataclass(frozen=True, eq=False)
 class IdentificationResult:
     """Fitted compliances with their uncertainty. n joints, p parameters (the joints first, then extra springs).
@@ -56,7 +68,10 @@ class IdentificationResult:
     |predicted - measured| / |measured|, each pose predicted without itself: the headline; in_sample_by_pose
     (poses,) with every pose in the fit, which flatters.
     outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
-    exactly as another one and are counted with it), findings, row (m,) of each test, excluded rows.
+    exactly as another one and are counted with it), findings, row (m,) of each test; treatment: what was chosen;
+    points: those that were fitted; band: what predictions miss beyond the fit's noise, None where it is not known;
+    offer: points that are worth fitting, where they were not; votes: the joints at which links bend as chosen with
+    each fold left out, where that was left to the tests.
     """
 
     choice: Model
@@ -84,8 +99,21 @@ class IdentificationResult:
     explanations: tuple[str, ...] = ()
     lumped: dict[str, str] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
-    excluded: tuple[int, ...] = ()
-    robust: bool = False
+    treatment: Treatment = STANDARD
+    points: tuple[FoundPoint, ...] = ()
+    band: Band | None = None
+    votes: tuple[tuple[int, ...], ...] = ()
+    offer: Offer | None = None
+
+    @property
+    def excluded(self) -> tuple[int, ...]:
+        """Rows left out."""
+        return self.treatment.exclude
+
+    @property
+    def robust(self) -> bool:
+        """Whether tests that do not fit weighed less."""
+        return self.treatment.robust
 
     @property
     def model(self) -> str:
@@ -157,29 +185,3 @@ class IdentificationResult:
         changed = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta))
         sets = {**robot.compliance_sets, "identified": changed.C_theta_all}
         return changed.replace(compliance_sets=sets, compliance_set="identified", provenance=provenance)
-
-
-def identification_report(result: IdentificationResult) -> dict[str, object]:
-    """The result for ``robomill identify --json``: SI but for ``residual_rms_mm``; null for what is not known."""
-    single = result.residual.shape[1] == 1
-    return {
-        "C_theta": _plain(result.C_theta),
-        "stderr": _plain(result.stderr),
-        "ci95": _plain(result.ci95),
-        "correlation": _plain(result.correlation),
-        "condition": _plain(result.condition.after),
-        "condition_before_scaling": _plain(result.condition.before),
-        "residual_rms_mm": None if single else _plain(from_si(result.residual_rms, "mm")),
-        "cv_relative_error": _plain(result.cv_relative_error),
-        "outliers": [outlier.row for outlier in result.outliers],
-        "unseen_joints": [unseen.joint for unseen in result.unseen_joints],
-        "model": result.model,
-    }
-
-
-def _plain(value: object) -> object:
-    """Lists and floats for JSON, with None for what is not finite."""
-    array = np.asarray(value, dtype=np.float64)
-    if array.ndim:
-        return [_plain(part) for part in array]
-    return float(array) if np.isfinite(array) else None

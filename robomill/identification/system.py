@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import LoadTestError
-from robomill.identification.least_squares import Fit, solve_triangle, triangle
+from robomill.identification.least_squares import Fit, triangle
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model, Parameter
+from robomill.identification.points import Factored, Point, PointFit, at_shift
 from robomill.robot.model import Robot
 
 KIND_ROUNDS = 6
+SMALLEST = 0.1  # of the median displacement: what moved less does not count for more in weights by size
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +25,8 @@ class System:
 
     test (e,) index of the test, component (e,) 0-2 displacement, 3-5 rotation; pose (e,) group left out together
     in cross-validation; signed (p,) bool; stated: every noise was given in the file.
+    freed: points that are fitted too; terms (e, k, p): A as a sum over products of their shifts (``points``), A being
+    that at ``shift`` (s,) m; None where no point is free.
     """
 
     A: FloatArray
@@ -32,6 +37,8 @@ class System:
     pose: IntArray
     parameters: tuple[Parameter, ...]
     stated: bool
+    freed: tuple[Point, ...] = ()
+    terms: FloatArray | None = None
 
     @property
     def signed(self) -> BoolArray:
@@ -43,47 +50,98 @@ class System:
         return self.component < 3
 
     def fit(self, weights: FloatArray | None = None, chosen: BoolArray | None = None) -> Fit:
-        """Weighted bounded fit, of all equations or of those chosen."""
-        return solve_triangle(self.factor(weights, chosen), self.count(weights, chosen), self.signed, self.given)
+        """Weighted bounded fit with the points as they are, of all equations or of those chosen."""
+        fixed = replace(self, freed=(), terms=None)
+        return fixed.factored(fixed.factor(weights, chosen), self.count(weights, chosen)).fit().fit
+
+    def fit_points(self, weights: FloatArray | None = None, starts: Sequence[FloatArray] = ()) -> PointFit:
+        """The same with the freed points fitted too."""
+        return self.factored(self.factor(weights), self.count(weights)).fit(starts)
+
+    def factored(self, R: FloatArray, equations: int) -> Factored:
+        """What a fit needs, from the factor of some of the equations (or several such, stacked)."""
+        return Factored(R, equations, self.signed, self.freed, self.given)
 
     def factor(self, weights: FloatArray | None = None, chosen: BoolArray | None = None) -> FloatArray:
-        """The triangular factor of the weighted equations."""
+        """The triangular factor of the weighted equations and their terms."""
         w = 1.0 / self.noise if weights is None else np.sqrt(weights) / self.noise
-        A, b = self.A * w[:, None], self.b * w
+        A, b = self.every_term.reshape(len(self.b), -1) * w[:, None], self.b * w
         return triangle(A, b) if chosen is None else triangle(A[chosen], b[chosen])
-
-    def count(self, weights: FloatArray | None = None, chosen: BoolArray | None = None) -> int:
-        """Equations that count (robust weights may switch some off)."""
-        live = np.ones(len(self.b), dtype=bool) if weights is None else weights > 1e-3
-        return int((live if chosen is None else live & chosen).sum())
 
     @property
     def given(self) -> float | None:
         """Standard deviation of a weighted equation when there is nothing left to estimate it from."""
         return 1.0 if self.stated else None
 
+    @property
+    def every_term(self) -> FloatArray:
+        """(e, k, p)."""
+        return self.A[:, None, :] if self.terms is None else self.terms
 
-def build_system(robot: Robot, tests: LoadTests | JointTests, model: Model) -> System:
-    """The equations of ``tests`` under ``model``. Raises LoadTestError where they cannot say anything."""
+    def at(self, shift: FloatArray) -> System:
+        """The same with A at a shift (s,) m of the freed points."""
+        return replace(self, A=at_shift(self.every_term, shift, self.freed)) if self.freed else self
+
+    def of(self, columns: IntArray) -> System:
+        """The same with these of its parameters only."""
+        terms = None if self.terms is None else self.terms[:, :, columns]
+        names = tuple(self.parameters[k] for k in columns)
+        return replace(self, A=self.A[:, columns], terms=terms, parameters=names)
+
+    def count(self, weights: FloatArray | None = None, chosen: BoolArray | None = None) -> int:
+        """Equations that count (robust weights may switch some off)."""
+        live = np.ones(len(self.b), dtype=bool) if weights is None else weights > 1e-3
+        return int((live if chosen is None else live & chosen).sum())
+
+
+def build_system(
+    robot: Robot, tests: LoadTests | JointTests, model: Model, freed: tuple[Point, ...] = (), by_size: bool = False
+) -> System:
+    """The equations of ``tests`` under ``model``. Raises LoadTestError where they cannot say anything.
+
+    freed: points to be fitted too; by_size: every test counts by its relative error, as if its noise grew with it.
+    """
     if isinstance(tests, JointTests):
-        return _joint_system(robot, tests, model)
+        return _joint_system(robot, tests, model, freed)
     tests = tests.with_joints(robot)
     parameters = model.parameters(robot)
-    D = model.regressor(robot, tests)
-    measured = np.isfinite(tests.displacement) & np.isfinite(D[:, :, 0])
+    D = model.terms(robot, tests, freed)
+    measured = np.isfinite(tests.displacement) & np.isfinite(D[:, :, 0, 0])
     if not measured.any():
         raise LoadTestError("Load tests: nothing measured that this model predicts; give displacements.")
     test, component = np.nonzero(measured)
     pose = tests.pose_index()
     noise, stated = _noise(tests.noise)
+    if by_size:
+        noise, stated = noise * _sizes(tests), False
+    terms = D[measured]
     system = System(
-        D[measured], tests.displacement[measured], noise[test], test, component, pose[test], parameters, stated
+        terms[:, 0],
+        tests.displacement[measured],
+        noise[test],
+        test,
+        component,
+        pose[test],
+        parameters,
+        stated,
+        freed,
+        terms if freed else None,
     )
     _refuse_too_few(system, len(np.unique(pose)), model, len(tests))
     return system if system.linear.all() else _balance_kinds(system)
 
 
-def _joint_system(robot: Robot, tests: JointTests, model: Model) -> System:
+def _sizes(tests: LoadTests) -> FloatArray:
+    """(m,) size of each test's displacement over the median one; no smaller than ``SMALLEST``."""
+    moved = np.where(np.isnan(tests.displacement[:, :3]).all(axis=1, keepdims=True), 0.0, tests.displacement[:, :3])
+    size = np.sqrt(np.nanmean(moved**2, axis=1))
+    middle = float(np.median(size))
+    return np.maximum(size / middle, SMALLEST) if middle > 0 else np.ones_like(size)
+
+
+def _joint_system(robot: Robot, tests: JointTests, model: Model, freed: tuple[Point, ...]) -> System:
+    if freed:
+        raise LoadTestError("Tests of one joint at a time have no load or gauge point on the tool to be fitted.")
     if model.name != "joints":
         raise LoadTestError(f"Model {model.name!r}: tests of one joint at a time can fit the model 'joints' only.")
     same = tests.joint[:, None] == np.array(robot.joint_numbers)
@@ -108,10 +166,11 @@ def _noise(noise: FloatArray) -> tuple[FloatArray, bool]:
 
 
 def _refuse_too_few(system: System, poses: int, model: Model, tests: int) -> None:
-    equations, unknowns = system.A.shape
+    equations, unknowns = len(system.b), system.A.shape[1] + 3 * len(system.freed)
     if equations < unknowns:
+        what = "unknown compliances and points" if system.freed else "unknown compliances"
         raise LoadTestError(
-            f"Load tests: {equations} measured numbers for {unknowns} unknown compliances (model {model.name!r}); "
+            f"Load tests: {equations} measured numbers for {unknowns} {what} (model {model.name!r}); "
             "measure at more poses or in more directions, or choose a smaller model."
         )
     if poses == 1 and model.has("joint"):
@@ -128,11 +187,12 @@ def _balance_kinds(system: System) -> System:
     for kind in kinds:
         noise[kind] *= max(float(np.sqrt(np.mean(system.b[kind] ** 2))), 1e-300) if not system.stated else 1.0
     for _ in range(KIND_ROUNDS):
-        current = System(**{**system.__dict__, "noise": noise})
-        residual = (system.A @ current.fit().x - system.b) / noise
+        current = replace(system, noise=noise)
+        found = current.fit_points()
+        residual = (system.at(found.shift).A @ found.fit.x[: system.A.shape[1]] - system.b) / noise
         size = [float(np.sqrt(np.mean(residual[kind] ** 2))) for kind in kinds]
         if min(size) <= 1e-12 * max(max(size), 1e-300):
             break
         for kind, rms in zip(kinds, size, strict=True):
             noise[kind] *= rms
-    return System(**{**system.__dict__, "noise": noise, "stated": False})
+    return replace(system, noise=noise, stated=False)

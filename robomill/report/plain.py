@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -103,6 +104,12 @@ def map_lines(record: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _held(point: dict[str, Any]) -> list[tuple[float, tuple[float, float]]]:
+    """Coordinates of a point with their intervals; infinite where these tests do not hold one."""
+    ends = [tuple(math.inf * side if v is None else v for side, v in zip((-1, 1), e)) for e in point["ci95_mm"]]
+    return list(zip(point["flange_mm"], ends))  # type: ignore[arg-type]
+
+
 def identification_lines(record: dict[str, Any]) -> list[str]:
     lines = [f"model {record['model']}", "joint   C_theta (1e-7 rad/(N m))   95 % interval"]
     for i, (value, interval) in enumerate(zip(record["C_theta"] or [], record["ci95"] or []), start=1):
@@ -110,6 +117,20 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"{i:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
     if record["cv_relative_error"] is not None:
         lines.append(f"cross-validated error  {100 * record['cv_relative_error']:.1f} % of the measured displacement")
+    if record["bending_joints"]:
+        lines.append(f"links bend at joint {', '.join(map(str, record['bending_joints']))}")
+    for name, point in record["points"].items():
+        place = ", ".join(f"{v:.1f} ± {(high - low) / 2:.1f}" for v, (low, high) in _held(point))
+        lines.append(
+            f"{name.replace('_', ' ')} in the flange  {place} mm (95 %), {point['off_mm']:.0f} mm off the stated one"
+        )
+    if record["band"] is not None:
+        band = record["band"]
+        lines.append(
+            f"95 % bands: noise of the fit and error of the model ({100 * band['model_error_share']:.1f} % of the "
+            f"deviation and {band['model_error_floor_mm']:.3f} mm); "
+            f"they hold {100 * band['held']:.0f} % of what was left out"
+        )
     if record["unseen_joints"]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
     if record["outliers"]:

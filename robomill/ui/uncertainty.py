@@ -61,7 +61,12 @@ def sentence(result: SimulationResult, given: Knowledge, unit: str) -> str:
     half = float(size_band(result, band, i))
     if not np.isfinite(half):
         return "The band is not known: the tests leave no residuals to judge the noise by."
-    parts = (("compliances", band.by_compliance), ("force", band.by_force), ("lengths", band.by_lengths))
+    parts = (
+        ("compliances", band.by_compliance),
+        ("model", band.by_model),
+        ("force", band.by_force),
+        ("lengths", band.by_lengths),
+    )
     shown = [f"{format_si(float(np.linalg.norm(v)), 'um', 1)} from the {name}" for name, v in parts if np.any(v > 0)]
     made = f" One standard deviation: {', '.join(shown)}." if shown else ""
     value = band_text(result.max_deviation, half, unit)

@@ -309,4 +309,4 @@ def test_bending_joints_have_to_be_numbers(capsys) -> None:
     tests = samples_dir() / "load_tests" / "nine_points.csv"
     code, _, err = run(capsys, "identify", "slavkovic_5r", tests, "--bending-joints", "")
     assert code == 2
-    assert "--bending-joints: expected one or more numbers" in err
+    assert "--bending: expected one or more numbers" in err

@@ -183,7 +183,7 @@ def test_the_error_inside_is_the_mean_over_poses_by_hand():
 
 
 def test_models_come_in_the_order_of_their_error():
-    comparison = compare_models(ROBOT, bent_tests(2, 0.2), bending_joints=(3,), exclude=(1, 2, 3))
+    comparison = compare_models(ROBOT, bent_tests(2, 0.2), bending=(3,), exclude=(1, 2, 3))
     errors = [r.cv_relative_error for r in comparison.results]
     assert errors == sorted(errors)
     assert all(r.excluded == (1, 2, 3) for r in comparison.results)

@@ -7,13 +7,21 @@ import pytest
 from scipy.optimize import nnls
 
 import robomill as rm
-from robomill.identification.crossvalidation import cross_validate, fold_of_pose, headline, relative_by_pose
+from robomill.identification.crossvalidation import Folded, headline, leave_out, relative_by_pose
+from robomill.identification.folds import fold_of_pose
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model
 from robomill.identification.synthesis import simulated_tests, three_directions
 from robomill.identification.system import build_system
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
+
+
+def cross_validate(system, weights=None, folds=10):
+    """(poses,) relative error of each pose, predicted without its fold."""
+    fold = fold_of_pose(int(system.pose.max()) + 1, folds)[system.pose]
+    folded = Folded(system, fold, weights)
+    return relative_by_pose(system, leave_out(folded.count, lambda left: folded).error, weights)
 
 
 def system_of(poses, noise=3e-5):

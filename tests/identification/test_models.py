@@ -73,7 +73,7 @@ def test_displacement_is_work_of_the_load_times_motion_of_the_gauge():
     rng = np.random.default_rng(1)
     wrench, force_point, gauge = rng.normal(size=(4, 6)), rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.1
     tests = LoadTests(wrench, np.ones((4, 6)), theta=THETA, force_point=force_point, measuring_point=gauge)
-    D = model.regressor(ROBOT, tests)
+    D = model.terms(ROBOT, tests)[:, :, 0]
     for k in range(4):
         at_force, at_gauge = (model.columns(ROBOT, THETA[k], point) for point in (force_point, gauge))
         each = at_gauge * (wrench[k] @ at_force)
@@ -81,7 +81,7 @@ def test_displacement_is_work_of_the_load_times_motion_of_the_gauge():
         np.testing.assert_allclose(D[k, :, 9], each[:, 9] + each[:, 10], rtol=1e-12, atol=1e-15)
         np.testing.assert_allclose(D[k, :, 10], each[:, 11], rtol=1e-12, atol=1e-15)
     tip = LoadTests(wrench[:, :3], np.ones((4, 3)), theta=THETA)
-    at_tip = model.regressor(ROBOT, tip)[:, :3]
+    at_tip = model.terms(ROBOT, tip)[:, :, 0][:, :3]
     np.testing.assert_allclose(model.tip_regressor(ROBOT, THETA, wrench[:, :3]), at_tip, atol=1e-15)
 
 
@@ -101,9 +101,9 @@ def test_one_matrix_for_every_pose():
     np.testing.assert_allclose(model.compliance(ROBOT, THETA, values), np.tile(C, (4, 1, 1)))
     F = np.random.default_rng(3).normal(size=(4, 3))
     np.testing.assert_allclose(model.tip_regressor(ROBOT, THETA, F) @ values, F @ C)
-    D = model.regressor(ROBOT, LoadTests(F, np.ones((4, 3)), theta=THETA))
+    D = model.terms(ROBOT, LoadTests(F, np.ones((4, 3)), theta=THETA))[:, :, 0]
     np.testing.assert_allclose(D[:, :3] @ values, F @ C)
     assert np.isnan(D[:, 3:]).all()
     world = LoadTests(F, np.ones((4, 3)), x_M=np.zeros((4, 5)))
     with pytest.raises(LoadTestError, match="with_joints"):
-        model.regressor(ROBOT, world)
+        model.terms(ROBOT, world)[:, :, 0]

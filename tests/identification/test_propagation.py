@@ -34,7 +34,7 @@ def close(found, drawn, within):
         guessed(ROBOT, compliance=0.1),
         guessed(ROBOT, force=[5.0, 10.0, 3.0]),
         guessed(ROBOT, compliance=[0.05, 0.1, 0.02, 0.3, 0.08], force=[5.0, 10.0, 3.0]),
-        Knowledge.of(RESULT, ROBOT),
+        Knowledge.of(RESULT, ROBOT).noise_only(),
     ],
     ids=["compliance", "force", "both", "identified"],
 )
@@ -61,7 +61,7 @@ def test_identification_repeated_scatters_as_the_band_says():
         again = simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=seed)
         predicted.append(D @ identify(arm, again).parameters)
     once = identify(arm, simulated_tests(arm, tests.theta, tests.wrench[:, :3], noise=1e-6, seed=0))
-    band = uncertain_deflection(arm, THETA, F, Knowledge.of(once, arm)).std * (1e-6 / once.noise)
+    band = uncertain_deflection(arm, THETA, F, Knowledge.of(once, arm).noise_only()).std * (1e-6 / once.noise)
     scatter = np.std(predicted, axis=0, ddof=1)
     np.testing.assert_allclose(
         band, scatter, rtol=0.2, atol=1e-9

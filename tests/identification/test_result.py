@@ -12,7 +12,7 @@ from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
-from robomill.identification.result import identification_report
+from robomill.identification.record import identification_report
 from robomill.identification.synthesis import simulated_tests, three_directions
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")

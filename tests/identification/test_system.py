@@ -85,7 +85,7 @@ def test_displacements_and_rotations_are_weighed_by_what_is_left_of_each(stated)
     rng = np.random.default_rng(1)
     theta = rng.uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (40, 5))
     wrench = np.concatenate([rng.normal(size=(40, 3)) * 100, rng.normal(size=(40, 3)) * 20], axis=1)
-    exact = Model().regressor(ROBOT, LoadTests(wrench, np.ones((40, 6)), theta=theta)) @ ROBOT.C_theta
+    exact = Model().terms(ROBOT, LoadTests(wrench, np.ones((40, 6)), theta=theta))[:, :, 0] @ ROBOT.C_theta
     noisy = exact + rng.standard_normal(exact.shape) * np.array([20e-6] * 3 + [1e-6] * 3)
     noise = 5e-6 if stated else None
     system = build_system(ROBOT, LoadTests(wrench, noisy, theta=theta, noise=noise), Model())

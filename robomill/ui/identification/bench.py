@@ -18,9 +18,11 @@ from robomill.errors import LoadTestError
 from robomill.identification.comparison import Comparison, compare_models
 from robomill.identification.estimate import identify
 from robomill.identification.laboratory import MAX_LOAD, Laboratory
+from robomill.identification.lines_of_pull import LinesOfPull, lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.result import IdentificationResult
+from robomill.identification.treatment import AUTO, Treatment
 from robomill.io.load_tests import read_load_tests, read_measured_map
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
@@ -76,6 +78,10 @@ class Bench:
     seen_robot: str = ""
     model: str = "joints"
     bending: tuple[int, ...] = (2, 3)
+    bending_auto: bool = False
+    fit_points: str = "none"
+    weights: str = "equal"
+    leave_out: str = "pose"
     robust: bool = False
     excluded: tuple[int, ...] = ()
     goal: str = "joint"
@@ -83,6 +89,7 @@ class Bench:
     count: int = 3
     load: float = 250.0
     tilt: float = 0.5235987755982988
+    band: str = "model"
     force_unsure: float = 0.0
     length_unsure: float = 0.0
     map_text: str = ""
@@ -95,9 +102,10 @@ class Bench:
     memory: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     @property
-    def treatment(self) -> dict[str, Any]:
+    def treatment(self) -> Treatment:
         """How the tests are fitted, whichever the model: where links bend, what weighs less, what is left out."""
-        return {"bending_joints": self.bending, "robust": self.robust, "exclude": self.excluded}
+        bending = AUTO if self.bending_auto else self.bending
+        return Treatment(bending, self.fit_points, self.robust, self.excluded, self.weights, self.leave_out)
 
     def remembered(self, key: Any, make: Callable[[], Value]) -> Value:
         """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not kept."""
@@ -117,7 +125,7 @@ class Bench:
         """Put other tests on the bench; what was left out of the old ones is forgotten."""
         self.text, self.name, self.sample = text, name, sample
         self.revision += 1
-        self.excluded = ()
+        self.excluded, self.fit_points = (), "none"
 
     def take_map(self, text: str, name: str, sample: str = "") -> None:
         """Put another measured map on the bench."""
@@ -197,7 +205,7 @@ def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
     """The fit of the model asked for. Raises LoadTestError."""
     return bench.remembered(
         ("fit", _choices(bench, robot), bench.model),
-        lambda: identify(robot, tests_of(bench, robot), bench.model, **bench.treatment),
+        lambda: identify(robot, tests_of(bench, robot), bench.model, bench.treatment),
     )
 
 
@@ -210,7 +218,7 @@ def comparison_of(bench: Bench, robot: Robot) -> Comparison:
         )
     return bench.remembered(
         ("models", _choices(bench, robot)),
-        lambda: compare_models(robot, tests, **bench.treatment),
+        lambda: compare_models(robot, tests, treatment=bench.treatment),
     )
 
 
@@ -221,5 +229,19 @@ def field_of(bench: Bench, robot: Robot) -> MeasuredField:
     )
 
 
+def lines_of(bench: Bench, robot: Robot) -> LinesOfPull | None:
+    """Where the lines of pull meet; None for tests of single joints."""
+    tests = used_tests(bench, robot)
+    if tests is None:
+        return None
+    return bench.remembered(("pull", *_choices(bench, robot)), lambda: lines_of_pull(robot, tests))
+
+
+def used_tests(bench: Bench, robot: Robot) -> LoadTests | None:
+    """The tests of the tool without the rows left out; None for tests of single joints."""
+    tests = tests_of(bench, robot)
+    return tests.without(bench.excluded) if isinstance(tests, LoadTests) else None
+
+
 def _choices(bench: Bench, robot: Robot) -> tuple[Any, ...]:
-    return bench.revision, robot.digest(), *bench.treatment.values()
+    return bench.revision, robot.digest(), bench.treatment

@@ -17,7 +17,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
 from robomill.ui.box import Box
 from robomill.ui.identification.bench import Bench
-from robomill.ui.identification.inputs import adopted, field, knowledge
+from robomill.ui.identification.inputs import BANDS, adopted, field, knowledge
 from robomill.units import format_si, from_si
 from robomill.viz.deviation import BandCurve, band_figure
 
@@ -61,9 +61,11 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
     if not result.has_joints:
         pieces.note("One constant matrix has no joint compliances; choose a model with joint springs.")
         return
-    first, second, third = pieces.split([1.5, 1, 1], "cut", gap="small")
+    first, made, second, third = pieces.split([1.5, 1.5, 1, 1], "cut", gap="small")
     with first:
         axis = inputs.pick("Deviation", "identification.component", {"": "Size", "x": "X", "y": "Y", "z": "Z"})
+    with made:
+        inputs.choice("Band", "identification.band", BANDS, bench.band, bench.writer("band"), inputs.LISTED)
     with second:
         field(bench, "force_unsure", Box("Force known to ±", "N", 5.0, 0, low=0, high=1000))
     with third:
@@ -82,7 +84,7 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
             "ident-band",
             name="deviation-band",
             table=lambda: band_columns(found, known),
-            caption="Shaded: 95 % band by linear propagation. Dashed: the compliances of the project now.",
+            caption=f"Shaded: 95 % band, {known.source}. Dashed: the compliances of the project now.",
             alt="Deviation along the path with its 95 % band.",
         )
     pieces.note("Force: each component, link lengths: each a and d; one standard deviation, zero is taken as exact.")
@@ -110,7 +112,7 @@ def band_columns(found: SimulationResult, known: Knowledge) -> dict[str, Any]:
     for i, axis in enumerate("xyz"):
         columns[f"delta_{axis}_mm"] = from_si(found.delta[:, i], "mm")
         columns[f"half95_{axis}_mm"] = from_si(band.half_width(LEVEL)[:, i], "mm")
-    for name in ("compliance", "force", "lengths"):
+    for name in ("compliance", "model", "force", "lengths"):
         spread = np.linalg.norm(getattr(band, f"by_{name}"), axis=1)
         columns[f"std_by_{name}_mm"] = from_si(spread, "mm")
     return columns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import streamlit as st
 
@@ -30,6 +31,15 @@ VIEWS = {
     "next": "Measure next",
     "cut": "In the cut",
 }
+TREATMENTS = {
+    "fit_points": (
+        "Points fitted beside the compliances",
+        {"none": "None: as stated", "force": "Load point", "gauge": "Gauge point", "both": "Load and gauge point"},
+    ),
+    "weights": ("What counts how much", {"equal": "Every reading alike", "size": "Every test by its relative error"}),
+    "leave_out": ("Left out together", {"pose": "Poses, spread over all", "neighbours": "Neighbouring poses"}),
+}
+BANDS = {"model": "Noise and error of the model", "noise": "Noise of the fit only"}
 MAX_MB = 50
 EDITABLE = 60_000
 OWN = "own"
@@ -107,7 +117,14 @@ def model_choice(bench: Bench, robot: Robot) -> None:
     """Which springs are fitted, where links bend, and whether tests that do not fit weigh less."""
     titles = {name: family.title for name, family in MODELS.items()}
     inputs.choice("What gives", "identification.model", titles, bench.model, bench.writer("model"), inputs.LISTED)
-    if Model(bench.model).has("bending"):
+    if Model(bench.model).has("joint"):
+        inputs.switch(
+            "Let the tests say where links bend",
+            "identification.bending_auto",
+            bench.bending_auto,
+            bench.writer("bending_auto"),
+        )
+    if Model(bench.model).has("bending") and not bench.bending_auto:
         inputs.several(
             "Links bend at joints",
             "identification.bending",
@@ -116,6 +133,10 @@ def model_choice(bench: Bench, robot: Robot) -> None:
             lambda joints: setattr(bench, "bending", tuple(sorted(joints))),
         )
     inputs.switch("Weigh down tests that do not fit", "identification.robust", bench.robust, bench.writer("robust"))
+    with st.expander("How the tests are treated", icon=":material/tune:", expanded=bench.fit_points != "none"):
+        for name, (label, options) in TREATMENTS.items():
+            now, write = getattr(bench, name), bench.writer(name)
+            inputs.choice(label, f"identification.{name}", options, now, write, inputs.LISTED)
 
 
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
@@ -191,7 +212,9 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
 
 def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:
     """How sure the compliances found are, with what was stated of force and lengths."""
-    known = Knowledge.of(result, robot, f"from {len(result.row)} load tests")
+    known = Knowledge.of(result, robot)
+    known = known.noise_only() if bench.band == "noise" else known
+    known = replace(known, source=f"from {len(result.row)} load tests: {known.made_of}")
     return known.widened(robot, bench.force_unsure, bench.length_unsure)
 
 

@@ -1,0 +1,124 @@
+"""The load point and the gauge point as the fit found them, in the tool's and in the flange's frame, and how surely."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import stdtrit
+
+from robomill.arrays import FloatArray, frozen
+from robomill.identification.load_test import LoadTests
+from robomill.identification.points import Point, PointFit
+from robomill.provenance import Finding
+from robomill.robot.model import Robot
+from robomill.units import format_si
+
+TITLES: dict[Point, str] = {"force": "load point", "gauge": "gauge point"}
+FLAT = 1.0  # m: a half interval from which a direction counts as not known
+
+
+@dataclass(frozen=True, eq=False)
+class FoundPoint:
+    """A point of the tool that was fitted.
+
+    shift (3,) m from the stated one in {T}, covariance (3, 3) m^2, NaN where not seen; stated (3,) m in {T}, the mean
+    where the rows state several; T_FT the tool in the flange; dof of the fit.
+    """
+
+    point: Point
+    shift: FloatArray
+    covariance: FloatArray
+    stated: FloatArray
+    T_FT: FloatArray
+    dof: int
+
+    @property
+    def in_tool(self) -> FloatArray:
+        """(3,) m in {T}, from the tip: what FPx_mm, FPy_mm, FPz_mm (MPx_mm ...) of a file say."""
+        return self.stated + self.shift
+
+    @property
+    def in_flange(self) -> FloatArray:
+        """(3,) m in the frame of the flange."""
+        return np.asarray(self.T_FT[:3, :3] @ self.in_tool + self.T_FT[:3, 3])
+
+    @property
+    def ci95(self) -> FloatArray:
+        """(3, 2) m, the interval of each coordinate in the flange; infinite where it is not seen."""
+        R = self.T_FT[:3, :3]
+        half = self._t * np.sqrt(np.nan_to_num(np.diag(R @ self.covariance @ R.T), nan=np.inf))
+        return np.stack([self.in_flange - half, self.in_flange + half], axis=-1)
+
+    @property
+    def off(self) -> float:
+        """m from the stated point."""
+        return float(np.linalg.norm(self.shift))
+
+    @property
+    def off_half(self) -> float:
+        """m, half the 95 % interval of the distance from the stated point, along it; infinite where it is not seen."""
+        if self.off == 0.0 or np.isnan(self.covariance).any():
+            return float("inf") if np.isnan(self.covariance).any() else 0.0
+        along = self.shift / self.off
+        return float(self._t * np.sqrt(along @ self.covariance @ along))
+
+    @property
+    def flat(self) -> FloatArray | None:
+        """(3,) unit direction in {T} along which these tests hardly hold the point, None where all do."""
+        if np.isnan(self.covariance).any():
+            return np.full(3, np.nan)
+        values, vectors = np.linalg.eigh(self.covariance)
+        return np.asarray(vectors[:, -1]) if self._t * np.sqrt(values[-1]) > FLAT else None
+
+    @property
+    def _t(self) -> float:
+        return float(stdtrit(self.dof, 0.975)) if self.dof > 0 else float("inf")
+
+    def sentence(self) -> str:
+        """How far the point is from the stated one."""
+        title = TITLES[self.point]
+        if self.flat is not None:
+            return f"The {title} is not held by these tests in every direction: load and measure along others too."
+        half = format_si(self.off_half, "mm", 0) if self.off_half >= 1e-3 else format_si(self.off_half, "mm", 2)
+        return f"Your {title} seems {format_si(self.off, 'mm', 0)} (± {half}, 95 %) off the one that is stated."
+
+
+@dataclass(frozen=True, eq=False)
+class Offer:
+    """Points that are worth fitting: ``fit_points``, what they would be, and the error on poses left out before, after.
+
+    Errors are shares of the displacement, both from the same tests.
+    """
+
+    fit_points: str
+    points: tuple[FoundPoint, ...]
+    before: float
+    after: float
+
+    def finding(self) -> Finding:
+        """The offer as it is said."""
+        off = " ".join(point.sentence() for point in self.points)
+        was, now = format_si(self.before, "%", 1), format_si(self.after, "%", 1)
+        text = f"{off} Fitted, it takes the error on poses left out from {was} to {now}."
+        return Finding("warning", 0, text, len(self.points), code=f"fit-{self.fit_points}")
+
+
+def found_points(robot: Robot, tests: LoadTests, freed: tuple[Point, ...], found: PointFit) -> tuple[FoundPoint, ...]:
+    """The points that were fitted, in the order of ``freed``."""
+    p = len(found.fit.x) - 3 * len(freed)
+    stated = {"force": tests.force_point, "gauge": tests.measuring_point}
+    result = []
+    for i, point in enumerate(freed):
+        own = slice(p + 3 * i, p + 3 * i + 3)
+        result.append(
+            FoundPoint(
+                point,
+                frozen(found.shift[3 * i : 3 * i + 3]),
+                frozen(found.fit.covariance[own, own]),
+                frozen(stated[point].mean(axis=0)),
+                robot.T_tool,
+                found.fit.dof,
+            )
+        )
+    return tuple(result)

@@ -1,0 +1,76 @@
+"""How load tests are treated, whichever the model: where links bend, which points are fitted, what counts how much."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from robomill.errors import LoadTestError
+from robomill.identification.folds import LEAVE_OUT
+from robomill.identification.models import MODELS
+from robomill.identification.points import FREED, Point
+
+BENDING_JOINTS = (2, 3)
+AUTO: Literal["auto"] = "auto"
+WEIGHTS = {"equal": "every reading alike", "size": "every test by its relative error"}
+
+
+@dataclass(frozen=True)
+class Treatment:
+    """Choices about load tests.
+
+    bending: joints (1-based) at which links bend, in models with bending; "auto": in every model, at the joints that a
+    cross-validation of their own names in each fold, or none; fit_points: none, force, gauge or both, the points of the
+    tool that are fitted beside the compliances; robust: weigh down tests that do not fit (Tukey's bisquare); exclude:
+    rows left out; weights: "equal", or "size" for errors that grow with the displacement; leave_out: what
+    cross-validation leaves out together, "pose" (spread over the fold by a fixed shuffle) or "neighbours".
+    """
+
+    bending: Literal["auto"] | tuple[int, ...] = BENDING_JOINTS
+    fit_points: str = "none"
+    robust: bool = False
+    exclude: tuple[int, ...] = ()
+    weights: str = "equal"
+    leave_out: str = "pose"
+
+    def __post_init__(self) -> None:
+        for name, known in (("fit_points", FREED), ("weights", WEIGHTS), ("leave_out", LEAVE_OUT)):
+            if getattr(self, name) not in known:
+                listed = ", ".join(known)
+                raise LoadTestError(f"{name}: found {getattr(self, name)!r}, expected one of {listed}.")
+        if self.bending != AUTO:
+            object.__setattr__(self, "bending", _joints(self.bending))
+        object.__setattr__(self, "exclude", tuple(sorted(set(self.exclude))))
+
+    @property
+    def freed(self) -> tuple[Point, ...]:
+        """The points that are fitted."""
+        return FREED[self.fit_points]
+
+
+def _joints(given: Iterable[int] | str) -> tuple[int, ...]:
+    if isinstance(given, str):
+        raise LoadTestError(f"bending: found {given!r}, expected joint numbers or auto.")
+    return tuple(dict.fromkeys(int(joint) for joint in given))
+
+
+def without_bending(model: str) -> str:
+    """The model of these names that has the same springs but for those of bending links."""
+    kinds = _kinds(model) - {"bending"}
+    return next(name for name, family in MODELS.items() if family.kinds == kinds)
+
+
+def with_bending(model: str) -> str:
+    """The model that has springs of bending links besides."""
+    kinds = _kinds(model) | {"bending"}
+    return next(name for name, family in MODELS.items() if family.kinds == kinds)
+
+
+def _kinds(model: str) -> frozenset[str]:
+    if model not in MODELS:
+        raise LoadTestError(f"Model {model!r}: expected one of {', '.join(MODELS)}.")
+    return frozenset(MODELS[model].kinds)
+
+
+STANDARD = Treatment()
