@@ -145,3 +145,15 @@ def test_a_kienzle_row_is_its_specific_force_at_any_chip() -> None:
 def test_a_row_without_a_name_a_title_or_an_alloy_is_refused(missing: str) -> None:
     with pytest.raises(CuttingError):
         Material(**{**ROW, missing: ""})
+
+
+@pytest.mark.parametrize("name", material_names())
+def test_a_row_names_the_coefficients_of_its_kind(name: str) -> None:
+    row = load_material(name)
+    kinds = {
+        "mechanistic": ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"),
+        "kienzle": ("kc11", "mc", "radial_ratio", "axial_ratio"),
+    }
+    written = {c for every in kinds.values() for c in every if getattr(row, c) is not None}
+    assert written <= set(row.coefficients)
+    assert row.coefficients == kinds["kienzle" if name.endswith("kienzle") else "mechanistic"]

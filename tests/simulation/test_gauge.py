@@ -11,6 +11,7 @@ import shapely
 import robomill as rm
 from robomill.cutting.forces.along_path import PathForce
 from robomill.io.samples import samples_dir
+from robomill.simulation.gauge import Readings
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -212,3 +213,15 @@ def test_walls_count_by_their_length():
     assert bent.verdict.level == "out"
     half = pushed(run(*PARTS["slot"]), left=np.where(run(*PARTS["slot"]).path.p[:, 0] > -5e-3, 0.4e-3, 0.1e-3))
     assert half.verdict.wall.share_out == pytest.approx(0.5, abs=0.03)
+
+
+def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
+    found = Readings(
+        np.arange(4), np.array([0.1, -0.3, 0.2, -0.2]), np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1])
+    )
+    assert found.area() == pytest.approx(0.5 + 6.0 + 1.0 + 0.8)
+    assert found.area(0.15) == pytest.approx(6.0 + 1.0 + 0.8)
+    assert found.area(0.25) == pytest.approx(6.0)
+    assert found.share_out(0.15) == pytest.approx(14 / 15)
+    assert found.share_out(0.3) == 0.0
+    assert found.worst == 1

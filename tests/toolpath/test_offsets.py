@@ -11,10 +11,11 @@ from robomill.toolpath.gcode.chords import to_toolpath
 
 
 @pytest.mark.parametrize("shift", ["G10 L2 P1", "G10 L20 P1", "G92", "G52"])
-def test_degrees_are_degrees_in_inches_too(shift):
+@pytest.mark.parametrize("back", ["", "G55\nG54\n"])  # as it is set, and as it is kept
+def test_degrees_are_degrees_in_inches_too(shift, back):
     found = {}
     for unit, size in (("G21", 25.4), ("G20", 1.0)):
-        before = f"{unit} G90 G94 F100\nG0 X{size} Y0 A5 B0\n{shift} X{2 * size} A30 B-12\n"
+        before = f"{unit} G90 G94 F100\nG0 X{size} Y0 A5 B0\n{shift} X{2 * size} A30 B-12\n{back}"
         program = interpret(f"{before}G1 X{3 * size} Y{size} A10 B4\nM2\n")
         found[unit] = to_toolpath(program)
     np.testing.assert_allclose(found["G20"].k, found["G21"].k, atol=1e-12)

@@ -1,0 +1,51 @@
+"""A set-up refuses what contradicts itself, and puts points where its part zero says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.errors import SetupError
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+
+SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+
+
+def spring(name):
+    return SpindleSpring(lateral=1e-8, name=name)
+
+
+@pytest.mark.parametrize("names", [("a", "a"), ("a", "b", "a"), ("c", "b", "b")])
+def test_springs_are_told_apart_by_their_names(names):
+    twice = next(name for name in names if names.count(name) == 2)
+    with pytest.raises(SetupError, match=f"there are two named '{twice}'"):
+        SETUP.replace(springs=tuple(map(spring, names)))
+    assert len(SETUP.replace(springs=(spring("a"), spring("b"))).springs) == 2
+
+
+def test_what_needs_something_else_is_refused_without_it():
+    with pytest.raises(SetupError, match="Sag: no link masses"):
+        SETUP.replace(add_sag=True)
+    with pytest.raises(SetupError, match="Coupling: the force must follow the engagement"):
+        SETUP.replace(coupling=True)
+
+
+@pytest.mark.parametrize("axes", [np.diag([1.0, 1.0, -1.0]), 1.00001 * np.eye(3), np.diag([1.0, -1.0, 1.0])])
+def test_a_part_frame_is_a_rotation(axes):
+    T_MW = SETUP.T_MW.copy()
+    T_MW[:3, :3] = axes
+    with pytest.raises(SetupError, match="not a rotation"):
+        SETUP.replace(T_MW=T_MW)
+
+
+def test_points_are_turned_and_then_shifted():
+    T_MW = np.eye(4)
+    T_MW[:3, :3] = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    T_MW[:3, 0] *= np.linalg.det(T_MW[:3, :3])
+    T_MW[:3, 3] = [0.1, -1.3, 0.02]
+    setup = SETUP.replace(T_MW=T_MW)
+    p = np.random.default_rng(1).normal(size=(2, 4, 3))
+    for at in np.ndindex(2, 4):
+        np.testing.assert_allclose(setup.in_base(p)[at], (T_MW @ [*p[at], 1.0])[:3], atol=1e-15)
