@@ -12,7 +12,6 @@ from robomill.surface.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
 
-UPWARDS = 1e-12  # m: a feed step shorter than this in plan goes along z
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
 ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 
@@ -56,18 +55,6 @@ def one_groove(path: Toolpath) -> bool:
         return False
     off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
     return bool(np.abs(off).max() <= ON_LINE)
-
-
-def groove_error(result: SimulationResult, i: int) -> tuple[float, float]:
-    """(aside, up) m: how far the tip at sample i goes to the left of the feed, seen from above, and up, in {W}.
-
-    NaN aside where the feed is along z.
-    """
-    delta = result.setup.T_MW[:3, :3].T @ result.delta[i]
-    feed = result.path.p[i] - result.path.p[i - 1]
-    plan = float(np.hypot(feed[0], feed[1]))
-    aside = float(delta[1] * feed[0] - delta[0] * feed[1]) / plan if plan > UPWARDS else float("nan")
-    return aside, float(delta[2])
 
 
 def joint_shares(result: SimulationResult, i: int) -> FloatArray:

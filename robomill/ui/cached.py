@@ -28,7 +28,9 @@ def result(setup: SimulationSetup) -> SimulationResult:
 
 @st.cache_resource(max_entries=24, show_spinner=False)
 def _result(digest: str, _setup: SimulationSetup) -> SimulationResult:
-    return simulate(_setup)
+    found = simulate(_setup)
+    _ = found.verdict  # so that what cannot be judged is refused here, where a page expects it
+    return found
 
 
 def groove(setup: SimulationSetup, station: float) -> GrooveSection:

@@ -32,7 +32,8 @@ BLOCKS = {
     "cutter": "cutter",
     "force": "force",
     "stock": "stock",
-    "tolerance": "tolerance",
+    "tools": "tools",
+    **dict.fromkeys(("tolerance", "floor_tolerance", "feed_tolerance"), "tolerance"),
 }
 ROBOT_BLOCKS = {
     "geometry": ("alpha", "a", "d", "theta_offset", "sign"),

@@ -79,20 +79,6 @@ def test_one_way_and_one_groove(corner):
     assert grooves == [True, True, True, False, False, False, False]
 
 
-def test_groove_error_in_the_turned_part():
-    """The tip's displacement seen along the feed: what lies left of it, and up."""
-    T_MW = part_frame([0.0, -1.3, 0.0], 0.4)
-    found = run((-20, -10, -2), (10, 20, -2), T_MW=T_MW)
-    i = len(found.path) // 2
-    feed = T_MW[:3, :3] @ np.array([1.0, 1.0, 0.0]) / np.sqrt(2)
-    left = np.cross(T_MW[:3, 2], feed)
-    assert stations.groove_error(found, i) == pytest.approx((found.delta[i] @ left, found.delta[i] @ T_MW[:3, 2]))
-    plunge = run((0, 0, 5), (0, 0, -2), (20, 0, -2))
-    j = int(np.flatnonzero(plunge.path.cutting & (plunge.path.p[:, 2] > 0))[-1])
-    assert np.isnan(stations.groove_error(plunge, j)[0])
-    assert stations.groove_error(plunge, j)[1] == pytest.approx(plunge.delta[j, 2])
-
-
 def test_joint_shares_are_what_each_joint_moves_along_the_deviation(corner):
     i = corner.worst
     alone = []

@@ -20,7 +20,9 @@ from robomill.ui.milling import pictures as picture_panel
 from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
+from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
+from robomill.ui.verdict import LEFT_OUT
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
 QUESTION = "milling.question"
@@ -55,6 +57,7 @@ def verdict_link(result: SimulationResult) -> None:
         disabled=result.worst < 0,
         help="Go there: code line, arm, force and section",
     )
+    pieces.note(LEFT_OUT)
 
 
 def _land(result: SimulationResult) -> None:
@@ -69,8 +72,10 @@ def inputs_column(result: SimulationResult | None) -> None:
         force_panel.inputs_panel()
         if result is not None and result.coupling is not None and not result.coupling.converged:
             st.warning(result.coupling.sentence, icon=":material/warning:")
-    with st.expander("**Cutter**", expanded=True, key="milling.open.cutter"):
-        cut_panel.cutter_inputs()
+    with st.expander("**Tools**" if setup.tools else "**Cutter**", expanded=True, key="milling.open.cutter"):
+        if not setup.tools:
+            cut_panel.cutter_inputs()
+        tools_panel.panel()
         if result is not None:
             for words in dict.fromkeys(
                 [*setup.stock_block.warnings(setup.cutter), *cut_warnings(setup.cutter, result.conditions)]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import streamlit as st
 
+from robomill.errors import RobomillError
 from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
+from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
 from robomill.ui import declared, inputs, pieces, session
 from robomill.units import format_count, format_many
@@ -36,7 +38,7 @@ def stock_inputs() -> None:
     if current == "stl":
         _stl(stock if given == "stl" else None)
     elif stock is None:
-        pieces.note(f"{pieces.badge('computed')} {_size(setup.stock_block)} around the feed moves")
+        pieces.note(f"{pieces.badge('computed')} {_around(setup)} around the feed moves")
     else:
         declared.field("stock.lower")
         declared.field("stock.upper")
@@ -45,6 +47,14 @@ def stock_inputs() -> None:
 def _size(stock: Stock) -> str:
     unit = session.project().view.length
     return format_many(stock.upper - stock.lower, unit, 1, " × ")
+
+
+def _around(setup: SimulationSetup) -> str:
+    """The size of the stock around the path; "" while the path is refused, which the page says."""
+    try:
+        return _size(setup.stock_block)
+    except RobomillError:
+        return ""
 
 
 def _switch_stock(kind: str) -> None:

@@ -80,7 +80,10 @@ def section_facts(groove: GrooveSection | None) -> None:
 def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool, height: int = 320) -> None:
     """Centre offset and floor along the groove, best fit, and a measured profile over it."""
     unit = session.project().view.length
-    found, block = profile(result)
+    along = pieces.attempt(profile, result)
+    if along is None:
+        return
+    found, block = along
     measured = session.kept(MEASURED)
     fit = None
     if is_straight(result.path) and np.isfinite(found.centre_offset).sum() >= 3:

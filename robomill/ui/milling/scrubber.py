@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -15,6 +16,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import inputs, pieces, session, uncertainty
+from robomill.ui.milling.tools import names
 from robomill.units import format_many, format_si, from_si
 from robomill.viz.along import add_picks, add_point, shade
 from robomill.viz.deviation import Components, components_figure
@@ -95,6 +97,8 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
         f"tip off by <b>{format_si(float(result.deviation[i]), unit)}</b>{_range(spread, i, unit)}",
         f"force {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}",
     ]
+    if tool := names(result.setup.tools, int(result.path.tool[i])):
+        words.insert(1, html.escape(tool))
     st.html(f'<p class="rm-lead" style="font-size:.95rem">{" · ".join(words)}</p>')
 
 

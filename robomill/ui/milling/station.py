@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -12,14 +13,17 @@ from robomill.report.tables import deviation_columns, section_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
+from robomill.simulation.tools import cutting_numbers
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import at_feed, station_m
+from robomill.ui.milling.tools import names
 from robomill.units import format_si, format_times, from_si
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.deviation import Shares, shares_figure
 from robomill.viz.dial import Dial, dial_figure
 from robomill.viz.sections import section_figure
+from robomill.viz.theme import joint_colours
 from robomill.viz.views import arm_scene, section_drawing
 
 AROUND = 5
@@ -30,14 +34,16 @@ def code(result: SimulationResult, i: int, height: int = 300) -> None:
     lines = result.setup.source.block_texts()
     block = int(result.path.block[i]) if i >= 0 else 0
     first = max(0, min(block - 1 - AROUND, len(lines) - 2 * AROUND - 1))
-    shown = []
+    tools, shown = _tool_of_line(result), []
     for k in range(first, min(first + 2 * AROUND + 1, len(lines))):
         tone = (
             "background:color-mix(in srgb, var(--rm-code) 24%, transparent);font-weight:600;" if k + 1 == block else ""
         )
         mark = "▸" if k + 1 == block else " "
+        tool, colour = tools.get(k + 1, ("", "transparent"))
         shown.append(
-            f'<div style="display:flex;gap:.8rem;padding:.1rem .5rem;border-radius:4px;{tone}">'
+            f'<div title="{html.escape(tool)}" style="display:flex;gap:.8rem;padding:.1rem .5rem;border-radius:4px;'
+            f'border-left:4px solid {colour};{tone}">'
             f'<span style="opacity:.5;min-width:3.2rem;text-align:right">{mark} {k + 1}</span>'
             f'<span style="white-space:pre;overflow:hidden;text-overflow:ellipsis">{html.escape(lines[k][:160])}</span>'
             "</div>"
@@ -46,6 +52,15 @@ def code(result: SimulationResult, i: int, height: int = 300) -> None:
         f'<div style="--rm-code:#2F7FD0;font-family:Source Code Pro,monospace;font-size:.84rem;line-height:1.75;'
         f'min-height:{height}px">{"".join(shown)}</div>'
     )
+
+
+def _tool_of_line(result: SimulationResult) -> dict[int, tuple[str, str]]:
+    """What the lines that cut are cut with: the tool's name and its colour; nothing where one cutter does all."""
+    path, known = result.path, result.setup.tools
+    numbers = cutting_numbers(path).tolist() if known else []
+    colours = dict(zip(numbers, cycle(joint_colours(7, False)), strict=False))
+    pairs = np.unique(np.stack([path.block, path.tool])[:, path.cutting], axis=1).T.tolist() if known else []
+    return {block: (names(known, number), colours[number]) for block, number in pairs}
 
 
 def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None:
