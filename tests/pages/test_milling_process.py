@@ -371,5 +371,5 @@ def test_form_error_is_apart_from_the_shift(app: AppTest) -> None:
 
 def test_titles_and_names_cover_every_kind() -> None:
     assert set(FORCES) == {"path", "constant", "mechanistic", "kienzle", "measured"}
-    assert set(SHAPES) == {"flat", "ball", "bull", "chamfer"}
+    assert set(SHAPES) == {"flat", "ball", "bull", "chamfer", "drill"}
     assert metrology_panel.STATIONS % 2 == 1
