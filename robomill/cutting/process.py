@@ -93,7 +93,11 @@ class ProcessForce(ForceModel):
         )
         reasons = [
             ("spindle_sense", conditions.ccw != left, "the spindle turns against the cutter's hand: it does not cut"),
-            ("spindle_speed", ~np.isfinite(conditions.n_s), "the spindle's speed is not known, so the chip is not"),
+            (
+                "spindle_speed",
+                ~np.isfinite(conditions.n_s),
+                "the spindle's speed follows the diameter (G96) and is not read, so the chip is not known",
+            ),
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
         ]
         if not self.material.knows_radial:

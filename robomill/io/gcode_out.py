@@ -21,7 +21,7 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
 
     Read again, it gives the same points, feeds and cutting moves; a start other than zero becomes a first rapid.
     A tilted tool axis becomes A and B: k = (sin B, -sin A cos B, cos A cos B). Raises ToolpathError for a cut
-    without feed or an unknown unit.
+    without feed, a spindle speed that is not known or an unknown unit.
     """
     if units not in DECIMALS:
         raise ToolpathError(f"G-code: the unit is {units!r}; expected 'mm' or 'in'.")
@@ -36,6 +36,12 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
     angles = np.round(_angles(path.k), _ANGLE_DECIMALS)
     tilted = bool(np.abs(angles).max() > 0)
     feeds = np.round(from_si(path.v_f, f"{units}/min"), _FEED_DECIMALS)
+    unknown = np.flatnonzero(np.isnan(path.n_s))
+    if len(unknown):
+        raise ToolpathError(
+            f"G-code: the spindle speed of point {unknown[0]} is not known (G96 lets it follow the diameter); "
+            "give the program a speed (G97 S)."
+        )
     speeds = np.round(from_si(path.n_s, "1/min"), _FEED_DECIMALS)
     for i in range(len(path)):
         if i == 0 and not lengths[0].any() and not angles[0].any():

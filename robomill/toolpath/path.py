@@ -35,7 +35,8 @@ class Toolpath:
     v_f      (m,) m/s        feed rate of the move (0 on rapids)
     cutting  (m,) bool       True on feed moves, False on rapids and at the start
     block    (m,) int        1-based source line of the move (row of the table for a table of lines)
-    n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated
+    n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated, NaN where they are
+                             not known (G96)
     tool     (m,) int        tool number, 0 where not stated
     ccw      (m,) bool       True where the spindle turns counter-clockwise (M4), False where not stated
     dwell    (m,) s          time that the tool stands still before the move

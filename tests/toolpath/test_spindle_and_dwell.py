@@ -85,3 +85,25 @@ def test_apt_says_it_too() -> None:
     )
     assert path.ccw.tolist() == [True, True, False, False, False]
     assert path.dwell.tolist() == [0.0, 0.0, 1.5, 0.5, 0.0]
+
+
+@pytest.mark.parametrize("padding", [0, 25_000])
+def test_a_speed_that_follows_the_diameter_is_not_known(padding: int) -> None:
+    """Not zero: the spindle turns. M5 stops it in that mode too, and G97 makes the speed known again."""
+    lines = [
+        "G96 S200 M4 F60",
+        "G1 X1",
+        "M5",
+        "X2",
+        "G97 S600 M3",
+        "X3",
+        "G96 S100",
+        "X4",
+        *["X5 (on)"] * padding,
+        "M2",
+    ]
+    path = read_gcode("\n".join(["G21", *lines]))
+    assert path.n_s[1:5] == pytest.approx([np.nan, 0.0, 10.0, np.nan], nan_ok=True)
+    assert np.isnan(path.n_s[5:]).all()
+    assert path.ccw[1:5].tolist() == [True, False, False, False]
+    assert "surface-speed" in {f.code for f in path.findings}

@@ -141,6 +141,13 @@ def spindle_speed(m) -> float:
     return m.speed / _MINUTE if m.spindle_mode == CONSTANT_SPEED else 0.0
 
 
+def turning(m) -> float:
+    """Turns per second as the spindle turns: 0 where it stands still, NaN where the diameter says how fast (G96)."""
+    if m.spindle == 0:
+        return 0.0
+    return m.speed / _MINUTE if m.spindle_mode == CONSTANT_SPEED else math.nan
+
+
 def feed_speed(m) -> float:
     """Feed rate, m/s (per turn: at the commanded spindle speed)."""
     per_second = spindle_speed(m) if m.feed_mode == PER_TURN else 1.0 / _MINUTE
@@ -208,7 +215,7 @@ def write_move(m, kind: int, end, v_f: float, row) -> None:
     """Write a move of the tip to ``end`` (6,) of the current coordinate system; the next one starts there."""
     row.kind = kind
     row.v_f = v_f
-    row.n_s = spindle_speed(m) if m.spindle != 0 else 0.0
+    row.n_s = turning(m)
     row.ccw = m.spindle < 0
     row.tool = m.in_spindle
     row.dwell, m.waited = m.waited, 0.0

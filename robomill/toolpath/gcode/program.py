@@ -40,7 +40,7 @@ class Program:
     clockwise (m,) bool      sense of an arc seen from the positive third axis
     sweep     (m,) rad       signed sweep of arcs (clockwise negative), 0 for straight moves
     v_f       (m,) m/s       feed rate, 0 for traverses
-    n_s       (m,) 1/s       spindle speed, 0 where stopped
+    n_s       (m,) 1/s       spindle speed, 0 where stopped, NaN where it follows the diameter (G96)
     ccw       (m,) bool      the spindle turns counter-clockwise (M4)
     dwell     (m,) s         stood still before the move
     tool      (m,) int       tool number in the spindle

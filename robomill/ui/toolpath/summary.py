@@ -42,7 +42,7 @@ def path_summary(path: Toolpath) -> PathSummary:
     """The summary of a path (kept for the last few)."""
     low, high = path.extents
     feeds = path.v_f[path.cutting & (path.step_length > 0)]
-    spindles = path.n_s[path.cutting] if path.n_s.any() else np.empty(0)
+    spindles = path.n_s[path.cutting & np.isfinite(path.n_s)] if path.n_s.any() else np.empty(0)
     return PathSummary(
         moves=len(path) - 1,
         cuts=int(path.cutting.sum()),
