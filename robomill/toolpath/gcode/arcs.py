@@ -53,9 +53,13 @@ class Arcs:
 
     @property
     def bend(self) -> FloatArray:
-        """(m,) m: eight times the sagitta of a short chord over the square of its angle; a circle's radius."""
-        radius, rho = np.maximum(*self._polar[1:]), self._widening
-        return (radius**2 + 2.0 * rho**2) / np.hypot(radius, rho)
+        """(m,) m: eight times the sagitta of a short chord over the square of its angle; a circle's radius.
+
+        For a spiral (r^2 + 2 r'^2) / sqrt(r^2 + r'^2), with r' its ``_widening``.
+        """
+        rho = self._widening
+        pace = np.hypot(np.maximum(*self._polar[1:]), rho)
+        return pace + rho * (rho / pace)
 
     @property
     def length(self) -> FloatArray:

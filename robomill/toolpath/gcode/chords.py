@@ -29,18 +29,19 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
     counts[is_tap] = 2
     first = np.cumsum(counts) - counts + 1
     p = np.empty((int(counts.sum()) + 1, 3))
-    p[0] = program.start[0]
+    start, end = program.start + program.lift, program.end + program.lift
+    p[0] = start[0]
     single = counts == 1
-    p[first[single]] = program.end[single]
-    p[first[is_tap]], p[first[is_tap] + 1] = program.end[is_tap], program.start[is_tap]
+    p[first[single]] = end[single]
+    p[first[is_tap]], p[first[is_tap] + 1] = end[is_tap], start[is_tap]
     for rows in _blocks(np.flatnonzero(~single & ~is_tap), counts):
         owner, step = arcs.steps(counts[rows])
         fraction = (step / counts[rows][owner])[:, None]
-        points = program.start[rows][owner] + fraction * (program.end[rows] - program.start[rows])[owner]
+        points = start[rows][owner] + fraction * (end[rows] - start[rows])[owner]
         turning = is_arc[rows]
         if turning.any():
             points[turning[owner]] = program.arcs_of(rows[turning]).chords(counts[rows[turning]])
-        points[np.cumsum(counts[rows]) - 1] = program.end[rows]
+        points[np.cumsum(counts[rows]) - 1] = end[rows]
         p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
             points
         )

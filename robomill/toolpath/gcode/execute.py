@@ -113,6 +113,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
         machine.spindle = 0
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
     machine.in_spindle = min(number, MOST)
+    machine.note_length(machine.length_of)
 
 
 def _execute_g(machine: Machine, block: Block) -> None:

@@ -42,9 +42,11 @@ class Machine:
 
     ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system; ``at`` and ``turned`` are the tip
     (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are
-    those of the last refusal, ``initial_level`` is where a row of cycles began (NaN outside of one). ``sent`` is the
-    end of the last straight move that was recorded: after a tool change or an input the machine is asked where it
-    stands and answers with that, as LinuxCNC's preview does. ``waited`` are the seconds of dwells since the last move.
+    those of the last refusal, ``initial_level`` is where a row of cycles began (NaN outside of one), ``waited`` are the
+    seconds of dwells since the last move. ``sent`` is the end of the last straight move that was recorded: after a tool
+    change or an input the machine is asked where it stands and answers with that, as LinuxCNC's preview does.
+    ``length_of`` is the tool whose length is in force (None: none, or one that the program itself says); ``lifts``
+    holds how far the tip stands from the point that is told (m), each with the first move for which it holds.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -64,6 +66,8 @@ class Machine:
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
+        self.length_of: Tool | None = None
+        self.lifts: list[tuple[int, list[float]]] = []
         self.mist = self.flood = False
         self.cycle: dict[str, float] = {}
         self.initial_level = math.nan
@@ -164,6 +168,15 @@ class Machine:
         dx, dy = rotate(change[0], change[1], -self.rotation)
         self.p = [self.p[0] + dx, self.p[1] + dy, self.p[2] + change[2], *self.p[3:]]
         self.length_offset = list(offset)
+
+    def note_length(self, tool: Tool | None) -> None:
+        """The length of ``tool`` is in force, whatever tool is in the spindle: that one's tip goes somewhere else."""
+        self.length_of = tool
+        lift = [0.0, 0.0, 0.0]
+        if tool is not None and self.tools is not None and self.tool.number:
+            lift = [told - true for told, true in zip(tool.offset, self.tool.offset)]
+        if lift != (self.lifts[-1][1] if self.lifts else [0.0, 0.0, 0.0]):
+            self.lifts.append((len(self.recorder), lift))
 
     # --- saved modes
     def save_modes(self) -> dict[str, Any]:

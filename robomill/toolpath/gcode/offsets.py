@@ -185,10 +185,12 @@ def tool_length(machine: Machine, block: Block, code: int) -> None:
     machine.need_compensation_off(block, g_name(code))
     if code == 490:
         machine.set_length_offset([0.0, 0.0, 0.0])
+        machine.note_length(None)
         return
     if code == 431:
         offset = [block.words.get(letter, old) for letter, old in zip("xyz", machine.length_offset)]
         machine.set_length_offset(offset)
+        machine.note_length(None)
         return
     if code == 432 and "h" not in block.words:
         raise block.refuse("G43.2 needs H, a tool number.")
@@ -205,6 +207,7 @@ def tool_length(machine: Machine, block: Block, code: int) -> None:
     if code == 432:
         length = [old + new for old, new in zip(machine.length_offset, length)]
     machine.set_length_offset(length)
+    machine.note_length(tool if code == 430 and tool.number else None)
 
 
 def known_tool(machine: Machine, block: Block, number: int) -> Tool:

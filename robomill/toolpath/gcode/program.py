@@ -27,7 +27,10 @@ _COLUMNS: tuple[str, ...] = MOVE.names or ()
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Canonical moves in order. Work offsets are applied, tool length is not subtracted (tool tip positions).
+    """Canonical moves in order, as the machine is told: where the tip of the tool goes whose length is in force.
+
+    Work offsets are applied. ``lift`` is how far the tip of the tool in the spindle stands from there: 0, unless a tool
+    cuts with the length of another one (G43 with that one's H).
 
     line      (m,) int       1-based source line
     kind      (m,) int       0 traverse, 1 feed, 2 arc, 3 tap (down to the end and back); names in ``KINDS``
@@ -44,6 +47,7 @@ class Program:
     ccw       (m,) bool      the spindle turns counter-clockwise (M4)
     dwell     (m,) s         stood still before the move
     tool      (m,) int       tool number in the spindle
+    lift      (m, 3) m       from the programmed point to the tip of the tool that is there
     """
 
     line: IntArray
@@ -62,6 +66,7 @@ class Program:
     ccw: BoolArray
     dwell: FloatArray
     tool: IntArray
+    lift: FloatArray
     units: str = ""
     dialect: str = "linuxcnc"
     lines: int = 0
@@ -83,10 +88,9 @@ class Program:
         return np.asarray(self.kind == KINDS.index(name))
 
     def arcs_of(self, rows: IntArray) -> arcs.Arcs:
-        """Some moves that are arcs."""
-        return arcs.Arcs(
-            self.start[rows], self.end[rows], self.centre[rows], self.plane[rows].astype(np.int64), self.sweep[rows]
-        )
+        """Some moves that are arcs, of the tip."""
+        start, end, centre = (q[rows] + self.lift[rows] for q in (self.start, self.end, self.centre))
+        return arcs.Arcs(start, end, centre, self.plane[rows].astype(np.int64), self.sweep[rows])
 
     @cached_property
     def length(self) -> FloatArray:
@@ -99,12 +103,13 @@ class Program:
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray] | None:
-        """Lowest and highest corner (3,) m of all moves at feed, arcs with their true extremes; None without any."""
+        """Lowest and highest corner (3,) m of the tip at feed, arcs with their true extremes; None without any."""
         at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
         lower, upper = self.arcs_of(np.flatnonzero(self.kind == ARC)).extents
-        points = [self.start[at_feed], self.end[at_feed], lower, upper]
+        lift = self.lift[at_feed]
+        points = [self.start[at_feed] + lift, self.end[at_feed] + lift, lower, upper]
         return (
             np.min([q.min(axis=0) for q in points if len(q)], axis=0),
             np.max([q.max(axis=0) for q in points if len(q)], axis=0),
@@ -132,6 +137,9 @@ class Recorder:
         self.count = 0
         self._moves: list[Move] = []
         self._columns: dict[str, np.ndarray] = {}
+
+    def __len__(self) -> int:
+        return self.count + len(self._moves)
 
     def add(self, move: Move) -> None:
         """A move. Raises GCodeError if there are too many."""

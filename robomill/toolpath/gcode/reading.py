@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arrays import FloatArray, frozen
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
@@ -15,7 +16,7 @@ from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import ARC, FEED, Program
+from robomill.toolpath.gcode.program import ARC, FEED, PROBE, TRAVERSE, Program
 from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
@@ -85,6 +86,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
     if not machine.units_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
+    columns["lift"] = _lift(machine, columns)
     _doubt_size(machine, columns)
     return Program(
         **columns,
@@ -96,6 +98,23 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         findings=machine.findings.freeze(),
         messages=tuple(machine.messages),
     )
+
+
+def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
+    """(m, 3) m: how far each move's tip stands from where it is told to go; cuts for which it does are warned of."""
+    count = len(columns["line"])
+    if not machine.lifts:
+        return np.broadcast_to(np.zeros(3), (count, 3))
+    lift = np.zeros((count, 3))
+    for first, value in machine.lifts:
+        lift[first:] = value
+    wrong = np.flatnonzero(lift.any(axis=1) & (columns["kind"] != TRAVERSE) & (columns["kind"] != PROBE))
+    for tool in np.unique(columns["tool"][wrong]):
+        row = int(wrong[columns["tool"][wrong] == tool][0])
+        lower = format_si(-float(lift[row, 2]), "mm")
+        message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {lower} lower than is said"
+        machine.findings.add("wrong-length", "warning", int(columns["line"][row]), message)
+    return frozen(lift)
 
 
 def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
