@@ -8,11 +8,11 @@ from typing import Annotated, Any
 from numba.extending import register_jitable
 
 from robomill.compiled import Axes, In2, InInt1, Out2, OutBool1, kernel
-from robomill.toolpath.gcode import line_rules, motion_rules
+from robomill.toolpath.gcode import line_rules, motion_rules, records
 
 InBytes1 = Annotated[Any, Axes("uint8", 1)]
-State = Annotated[Any, Axes(motion_rules.STATE, 1, written=True)]
-Moves = Annotated[Any, Axes(motion_rules.MOVE, 1, written=True)]
+State = Annotated[Any, Axes(records.STATE, 1, written=True)]
+Moves = Annotated[Any, Axes(records.MOVE, 1, written=True)]
 
 for _module in (line_rules, motion_rules):
     for _name, _rule in inspect.getmembers(_module, inspect.isfunction):

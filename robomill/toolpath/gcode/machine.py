@@ -38,7 +38,7 @@ XYZABC = "xyzabc"
 
 
 class Machine:
-    """State that lines change; the fields that the rules of ``motion_rules`` use are those of its ``STATE``.
+    """State that lines change; the fields that the rules of ``motion_rules`` use are those of ``records.STATE``.
 
     ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system; ``at`` and ``turned`` are the tip
     (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are

@@ -1,8 +1,8 @@
 """The rules of motion: feeds, end points, arcs and frames of G0, G1, G2 and G3, each stated here and nowhere else.
 
 Every function is plain Python on an object with attributes. The interpreter hands in the ``Machine`` and lists; for
-long stretches of plain lines ``run`` is compiled (see ``stretches``) and gets a record of ``STATE``, rows of words
-and rows of ``MOVE`` instead. So nothing here may use more of Python than numba knows.
+long stretches of plain lines ``run`` is compiled (see ``stretches``) and gets a record of ``records.STATE``, rows of
+words and rows of ``records.MOVE`` instead. So nothing here may use more of Python than numba knows.
 
 ``m`` is the machine: lengths in program units (mm or inch), angles in degrees. ``w`` are the words of a line by the
 indices G to P, NaN where a word is not given. G codes are ten times their number (G1 -> 10). ``row`` is the move
@@ -17,8 +17,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from robomill.units import from_si
 
 LETTERS = "gxyzabcijkrfsp"
@@ -29,57 +27,6 @@ RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE = 0, 10, 20, 30
 INCH, INVERSE_TIME, PER_TURN, CONSTANT_SPEED = 200, 930, 950, 970
 TRAVERSE, FEED, ARC, TAP, PROBE = 0, 1, 2, 3, 4
 """Kinds of moves."""
-
-STATE = np.dtype(
-    [
-        ("p", "f8", 6),
-        ("sent", "f8", 6),
-        ("g5x", "f8", 6),
-        ("g92", "f8", 6),
-        ("at", "f8", 3),
-        ("turned", "f8", 3),
-        ("figures", "f8", 3),
-        ("rotation", "f8"),
-        ("factor", "f8"),
-        ("feed", "f8"),
-        ("speed", "f8"),
-        ("waited", "f8"),
-        ("initial_level", "f8"),
-        ("unit_code", "i8"),
-        ("motion", "i8"),
-        ("plane", "i8"),
-        ("feed_mode", "i8"),
-        ("spindle", "i8"),
-        ("spindle_mode", "i8"),
-        ("in_spindle", "i8"),
-        ("absolute", "?"),
-        ("arc_absolute", "?"),
-        ("arc_not_allowed", "?"),
-    ]
-)
-"""What of the machine the rules of motion read and change; attributes of ``Machine``, where they are explained."""
-
-MOVE = np.dtype(
-    [
-        ("line", "i4"),
-        ("kind", "i1"),
-        ("start", "f8", 3),
-        ("end", "f8", 3),
-        ("rotary0", "f8", 3),
-        ("rotary", "f8", 3),
-        ("plane", "i1"),
-        ("centre", "f8", 3),
-        ("turns", "i4"),
-        ("clockwise", "?"),
-        ("sweep", "f8"),
-        ("v_f", "f8"),
-        ("n_s", "f8"),
-        ("ccw", "?"),
-        ("dwell", "f8"),
-        ("tool", "i4"),
-    ]
-)
-"""A move; the columns are explained in ``Program``."""
 
 SPIRAL_MM, SPIRAL_INCH = 0.02 * math.sqrt(2.0), 0.002 * math.sqrt(2.0)
 """The radii to start and end of an arc given by its centre may differ by this much, or by"""

@@ -13,7 +13,8 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.errors import GCodeError
 from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.gcode.motion_rules import ARC, FEED, MOVE, PROBE, TAP, TRAVERSE
+from robomill.toolpath.gcode.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE
+from robomill.toolpath.gcode.records import MOVE
 
 __all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder"]
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from robomill.arrays import IntArray
 from robomill.toolpath.gcode import line_rules, motion_rules
-from robomill.toolpath.gcode.motion_rules import LETTERS, MOVE, STATE
+from robomill.toolpath.gcode.motion_rules import LETTERS
+from robomill.toolpath.gcode.records import MOVE, STATE
 from robomill.toolpath.gcode.program import Move
 
 LONG = 20_000
