@@ -18,6 +18,7 @@ from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
+from robomill.simulation.posture import posture_notes
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
@@ -163,6 +164,8 @@ class SimulationResult:
         if self.coupling is not None:
             found.append(self.coupling.sentence)
         found += [f"Line {f.line}: {f.message}" for f in self.steadiness]
+        if self.worst >= 0:
+            found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
         return tuple(found)
 
     @cached_property

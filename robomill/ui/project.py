@@ -78,6 +78,7 @@ class MapView:
     level: float = 0.5
     sheet: str = "nine"
     component: str = "yy"
+    one: str = "C_soft"
     shares: str = "direct"
     common: bool = True
     factors: tuple[float, ...] | None = None

@@ -7,6 +7,9 @@ import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.io.robots import load_robot
+from robomill.simulation.run import deviation_over_spin
+from robomill.simulation.samples import sampled
 from robomill.ui import session
 from robomill.ui.project import Project
 from robomill.ui.robot import tables
@@ -110,3 +113,32 @@ def test_an_angle_beyond_its_limit_is_refused_in_a_sentence(app: AppTest) -> Non
     assert store(app).project.view.theta == before
     app.number_input(key="pose.box.1:deg").set_value(-40.0).run()
     assert errors(app) == []
+
+
+def test_the_spin_of_a_six_axis_arm_is_chosen_and_its_influence_said(app: AppTest) -> None:
+    kept = store(app)
+    T_MW = np.eye(4)
+    T_MW[:3, 3] = [1.7, 0.3, 0.5]
+    setup = kept.project.setup.replace(robot=load_robot("fanuc_r2000ic"), T_MW=T_MW, step=5e-3)
+    kept.project = Project(setup, kept.project.view, kept.project.preset)
+    go(app, "1_Robot")
+    assert not app.exception
+    assert app.selectbox(key="robot.spin_rule").value == "least_motion"
+    app.button(key="robot.spin_range").click().run()
+    over = deviation_over_spin(setup, sampled(setup.toolpath, 5e-3))
+    low, high = (f"{1e3 * value:.3f} mm" for value in over.range)
+    assert f"between {low} and {high}" in words(app)
+    app.selectbox(key="robot.spin_rule").set_value("given").run()
+    app.number_input(key="robot.spin:deg").set_value(30.0).run()
+    assert store(app).project.setup.spin == pytest.approx(np.pi / 6)
+
+
+@pytest.mark.parametrize("axis", tables.TOOL_AXES)
+def test_the_tools_direction_is_a_choice(axis: str) -> None:
+    robot = tables.with_tool_axis(load_robot("fanuc_r2000ic"), axis)
+    k = np.eye(3)["xyz".index(axis[1])] * (1 if axis[0] == "+" else -1)
+    np.testing.assert_allclose(robot.T_tool[:3, 2], k)
+    np.testing.assert_allclose(robot.T_tool[:3, 3], [0.0069, 0.2453, 0.3193])
+    assert np.linalg.det(robot.T_tool) == pytest.approx(1.0)
+    assert tables.tool_axis(robot) == axis
+    assert robot.provenance["tool"].kind == ("paper" if axis == "-y" else "user")

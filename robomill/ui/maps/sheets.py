@@ -18,10 +18,11 @@ from robomill.ui.point import default_point
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.quantities import COMPONENTS
+from robomill.workspace.quantities import COMPONENTS, quantities
 
 SHEETS = {
     "nine": "3 × 3 maps",
+    "one": "One map",
     "shares": "By joint",
     "dominant": "Who gives most",
     "lines": "Path lines",
@@ -268,6 +269,28 @@ def _dominant(cut: Cut) -> None:
     )
 
 
+def _one(cut: Cut) -> None:
+    """Any quantity that rests on the joints' compliance, found by asking for them."""
+    robot, view = cut.region.robot, cut.region.view
+    known = {name: what for name, what in quantities(robot).items() if what.rests_on == "compliance"}
+    titles = {name: what.title for name, what in known.items()}
+    chosen = view.one if view.one in known else next(iter(known))
+    inputs.choice("Quantity", "maps.one", titles, chosen, lambda name: session.see(one=name), inputs.LISTED)
+    chosen = session.maps().one if session.maps().one in known else chosen
+    what, now = known[chosen], cut.stiffer()
+    whole = from_si(cut.region.overview().values(chosen), what.unit)
+    title = f"{what.title}, {plane.title(cut.normal, cut.at, cut.region.unit)}"
+    shown = cut.slab(from_si(now.values(chosen), what.unit))
+    draw(
+        cut,
+        cut.sheet(
+            [[Map(title, shown, unit=unit_label(what.unit))]], {"main": Scale.of(what, whole, robot.joint_numbers)}
+        ),
+        Words("one", f"{what.meaning} One scale over the region.", f"{what.title} over the plane."),
+        lambda: _columns(now, [chosen]),
+    )
+
+
 def _compare(cut: Cut) -> None:
     robot = cut.region.robot
     compare.controls(robot, cut.region.view)
@@ -285,4 +308,4 @@ def _compare(cut: Cut) -> None:
     pieces.facts(rows_of_text)
 
 
-_SHEETS = {"nine": _nine, "shares": _shares, "dominant": _dominant, "compare": _compare}
+_SHEETS = {"nine": _nine, "one": _one, "shares": _shares, "dominant": _dominant, "compare": _compare}

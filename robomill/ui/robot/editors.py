@@ -6,12 +6,18 @@ import pandas as pd
 import streamlit as st
 
 from robomill.io.robots import load_robot, robot_names
+from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
 from robomill.robot.model import USER_SET, Robot
+from robomill.simulation.run import deviation_over_spin
+from robomill.simulation.samples import sampled
 from robomill.ui import inputs, pieces, session
+from robomill.ui.box import Box
 from robomill.ui.project import Project, is_stiffness
 from robomill.ui.robot import tables
-from robomill.units import unit_label
+from robomill.units import format_si, unit_label
 
+MINUS, GIVEN = "−", "given"
+SAMPLES = 400  # of a path, by which its spins are compared on the page
 SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
 
 
@@ -60,6 +66,8 @@ def editors(project: Project) -> None:
         _said(robot, "limits")
     with tool:
         _tool(robot)
+        if robot.n >= 6:
+            _spin(project)
 
 
 def _which_robot(robot: Robot) -> None:
@@ -138,7 +146,49 @@ def _tool(robot: Robot) -> None:
     for i, (axis, column) in enumerate(zip("xyz", columns, strict=True)):
         with column:
             inputs.number(f"robot.T_tool[{i},3]", label=axis, unit="mm", step=1.0, digits=2)
+    k = tables.tool_axis(robot)
+    names = {axis: axis.replace("-", MINUS) for axis in tables.TOOL_AXES}
+    inputs.choice(
+        "z_T, from the tip to the spindle, along the last axis's own",
+        "robot.tool_axis",
+        names if k in names else {k: "as in its file", **names},
+        k,
+        lambda axis: session.change(robot=tables.with_tool_axis(session.project().setup.robot, axis)),
+        inputs.LISTED,
+    )
     _said(robot, "tool")
+
+
+def _spin(project: Project) -> None:
+    """The free rotation about the tool axis, and what it does to the deviation of this cut."""
+    setup = project.setup
+    given = isinstance(setup.spin, float)
+    inputs.choice(
+        "Spin about the tool axis, along the whole path",
+        "robot.spin_rule",
+        {LEAST_MOTION: "Least motion", LEAST_DEVIATION: "Least deviation", GIVEN: "As given"},
+        GIVEN if given else setup.spin,
+        lambda rule: session.change(spin=0.0 if rule == GIVEN else rule),
+        inputs.LISTED,
+    )
+    if given:
+        inputs.value(
+            "robot.spin",
+            Box("Turn about z_T", "deg", 5.0, 1),
+            float(setup.spin),
+            lambda angle: session.change(spin=angle),
+        )
+    if st.button("How much does the spin matter here?", key="robot.spin_range", icon=":material/360:"):
+        over = deviation_over_spin(
+            setup, sampled(setup.toolpath, max(setup.step, float(setup.toolpath.s[-1]) / SAMPLES))
+        )
+        low, high = over.range
+        missed = int((over.missed > over.missed[over.best]).sum())
+        pieces.note(
+            f"Over all spins the largest deviation of this cut lies between {format_si(low, 'mm', 3)} and "
+            f"{format_si(high, 'mm', 3)}; least at {format_si(float(over.angle[over.best]), 'deg', 0)}."
+            + (f" {missed} of {len(over.angle)} spins do not reach as much of the path." if missed else "")
+        )
 
 
 def _said(robot: Robot, block: str) -> None:

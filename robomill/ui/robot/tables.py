@@ -10,15 +10,37 @@ import pandas as pd
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError
+from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.ui.inputs import empty
 from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import from_si, parse_number, to_si, unit_label
 
+TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
 GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
 RIGID = "∞"
 SI_BELOW = 1e-3
 _NUMBER = re.compile(r"[+\-−]?(\d+[.,]?\d*|[.,]\d+)([eE][+\-−]?\d+)?")
+
+
+def tool_axis(robot: Robot) -> str:
+    """Along which axis of the last frame z_T lies, one of ``TOOL_AXES``; "" where along none."""
+    k = robot.T_tool[:3, 2]
+    i = int(np.argmax(np.abs(k)))
+    return f"{'+' if k[i] > 0 else '-'}{'xyz'[i]}" if abs(abs(k[i]) - 1.0) < 1e-9 else ""
+
+
+def with_tool_axis(robot: Robot, axis: str) -> Robot:
+    """``robot`` with z_T along one of ``TOOL_AXES``, the tip where it was; x_T along the axis after it."""
+    if axis == tool_axis(robot) or axis not in TOOL_AXES:
+        return robot
+    i, R = "xyz".index(axis[1]), np.zeros((3, 3))
+    R[i, 2], R[(i + 1) % 3, 0] = 1.0 if axis[0] == "+" else -1.0, 1.0
+    R[:, 1] = np.cross(R[:, 2], R[:, 0])
+    T_tool = np.array(robot.T_tool)
+    T_tool[:3, :3] = R
+    said = Provenance("user", "direction of the tool chosen in the app")
+    return robot.replace(T_tool=T_tool, provenance={**robot.provenance, "tool": said})
 
 
 def slides(robot: Robot) -> BoolArray:

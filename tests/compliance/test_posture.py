@@ -1,0 +1,73 @@
+"""Postures of a redundant arm: each holds the tool where it is; the range is that of a walk through the null space."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.posture import over_posture
+from robomill.robot.model import Robot
+from robomill.simulation.posture import posture_notes
+
+
+def seven():
+    return Robot(
+        name="seven",
+        convention="modified",
+        alpha=np.radians([0, -90, 90, 90, -90, -90, 90]),
+        a=np.zeros(7),
+        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]),
+        theta_offset=np.zeros(7),
+        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]),
+        C_theta_all=np.full(7, 5e-6),
+        T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
+    )
+
+
+def walked(robot, theta, steps=4000):
+    """C_yy along the self-motions from theta: steps in the null space of tip and tool axis, pulled back by Newton."""
+    T, rng, found = rm.tool_pose(robot, theta), np.random.default_rng(1), []
+    direction = rng.normal(size=robot.n)
+    for _ in range(steps):
+        pose, J = rm.tool_pose(robot, theta), rm.geometric_jacobian(robot, theta)
+        task = np.vstack([J[:3], pose[:3, :2].T @ J[3:]])
+        error = np.concatenate([T[:3, 3] - pose[:3, 3], pose[:3, :2].T @ np.cross(pose[:3, 2], T[:3, 2])])
+        back = np.linalg.pinv(task)
+        direction = direction + 0.3 * rng.normal(size=robot.n)
+        along = direction - back @ (task @ direction)
+        trial = theta + back @ error + 0.03 * along / np.linalg.norm(along)
+        if (trial < robot.limits[:, 0]).any() or (trial > robot.limits[:, 1]).any():
+            direction = -direction
+            theta = np.clip(theta + back @ error, *robot.limits.T)
+            continue
+        theta = trial
+        if np.linalg.norm(error) < 1e-3:
+            found.append(rm.cartesian_compliance(robot, theta)[1, 1])
+    return np.array(found)
+
+
+def test_the_range_over_postures_covers_a_walk_through_them():
+    robot = seven()
+    T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
+    C_yy = over_posture(robot, T_MT)[:, 1, 1]
+    assert len(C_yy) > 40
+    start = rm.inverse_kinematics(robot, T_MT).theta
+    walk = walked(robot, start)
+    spread = walk.max() - walk.min()
+    assert spread > 0.1 * walk.min()
+    assert C_yy.min() < walk.min() + 0.15 * spread
+    assert C_yy.max() > walk.max() - 0.15 * spread
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500"])
+def test_arms_without_a_free_posture_have_no_range(name):
+    assert over_posture(rm.load_robot(name), np.eye(4)).shape == (0, 3, 3)
+
+
+def test_a_run_says_that_one_posture_of_many_was_taken():
+    robot, F = seven(), np.array([20.0, 100.0, -30.0])
+    T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
+    (note,) = posture_notes(robot, T_MT, F)
+    size = np.linalg.norm(over_posture(robot, T_MT) @ F, axis=1) * 1e3
+    assert f"{size.min():.3f} to {size.max():.3f} mm" in note
+    assert "7 axes" in note
+    assert posture_notes(rm.load_robot("kuka_kr500"), T_MT, F) == []
