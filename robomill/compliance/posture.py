@@ -21,7 +21,8 @@ def over_posture(robot: Robot, T_MT: FloatArray, keep_spin: bool = False) -> Flo
     """
     if robot.n <= 6:
         return np.empty((0, 3, 3))
-    starts = np.random.default_rng(0).uniform(*robot.limits.T, (POSTURES, robot.n))
+    low, high = robot.limits.T
+    starts = np.random.default_rng(0).uniform(low, high, (POSTURES, robot.n))
     poses = np.array(np.broadcast_to(T_MT, (POSTURES, 4, 4)))
     theta, found = solve_numerically(robot, poses, starts, task_mode(robot) if keep_spin else "axis")
     return cartesian_compliance(robot, theta[found])
