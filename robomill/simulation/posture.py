@@ -19,6 +19,6 @@ def posture_notes(robot: Robot, T_MT: FloatArray, F: FloatArray) -> list[str]:
         return []
     size = np.linalg.norm(found @ F, axis=1)
     return [
-        f"The arm has {robot.n} axes, so one posture of many was taken: at the worst point the deflection of the joints "
+        f"The arm has {robot.n} axes, so one posture of many was taken: at the worst point the deflection "
         f"ranges over {format_many((size.min(), size.max()), 'mm', 3, ' to ')} ({len(found)} postures looked at)."
     ]
