@@ -12,8 +12,8 @@ import numpy as np
 from robomill.arrays import IntArray
 from robomill.toolpath.gcode import line_rules, motion_rules
 from robomill.toolpath.gcode.motion_rules import LETTERS
-from robomill.toolpath.gcode.records import MOVE, STATE
 from robomill.toolpath.gcode.program import Move
+from robomill.toolpath.gcode.records import MOVE, STATE
 
 LONG = 20_000
 """Lines of a program that is worth loading the compiled rules for."""
