@@ -95,6 +95,7 @@ class Knowledge:
         table: dict[str, Any] = {
             "model": self.model.name,
             "bending_joints": list(self.model.bending_joints),
+            "bending_turned": self.model.turned,
             "parameters": self.parameters.tolist(),
             "covariance": self.covariance.tolist(),
             "words": self.source,
@@ -115,7 +116,8 @@ class Knowledge:
         if not isinstance(table, dict):
             raise ProjectError(f"{where} is not a table; remove it or save the project again.")
         try:
-            model = Model(str(table["model"]), tuple(int(j) for j in table.get("bending_joints", (2, 3))))
+            joints = tuple(int(j) for j in table.get("bending_joints", (2, 3)))
+            model = Model(str(table["model"]), joints, bool(table.get("bending_turned", False)))
             p, rows = len(model.parameters(robot)), 2 * robot.rows
             given = {name: table[name] for name in ("force_covariance", "lengths", "dof") if name in table}
             if "lengths" in given:

@@ -6,9 +6,9 @@ compliance, a wrench does the work ``a_F . W`` on it and the measuring point mov
 eqs. (13)-(16) when the springs are the joints. So every model is linear in its compliances.
 
 models: ``joints``; ``+bending`` adds turns about the x and y axes of the frame whose z is the joint's axis, at
-the shoulder and elbow (joints 2 and 3) unless joints are named; ``+tool`` adds a spindle and tool spring at the
-tip, one compliance across the tool axis and one along it; ``constant`` is one symmetric 3 x 3 for every pose,
-the naive baseline.
+the shoulder and elbow (joints 2 and 3) unless joints are named, fixed in the link before the joint, or (``turned``) in
+the link after it; ``+tool`` adds a spindle and tool spring at the tip, one compliance across the tool axis and one
+along it; ``constant`` is one symmetric 3 x 3 for every pose, the naive baseline.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.springs.joint_bending import bending_axes
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.points import Point
@@ -53,13 +54,15 @@ class Parameter:
     """One fitted compliance: a joint, the bending of joint ``at`` about ``axis``, the tool, or an entry of a matrix.
 
     at: the robot's number of the joint (1-based), 0 where there is none; slides: that joint shifts rather than turns;
-    axis: "x" or "y" of the joint's frame, "across" or "along" the tool, or an entry such as "xy".
+    axis: "x" or "y" of the joint's frame (turned: of the link it moves), "across" or "along" the tool, or an entry such
+    as "xy".
     """
 
     kind: Kind
     at: int = 0
     axis: str = ""
     slides: bool = False
+    turned: bool = False
 
     @property
     def joint(self) -> int | None:
@@ -79,16 +82,18 @@ class Parameter:
     @property
     def label(self) -> str:
         """Its name in tables and sentences; no two parameters of a model share it."""
-        names = {"joint": f"joint {self.at}", "bending": f"bending {self.axis} at joint {self.at}"}
+        side = "after" if self.turned else "at"
+        names = {"joint": f"joint {self.at}", "bending": f"bending {self.axis} {side} joint {self.at}"}
         return names.get(self.kind, f"C_{self.axis}" if self.kind == "entry" else f"tool {self.axis}")
 
 
 @dataclass(frozen=True)
 class Model:
-    """A choice of springs. ``bending_joints`` are 1-based."""
+    """A choice of springs. ``bending_joints`` are 1-based; ``turned``: those axes turn with the joint."""
 
     name: str = "joints"
     bending_joints: tuple[int, ...] = (2, 3)
+    turned: bool = False
 
     def __post_init__(self) -> None:
         if self.name not in MODELS:
@@ -112,7 +117,7 @@ class Model:
         if self.has("bending"):
             for joint in self._bending(robot):
                 number = robot.joint_numbers[joint]
-                listed += [Parameter("bending", number, axis) for axis in "xy"]
+                listed += [Parameter("bending", number, axis, turned=self.turned) for axis in "xy"]
         if self.has("tool"):
             listed += [Parameter("tool", axis=axis) for axis in ("across", "along")]
         return tuple(listed)
@@ -140,8 +145,9 @@ class Model:
         ]
         if self.has("bending"):
             for joint in self._bending(robot):
-                frame = frames[..., joint, :3, :]
-                shafts += [(frame[..., 3], frame[..., 0], False), (frame[..., 3], frame[..., 1], False)]
+                shafts += [
+                    (frames[..., joint, :3, 3], axis, False) for axis in bending_axes(frames, joint, self.turned)
+                ]
         if self.has("tool"):
             shafts += [(p, frames[..., -1, :3, k], True) for k in range(3)]
         a = np.zeros((*p.shape[:-1], 6, len(shafts)))

@@ -55,6 +55,9 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
         "unseen_joints": [unseen.joint for unseen in result.unseen_joints],
         "model": result.model,
         "bending_joints": list(result.choice.bending_joints) if result.choice.has("bending") else [],
+        "bending_axes": ("link after" if result.choice.turned else "link before")
+        if result.choice.has("bending")
+        else None,
         "bending_by_fold": [list(joints) for joints in result.votes],
         "fit_points": result.treatment.fit_points,
         "points": {NAMES[point.point]: point_record(point) for point in result.points},

@@ -159,7 +159,7 @@ class IdentificationResult:
         for index, number in enumerate(robot.joint_numbers, 1):
             x, y = (values.get(("bending", number, axis), 0.0) for axis in "xy")
             if x or y:
-                found.append(JointBending(index, x, y, provenance=source))
+                found.append(JointBending(index, x, y, source, self.choice.turned))
         across, along = (values.get(("tool", 0, axis), 0.0) for axis in ("across", "along"))
         if across or along:
             found.append(SpindleSpring(across, along, provenance=source))

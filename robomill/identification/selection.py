@@ -1,8 +1,11 @@
-"""At which joints links bend, as cross-validation says: none, one or two, each only if it pays on poses left out."""
+"""At which joints links bend, as cross-validation says: none, one or two, each only if it pays on poses left out.
+
+Whether the axes stay with the link before those joints or with the link after them is chosen with them.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import LoadTestError
@@ -15,6 +18,8 @@ from robomill.identification.treatment import AUTO, Treatment, with_bending, wit
 from robomill.robot.model import Robot
 
 MOST = 2  # joints at which links may bend when that is chosen by the tests
+Bend = tuple[tuple[int, ...], bool]  # joints, and whether the axes turn with them
+NONE: Bend = ((), False)
 PAYS = 0.95  # share of the error on poses left out to which a further spring must bring it
 
 
@@ -22,8 +27,8 @@ PAYS = 0.95  # share of the error on poses left out to which a further spring mu
 class Candidates:
     """Models of one family, each fitted and folded when it is first asked for.
 
-    fold (m,) of each test; starts: shifts from which points are sought too; kept: what was fitted so far, by the joints
-    at which links bend (None: the model as it is named), None where the tests are too few for it.
+    fold (m,) of each test; starts: shifts from which points are sought too; kept: what was fitted so far; chosen: where
+    links bend by the folds left out.
     """
 
     robot: Robot
@@ -32,62 +37,66 @@ class Candidates:
     treatment: Treatment
     fold: IntArray
     starts: tuple[FloatArray, ...] = ()
-    kept: dict[tuple[int, ...], tuple[Model, Fitted, Folded]] = field(default_factory=dict, repr=False)
-    chosen: dict[frozenset[int], tuple[int, ...]] = field(default_factory=dict, repr=False)
+    kept: dict[Bend, tuple[Model, Fitted, Folded]] = field(default_factory=dict, repr=False)
+    chosen: dict[frozenset[int], Bend] = field(default_factory=dict, repr=False)
 
-    def of(self, joints: tuple[int, ...]) -> tuple[Model, Fitted, Folded]:
-        """The model with links that bend at ``joints``, its fit and its folds. Raises LoadTestError: too few tests."""
-        if joints not in self.kept:
-            model = self.model
+    def of(self, bend: Bend) -> tuple[Model, Fitted, Folded]:
+        """The model with links that bend there, its fit and its folds. Raises LoadTestError: too few tests."""
+        if bend not in self.kept:
+            model, (joints, turned) = self.model, bend
             if self._open:
                 name = with_bending(model.name) if joints else without_bending(model.name)
-                model = replace(model, name=name, bending_joints=joints)
+                model = Model(name, joints, turned)
             by_size = self.treatment.weights == "size"
             system = build_system(self.robot, self.tests, model, self.treatment.freed, by_size)
             fitted = fit_system(system, self.treatment.robust, self.starts)
             folded = Folded(fitted.small, self.fold[system.test], fitted.weights, self.starts)
-            self.kept[joints] = model, fitted, folded
-        return self.kept[joints]
+            self.kept[bend] = model, fitted, folded
+        return self.kept[bend]
 
-    def joints(self, left: frozenset[int]) -> tuple[int, ...]:
-        """The joints at which links bend, as the folds but ``left`` say."""
+    def bends(self, left: frozenset[int]) -> Bend:
+        """Where links bend, as the folds but ``left`` say."""
         if not self._open:
-            return ()
+            return NONE
         if left not in self.chosen:
-            best: tuple[int, ...] = ()
-            error = self.of(best)[2].score(left)
+            best, error = NONE, self.of(NONE)[2].score(left)
             for _ in range(MOST):
-                scores = {tuple(sorted((*best, j))): None for j in self.robot.joint_numbers if j not in best}
-                found = {joints: score for joints in scores if (score := self._score(joints, left)) is not None}
-                if not found:
+                found = {bend: score for bend in self._next(best) if (score := self._score(bend, left)) is not None}
+                bend = min(found, key=found.__getitem__, default=NONE)
+                if bend == NONE or not found[bend] < PAYS * error:
                     break
-                joints = min(found, key=found.__getitem__)
-                if not found[joints] < PAYS * error:
-                    break
-                best, error = joints, found[joints]
+                best, error = bend, found[bend]
             self.chosen[left] = best
         return self.chosen[left]
+
+    def _next(self, bend: Bend) -> list[Bend]:
+        """The same with one joint more; the last joint moves the tool alone, where a turned axis has no next frame."""
+        joints, turned = bend
+        more = [tuple(sorted((*joints, j))) for j in self.robot.joint_numbers if j not in joints]
+        last = self.robot.joint_numbers[-1]
+        both = (turned,) if joints else (False, True)
+        return [(each, side) for side in both for each in more if not (side and last in each)]
 
     @property
     def _open(self) -> bool:
         """Whether the tests are to say where links bend."""
         return self.treatment.bending == AUTO and self.model.has("joint")
 
-    def _score(self, joints: tuple[int, ...], left: frozenset[int]) -> float | None:
+    def _score(self, bend: Bend, left: frozenset[int]) -> float | None:
         try:
-            return self.of(joints)[2].score(left)
+            return self.of(bend)[2].score(left)
         except LoadTestError:
             return None
 
     def best(self) -> tuple[Model, Fitted]:
         """The model that all the folds choose, and its fit."""
-        model, fitted, _ = self.of(self.joints(frozenset()))
+        model, fitted, _ = self.of(self.bends(frozenset()))
         return model, fitted
 
     def missed(self) -> Missed:
         """Every fold predicted by what the others choose and fit."""
-        return leave_out(int(self.fold.max()) + 1, lambda left: self.of(self.joints(left))[2])
+        return leave_out(int(self.fold.max()) + 1, lambda left: self.of(self.bends(left))[2])
 
     def votes(self) -> list[list[int]]:
         """The joints chosen with each fold left out."""
-        return [list(self.joints(frozenset({k}))) for k in range(int(self.fold.max()) + 1)]
+        return [list(self.bends(frozenset({k}))[0]) for k in range(int(self.fold.max()) + 1)]

@@ -18,6 +18,7 @@ from robomill.errors import RobotError
 from robomill.io.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.kinematics.jacobian import geometric_jacobian
+from tests.identification.cables import Arm
 
 ROBOT = load_robot("slavkovic_5r")
 RNG = np.random.default_rng(11)
@@ -175,3 +176,17 @@ def test_edited_springs_say_who_typed_them_and_a_tool_follows_the_cutter():
 def test_springs_are_found_in_their_order():
     assert list(KINDS) == ["tool_bending", "spindle", "joint_bending"]
     assert [kind.each_joint for kind in KINDS.values()] == [False, False, True]
+
+
+def test_turned_bending_axes_stay_with_the_link_after_the_joint():
+    """Against the frame turned by its own matrix: modified D-H rows multiplied out, not the product's."""
+    arm, robot = Arm.of("kuka_kr500"), load_robot("kuka_kr500")
+    q = np.random.default_rng(0).uniform(-1.0, 1.0, 6)
+    frames = joint_frames(robot, q)
+    own = arm.frames(q)
+    for joint in range(1, 6):
+        C = JointBending(joint, 3e-7, 5e-7, turned=True).contribution(frames)
+        turned, reach = own[joint - 1], frames[-1, :3, 3] - own[joint - 1][:3, 3]
+        levers = [np.cross(turned[:3, axis], reach) for axis in (0, 1)]
+        expected = 3e-7 * np.outer(levers[0], levers[0]) + 5e-7 * np.outer(levers[1], levers[1])
+        np.testing.assert_allclose(C, expected, atol=1e-16)

@@ -12,16 +12,28 @@ from robomill.arrays import FloatArray
 from robomill.compliance.spring import ASSUMED, Spring, checked_frames
 from robomill.errors import RobotError
 from robomill.provenance import Provenance
-from robomill.quantities import quantity, whole
+from robomill.quantities import quantity, switch, whole
 
 UNIT = "1e-7 rad/(N m)"
+
+
+def bending_axes(frames: FloatArray, i: int, turned: bool) -> tuple[FloatArray, FloatArray]:
+    """Unit axes x and y (..., 3) about which joint ``i`` (from 0) tilts, from the joint frames (..., n + 1, 4, 4)."""
+    if not turned:
+        return frames[..., i, :3, 0], frames[..., i, :3, 1]
+    z, x = frames[..., i, :3, 2], frames[..., i + 1, :3, 0]
+    x = x - np.einsum("...i,...i->...", x, z)[..., None] * z
+    size = np.linalg.norm(x, axis=-1, keepdims=True)
+    x = np.where(size > 1e-9, x / np.maximum(size, 1e-9), frames[..., i + 1, :3, 1])  # next x along z: its y is across
+    return x, np.cross(z, x)
 
 
 @dataclass(frozen=True)
 class JointBending(Spring):
     """Tilting of joint ``joint`` (1-based among the free joints) about the x and y axes of its frame, rad/(N m).
 
-    The frame is the one before the joint turns, so the axes stay with the link that carries the bearing.
+    The frame is the one before the joint turns, so the axes stay with the link that carries the bearing; ``turned``,
+    they stay with the link that the joint moves, x being that of the next frame, seen along the joint's axis.
     The joint's own z axis is the robot's C_theta.
     """
 
@@ -35,6 +47,7 @@ class JointBending(Spring):
     C_x: float = quantity("about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm")
     C_y: float = quantity("about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm")
     provenance: Provenance = ASSUMED
+    turned: bool = switch("Axes turn with the joint", default=False)
 
     @property
     def name(self) -> str:
@@ -50,7 +63,9 @@ class JointBending(Spring):
         frame = frames[..., self.joint - 1, :, :]
         reach = frames[..., -1, :3, 3] - frame[..., :3, 3]
         C = np.zeros((*frames.shape[:-3], 3, 3))
-        for axis, compliance in ((0, self.C_x), (1, self.C_y)):
-            column = np.cross(frame[..., :3, axis], reach)
+        for axis, compliance in zip(
+            bending_axes(frames, self.joint - 1, self.turned), (self.C_x, self.C_y), strict=True
+        ):
+            column = np.cross(axis, reach)
             C += compliance * column[..., :, None] * column[..., None, :]
         return C
