@@ -28,7 +28,7 @@ class Tile:
 
     ``change`` says by how much it moved; both take the place of ``note`` while they are there.
     ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), ``kind`` a
-    provenance.
+    provenance; ``ranges`` are lines that say between which ends the value may lie instead, and over what.
     """
 
     label: str
@@ -38,6 +38,7 @@ class Tile:
     change: str = ""
     tone: str = ""
     kind: str = ""
+    ranges: Sequence[str] = ()
 
 
 def tiles(items: Sequence[Tile]) -> None:
@@ -53,9 +54,10 @@ def _tile(tile: Tile) -> str:
         moved = f" · {html.escape(tile.change)}" if tile.change else ""
         note = f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}'
     mark = f"{badge(tile.kind)} " if tile.kind else ""
+    ranges = "".join(f'<div class="rm-range">{html.escape(words)}</div>' for words in tile.ranges)
     return (
         f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
-        f'<div class="rm-value">{value}</div><div class="rm-sub">{mark}{note}</div></div>'
+        f'<div class="rm-value">{value}</div><div class="rm-sub">{mark}{note}</div>{ranges}</div>'
     )
 
 

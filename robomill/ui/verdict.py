@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import streamlit as st
 
 from robomill.arrays import digest
 from robomill.errors import RobomillError
+from robomill.identification.knowledge import Knowledge
+from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.verdict import Reading, Verdict
@@ -35,12 +40,39 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
         share = f"{format_percent(verdict.share)} of the tolerance used"
     if verdict.level == "unjudged":
         share = lost_words(result)
-    return [
-        reading_tile("Wall error", "wall", verdict, before, unit),
-        reading_tile("Floor error", "floor", verdict, before, unit),
-        tip_tile(result, unit),
-        Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
-    ]
+    made = {
+        "wall": reading_tile("Wall error", "wall", verdict, before, unit),
+        "floor": reading_tile("Floor error", "floor", verdict, before, unit),
+        "tip": tip_tile(result, unit),
+        "share": Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
+    }
+    found = ranges_of(result)
+    said = {name: [range_words(each, name, unit) for each in found] for name in made}
+    return [replace(tile, ranges=[words for words in said[name] if words]) for name, tile in made.items()]
+
+
+def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
+    """Between which ends the verdict's numbers may lie instead, from the cache."""
+    known = session.known(result.setup)
+    key = digest((result.setup.digest(), None if known is None else (known.covariance, known.source)))
+    return _ranges(key, result, known)
+
+
+@st.cache_resource(max_entries=24, show_spinner=False)
+def _ranges(key: str, _result: SimulationResult, _known: Knowledge | None) -> tuple[Range, ...]:
+    return ranges(_result, _known)
+
+
+def range_words(found: Range, name: str, unit: str) -> str:
+    """The ends of ``name`` ("wall", "floor", "tip" or "share") in words; "" where there are none."""
+    low, high = getattr(found, name)
+    if not np.isfinite([low, high]).all() or (format_si(low, unit, 3), low) == (format_si(high, unit, 3), high):
+        return ""
+    if name == "share":
+        return f"{format_percent(low)} to {format_percent(high)}: {found.over}"
+    digits = 3 if unit == "mm" else 4
+    ends = [format_si(v, unit, digits, sign=name != "tip", with_unit=False) for v in (low, high)]
+    return f"{ends[0]} to {ends[1]}: {found.over}"
 
 
 def tone(verdict: Verdict) -> str:

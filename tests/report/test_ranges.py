@@ -1,0 +1,58 @@
+"""Ranges of the verdict's numbers against runs of their own with what varies put in force."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from robomill.identification.knowledge import Knowledge
+from robomill.identification.models import Model
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.report.ranges import ranges
+from robomill.simulation.run import simulate
+from robomill.simulation.setup import SimulationSetup
+
+
+@pytest.fixture(scope="module")
+def setup() -> SimulationSetup:
+    return load_setup(samples_dir() / "paper_flute")
+
+
+def test_assumed_lengths_leave_the_wall_and_move_the_floor(setup: SimulationSetup) -> None:
+    (found,) = ranges(simulate(setup), None)
+    assert found.kind == "assumed"
+    assert found.wall == pytest.approx((0.225e-3, 0.235e-3), abs=1e-6)  # C_yy is what the lengths were chosen by
+    assert found.floor[0] < -0.186e-3 < -0.1024e-3 < -0.067e-3 < found.floor[1]
+    assert found.share == pytest.approx((found.wall[0] / 0.3e-3, found.wall[1] / 0.3e-3))
+
+
+def test_each_row_of_the_alloy_in_force_stays_within_the_range() -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(coupling=False)
+    result = simulate(setup)
+    found = next(r for r in ranges(result, None) if "alloy" in r.over)
+    i, walls = result.verdict.wall.worst, []
+    for material in (setup.force.material, *setup.force.alternatives):  # type: ignore[attr-defined]
+        other = simulate(setup.replace(force=dataclasses.replace(setup.force, material=material, alternatives=())))  # type: ignore[type-var]
+        walls.append(float(result.verdict.wall.value + other.delta_in_cut[i, 1] - result.delta_in_cut[i, 1]))
+    assert len(walls) > 2
+    assert found.wall == pytest.approx((min(walls), max(walls)), abs=1e-9)
+
+
+def test_a_band_of_one_joint_is_where_that_joint_leads(setup: SimulationSetup) -> None:
+    robot, sigma = setup.robot, 0.05
+    variance = np.zeros((5, 5))
+    variance[2, 2] = (sigma * robot.C_theta[2]) ** 2
+    known = Knowledge(Model("joints"), np.array(robot.C_theta), variance, source="tests")
+    result = simulate(setup)
+    found = next(r for r in ranges(result, known) if r.kind == "measured")
+    ends = []
+    for side in (-1.0, 1.0):
+        C_theta = np.array(robot.C_theta)
+        C_theta[2] *= 1.0 + side * 1.959964 * sigma
+        verdict = simulate(setup.replace(robot=robot.replace(C_theta=C_theta))).verdict
+        ends.append((verdict.wall.value, verdict.floor.value))
+    assert found.wall == pytest.approx(sorted(wall for wall, _ in ends), abs=1e-7)
+    assert found.floor == pytest.approx(sorted(floor for _, floor in ends), abs=1e-7)
