@@ -100,21 +100,3 @@ def build_chain(
     return Chain(
         frozen(T_0), frozen(np.array(between)), frozen(sign[free]), frozen(offsets[free]), frozen(prismatic[free], bool)
     )
-
-
-def modified_to_standard(
-    alpha: FloatArray, a: FloatArray, T_base: FloatArray, T_tool: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """(alpha, a, T_base, T_tool) of the standard table with the same poses; theta and d keep their rows.
-
-    A modified row i carries the link *before* joint i, a standard row the link after it: the first link moves into
-    the base frame, and the last row becomes (0, 0).
-    """
-    return np.append(alpha[1:], 0.0), np.append(a[1:], 0.0), T_base @ screw_x(alpha[0], a[0]), T_tool
-
-
-def standard_to_modified(
-    alpha: FloatArray, a: FloatArray, T_base: FloatArray, T_tool: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """(alpha, a, T_base, T_tool) of the modified table with the same poses: the last link moves into the tool frame."""
-    return np.append(0.0, alpha[:-1]), np.append(0.0, a[:-1]), T_base, screw_x(alpha[-1], a[-1]) @ T_tool

@@ -14,7 +14,7 @@ from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
 from robomill.provenance import UNSTATED, Provenance
 from robomill.robot import checks
-from robomill.robot.dh import Chain, build_chain, modified_to_standard, standard_to_modified
+from robomill.robot.dh import Chain, build_chain
 
 USER_SET = "user"
 
@@ -198,22 +198,6 @@ class Robot:
             known = ", ".join(self.compliance_sets) or "none"
             raise RobotError(f"Robot {self.name!r}: has no compliance set {name!r}; it has: {known}.")
         return self.replace(C_theta_all=self.compliance_sets[name], compliance_set=name)
-
-    def with_convention(self, convention: Literal["standard", "modified"]) -> Robot:
-        """The same poses written in the other D-H convention (link constants move into the base or tool frame)."""
-        if convention == self.convention:
-            return self
-        convert = modified_to_standard if convention == "standard" else standard_to_modified
-        alpha, a, T_base, T_tool = convert(self.alpha, self.a, self.T_base, self.T_tool)
-        return self.replace(convention=convention, alpha=alpha, a=a, T_base=T_base, T_tool=T_tool)
-
-    def with_blocked(self, row: int, coordinate: float | None) -> Robot:
-        """Axis ``row`` (1-based) held at ``coordinate`` (rad or m), or freed with None."""
-        if not 1 <= row <= self.rows:
-            raise RobotError(f"Robot {self.name!r}: there is no axis {row}; it has {self.rows}.")
-        blocked = np.array(self.blocked)
-        blocked[row - 1] = np.nan if coordinate is None else coordinate
-        return self.replace(blocked=blocked)
 
     def digest(self) -> str:
         """SHA-256 over every field: equal robots have equal digests on every machine."""

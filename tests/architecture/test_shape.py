@@ -22,9 +22,7 @@ MOST_PARAMETERS = 6
 # Functions that take more. The number only falls: whoever groups what belongs together lowers it.
 MANY_PARAMETERS = 12
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
-LONG = {
-    "inverse_kinematics",
-}
+LONG: set[str] = set()
 # What keeps a state while it runs: the session, and whoever reads a program line by line.
 RUNNING = ("robomill/ui/", "robomill/toolpath/gcode/", "robomill/toolpath/apt.py")
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
@@ -43,7 +41,6 @@ UNUSED = {
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
     "steps_of_each",  # until surfaces take several tools
-    *("residual_angle", "with_convention", "with_blocked"),
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
     "meet",  # the coupling that marches will ask each step what it meets
 }

@@ -6,6 +6,7 @@ import pytest
 import robomill as rm
 from robomill.compliance.at_pose import at_pose
 from robomill.errors import KinematicsError
+from tests.robot.written_otherwise import with_blocked
 
 NAMES = ("slavkovic_5r", "kuka_kr500", "planar_2r", "planar_3r")
 
@@ -84,7 +85,7 @@ def test_components_shares_and_axes(name):
 
 
 def test_joint_numbers_are_those_of_the_table():
-    robot = rm.load_robot("kuka_kr500").with_blocked(1, 0.0)
+    robot = with_blocked(rm.load_robot("kuka_kr500"), 1, 0.0)
     here = at_pose(robot, np.full(5, 0.3))
     assert here.gives_most("zz") in (2, 3, 4, 5, 6)
     assert here.gives_most("zz") == robot.joint_numbers[int(np.abs(here.C_joint[:, 2, 2]).argmax())]

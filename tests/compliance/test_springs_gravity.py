@@ -7,6 +7,7 @@ from robomill.compliance.gravity import GRAVITY, LinkMasses, gravity_sag, gravit
 from robomill.errors import RobotError
 from robomill.io.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
+from tests.robot.written_otherwise import with_blocked
 
 ROBOT = load_robot("slavkovic_5r")
 RNG = np.random.default_rng(4)
@@ -59,7 +60,7 @@ def test_one_link_mass_is_not_taken_for_the_tip():
     # A single free joint: the mass point and the tip are both one point a joint.
     single = ROBOT
     for row in (2, 3, 4, 5):
-        single = single.with_blocked(row, 0.1)
+        single = with_blocked(single, row, 0.1)
     links = LinkMasses([10.0], [[0.1, 0.2, -0.3]])
     theta = np.array([[0.3]])
     step = 1e-6

@@ -3,6 +3,7 @@
 import numpy as np
 
 from robomill.robot.model import Robot
+from tests.robot.written_otherwise import with_convention
 
 
 def rotation(rng):
@@ -51,7 +52,7 @@ def spherical_wrist_arm(rng, shoulder=True, lateral=True, elbow=True, convention
         T_base=frame(rng),
         T_tool=frame(rng),
     )
-    return arm.with_convention(convention)
+    return with_convention(arm, convention)
 
 
 def five_axis_arm(rng):

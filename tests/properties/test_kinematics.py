@@ -9,6 +9,7 @@ from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_
 import robomill as rm
 from robomill.kinematics.choice import every
 from robomill.kinematics.decoupled import decoupled
+from tests.robot.written_otherwise import with_convention
 
 POSES = 10_000
 # The numeric solver: share of reachable poses of general arms that it must find.
@@ -75,7 +76,7 @@ def test_conversion_of_conventions_keeps_poses(seed):
     robot = any_arm(rng)
     theta = configurations(rng, robot, 10)
     for convention in ("standard", "modified"):
-        other = robot.with_convention(convention)
+        other = with_convention(robot, convention)
         np.testing.assert_allclose(rm.tool_pose(other, theta), rm.tool_pose(robot, theta), atol=1e-12)
 
 

