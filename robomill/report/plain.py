@@ -71,6 +71,10 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
     lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
+    for name, turn in (record["tooth"] or {}).items():
+        mean, low, high = (format_value(turn[end], "mm", sign=True) for end in ("mean", "low", "high"))
+        lines.append(f"tooth     {name} {mean} by the mean force, {low} to {high} as teeth come by")
+    lines.append(f"left out  {', '.join(record['left_out'])}")
     lines.append(f"reached   {record['reached']['count']} of {record['reached']['of']} points")
     lost = record["not_judged"]
     if lost["count"]:

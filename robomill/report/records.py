@@ -17,6 +17,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import nearest_feed
+from robomill.simulation.tooth import LEFT_OUT, tooth
 from robomill.surface.groove import GrooveSection
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
@@ -196,6 +197,8 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             }
             for name, reading in readings.items()
         },
+        "tooth": _tooth(result),
+        "left_out": list(LEFT_OUT),
         "not_judged": {
             "count": int(lost.sum()),
             "of": int(path.cutting.sum()),
@@ -205,6 +208,20 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
                 for each in result.unjudged
             ],
         },
+    }
+
+
+def _tooth(result: SimulationResult) -> dict[str, Any] | None:
+    """At the worst wall and floor: the deviation by the mean force, and its extremes as teeth come by."""
+    turn, verdict = tooth(result), result.verdict
+    if turn is None:
+        return None
+    places = {"wall": (verdict.wall.worst, 1), "floor": (verdict.floor.worst, 2)}
+    return {
+        name: {end: float(from_si(getattr(turn, end)[i, axis], "mm")) for end in ("mean", "low", "high")}
+        | {"unit": "mm"}
+        for name, (i, axis) in places.items()
+        if i >= 0
     }
 
 

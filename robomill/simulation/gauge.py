@@ -156,6 +156,13 @@ def _begins_or_ends(at: Places) -> tuple[BoolArray, BoolArray]:
     return (level & ~before)[at.i], (level & ~after)[at.i]
 
 
+def _bottoms(at: Places) -> BoolArray:
+    """(q,): where a plunge ends, at the floor of a hole."""
+    conditions, path = at.result.conditions, at.result.path
+    down = path.cutting & (conditions.across < STEEP) & (conditions.along < 0.0)
+    return np.asarray((down & ~np.append(down[1:], False))[at.i])
+
+
 def _turn(at: Places) -> FloatArray:
     """(q,) rad: the sharpest turn of the path at each place, towards the sample before or after it."""
     path, R = at.result.path, at.result.R_MF[..., 0]
@@ -246,14 +253,15 @@ def _floors(at: Places) -> Readings:
     offset = np.tile(ACROSS, count) * flat[q]
     level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
     chosen = np.tile(np.array(ACROSS) == 0.0, count) | ((flat > 0.0) & level)[q]
-    chosen &= ~_steep(at)[q] | _begins_or_ends(at)[1][q]
+    chosen &= ~_steep(at)[q] | _bottoms(at)[q]
     q, offset = q[chosen], offset[chosen]
     inside = at.depth(q, at.c[q] + offset[:, None] * at.left_of[q]) > SAME
     q, offset = q[inside], offset[inside]
     places = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
     (told, upright), (left, _) = at.told.floors(places, offset), at.left.floors(places, offset)
     found = np.isfinite(told) & np.isfinite(left)
-    q, error = q[found], ((left - told) * upright)[found]
+    error = np.where(_bottoms(at)[q], at.d[q, 2], (left - told) * upright)  # a hole is as deep as its lowest point
+    q, error = q[found], error[found]
     length = at.result.path.step_length[at.i[q]] / len(ACROSS)
     return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q])
 

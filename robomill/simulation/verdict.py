@@ -163,10 +163,10 @@ def _count(result: Run) -> str:
 
 def _nothing(result: Run) -> tuple[Level, str]:
     """Level and sentence where not one sample counts."""
-    if result.answered[result.path.cutting].any():
-        return "missed", "The path never touches the stock: move the stock or the path."
     if result.not_judged.any():
         return "unjudged", f"{_count(result)}."
+    if result.answered[result.path.cutting].any():
+        return "missed", "The path never touches the stock: move the stock or the path."
     if result.reached.any():
         return "unreached", "No point of the cut lies inside the measured map."
     return "unreached", "No point of the cut can be reached: move the part zero."

@@ -23,6 +23,7 @@ class SpindleSpring(Spring):
 
     kind: ClassVar[str] = "spindle"
     title: ClassVar[str] = "Spindle and holder"
+    follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
     lateral: float = quantity("Across", "um/N", least=0.0, step=0.01, digits=4)

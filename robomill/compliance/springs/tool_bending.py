@@ -32,6 +32,7 @@ class ToolBending(Spring):
     kind: ClassVar[str] = "tool_bending"
     title: ClassVar[str] = "Tool bending"
     hint: ClassVar[str | None] = "The cutter as a cantilever of solid carbide."
+    follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 1
 
     diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False)
