@@ -76,11 +76,12 @@ def test_most_of_at_least_two_tests_along_an_axis_must_run_against(against, load
     assert ("tests loaded along x" in message) == told
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize(("against", "told"), [(1, False), (3, True)])
-def test_what_did_not_move_does_not_run_against(against, told):
-    F = np.column_stack([[100.0, 110, 120, 130, 140], np.zeros(5), np.zeros(5)])
+def test_what_did_not_move_does_not_run_against(against, told, way):
+    F = way * np.column_stack([[100.0, 110, 120, 130, 140], np.zeros(5), np.zeros(5)])
     d = np.tile([0.0, 1e-4, 1e-5], (5, 1))  # most gauges along x read nothing
-    d[:against, 0] = -1e-4
+    d[:against, 0] = -1e-4 * way
     assert codes(LoadTests(F, d, theta=THETA[:5]), None) == (["sign"] if told else [])
 
 
