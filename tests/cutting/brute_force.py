@@ -28,6 +28,8 @@ Solid = Callable[[Floats], NDArray[np.bool_]]
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 #: How far outside the cutter's surface the stock is asked for, m.
 JUST_OUTSIDE = 1e-10
+#: Sine of the slope from which a flat end cuts: its teeth are ground hollow, so on less only their corners touch.
+DISH = math.sin(math.radians(0.5))
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
 
@@ -156,7 +158,7 @@ class Cut:
             e_r = np.outer(np.cos(phi), x) + np.outer(np.sin(phi), y)
             normal = np.sin(kappa)[:, None] * e_r - np.outer(np.cos(kappa), k)
             h = normal @ feed
-            cuts = h > 1e-9 * np.linalg.norm(feed)
+            cuts = h > np.where(kappa == 0.0, DISH, 1e-9) * np.linalg.norm(feed)
             q = tip + r[:, None] * e_r + np.outer(z, k) + JUST_OUTSIDE * normal
             cuts[cuts] = self.solid(q[cuts])
             towards_tip = -np.cos(kappa)[:, None] * e_r - np.outer(np.sin(kappa), k)
