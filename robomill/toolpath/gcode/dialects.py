@@ -20,7 +20,7 @@ LONGEST = 300
 
 HARMLESS: dict[str, frozenset[int]] = {
     "linuxcnc": frozenset(),
-    "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 620, 630, 670, 690}),
+    "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 620, 630, 670, 690, 1870}),
     "grbl": frozenset(),
     "sinumerik": frozenset({600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
 }
@@ -63,7 +63,10 @@ class Dialect:
                     number,
                     "G43.4 (tool centre point control) is read as G43: points are tip points",
                 )
-            return _TIP.sub("G43", _DWELL.sub(r"\1P", "O" + raw[1:] if raw[:1] == ":" else raw))
+            if _SMOOTHING.search(raw):
+                findings.add("harmless-g", "ignored", number, "G5.1 Q is left out: it moves nothing")
+            code = _SMOOTHING.sub("", "O" + raw[1:] if raw[:1] == ":" else raw)
+            return _TIP.sub("G43", _DWELL.sub(r"\1P", _DWELL_MS.sub(_in_seconds, code)))
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
             return _from_grbl(raw, number, findings)
         return raw
@@ -125,6 +128,8 @@ _SILENT = re.compile(
     r"\bCYCLE832\s*\([^()]*\)",
     re.IGNORECASE,
 )
+_SMOOTHING = re.compile(r"\bG0?5\.1\s*Q[01]\b(?:\s*R\d+)?", re.IGNORECASE)
+_DWELL_MS = re.compile(r"(\bG0?4\s*)P(\d+)(?![\d.])", re.IGNORECASE)
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
@@ -139,6 +144,7 @@ def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
+    code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
     code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
     code = re.sub(r"\b([XYZABCIJKFS])\s*=\s*AC\(([^()]*)\)", r"\1[\2]", code, flags=re.IGNORECASE)
@@ -147,6 +153,11 @@ def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
     code = re.sub(r"\bT\s*=?\s*\"[^\"]*\"", "", code, flags=re.IGNORECASE)
     code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
     return code + (";" + comment if mark else "")
+
+
+def _in_seconds(found: re.Match[str]) -> str:
+    """A dwell as these controls count it: milliseconds where its number has no point."""
+    return f"{found[1]}P{int(found[2][:12]) / 1000:.3f}"
 
 
 def _from_grbl(raw: str, number: int, findings: Findings) -> str:

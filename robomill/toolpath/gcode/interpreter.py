@@ -19,6 +19,7 @@ MAX_STEPS = 1_000_000
 """Lines that may be executed beyond the length of the program: loops and subroutines."""
 
 _CHECK_EVERY = 2048
+_LOOK_BEYOND = 20
 
 Progress = Callable[[float], None]
 Cancel = Callable[[], bool]
@@ -91,6 +92,7 @@ class Interpreter(OWords):
             self._comment(block)
         if execute(machine, block, self.frames[-1].saved):
             self.ended = True
+            self._left_over_lines()
 
     def _run_plain(self) -> bool:
         """Make plain lines into moves; False if the next line is not one, or wants the reader's word."""
@@ -137,6 +139,20 @@ class Interpreter(OWords):
             self.machine.findings.add("percent", "warning", index + 1, "% ends the program, but none starts it")
         self.finish(index + 1)
         self.ended = True
+
+    def _left_over_lines(self) -> None:
+        """Say where the program goes on behind its end, other than with subprograms."""
+        if self.file is not self.main or len(self.frames) > 1:
+            return
+        for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
+            text = self.main.lines[index].strip()
+            if text and text[0] not in "%(;":
+                if self.main.o_words().lines:
+                    return
+                self.machine.findings.add(
+                    "after-end", "warning", index + 1, "the program ended before; this is not read"
+                )
+                return
 
     def _end_of_file(self) -> None:
         last = len(self.file.lines)

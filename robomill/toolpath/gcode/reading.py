@@ -25,6 +25,8 @@ from robomill.units import format_si, to_si
 
 LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
+MOST_SAID = 1000
+"""Stretches of a program that one finding counts."""
 
 
 def read_gcode(
@@ -87,6 +89,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     if not machine.units_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     columns["lift"] = _lift(machine, columns)
+    _doubt_spindle(machine, columns)
     _doubt_size(machine, columns)
     return Program(
         **columns,
@@ -115,6 +118,21 @@ def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
         message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {lower} lower than is said"
         machine.findings.add("wrong-length", "warning", int(columns["line"][row]), message)
     return frozen(lift)
+
+
+def _doubt_spindle(machine: Machine, columns: dict[str, Any]) -> None:
+    """Note cuts with a spindle that stands still, and tools that are chosen and never changed to."""
+    cuts = (columns["kind"] == FEED) | (columns["kind"] == ARC)
+    still = np.flatnonzero(cuts & (columns["n_s"] == 0.0))
+    if len(still) and columns["n_s"].any():
+        message = "cuts with the spindle stopped; start it with S and M3 or M4 before"
+        for line in columns["line"][still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
+            machine.findings.add("spindle-stopped", "warning", int(line), message)
+    elif len(still):
+        machine.findings.add("no-spindle", "info", 0, "the spindle never turns: no S with M3 or M4")
+    if machine.selected and not columns["tool"].any() and cuts.any():
+        message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
+        machine.findings.add("no-change", "warning", 0, message)
 
 
 def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
