@@ -24,7 +24,7 @@ from robomill.workspace.grid import PAPER_BOX, box_grid, plane_grid
 pytestmark = pytest.mark.benchmark
 
 PINOCCHIO_RATIO, EAIK_RATIO = 8.0, 8.0
-# The answer people ask for, one configuration within limits, is 13 to 21 times as fast as the peer's answers. All eight,
+# The answer people ask for, one configuration within limits, is 13 to 21 times as fast as the peer's. All eight,
 # each checked by forward kinematics, are not: 7 times for five axes, 3 to 4 times for six, where each check costs most.
 EAIK_RATIO_OF_ALL = {"slavkovic_5r": 5.0, "kuka_kr500": 2.5}
 BOX_SECONDS, PLANE_SECONDS = 0.25, 0.030
