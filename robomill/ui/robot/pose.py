@@ -103,15 +103,15 @@ def direction_words(pose: PoseReport) -> str:
 
 
 def det_value(pose: PoseReport | None) -> str:
-    """det(J) with its unit; this page gives it for the 5 x 5 task Jacobian alone."""
+    """det(J) of the arm's task with its unit; with more than six axes there is none."""
     if pose is None:
         return ""
-    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.robot.n == 5 else "not square"
+    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.robot.n <= 6 else "not square"
 
 
 def det_words(pose: PoseReport) -> str:
     """What det(J) says in words."""
-    if pose.robot.n != 5:
+    if pose.robot.n > 6:
         return "the task Jacobian of this arm is not square"
     return "singular here" if abs(pose.det_J) < 1e-6 else "0 at a singularity"
 
