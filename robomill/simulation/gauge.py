@@ -260,7 +260,10 @@ def _floors(at: Places) -> Readings:
     places = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
     (told, upright), (left, _) = at.told.floors(places, offset), at.left.floors(places, offset)
     found = np.isfinite(told) & np.isfinite(left)
-    error = np.where(_bottoms(at)[q], at.d[q, 2], (left - told) * upright)  # a hole is as deep as its lowest point
+    with np.errstate(invalid="ignore"):
+        error = (left - told) * upright
+    deepest = _bottoms(at)[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
+    error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
     length = at.result.path.step_length[at.i[q]] / len(ACROSS)
     return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q])

@@ -225,3 +225,12 @@ def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
     assert found.share_out(0.15) == pytest.approx(14 / 15)
     assert found.share_out(0.3) == 0.0
     assert found.worst == 1
+
+
+def test_a_plunge_that_a_slot_follows_leaves_the_slots_floor():
+    result = run("G0 X-10 Y0 Z5", "G1 Z-2 F600", "G1 X10 F1800")
+    down = result.path.block == 3
+    bent = pushed(result, up=np.where(down, 0.5e-3, -0.04e-3))
+    assert bent.verdict.floor.value == pytest.approx(-0.04e-3, abs=1e-8)
+    plunged = pushed(result, up=np.where(down, -0.2e-3, -0.04e-3))
+    assert plunged.verdict.floor.value == pytest.approx(-0.2e-3, abs=1e-8)
