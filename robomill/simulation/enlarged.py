@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.cutting.tooling import Tooling
 from robomill.simulation.result import SimulationResult
 from robomill.surface.deviation import deviation
 from robomill.surface.stock import stock_grid
@@ -40,7 +41,7 @@ def enlarged(result: SimulationResult, times: float) -> Enlarged:
 
     def at(factor: float) -> ZMap:
         p = path.p + factor * (result.p_machined - path.p)
-        return cut(setup.stock_block, cell, setup.cutter, p, path.k, result.removes, must_touch=factor == 0.0)
+        return cut(setup.stock_block, cell, result.tooling, p, path.k, result.removes, must_touch=factor == 0.0)
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)
@@ -88,7 +89,7 @@ def so_far(result: SimulationResult, shown: Enlarged, index: int) -> Enlarged:
         return cut(
             setup.stock_block,
             shown.drawn.cell,
-            setup.cutter,
+            Tooling(result.tooling.cutters, result.tooling.of_step[upto]),
             p[upto],
             path.k[upto],
             result.removes[upto],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.tools import one_cutter, tooling
+from robomill.simulation.tools import tooling
 from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
@@ -35,7 +35,7 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     def volume(chosen: np.ndarray) -> float:
         if not chosen.any():
             return 0.0
-        zmap = cut(setup.stock_block, setup.cell, one_cutter(tools), path.p, path.k, chosen, must_touch=False)
+        zmap = cut(setup.stock_block, setup.cell, tools, path.p, path.k, chosen, must_touch=False)
         return zmap.removed_volume
 
     def with_rapids(indices: np.ndarray) -> float:

@@ -22,7 +22,7 @@ from robomill.simulation.posture import posture_notes
 from robomill.simulation.rapids import rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
-from robomill.simulation.tools import one_cutter, tool_notes, tooling
+from robomill.simulation.tools import tool_notes, tooling
 from robomill.simulation.verdict import Verdict, judge
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
@@ -205,7 +205,7 @@ class SimulationResult:
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
-        return cut(setup.stock_block, setup.cell, one_cutter(self.tooling), p, self.path.k, self.removes)
+        return cut(setup.stock_block, setup.cell, self.tooling, p, self.path.k, self.removes)
 
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
@@ -216,7 +216,7 @@ class SimulationResult:
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
         run = CutPath(path.p, moved, path.cutting, path.k, path.block)
-        return groove_sections(self.setup.stock_block, one_cutter(self.tooling), run, stations)
+        return groove_sections(self.setup.stock_block, self.tooling, run, stations)
 
     @cached_property
     def stations(self) -> FloatArray:

@@ -13,7 +13,6 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.spring import Spring
-from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SetupError
 from robomill.robot.model import Robot
@@ -60,13 +59,6 @@ def tooling(setup: SimulationSetup, path: Toolpath) -> Tooling:
     for i, n in enumerate(numbers):
         index[path.tool == n] = i
     return Tooling(cutters, index)
-
-
-def one_cutter(tools: Tooling) -> Cutter:
-    """The cutter of surfaces, which know one. Raises SetupError where there are several."""
-    if len(tools.cutters) > 1:
-        raise SetupError("Tools: surfaces are cut with one cutter; run the operations of each tool by themselves.")
-    return tools.cutters[0]
 
 
 def farther(setup: SimulationSetup, path: Toolpath) -> FloatArray:

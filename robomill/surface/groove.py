@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock, stock_span
@@ -65,7 +66,7 @@ class GrooveSection:
 
 
 def groove_sections(
-    stock: Stock, cutter: Cutter, path: CutPath, stations: ArrayLike, samples: int = 401
+    stock: Stock, cutter: Cutter | Tooling, path: CutPath, stations: ArrayLike, samples: int = 401
 ) -> tuple[GrooveSection, ...]:
     """Sections of the groove at path lengths ``stations`` (q,) m of the commanded path; see GrooveSection.
 
@@ -76,13 +77,15 @@ def groove_sections(
     moved = as_floats(path.p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
     used = np.asarray(path.cutting, dtype=bool)
     lines = np.zeros(len(ideal), dtype=int) if path.block is None else np.asarray(path.block)
-    paths = swept_path(stock, cutter, ideal, path.k, used), swept_path(stock, cutter, moved, path.k, used)
+    tooling = Tooling.of(cutter, len(ideal))
+    paths = swept_path(stock, tooling, ideal, path.k, used), swept_path(stock, tooling, moved, path.k, used)
     found = []
     for station in np.atleast_1d(np.asarray(stations, dtype=float)):
         place = station_at(ideal, used, float(station))
         i, f = place.entry, place.fraction
         tip = moved[i - 1] + f * (moved[i] - moved[i - 1])
-        found.append(_section(paths, place, tip, int(lines[i]), samples))
+        made = tooling.cutters[tooling.of_step[i]]
+        found.append(_section(paths, place, (tip, made), int(lines[i]), samples))
     return tuple(found)
 
 
@@ -91,9 +94,9 @@ WIDE = "wider than the cutter: several passes made it, so look at the walls; the
 
 
 def _section(
-    paths: tuple[SweptPath, SweptPath], place: Station, tip: FloatArray, block: int, samples: int
+    paths: tuple[SweptPath, SweptPath], place: Station, tool: tuple[FloatArray, Cutter], block: int, samples: int
 ) -> GrooveSection:
-    stock, cutter = paths[0].stock, paths[0].cutter
+    stock, (tip, cutter) = paths[0].stock, tool
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.passes import feed_passes
 from robomill.surface.raster import skin_on_line
@@ -33,51 +34,63 @@ class CutPath:
 
 
 @dataclass(frozen=True)
-class SweptPath:
-    """Feed moves of a cutter, to be asked for the height they leave on a line in plan: ends (n, 6) m, axes (n, 3)."""
+class Body:
+    """Feed moves of one cutter: ends (n, 6) m, axes (n, 3)."""
 
-    stock: Stock
     cutter: Cutter
     ends: FloatArray
     axes: FloatArray
+
+    def near(self, line: tuple[FloatArray, FloatArray, float], top: float) -> tuple[FloatArray, FloatArray]:
+        """Ends and axes of the moves whose track may meet the line (centre, normal, reach) below ``top``, m."""
+        centre, normal, reach = line
+        lean = np.hypot(self.axes[:, 0], self.axes[:, 1])
+        rise = np.maximum(top - np.minimum(self.ends[:, 2], self.ends[:, 5]), 0.0) + self.cutter.radius
+        limit = self.cutter.radius + rise * lean / self.axes[:, 2]
+        feed = np.array([normal[1], -normal[0]])
+        a, b = self.ends[:, :2] - centre[:2], self.ends[:, 3:5] - centre[:2]
+        along, across = np.stack([a @ feed, b @ feed]), np.stack([a @ normal[:2], b @ normal[:2]])
+        meets = (
+            (along.min(axis=0) <= limit)
+            & (along.max(axis=0) >= -limit)
+            & (across.min(axis=0) - limit <= reach)
+            & (across.max(axis=0) + limit >= -reach)
+        )
+        return self.ends[meets], self.axes[meets]
+
+
+@dataclass(frozen=True)
+class SweptPath:
+    """Feed moves of cutters through a stock, to be asked for the height they leave on a line in plan."""
+
+    stock: Stock
+    bodies: tuple[Body, ...]
 
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
         from robomill.surface.cells_kernels import lower_along
         from robomill.surface.envelope_kernels import cutter_shape
 
-        stock_top, shape = skin_on_line(self.stock, centre, normal), cutter_shape(self.cutter)
-        near = self._near(centre, normal, reach)
-        ends, axes = self.ends[near], self.axes[near]
+        stock_top, top = skin_on_line(self.stock, centre, normal), float(self.stock.upper[2])
+        near = [(cutter_shape(body.cutter), *body.near((centre, normal, reach), top)) for body in self.bodies]
 
         def height(w: FloatArray) -> FloatArray:
             z = stock_top(w)
-            lower_along(shape, ends, axes, centre[0] + w * normal[0], centre[1] + w * normal[1], z)
+            for shape, ends, axes in near:
+                lower_along(shape, ends, axes, centre[0] + w * normal[0], centre[1] + w * normal[1], z)
             return z
 
         return height
 
-    def _near(self, centre: FloatArray, normal: FloatArray, reach: float) -> BoolArray:
-        """(n,) bool: moves whose track may meet the line."""
-        lean = np.hypot(self.axes[:, 0], self.axes[:, 1])
-        rise = np.maximum(self.stock.upper[2] - np.minimum(self.ends[:, 2], self.ends[:, 5]), 0.0) + self.cutter.radius
-        limit = self.cutter.radius + rise * lean / self.axes[:, 2]
-        feed = np.array([normal[1], -normal[0]])
-        a, b = self.ends[:, :2] - centre[:2], self.ends[:, 3:5] - centre[:2]
-        along, across = np.stack([a @ feed, b @ feed]), np.stack([a @ normal[:2], b @ normal[:2]])
-        return np.asarray(
-            (along.min(axis=0) <= limit)
-            & (along.max(axis=0) >= -limit)
-            & (across.min(axis=0) - limit <= reach)
-            & (across.max(axis=0) + limit >= -reach)
-        )
 
-
-def swept_path(stock: Stock, cutter: Cutter, p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike) -> SweptPath:
+def swept_path(stock: Stock, tooling: Tooling, p: FloatArray, k: ArrayLike | None, cutting: BoolArray) -> SweptPath:
     """The feed moves of a path p (m, 3) m with tool axes k; moves with an end that is not finite are left out."""
-    moves, _ = feed_passes(p, k, cutting)
-    middle = moves.axes[:, :3] + moves.axes[:, 3:]
-    return SweptPath(stock, cutter, moves.ends, middle / np.linalg.norm(middle, axis=1, keepdims=True))
+    bodies = []
+    for cutter, made in tooling.steps_of_each():
+        moves, _ = feed_passes(p, k, cutting & made)
+        middle = moves.axes[:, :3] + moves.axes[:, 3:]
+        bodies.append(Body(cutter, moves.ends, middle / np.linalg.norm(middle, axis=1, keepdims=True)))
+    return SweptPath(stock, tuple(bodies))
 
 
 @dataclass(frozen=True)

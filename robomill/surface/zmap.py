@@ -10,12 +10,15 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
-from robomill.surface.passes import at_one_axis, feed_passes, leaning
+from robomill.surface.passes import Passes, at_one_axis, feed_passes, leaning, moves_at_feed
 from robomill.surface.raster import stock_heights
 from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
-from robomill.surface.stock import AXES, Stock, stock_grid
+from robomill.surface.stock import AXES, Cells, Stock, stock_grid
 from robomill.units import format_si
+
+NO_EDGE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 6)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +97,7 @@ class ZMap:
 def cut(
     stock: Stock,
     cell: float,
-    cutter: Cutter,
+    cutter: Cutter | Tooling,
     p: ArrayLike,
     k: ArrayLike | None = None,
     cutting: ArrayLike | None = None,
@@ -104,27 +107,23 @@ def cut(
     """The stock after the feed moves of a path have been cut.
 
     p (m, 3) m tool tip in {W}; k (3,) or (m, 3) unit tool axis (default: upright); cutting (m,) bool, entry i for
-    the move p[i-1] -> p[i] (default: all). Moves with an end that is not finite are left out and counted.
-    Raises SurfaceError for a cell size that does not fit, a tool axis too close to level and (``must_touch``) a path
-    that misses the stock.
+    the move p[i-1] -> p[i] (default: all); ``cutter`` is one for all, or says which makes which. Moves with an end that
+    is not finite are left out and counted. Raises SurfaceError for a cell size that does not fit, a tool axis too close
+    to level and (``must_touch``) a path that misses the stock.
     """
-    cells = stock_grid(stock, cell)
-    moves, skipped = feed_passes(p, k, cutting)
-    if len(moves.ends) + skipped == 0:
-        raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
-    ends, axes = at_one_axis(moves, cutter.radius, cell)
-    leans = leaning(axes)
+    cells, points = stock_grid(stock, cell), np.asarray(p, dtype=np.float64)
     x, y = cells.x, cells.y
     z_stock = stock_heights(stock, x, y)
     z = np.empty((cells.nx, cells.ny))
     z[...] = z_stock
-    edge = cut_upright(z, cells, cutter, ends[~leans])
-    overhang = 0
-    if leans.any():
-        before = z.reshape(-1)[edge.index]
-        overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans])).sum())
-        kept = z.reshape(-1)[edge.index] == before
-        edge = EdgeCells(edge.index[kept], edge.mean[kept], edge.wall[kept])
+    ends, edge, overhang, skipped = np.zeros((0, 6)), NO_EDGE, 0, 0
+    for each, made in Tooling.of(cutter, len(points)).steps_of_each():
+        moves, lost = feed_passes(points, k, moves_at_feed(points, cutting) & made)
+        ends, skipped = np.vstack([ends, moves.ends]), skipped + lost
+        edge, over = _cut_with(each, moves, (z, cells, cell), edge)
+        overhang += over
+    if len(ends) + skipped == 0:
+        raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
     bottom = float(stock.lower[2])
     below = bool((z < bottom).any())
     if below:
@@ -135,6 +134,40 @@ def cut(
     if must_touch and result.removed_volume <= 0.0:
         raise SurfaceError(_misses(stock, ends))
     return result
+
+
+def _cut_with(
+    cutter: Cutter, moves: Passes, grid: tuple[FloatArray, Cells, float], edge: EdgeCells
+) -> tuple[EdgeCells, int]:
+    """Cut the moves of one cutter into the heights of ``grid``: the cells at walls, after those of the cutters before,
+    and how many cells are undercut."""
+    z, cells, cell = grid
+    flat = z.reshape(-1)
+    ends, axes = at_one_axis(moves, cutter.radius, cell)
+    leans = leaning(axes)
+    before = flat[edge.index]
+    fresh = cut_upright(z, cells, cutter, ends[~leans])
+    if len(edge.index):
+        edge = _joined(edge, flat[edge.index] == before, fresh)
+    else:
+        edge = fresh
+    overhang = 0
+    if leans.any():
+        before = flat[edge.index]
+        overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans])).sum())
+        kept = flat[edge.index] == before
+        edge = EdgeCells(edge.index[kept], edge.mean[kept], edge.wall[kept])
+    return edge, overhang
+
+
+def _joined(old: EdgeCells, kept: BoolArray, fresh: EdgeCells) -> EdgeCells:
+    """Walls of earlier cutters where they still stand (``kept``), with those of a later one, which stay where both do
+    unless the earlier cut more of the cell."""
+    index = np.concatenate([old.index[kept], fresh.index])
+    mean, wall = np.concatenate([old.mean[kept], fresh.mean]), np.vstack([old.wall[kept], fresh.wall])
+    order = np.lexsort((mean, index))
+    first = order[np.append(True, np.diff(index[order]) > 0)] if len(order) else order
+    return EdgeCells(index[first], mean[first], wall[first])
 
 
 def _misses(stock: Stock, ends: FloatArray) -> str:

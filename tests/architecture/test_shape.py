@@ -40,7 +40,6 @@ UNUSED = {
 }
 # Dead or used by tests alone; each is to go, or to find its use.
 DEAD = {
-    "steps_of_each",  # until surfaces take several tools
     *("wall_left_angle", "wall_right_angle", "wall_left_straightness", "wall_right_straightness", "a_e"),
     "meet",  # the coupling that marches will ask each step what it meets
 }

@@ -86,3 +86,39 @@ def test_a_longer_tool_bends_more_and_the_arm_holds_it_farther_back():
     np.testing.assert_allclose(run.delta_spring[second], alone.delta_spring[alone.path.cutting], rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(run.delta_joint[second], alone.delta_joint[alone.path.cutting], rtol=1e-9, atol=1e-15)
     assert any("tool 1" in note and "as much farther" in note for note in run.notes)
+
+
+CROSS = GCodeSource(
+    "G21 G90 S12000 M3\nT1 M6\nG0 X-60 Y0 Z5\nG0 Z-2\nG1 X70 F1800\nG0 Z50\n"
+    "T2 M6\nG0 X5 Y-40\nG0 Z-1\nG1 Y40 F1200\nG0 Z50\nM2\n"
+)
+
+
+def test_surfaces_are_cut_with_each_tool():
+    """Two slots that cross, 8 mm wide and 2 mm deep, 12 mm wide and 1 mm deep: volumes, floors and walls by hand."""
+    still = SETUP.robot.replace(C_theta=np.zeros(5))
+    run = simulate(SETUP.replace(source=CROSS, tools=TABLE, robot=still, cell=1e-4))
+    low, high = SETUP.stock.lower, SETUP.stock.upper
+    length, width = high[0] - low[0], high[1] - low[1]
+    volume = length * 8e-3 * 2e-3 + width * 12e-3 * 1e-3 - 8e-3 * 12e-3 * 1e-3
+    assert run.machined.removed_volume == pytest.approx(volume, rel=1e-3)
+    z, x, y = run.machined.z, run.machined.x, run.machined.y
+    along, across = np.abs(y) < 3.9e-3, np.abs(x - 5e-3) < 5.9e-3
+    np.testing.assert_allclose(z[:, along], -2e-3, atol=1e-12)
+    np.testing.assert_allclose(z[np.ix_(across, np.abs(y) > 4.1e-3)], -1e-3, atol=1e-12)
+    assert (z[np.ix_(np.abs(x - 5e-3) > 6.1e-3, np.abs(y) > 4.1e-3)] == 0.0).all()
+    first, second = run.groove(20e-3), run.groove(float(run.path.s[-1]) - 30e-3)
+    assert (first.width, second.width) == pytest.approx((8e-3, 12e-3), abs=1e-6)
+
+
+def test_each_wall_is_judged_at_the_radius_of_its_tool():
+    run = simulate(SETUP.replace(source=CROSS, tools=TABLE, step=1e-3))
+    found = run.verdict
+    assert found.wall.worst >= 0
+    walls = run.gauge.walls
+    second = run.path.tool[walls.sample] == 2
+    assert second.any()
+    assert not second.all()
+    d = np.abs(run.delta_in_cut[walls.sample, 1])
+    straight = np.abs(run.path.p[walls.sample, 0] - 5e-3) > 12e-3
+    np.testing.assert_allclose(np.abs(walls.error)[straight & ~second], d[straight & ~second], atol=2e-6)
