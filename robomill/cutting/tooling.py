@@ -45,6 +45,10 @@ class Tooling:
             raise CuttingError(f"Tooling: it names cutters for {len(cutter.of_step)} moves; the path has {m} points.")
         return cutter
 
+    def at(self, i: int) -> Cutter:
+        """The cutter of the move that ends at point i."""
+        return self.cutters[int(self.of_step[i])]
+
     def each(self, name: str) -> FloatArray:
         """A number of every step's cutter, by its name, (m,)."""
         return np.array([float(getattr(cutter, name)) for cutter in self.cutters])[self.of_step]

@@ -52,7 +52,7 @@ def _frames(result: SimulationResult, index: int) -> FloatArray:
 def posed(result: SimulationResult, index: int, tip: FloatArray, *, arm: bool) -> tuple[Solid, ...]:
     """The tool with its tip at ``tip`` (3,) m in {W} as at sample ``index``; with ``arm`` the arm that holds it."""
     reach = to_si(90.0, "mm") if not arm else 0.1 * solids.yardstick(_frames(result, index))
-    found = tool_solids(result.setup.cutter, tip, result.path.k[index], reach)
+    found = tool_solids(result.tooling.at(index), tip, result.path.k[index], reach)
     return (*found, *(arm_solids(result, index) if arm else []))
 
 

@@ -41,7 +41,7 @@ def surface_picture(
     if np.hypot(along[0], along[1]) < 1e-9:
         along = np.array([1.0, 0.0, 0.0])
     if more.get("solids") and "headroom" not in more:
-        more["headroom"] = 4.0 * float(from_si(setup.cutter.diameter, "mm"))
+        more["headroom"] = headroom(result)
     direction = along[:2] / (np.linalg.norm(along[:2]) or 1.0)
     captions = (
         f"Displacement shown x {shown.times:g}" if shown.times != 1 else "True displacement",
@@ -61,6 +61,11 @@ def surface_picture(
     )
 
 
+def headroom(result: SimulationResult) -> float:
+    """mm above the part that its tools need in a picture."""
+    return 4.0 * float(from_si(max(cutter.diameter for cutter in result.tooling.cutters), "mm"))
+
+
 def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
     """The arm at sample ``index`` of the run, with part, path, force and displacement."""
     setup = result.setup
@@ -78,7 +83,7 @@ def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
         displacement=delta if np.isfinite(delta).all() else None,
         force_label=format_si(float(np.linalg.norm(F)), "N", 0),
         displacement_label=format_si(float(np.linalg.norm(delta)), "mm", 2),
-        cutter_radius=setup.cutter.radius,
+        cutter_radius=result.tooling.at(index).radius,
         **more,
     )
 

@@ -12,10 +12,10 @@ import streamlit as st
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session
-from robomill.units import format_times, from_si
+from robomill.units import format_times
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
 from robomill.viz.picture import Camera
-from robomill.viz.views import surface_picture
+from robomill.viz.views import headroom, surface_picture
 from robomill.viz.worker import RenderWorker
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
@@ -70,7 +70,7 @@ class Film:
             camera=self.camera,
             dark=self.dark,
             size=SIZE,
-            headroom=4.0 * float(from_si(self.result.setup.cutter.diameter, "mm")),
+            headroom=headroom(self.result),
         )
         worker.render(FilmStart("cut", picture))
         for index in film_samples(self.result, self.frames):

@@ -91,7 +91,7 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
         )
     c = result.conditions
     if bool(c.engaged[i]) and bool(c.n_s[i] > 0):
-        f_z = c.v_f[i] / c.n_s[i] / result.setup.cutter.flutes
+        f_z = c.v_f[i] / c.n_s[i] / result.tooling.at(i).flutes
         rows.append(
             (
                 "Chip",

@@ -83,7 +83,7 @@ def dial(
     """Engagement and force at the station, seen from the spindle."""
     if i < 0:
         return
-    c, unit = result.conditions, session.project().view.length
+    c, unit, cutter = result.conditions, session.project().view.length, result.tooling.at(i)
     across = np.hypot(result.force_components[:, 0], result.force_components[:, 1])
     top = float(np.nanmax(np.where(result.judged, across, 0.0), initial=0.0))
     others = None
@@ -101,8 +101,8 @@ def dial(
             unit,
             result.force_components[i],
             top / 1.45 or 1.0,
-            result.setup.cutter.hand,
-            result.setup.cutter.flutes,
+            cutter.hand,
+            cutter.flutes,
             bool(c.engaged[i]),
             others,
             worst_turn,
