@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.models import Model
 from robomill.io.projects import load_setup
@@ -14,6 +15,7 @@ from robomill.io.samples import samples_dir
 from robomill.report.ranges import ranges
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.spread import peak_force
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +41,24 @@ def test_each_row_of_the_alloy_in_force_stays_within_the_range() -> None:
         walls.append(float(result.verdict.wall.value + other.delta_in_cut[i, 1] - result.delta_in_cut[i, 1]))
     assert len(walls) > 2
     assert found.wall == pytest.approx((min(walls), max(walls)), abs=1e-9)
+
+
+def test_a_tooth_bends_the_tool_by_its_own_force() -> None:
+    """Bending across the axis is the same every way: the tool's part of the wall grows as the force across it does."""
+    setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
+    cutter = setup.cutter.replace(stick_out=0.04)
+    setup = setup.replace(cutter=cutter, springs=(ToolBending.first(cutter),), coupling=False)
+    result = simulate(setup)
+    i, peak = result.verdict.wall.worst, peak_force(result)
+    assert peak is not None
+    left = np.cross([0.0, 0.0, 1.0], [1.0, 0.0, 0.0])  # of a feed along X
+    mean = float(result.F[i] @ left)
+    bend = float(result.delta_spring[i, 0] @ left)
+    more = bend * (float(peak.at_peak[i, 1]) / mean - 1.0)
+    found = next(r for r in ranges(result, None) if r.kind == "computed")
+    value = result.verdict.wall.value
+    assert abs(more) > 1e-6
+    assert found.wall == pytest.approx(sorted((value, value + more)), abs=1e-9)
 
 
 def test_a_band_of_one_joint_is_where_that_joint_leads(setup: SimulationSetup) -> None:

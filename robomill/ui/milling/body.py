@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import streamlit as st
 
 from robomill.cutting.conditions import cut_warnings
@@ -23,6 +24,7 @@ from robomill.ui.milling import station as station_views
 from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
 from robomill.ui.verdict import LEFT_OUT
+from robomill.units import format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
 QUESTION = "milling.question"
@@ -57,7 +59,16 @@ def verdict_link(result: SimulationResult) -> None:
         disabled=result.worst < 0,
         help="Go there: code line, arm, force and section",
     )
-    pieces.note(LEFT_OUT)
+    pieces.note(f"{_mean_and_peak(result)}{LEFT_OUT}")
+
+
+def _mean_and_peak(result: SimulationResult) -> str:
+    """Which force the verdict is of, where a tooth is known to push harder."""
+    peak, i = spread_of(result)[1], result.worst
+    if peak is None or i < 0:
+        return ""
+    mean, most = (format_si(float(np.linalg.norm(F[i])), "N", 0) for F in (result.force_components, peak.at_peak))
+    return f"The verdict is of the mean force, {mean} at its worst; a tooth pushes with up to {most} there. "
 
 
 def _land(result: SimulationResult) -> None:
