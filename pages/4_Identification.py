@@ -8,7 +8,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
-from robomill.ui.identification import cut, inputs, laboratory, measured_map, models, plan, results, words
+from robomill.ui.identification import cut, inputs, laboratory, measured_map, models, plan, points, results, words
 from robomill.ui.identification.bench import Bench, bench, fit_of, robot_of, tests_of
 
 
@@ -33,6 +33,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         inputs.robot_choice(kept)
         inputs.model_choice(kept, robot)
         if result is not None:
+            points.offer(kept, result)
             inputs.use(kept, robot, result)
     with right:
         if result is None:
@@ -43,6 +44,8 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
             results.compliances(result, robot, view.joint_unit, dark)
         elif view_name == "residuals":
             results.residuals(kept, result, dark)
+        elif view_name == "points":
+            points.points(kept, robot, result, view.length, dark)
         elif view_name == "models":
             models.models(kept, robot, view.joint_unit, dark)
         elif view_name == "next":

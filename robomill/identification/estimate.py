@@ -49,7 +49,7 @@ def identify(
     if treatment.exclude:
         tests = _without(tests, treatment.exclude)
     bending = BENDING_JOINTS if treatment.bending == AUTO else treatment.bending
-    if isinstance(tests, JointTests):
+    if tests.single:
         return _of_joints(robot, tests, Model(model, bending), treatment)
     tests = tests.with_joints(robot)
     fold = folds_of(treatment.leave_out, tests.pose_index(), tests.theta)
@@ -109,7 +109,7 @@ def _band(errors: Errors, dof: int) -> Band | None:
 def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: Fitted) -> IdentificationResult:
     system, fit, weights, lumped = fitted.system, fitted.fit, fitted.weights, fitted.lumped
     share = diagnostics.shares(system, fit.x)
-    residual = _residuals(system, fit.x, len(tests), 1 if isinstance(tests, JointTests) else 3)
+    residual = _residuals(system, fit.x, len(tests), 1 if tests.single else 3)
     negative = (fit.x == 0.0) & (fit.free * np.linalg.norm(system.A, axis=0) < -1e-9 * np.linalg.norm(system.b))
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
     found = diagnostics.fit_findings(system, fit, active, lumped)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +41,8 @@ class LoadTests:
     row           (m,) int          the row of the file each test came from (1 = first line)
     synthetic     made by calculation: no measurement of a real robot
     """
+
+    single: ClassVar[Literal[False]] = False  # not tests of single joints: the tool was loaded
 
     wrench: FloatArray
     displacement: FloatArray
@@ -166,6 +168,8 @@ class JointTests:
     joint (m,) int from 1; torque (m,) N m about the joint's axis; angle (m,) rad by which it turned
     (N and m for a prismatic joint); noise (m,) rad, NaN: not stated; row (m,) of the file.
     """
+
+    single: ClassVar[Literal[True]] = True
 
     joint: IntArray
     torque: FloatArray

@@ -26,7 +26,7 @@ def identification_record(
     record, found = identification_report(result), list(result.findings)
     record["explanations"] = list(result.explanations)
     record["lines_of_pull"] = None
-    if isinstance(tests, LoadTests):
+    if not tests.single:
         tests = tests.without(result.excluded).with_joints(robot)
         lines = lines_of_pull(robot, tests)
         record["lines_of_pull"] = lines_of_pull_record(lines, robot, tests)

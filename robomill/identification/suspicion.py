@@ -23,7 +23,7 @@ def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tup
     tests means a flipped sign. A factor of 1000 against the plausible range, or against the robot's own values
     where it has some, means a wrong unit.
     """
-    if isinstance(tests, JointTests):
+    if tests.single:
         return _joint_suspicions(tests)
     return (*_signs(tests), *_sizes(tests, robot), *_repeats(tests))
 

@@ -101,7 +101,7 @@ def build_system(
 
     freed: points to be fitted too; by_size: every test counts by its relative error, as if its noise grew with it.
     """
-    if isinstance(tests, JointTests):
+    if tests.single:
         return _joint_system(robot, tests, model, freed)
     tests = tests.with_joints(robot)
     parameters = model.parameters(robot)

@@ -69,11 +69,11 @@ def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> Loa
         tests = _joints(table)
     else:
         tests = _displacements(table)
-    if isinstance(tests, LoadTests) and robot is not None:
+    if not tests.single and robot is not None:
         tests = tests.with_joints(robot)
     head = table.place.head
     ignored = tuple(
-        Finding("ignored", head, f"Column {column!r} is not one of ours and is passed over.")
+        Finding("ignored", head, f"Column {column!r} is not one of ours and is passed over.", code="passed-over")
         for column in table.passed_over
     )
     source = f"{name or 'pasted cells'}\n{table.remarks}".strip()
@@ -93,7 +93,7 @@ def _pose_suspicions(table: Columns) -> tuple[Finding, ...]:
         largest = max((float(np.abs(from_si(table.values[c.quantity], unit)).max()) for c in columns), default=0.0)
         if 0.0 < largest < most:
             text = f"No {columns[0].written} is larger than {largest:.3g}: are these poses in {other}?"
-            return (Finding("suspicious", 0, text),)
+            return (Finding("suspicious", 0, text, code="pose-unit"),)
     return ()
 
 
@@ -131,7 +131,7 @@ def _displacements(table: Columns) -> LoadTests:
     found: tuple[Finding, ...] = ()
     if F0 is None and d0 is None:
         text = "Displacements are taken as differences between loaded and unloaded readings; gravity cancels in them."
-        found = (Finding("info", 0, text),)
+        found = (Finding("info", 0, text, code="differences"),)
     return LoadTests(
         wrench=np.concatenate([F - (0.0 if F0 is None else F0), nothing if moment is None else moment], axis=1),
         displacement=np.concatenate(
@@ -172,7 +172,7 @@ def _compliances(table: Columns) -> LoadTests:
     found: tuple[Finding, ...] = ()
     if load is None:
         text = f"No load_N column: residuals are stated for the paper's dead weight of {NOMINAL_LOAD:g} N."
-        found, load = (Finding("info", 0, text),), np.full(m, NOMINAL_LOAD)
+        found, load = (Finding("info", 0, text, code="nominal-load"),), np.full(m, NOMINAL_LOAD)
     if (load <= 0).any():
         k = int(np.argmax(load <= 0))
         raise table.refuse(k, "load", "expected a load above zero.")
@@ -221,6 +221,6 @@ def _written(name: str) -> str:
 def read_measured_map(path_or_text: str | Path, robot: Robot) -> MeasuredField:
     """The paper's second method: a grid of measured compliances (or displacements in three directions) as a map."""
     tests = read_load_tests(path_or_text)
-    if isinstance(tests, JointTests):
+    if tests.single:
         raise LoadTestError("Measured map: found tests of single joints; give compliances Cxx_um_N ... at poses.")
     return MeasuredField.from_tests(robot, tests)

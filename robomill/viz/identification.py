@@ -165,20 +165,57 @@ def residuals_figure(
     marked = np.flatnonzero(outlier)
     if len(marked):
         worst = np.nanargmax(np.where(np.isnan(residual[marked]), -1, np.abs(residual[marked])), axis=1)
-        fig.add_scatter(
-            x=row[marked],
-            y=residual[marked, worst],
-            mode="markers+text" if len(marked) <= 12 else "markers",
-            name="does not fit",
-            text=[f"row {r}" for r in row[marked]],
-            textposition="top center",
-            textfont={"size": 12, "color": p.bad},
-            hoverinfo="skip",
-            cliponaxis=False,
-            marker={"size": 15, "symbol": "circle-open", "color": p.bad, "line": {"width": 2}},
-        )
+        _ring(fig, row[marked], residual[marked, worst], "does not fit", dark)
     fig.update_layout(xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
     return fig
+
+
+def gaps_figure(
+    row: IntArray, gap: FloatArray, stated: FloatArray | None, suspect: BoolArray, unit: str, *, dark: bool
+) -> go.Figure:
+    """How far the line of pull of each row (m,) passes its pulley, with the load point found and with the stated one.
+
+    ``stated`` None: the stated load point is the one in use; ``suspect`` (m,) are ringed and named.
+    """
+    p = palette(dark)
+    fig = figure(dark=dark, height=250, revision=f"gaps-{unit}", margin={"l": 8, "r": 16, "t": 34, "b": 8})
+    drawn = [
+        ("with the load point that fits best" if stated is not None else "with the stated load point", gap, p.accent)
+    ]
+    if stated is not None:
+        drawn.insert(0, ("with the stated load point", stated, p.muted))
+    for name, values, colour in drawn:
+        fig.add_scatter(
+            x=row,
+            y=values,
+            mode="markers",
+            name=name,
+            marker={"size": 7, "color": colour, "symbol": "circle" if values is gap else "circle-open"},
+            hovertemplate="row %{x}<br>%{y:.1f} " + unit + f"<extra>{name}</extra>",
+        )
+    if suspect.any():
+        _ring(fig, row[suspect], gap[suspect], "cannot be", dark)
+    fig.update_layout(
+        xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Gap, {unit}", dark=dark, rangemode="tozero")
+    )
+    return fig
+
+
+def _ring(fig: go.Figure, row: IntArray, y: FloatArray, name: str, dark: bool) -> None:
+    """Rings around rows that stand out, each named where they are few."""
+    bad = palette(dark).bad
+    fig.add_scatter(
+        x=row,
+        y=y,
+        mode="markers+text" if len(row) <= 12 else "markers",
+        name=name,
+        text=[f"row {r}" for r in row],
+        textposition="top center",
+        textfont={"size": 12, "color": bad},
+        hoverinfo="skip",
+        cliponaxis=False,
+        marker={"size": 15, "symbol": "circle-open", "color": bad, "line": {"width": 2}},
+    )
 
 
 def models_figure(

@@ -212,7 +212,7 @@ def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
 def comparison_of(bench: Bench, robot: Robot) -> Comparison:
     """Every model fitted to the same tests. Raises LoadTestError."""
     tests = tests_of(bench, robot)
-    if isinstance(tests, JointTests):
+    if tests.single:
         raise LoadTestError(
             "One joint at a time shows nothing but joints: models are compared on displacements of the tool."
         )
@@ -240,7 +240,7 @@ def lines_of(bench: Bench, robot: Robot) -> LinesOfPull | None:
 def used_tests(bench: Bench, robot: Robot) -> LoadTests | None:
     """The tests of the tool without the rows left out; None for tests of single joints."""
     tests = tests_of(bench, robot)
-    return tests.without(bench.excluded) if isinstance(tests, LoadTests) else None
+    return None if tests.single else tests.without(bench.excluded)
 
 
 def _choices(bench: Bench, robot: Robot) -> tuple[Any, ...]:

@@ -27,6 +27,7 @@ SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual
 VIEWS = {
     "compliances": "Compliances",
     "residuals": "Residuals",
+    "points": "Points",
     "models": "Models",
     "next": "Measure next",
     "cut": "In the cut",

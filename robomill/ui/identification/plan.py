@@ -9,7 +9,6 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.identification.load_test import JointTests
 from robomill.identification.plan import PathLoad, Plan, box_candidates, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import load_tests_to_csv
@@ -29,7 +28,7 @@ MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 
 def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """Goal, box and load; the poses to measure, as a table and a sheet; intervals before and after."""
-    if isinstance(tests_of(bench, robot), JointTests):
+    if tests_of(bench, robot).single:
         st.info("One joint at a time needs no plan: load the joint known least once more.", icon=":material/info:")
         return
     _goal_inputs(bench, robot, result)
@@ -108,7 +107,7 @@ def _take_sheet(bench: Bench, robot: Robot, text: str, name: str) -> None:
 def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
     tests = tests_of(bench, robot)
-    assert not isinstance(tests, JointTests)
+    assert not tests.single
     goal: str | int | PathLoad = bench.goal
     if goal == "joint":
         goal = _joint(bench, robot, result)

@@ -162,7 +162,7 @@ def sizes(result: IdentificationResult) -> FloatArray:
 def summary(tests: LoadTests | JointTests) -> str:
     """What was read: how many tests, at how many poses."""
     m = len(tests)
-    if isinstance(tests, JointTests):
+    if tests.single:
         return f"{m} tests of {len(np.unique(tests.joint))} joints, one at a time."
     poses = int(tests.pose_index().max()) + 1
     numbers = int(np.isfinite(tests.displacement).sum())

@@ -1,0 +1,109 @@
+"""Where the tests were loaded and read: the lines of pull, and the points that were fitted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import streamlit as st
+
+from robomill.identification.found_points import TITLES, FoundPoint
+from robomill.identification.lines_of_pull import LinesOfPull
+from robomill.identification.pull_words import load_point, pull_findings
+from robomill.identification.result import IdentificationResult
+from robomill.robot.model import Robot
+from robomill.ui import pieces
+from robomill.ui.identification.bench import Bench, lines_of, used_tests
+from robomill.units import format_many, format_si, from_si, unit_label
+from robomill.viz.identification import gaps_figure
+
+ICONS = {"suspicious": ":material/visibility:", "info": ":material/info:"}
+
+
+def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
+    """What the forces alone say, what the fit found, and the offer to fit points."""
+    rows = [_row(f"{TITLES[p.point].capitalize()}, fitted", p, unit) for p in result.points]
+    tests, lines = used_tests(bench, robot), lines_of(bench, robot)
+    if tests is None or lines is None:
+        pieces.note("One joint at a time: there is no load point on the tool.")
+        return
+    by_lines = load_point(lines, robot, tests)
+    if by_lines is not None:
+        rows.append(_row("Load point, by the lines of pull", by_lines, unit))
+    if rows:
+        with st.container(border=True):
+            st.markdown("**Points of the tool, in the flange**")
+            pieces.facts(rows)
+            pieces.note(
+                f"x, y, z in {unit_label(unit)}; 95 % intervals, each with everything else that was fitted left free."
+            )
+    for finding in pull_findings(lines, robot, tests):
+        st.info(finding.message, icon=ICONS.get(finding.level))
+    if len(lines.pulley):
+        with st.container(border=True):
+            _gaps(lines, unit, dark)
+
+
+def offer(bench: Bench, result: IdentificationResult) -> None:
+    """The button that fits the points that are worth it (its sentence is among the findings), or the way back."""
+    if result.offer is not None:
+        wanted = result.offer.fit_points
+        names = " and ".join(TITLES[point.point] for point in result.offer.points)
+        st.button(
+            f"Fit the {names}",
+            key="identification.offer",
+            icon=":material/my_location:",
+            width="stretch",
+            on_click=bench.writer("fit_points"),
+            args=(wanted,),
+        )
+    elif result.points:
+        st.button(
+            "Take the points as stated",
+            key="identification.stated",
+            icon=":material/undo:",
+            width="stretch",
+            on_click=bench.writer("fit_points"),
+            args=("none",),
+        )
+
+
+def _row(name: str, point: FoundPoint, unit: str) -> tuple[str, str, str]:
+    digits = 1 if unit == "mm" else 3
+    half = np.ptp(point.ci95, axis=1) / 2
+    place = format_many(point.in_flange, unit, digits, with_unit=False)
+    sure = format_many(half, unit, digits, with_unit=False) if np.isfinite(half).all() else "not held"
+    return name, f"({place}) ± ({sure})", f"{format_si(point.off, unit, digits)} off the stated one"
+
+
+def _gaps(lines: LinesOfPull, unit: str, dark: bool) -> None:
+    """The gap of every row, with the load point found and with the stated one."""
+    st.markdown("**How far each line of pull passes its pulley**")
+    gap, stated = from_si(lines.gap, unit), from_si(lines.gap_stated, unit)
+    odd = np.isin(lines.row, lines.suspects)
+    moved = lines.shift is not None
+    pieces.figure(
+        gaps_figure(lines.row, gap, stated if moved else None, odd, unit_label(unit), dark=dark),
+        f"ident-gaps-{unit}",
+        name="lines-of-pull",
+        table=lambda: gap_columns(lines, unit),
+        caption=f"{_pulleys(lines, unit)} Ringed: cannot be.",
+        alt="Distance of each row's force line from its pulley, with the load point found and with the stated one.",
+    )
+
+
+def _pulleys(lines: LinesOfPull, unit: str) -> str:
+    digits = 0 if unit == "mm" else 1
+    places = "; ".join(f"({format_many(p, unit, digits, with_unit=False)})" for p in lines.pulley)
+    return f"Pulley at {places} {unit_label(unit)} in {{M}}."
+
+
+def gap_columns(lines: LinesOfPull, unit: str) -> dict[str, Any]:
+    """One row a test: its pulley and its gaps."""
+    return {
+        "row": lines.row,
+        "pulley": lines.which + 1,
+        f"gap_{unit}": from_si(lines.gap, unit),
+        f"gap_stated_{unit}": from_si(lines.gap_stated, unit),
+        "cannot_be": np.isin(lines.row, lines.suspects),
+    }
