@@ -98,7 +98,8 @@ def _errors(robot: Robot, tests: LoadTests, choice: Model, fitted: Fitted, misse
         size2 = ((at_shift(choice.terms(robot, tests, freed)[:, :3], fitted.found.shift, freed) @ x) ** 2).sum(axis=1)
     size = np.sqrt(size2)[system.test]
     counted = system.linear if fitted.weights is None else system.linear & (fitted.weights > 0.0)
-    return Errors(missed.error, missed.variance, size, missed.fold).chosen(counted)
+    load = np.linalg.norm(tests.wrench[:, :3], axis=1)[system.test]
+    return Errors(missed.error, missed.variance, size, load, missed.fold).chosen(counted)
 
 
 def _band(errors: Errors, dof: int) -> Band | None:

@@ -15,7 +15,6 @@ from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.units import format_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +73,7 @@ class Knowledge:
         """What a band holds of the compliances' part, in words."""
         if self.error is None:
             return "noise of the fit only"
-        share, floor = format_si(self.error.share, "%", 1), format_si(self.error.floor, "um", 1)
-        return f"noise of the fit and error of the model ({share} of the deviation, and {floor})"
+        return f"noise of the fit and error of the model ({self.error.words()})"
 
     def widened(self, robot: Robot, force: float = 0.0, length: float = 0.0) -> Knowledge:
         """The same with each force component unsure by ``force`` N and each D-H length by ``length`` m (one std)."""
@@ -103,7 +101,7 @@ class Knowledge:
         if self.dof is not None:
             table["dof"] = int(self.dof)
         if self.error is not None:
-            table["model_error"] = [self.error.share, self.error.floor]
+            table["model_error"] = [self.error.share, self.error.per_newton, self.error.floor]
         if self.F is not None:
             table["force_covariance"] = self.F.tolist()
         if self.lengths is not None:

@@ -3,11 +3,12 @@
 The errors on poses left out are larger than the fit's own covariance says wherever the model is not the arm. Each is
 taken as drawn with variance
 
-    D cov D^T + k^2 (floor^2 + share^2 |delta|^2),
+    D cov D^T + k^2 (floor^2 + per_newton^2 |F|^2 + share^2 |delta|^2),
 
-a part that grows with the displacement and a part that does not (the gauge's noise, play). floor and share are fitted
-to the squared errors; k is then the smallest number with which the 95 % bands hold 95 % of the errors left out (split
-conformal prediction: no normal distribution is asked for).
+parts that grow with the displacement, with the force (an elastic arm that is not the model's errs by its load) and a
+part that does not (the gauge's noise, play); tests under one load cannot tell the last two apart, and count as the
+second. The parts are fitted to the squared errors; k is then the smallest number with which the 95 % bands hold 95 % of
+the errors left out (split conformal prediction: no normal distribution is asked for).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from scipy.special import stdtrit
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.identification.least_squares import triangle
+from robomill.units import format_si
 
 LEVEL = 0.95
 ROUNDS = 8
@@ -30,29 +32,40 @@ FEWEST = 4  # poses from which errors on poses left out can be judged
 
 @dataclass(frozen=True)
 class ModelError:
-    """Standard deviation of a prediction beyond the fit's noise: ``share`` of the displacement, and ``floor`` m."""
+    """Standard deviation of a prediction beyond the fit's noise: ``share`` of the displacement, m/N, ``floor`` m."""
 
     share: float
+    per_newton: float
     floor: float
 
-    def variance(self, size: FloatArray) -> FloatArray:
-        """(...) m^2 of each component of a displacement of that size (...) m."""
-        return np.asarray(self.floor**2 + (self.share * size) ** 2)
+    def variance(self, size: FloatArray, load: FloatArray) -> FloatArray:
+        """(...) m^2 of each component of a displacement of that size (...) m under a force of that size (...) N."""
+        return np.asarray(self.floor**2 + (self.per_newton * load) ** 2 + (self.share * size) ** 2)
+
+    def words(self) -> str:
+        """Its parts that are not nothing, e.g. "4.1 % of the deviation, 0.02 um/N"."""
+        parts = (
+            (self.share, f"{format_si(self.share, '%', 1)} of the deviation"),
+            (self.per_newton, f"{format_si(self.per_newton, 'um/N', 3)} of force"),
+            (self.floor, format_si(self.floor, "um", 1)),
+        )
+        return ", ".join(text for value, text in parts if value > 0.0) or "none found"
 
 
 @dataclass(frozen=True, eq=False)
 class Errors:
     """Errors on what was left out (e,) m, the variance (e,) m^2 that the fit gave each, the size (e,) m of the
-    displacement predicted there, and the fold (e,) each was left out with."""
+    displacement predicted there, the load (e,) N it was under, and the fold (e,) each was left out with."""
 
     error: FloatArray
     variance: FloatArray
     size: FloatArray
+    load: FloatArray
     fold: IntArray
 
     def chosen(self, which: IntArray | BoolArray) -> Errors:
         """Some of them."""
-        return Errors(self.error[which], self.variance[which], self.size[which], self.fold[which])
+        return Errors(self.error[which], self.variance[which], self.size[which], self.load[which], self.fold[which])
 
     def thinned(self) -> Errors:
         """Those that are known, at most about ``MOST`` of them."""
@@ -66,34 +79,33 @@ def model_error(errors: Errors, dof: int) -> ModelError | None:
     if len(np.unique(errors.fold)) < FEWEST or dof <= 0:
         return None
     t = float(stdtrit(dof, 0.5 + LEVEL / 2.0))
-    e2, v, size2 = errors.error**2, errors.variance, errors.size**2
-    share2, floor2 = _spread(e2, v, size2)
-    beyond = floor2 + share2 * size2
+    e2, v = errors.error**2, errors.variance
+    parts = _spread(e2, v, np.stack([errors.size**2, errors.load**2, np.ones_like(e2)], axis=1))
+    beyond = ModelError(*np.sqrt(parts)).variance(errors.size, errors.load)
     if not (beyond > 0).all():
-        return ModelError(0.0, 0.0)
+        return ModelError(0.0, 0.0, 0.0)
     needed = np.sort(np.clip(e2 / t**2 - v, 0.0, None) / beyond)
     rank = min(int(np.ceil(LEVEL * (len(needed) + 1))), len(needed)) - 1
     k = float(np.sqrt(needed[rank]))
-    return ModelError(k * float(np.sqrt(share2)), k * float(np.sqrt(floor2)))
+    return ModelError(*(k * float(part) for part in np.sqrt(parts)))
 
 
-def _spread(e2: FloatArray, v: FloatArray, size2: FloatArray) -> tuple[float, float]:
-    """share^2 and floor^2 (m^2) by weighted non-negative least squares of the squared errors."""
-    typical = float(np.mean(size2))
-    if typical == 0.0:
-        return 0.0, float(np.mean(e2))
-    columns = np.stack([size2 / typical, np.ones_like(size2)], axis=1)
+def _spread(e2: FloatArray, v: FloatArray, columns: FloatArray) -> FloatArray:
+    """(3,) squares of the parts by weighted non-negative least squares of squared errors on their columns (e, 3)."""
+    typical = columns.mean(axis=0)
+    typical[typical == 0.0] = 1.0
+    A = columns / typical
     guess = np.full(len(e2), float(np.median(e2)) / 0.455)  # the median of a squared standard normal
-    found = np.zeros(2)
+    found = np.zeros(3)
     for _ in range(ROUNDS):
         weight = 1.0 / np.maximum(guess, 1e-6 * float(guess.max(initial=0.0)) or 1.0)
         target = np.minimum(e2, CLIP * guess) - v
-        R = triangle(columns * weight[:, None], target * weight)
-        found = nnls(R[:, :2], R[:, 2])[0]
-        guess = v + columns @ found
+        R = triangle(A * weight[:, None], target * weight)
+        found = nnls(R[:, :3], R[:, 3])[0]
+        guess = v + A @ found
         if not guess.any():
             break
-    return float(found[0] / typical), float(found[1])
+    return np.asarray(found / typical)
 
 
 def held(errors: Errors, dof: int) -> float:
@@ -106,6 +118,6 @@ def held(errors: Errors, dof: int) -> float:
         if spread is None:
             return float("nan")
         t = float(stdtrit(dof, 0.5 + LEVEL / 2.0))
-        half = t * np.sqrt(errors.variance[here] + spread.variance(errors.size[here]))
+        half = t * np.sqrt(errors.variance[here] + spread.variance(errors.size[here], errors.load[here]))
         inside[here] = np.abs(errors.error[here]) <= half
     return float(inside.mean()) if len(inside) else float("nan")

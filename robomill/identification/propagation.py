@@ -2,10 +2,11 @@
 
 Linear propagation. With delta = D C_theta + ..., D (3 x p) the regressor of eqs. (13)-(16),
 
-    cov(delta) = D cov(C_theta) D^T + (floor^2 + share^2 |delta|^2) I + C cov(F) C^T + L cov(lengths) L^T
+    cov(delta) = D cov(C_theta) D^T + (floor^2 + per_N^2 |F|^2 + share^2 |delta|^2) I
+                 + C cov(F) C^T + L cov(lengths) L^T
 
-where floor and share are the model's own error as poses left out showed it (``model_error``; absent from a band of
-noise only) and L is the derivative of delta with respect to the D-H lengths a and d at fixed joint coordinates (the
+where floor, per_N and share are the model's own error as poses left out showed it (``model_error``; absent from a band
+of noise only) and L is the derivative of delta with respect to the D-H lengths a and d at fixed joint coordinates (the
 control drives the joints by its nominal table, the true lengths are what is unsure). delta is exactly linear in C_theta
 and in F apart; their product and the lengths are of second order.
 """
@@ -75,7 +76,8 @@ def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Kn
     delta = D @ known.parameters
     parts = [D @ known.covariance @ np.swapaxes(D, -1, -2), *(np.zeros((*delta.shape, 3)) for _ in range(3))]
     if known.error is not None:
-        missed = np.where(np.any(F != 0.0, axis=-1), known.error.variance(np.linalg.norm(delta, axis=-1)), 0.0)
+        load = np.linalg.norm(F, axis=-1)
+        missed = np.where(load != 0.0, known.error.variance(np.linalg.norm(delta, axis=-1), load), 0.0)
         parts[1] = missed[..., None, None] * np.eye(3)
     if known.F is not None:
         C = known.model.compliance(robot, theta, known.parameters)

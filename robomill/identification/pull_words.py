@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import fdtri
 
 from robomill.arrays import frozen
 from robomill.identification.found_points import FoundPoint
@@ -66,6 +67,24 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
         first = found.suspects[0]
         said.append(Finding("suspicious", first, text, len(found.suspects), code="pull-suspect"))
     return said
+
+
+def disagreement(by_lines: FoundPoint | None, fitted: tuple[FoundPoint, ...]) -> list[Finding]:
+    """Said where the fitted load point is not that of the lines of pull, beyond both their intervals."""
+    for point in fitted:
+        if by_lines is None or point.point != "force" or np.isnan(point.covariance).any():
+            continue
+        apart = point.shift - by_lines.shift
+        far = float(apart @ np.linalg.solve(point.covariance + by_lines.covariance, apart))
+        if far > 3 * float(fdtri(3, max(point.dof, 1), 0.99)):
+            size = format_si(float(np.linalg.norm(apart)), "mm", 0)
+            text = (
+                f"The load point of the fit and that of the lines of pull are {size} apart, more than chance allows: "
+                "the fit makes up for something that is not in its model (links that bend, the gauge point), so believe "
+                "the lines of pull."
+            )
+            return [Finding("suspicious", 0, text, code="points-disagree")]
+    return []
 
 
 def _listed(rows: tuple[int, ...]) -> str:

@@ -10,7 +10,7 @@ from robomill.arrays import FloatArray
 from robomill.identification.found_points import FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull, lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.pull_words import load_point, pull_findings
+from robomill.identification.pull_words import disagreement, load_point, pull_findings
 from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -31,6 +31,8 @@ def identification_record(
         lines = lines_of_pull(robot, tests)
         record["lines_of_pull"] = lines_of_pull_record(lines, robot, tests)
         found += pull_findings(lines, robot, tests)
+        offered = () if result.offer is None else result.offer.points
+        found += disagreement(load_point(lines, robot, tests), (*result.points, *offered))
     return record, found
 
 
@@ -72,8 +74,9 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
         "band": None
         if band is None
         else {
-            "made_of": "noise of the fit and error of the model",
+            "made_of": f"noise of the fit and error of the model ({band.error.words()})",
             "model_error_share": band.error.share,
+            "model_error_per_N_mm": from_si(band.error.per_newton, "mm"),
             "model_error_floor_mm": from_si(band.error.floor, "mm"),
             "held": plain(band.held),
             "components": band.components,

@@ -130,11 +130,7 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         )
     if record["band"] is not None:
         band = record["band"]
-        lines.append(
-            f"95 % bands: noise of the fit and error of the model ({100 * band['model_error_share']:.1f} % of the "
-            f"deviation and {band['model_error_floor_mm']:.3f} mm); "
-            f"they hold {100 * band['held']:.0f} % of what was left out"
-        )
+        lines.append(f"95 % bands: {band['made_of']}; they hold {100 * band['held']:.0f} % of what was left out")
     if record["unseen_joints"]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
     if record["outliers"]:

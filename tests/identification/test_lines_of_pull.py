@@ -192,3 +192,14 @@ def test_the_record_is_what_a_reader_of_json_needs():
     assert {"pull-load-point", "pull-suspect"} <= {f.code for f in findings}
     single = rm.read_load_tests("joint,torque_Nm,angle_mrad\n1,100,0.1\n1,200,0.2\n2,100,0.2\n", ROBOT)
     assert identification_record(ROBOT, single, rm.identify(ROBOT, single))[0]["lines_of_pull"] is None
+
+
+def test_a_fit_that_makes_up_for_what_its_model_lacks_is_told_by_the_lines_of_pull():
+    rig = Rig(bending={2: (4e-7, 4e-7)}, force_noise=1.0)
+    gauge = rig.gauge_point + np.array([0.0, 0.048, 0.064])
+    tests = rm.read_load_tests(as_csv(ARM, make(ARM, rig, 43, seed=5), rig.load_point + OFF, gauge), ROBOT)
+    lacking = rm.identify(ROBOT, tests, fit_points="force")
+    assert "points-disagree" in {f.code for f in identification_record(ROBOT, tests, lacking)[1]}
+    whole = rm.identify(ROBOT, tests, "joints+bending", bending="auto", fit_points="both")
+    assert whole.choice.bending_joints == (2,)
+    assert "points-disagree" not in {f.code for f in identification_record(ROBOT, tests, whole)[1]}

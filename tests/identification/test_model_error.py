@@ -18,12 +18,14 @@ from tests.identification.cables import Arm, Rig, as_csv, make
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 
 
-def drawn(seed, e=20000, share=0.08, floor=5e-6, heavy=False):
+def drawn(seed, e=20000, share=0.08, floor=5e-6, per_newton=0.0, heavy=False):
     rng = np.random.default_rng(seed)
     size = rng.uniform(0.1e-3, 1e-3, e)
     variance = np.full(e, 2e-6**2)
     z = rng.standard_t(4, e) / np.sqrt(2) if heavy else rng.standard_normal(e)
-    return Errors(z * np.sqrt(variance + floor**2 + (share * size) ** 2), variance, size, np.arange(e) % 10)
+    load = rng.uniform(50.0, 500.0, e)
+    spread = np.sqrt(variance + floor**2 + (per_newton * load) ** 2 + (share * size) ** 2)
+    return Errors(z * spread, variance, size, load, np.arange(e) % 10)
 
 
 def test_share_and_floor_are_those_the_errors_were_drawn_with():
@@ -32,20 +34,28 @@ def test_share_and_floor_are_those_the_errors_were_drawn_with():
     assert found.floor == pytest.approx(5e-6, rel=0.5)
     only_floor = model_error(drawn(1, share=0.0), 10000)
     assert only_floor.floor == pytest.approx(5e-6, rel=0.06)
+    by_load = model_error(drawn(2, share=0.0, floor=0.0, per_newton=4e-8), 10000)
+    assert by_load.per_newton == pytest.approx(4e-8, rel=0.06)
+
+
+def test_under_one_load_what_is_left_grows_with_the_load():
+    errors = drawn(6, share=0.0)
+    one = model_error(replace(errors, load=np.full(20000, 250.0)), 10000)
+    assert (one.floor, one.per_newton) == (0.0, pytest.approx(5e-6 / 250, rel=0.06))
 
 
 @pytest.mark.parametrize("heavy", [False, True])
 def test_bands_hold_what_they_say_also_for_heavy_tails(heavy):
     learnt, fresh = drawn(2, heavy=heavy), drawn(3, heavy=heavy)
     found = model_error(learnt, 10000)
-    half = 1.96 * np.sqrt(fresh.variance + found.variance(fresh.size))
+    half = 1.96 * np.sqrt(fresh.variance + found.variance(fresh.size, fresh.load))
     assert np.mean(np.abs(fresh.error) <= half) == pytest.approx(0.95, abs=0.01)
     assert held(learnt, 10000) == pytest.approx(0.95, abs=0.01)
 
 
 def test_a_fit_that_misses_nothing_needs_no_more_and_too_few_folds_say_nothing():
     errors = replace(drawn(4), error=np.zeros(20000))
-    assert model_error(errors, 100).variance(np.array(1e-3)) == pytest.approx(0.0, abs=1e-18)
+    assert model_error(errors, 100).variance(np.array(1e-3), np.array(100.0)) == pytest.approx(0.0, abs=1e-18)
     few = drawn(5, e=30)
     assert model_error(replace(few, fold=few.fold % 3), 100) is None
     assert model_error(few, 0) is None
@@ -96,7 +106,7 @@ def test_what_a_band_is_made_of_is_said_and_saved():
     tests = simulated_tests(ROBOT, *three_directions(theta, 250.0), noise=4e-6, model_error=0.1)
     known = Knowledge.of(rm.identify(ROBOT, tests), ROBOT)
     again = Knowledge.from_table(known.to_table(), ROBOT, (), "here")
-    assert again.error == known.error == ModelError(known.error.share, known.error.floor)
+    assert again.error == known.error == ModelError(known.error.share, known.error.per_newton, known.error.floor)
     narrow = known.noise_only()
     assert narrow.error is None
     assert narrow.made_of != known.made_of

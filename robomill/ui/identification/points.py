@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.identification.found_points import TITLES, FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull
-from robomill.identification.pull_words import load_point, pull_findings
+from robomill.identification.pull_words import disagreement, load_point, pull_findings
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui import pieces
@@ -37,7 +37,8 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
             pieces.note(
                 f"x, y, z in {unit_label(unit)}; 95 % intervals, each with everything else that was fitted left free."
             )
-    for finding in pull_findings(lines, robot, tests):
+    offered = () if result.offer is None else result.offer.points
+    for finding in (*disagreement(by_lines, (*result.points, *offered)), *pull_findings(lines, robot, tests)):
         st.info(finding.message, icon=ICONS.get(finding.level))
     if len(lines.pulley):
         with st.container(border=True):
