@@ -80,8 +80,8 @@ def disagreement(by_lines: FoundPoint | None, fitted: tuple[FoundPoint, ...]) ->
             size = format_si(float(np.linalg.norm(apart)), "mm", 0)
             text = (
                 f"The load point of the fit and that of the lines of pull are {size} apart, more than chance allows: "
-                "the fit makes up for something that is not in its model (links that bend, the gauge point), so believe "
-                "the lines of pull."
+                "the fit makes up for something that is not in its model (links that bend, the gauge point), so "
+                "believe the lines of pull."
             )
             return [Finding("suspicious", 0, text, code="points-disagree")]
     return []
