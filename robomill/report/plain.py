@@ -61,15 +61,15 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
 
     worst, rms = (format_value(record[f"{key}_deviation_mm"], "mm") for key in ("max", "rms"))
 
-    lines = [
-        record["name"],
-        record["verdict_sentence"],
-        f"max       {worst}   rms {rms}",
-        f"there     {vector(record['deviation_mm'], 'mm')}",
-        f"force     {vector(record['force_N'], 'N')}",
-    ]
-    lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
-    lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
+    lines = [record["name"], record["verdict_sentence"]]
+    if record["worst_block"]:
+        lines += [
+            f"max       {worst}   rms {rms}",
+            f"there     {vector(record['deviation_mm'], 'mm')}",
+            f"force     {vector(record['force_N'], 'N')}",
+        ]
+        lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
+        lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
     for name, turn in (record["tooth"] or {}).items():
         mean, low, high = (format_value(turn[end], "mm", sign=True) for end in ("mean", "low", "high"))
@@ -82,13 +82,20 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named}")
         lines += [f"          {reason['why']} ({reason['count']} points)" for reason in lost["reasons"]]
     lines.append("groove    station    width    depth   centre off   floor off   (mm)")
-    for g in record["groove"]:
-        lines.append(
-            f"          {g['station_mm']:7.2f}  {g['width_mm']:7.3f}  {g['depth_mm']:7.3f}"
-            f"  {g['centre_offset_mm']:+11.4f}  {g['floor_error_mm']:+10.4f}"
-        )
+    lines += [_section_line(section) for section in record["groove"]]
     lines += [f"note      {note}" for note in record["notes"]]
     return lines
+
+
+def _section_line(section: dict[str, Any]) -> str:
+    """A section's dimensions, or why there are none."""
+    start = f"          {section['station_mm']:7.2f}  "
+    if math.isnan(section["width_mm"]) and section["note"]:
+        return start + str(section["note"])
+    return (
+        f"{start}{section['width_mm']:7.3f}  {section['depth_mm']:7.3f}"
+        f"  {section['centre_offset_mm']:+11.4f}  {section['floor_error_mm']:+10.4f}"
+    )
 
 
 def _reading(found: dict[str, Any]) -> str:

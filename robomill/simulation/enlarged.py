@@ -41,7 +41,8 @@ def enlarged(result: SimulationResult, times: float) -> Enlarged:
 
     def at(factor: float) -> ZMap:
         p = path.p + factor * (result.p_machined - path.p)
-        return cut(setup.stock_block, cell, result.tooling, p, path.k, result.removes, must_touch=factor == 0.0)
+        touches = factor == 0.0 and not result.not_judged.any()
+        return cut(setup.stock_block, cell, result.tooling, p, path.k, result.removes, must_touch=touches)
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)

@@ -217,7 +217,8 @@ def _walls(at: Places) -> Readings:
     # Chords of an arc overlap on its inner side by no more than this.
     gentle = (rims.length > 0.0) & (turn[rims.q] < CORNER) & ~steep[rims.q]
     same = SAME + np.where(gentle, rims.radius * (1.0 - np.cos(turn[rims.q])), 0.0)
-    keep = np.nan_to_num(told, nan=np.inf) <= same
+    # A tool lifted above the height at which a wall is measured leaves metal over its whole width: the floor's error.
+    keep = (np.nan_to_num(told, nan=np.inf) <= same) & (at.d[rims.q, 2] < rims.height)
     rims, told = rims.only(keep), told[keep]
     q = rims.q
     own = at.d[q, 0] * _dot(rims.u, at.feed[q]) + at.d[q, 1] * _dot(rims.u, at.left_of[q])

@@ -205,7 +205,8 @@ class SimulationResult:
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
-        return cut(setup.stock_block, setup.cell, self.tooling, p, self.path.k, self.removes)
+        touches = not self.not_judged.any()  # what is not judged is not cut, so nothing may be
+        return cut(setup.stock_block, setup.cell, self.tooling, p, self.path.k, self.removes, must_touch=touches)
 
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""

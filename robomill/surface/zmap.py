@@ -122,7 +122,7 @@ def cut(
         ends, skipped = np.vstack([ends, moves.ends]), skipped + lost
         edge, over = _cut_with(each, moves, (z, cells, cell), edge)
         overhang += over
-    if len(ends) + skipped == 0:
+    if must_touch and len(ends) + skipped == 0:
         raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
     bottom = float(stock.lower[2])
     below = bool((z < bottom).any())

@@ -91,6 +91,45 @@ def test_a_red_verdict_exits_with_1(capsys) -> None:
     assert "out of tolerance" in out
 
 
+SLOT = "G0 X-50 Y0 Z-2\nG1 X50 F1800"
+UNKNOWN = {
+    "a spindle that turns the wrong way": ("setup_process.toml", f"S12000 M4\n{SLOT}", "spindle_sense"),
+    "a spindle at an unknown speed": ("setup_process.toml", f"G96 S200 M3\n{SLOT}", "spindle_speed"),
+    "a plunge under a stated force": ("setup.toml", "S12000 M3\nG0 X0 Y0 Z5\nG81 Z-8 R2 F300\nG80", ""),
+}
+
+
+@pytest.mark.parametrize("name", UNKNOWN)
+def test_what_has_no_model_exits_with_1_and_says_why(name, capsys, tmp_path: Path) -> None:
+    setup, text, reason = UNKNOWN[name]
+    program = tmp_path / "part.nc"
+    program.write_text(f"G21 G90\n{text}\nM2\n")
+    code, out, err = run(capsys, "simulate", FLUTE / setup, "--program", program, "--json")
+    assert code == 1, err
+    found = json.loads(out)
+    assert found["verdict"] == "unjudged"
+    assert found["not_judged"]["count"] > 0
+    assert found["not_judged"]["blocks"]
+    assert reason in found["not_judged"]["reasons"][0]["code"]
+    code, out, _ = run(capsys, "simulate", FLUTE / setup, "--program", program, "--out", tmp_path / "out")
+    assert code == 1
+    assert "not judged" in out
+
+
+def test_a_drilled_hole_has_a_thrust(capsys, tmp_path: Path) -> None:
+    """Plunging an end mill in the paper's set-up ended in 0.00 mm and green: now in a thrust, and in a depth error of
+    C_zz times it."""
+    program = tmp_path / "hole.nc"
+    program.write_text("G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG81 Z-8 R2 F300\nG80\nM2\n")
+    code, out, err = run(capsys, "simulate", FLUTE / "setup_process.toml", "--program", program, "--json")
+    assert code == 1, err
+    found = json.loads(out)
+    thrust = found["force_component_N"]["axial"]
+    assert thrust > 100.0
+    assert found["floor"]["value_mm"] == pytest.approx(2.42e-3 * thrust, rel=0.02)
+    assert found["floor"]["line"] == 3
+
+
 def test_files_are_written(capsys, tmp_path: Path) -> None:
     code, _, err = run(capsys, "simulate", FLUTE, "--out", tmp_path / "run")
     assert code == 0, err

@@ -234,3 +234,13 @@ def test_a_plunge_that_a_slot_follows_leaves_the_slots_floor():
     assert bent.verdict.floor.value == pytest.approx(-0.04e-3, abs=1e-8)
     plunged = pushed(result, up=np.where(down, -0.2e-3, -0.04e-3))
     assert plunged.verdict.floor.value == pytest.approx(-0.2e-3, abs=1e-8)
+
+
+def test_metal_left_over_the_whole_width_is_the_floors_error():
+    """A ramp whose tip is lifted by more than it is deep: no wall reads more than the tip is aside."""
+    result = run("G0 X-40 Y0 Z5", "G0 Z0", "G1 X0 Z-2 F900", "G1 X28")
+    ramp = result.path.block == 4
+    bent = pushed(result, left=np.where(ramp, 0.3e-3, 0.05e-3), up=np.where(ramp, 0.8e-3, 0.0))
+    assert np.abs(bent.gauge.walls.error).max() <= 0.3e-3 + 2e-6
+    assert bent.verdict.wall.value == pytest.approx(0.3e-3, abs=2e-6)
+    assert bent.verdict.floor.value == pytest.approx(0.8e-3, rel=0.02)
