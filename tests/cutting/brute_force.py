@@ -72,6 +72,12 @@ class Move:
     end: Floats
     k: Floats
 
+    @property
+    def way(self) -> Floats:
+        """Unit vector."""
+        way = np.subtract(self.end, self.start)
+        return np.asarray(way / np.linalg.norm(way))
+
     def sweeps(self, x: Floats) -> NDArray[np.bool_]:
         """Which points (n, 3) the body passes through: underside minus height is convex along the way."""
         R, way = self.cutter.diameter / 2, np.subtract(self.end, self.start)
@@ -123,10 +129,12 @@ def _surface(cutter: Cutter, reach: float, n: int) -> Iterable[tuple[Floats, Flo
 
 @dataclass(frozen=True)
 class Bite:
-    """Points where the cutter cuts: chip thickness, radius, directions, and the db dphi that each stands for."""
+    """Points where the cutter cuts: chip thickness, radius, height, angle (clockwise), directions, and db dphi each."""
 
     h: Floats
     r: Floats
+    z: Floats
+    turn: Floats
     e_r: Floats
     normal: Floats
     towards_tip: Floats
@@ -162,7 +170,24 @@ class Cut:
             q = tip + r[:, None] * e_r + np.outer(z, k) + JUST_OUTSIDE * normal
             cuts[cuts] = self.solid(q[cuts])
             towards_tip = -np.cos(kappa)[:, None] * e_r - np.outer(np.sin(kappa), k)
-            yield Bite(h[cuts], r[cuts], e_r[cuts], normal[cuts], towards_tip[cuts], share)
+            yield Bite(h[cuts], r[cuts], z[cuts], -phi[cuts], e_r[cuts], normal[cuts], towards_tip[cuts], share)
+
+    def over_pitch(
+        self, cutter: Cutter, terms: Iterable[EdgeTerm], tip: Floats, feed: Floats, k: Floats = UPRIGHT
+    ) -> Floats:
+        """Force ON a right-hand tool in {W}, (60, 3) N, as it turns by one pitch: the edge lags with height."""
+        instants, pitch = 60, 2.0 * np.pi / cutter.flutes
+        lead = math.tan(cutter.helix_angle) / (0.5 * cutter.diameter) * (1.0 if cutter.helix == cutter.hand else -1.0)
+        force = np.zeros((instants, 3))
+        for bite in self.engaged(cutter, tip, feed, k):
+            load = np.zeros_like(bite.e_r)
+            for term in terms:
+                push = term.Kt * np.cross(k, bite.e_r) - term.Kr * bite.normal + term.Ka * bite.towards_tip
+                load += bite.h[:, None] ** term.exponent * push
+            when = ((bite.turn + bite.z * lead) % pitch / pitch * instants).astype(int) % instants
+            for n in range(3):
+                force[:, n] += np.bincount(when, load[:, n] * bite.share, instants) * instants / pitch
+        return force
 
     def mean_force(
         self, cutter: Cutter, terms: Iterable[EdgeTerm], tip: Floats, feed: Floats, k: Floats = UPRIGHT

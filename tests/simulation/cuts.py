@@ -101,24 +101,22 @@ class CutCase:
             lines += [f"G1 X{p[0]:.6f} Y{p[1]:.6f} Z{p[2]:.6f} F{feed}" for p in each.points[1:]]
         return "\n".join([*lines, "G0 Z40", "M2", ""])
 
-    def truth(self, s: Floats) -> Floats:
-        """(n, 3) N in {W} by brute force, the tip s (n,) mm along the last move."""
+    def before(self, points: int) -> tuple[Cut, Move]:
+        """The cut that the last move makes, and that move."""
         moves = [
             Move(self.cutter, np.array(a) * MM, np.array(b) * MM, axis(*each.tilt))
             for each in self.passes
             for a, b in itertools.pairwise(each.points)
         ]
-        last = moves.pop()
-        way = (last.end - last.start) / np.linalg.norm(last.end - last.start)
         deepest = min(z for each in self.passes for _, _, z in each.points)
-        cut = Cut(
-            self.block(),
-            tuple(moves),
-            reach=(1.2 * (self.high[2] - deepest) + 2.0) * MM,
-            points=20_000 if len(s) == 1 else 6_000,
-        )
-        tips = last.start + np.outer(s, way) * MM
-        return np.array([cut.mean_force(self.cutter, AL7075, tip, FEED * way, last.k) for tip in tips])
+        reach = (1.2 * (self.high[2] - deepest) + 2.0) * MM
+        return Cut(self.block(), tuple(moves[:-1]), reach, points), moves[-1]
+
+    def truth(self, s: Floats) -> Floats:
+        """(n, 3) N in {W} by brute force, the tip s (n,) mm along the last move."""
+        cut, last = self.before(20_000 if len(s) == 1 else 6_000)
+        tips = last.start + np.outer(s, last.way) * MM
+        return np.array([cut.mean_force(self.cutter, AL7075, tip, FEED * last.way, last.k) for tip in tips])
 
     def setup(self, step: float, cell: float = 0.1) -> rm.SimulationSetup:
         """The run of it, step and cell in mm."""
