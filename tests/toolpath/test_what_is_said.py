@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 
 
@@ -58,3 +59,11 @@ def test_smoothing_of_fanuc_and_haas_moves_nothing() -> None:
     program = interpret("O1000\nG21 G05.1 Q1\nG187 P3\nS9 M3\nG1 X5 F1\nG05.1 Q0\nM30\n", dialect="fanuc")
     assert len(program) == 1
     assert sum(f.count for f in program.findings if f.code == "harmless-g") == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "says"), [("T2147483648 M6\n", "tool number"), ("F9\nG2 I1 P1e1\nG2 I1 P" + "9" * 308, "turns")]
+)
+def test_numbers_that_no_machine_has_are_refused(text: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        interpret(text.replace("P1e1", "P1") + "\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robomill.toolpath.gcode import words as modal
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import implied_motion, is_arc
+from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc
 from robomill.toolpath.gcode.words import Block, g_name
 
 _AXES = "xyzabcuvw"
@@ -71,6 +71,8 @@ def check_words(block: Block) -> list[tuple[str, str]]:
                 raise block.refuse(f"{g_name(motion)} takes no {letter.upper()}; turn the axis on a line before.")
     if is_arc(motion) and "p" in words and (abs(words["p"] - round(words["p"])) > 1e-3 or round(words["p"]) < 1):
         raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; expected a whole number of turns, 1 or more.")
+    if is_arc(motion) and words.get("p", 1.0) > MOST:
+        raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; at most {MOST} turns are made.")
     if motion in (330, 331):
         if "k" not in words:
             raise block.refuse(f"{g_name(motion)} needs K, the distance per turn.")

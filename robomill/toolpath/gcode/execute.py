@@ -101,8 +101,8 @@ def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None
 def _change_tool(machine: Machine, block: Block) -> None:
     if block.m[modal.TOOL] == 61:
         number = round(block.words.get("q", -1.0))
-        if number < 0:
-            raise block.refuse("M61 needs Q, a tool number of 0 or more.")
+        if not 0 <= number <= MOST:
+            raise block.refuse(f"M61 needs Q, a tool number from 0 to {MOST}.")
     else:
         if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
             machine.findings.add(
@@ -112,7 +112,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
         number = machine.selected
         machine.spindle = 0
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
-    machine.in_spindle = min(number, MOST)
+    machine.in_spindle = number
     machine.note_length(machine.length_of)
 
 

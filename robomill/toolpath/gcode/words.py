@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.motion_rules import MOST
 from robomill.toolpath.gcode.parameters import Parameters
 
 NON_MODAL, MOTION, PLANE, DISTANCE, ARC_DISTANCE, FEED_MODE, UNITS, COMPENSATION = 0, 1, 2, 3, 4, 5, 6, 7
@@ -184,6 +185,8 @@ def _read_value(reader: Reader, block: Block, letter: str) -> None:
         value = nearest
     if value < 0 and letter in _NOT_NEGATIVE:
         raise reader.refuse(f"{_NOT_NEGATIVE[letter]} is {value:g}; it cannot be negative.")
+    if letter == "t" and value > MOST:
+        raise reader.refuse(f"A tool number is {value:g}; tool numbers run up to {MOST}.")
     block.words[letter] = value
 
 
