@@ -102,7 +102,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
     if block.m[modal.TOOL] == 61:
         number = round(block.words.get("q", -1.0))
         if not 0 <= number <= MOST:
-            raise block.refuse(f"M61 needs Q, a tool number from 0 to {MOST}.")
+            raise block.refuse(f"M61 needs Q, a tool number of 0 or more, up to {MOST}.")
     else:
         if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
             machine.findings.add(
