@@ -7,7 +7,7 @@ import streamlit as st
 from robomill import ui
 from robomill.simulation.stations import nearest_judged
 from robomill.ui.start import story
-from robomill.ui.verdict import LEFT_OUT
+from robomill.ui.verdict import NOT_COUNTED
 from robomill.units import format_si, format_times
 from robomill.viz.arm import arm_figure, displacement_scale
 from robomill.viz.views import arm_scene
@@ -55,6 +55,6 @@ with right:
 st.subheader("Where to go from here")
 story.doors()
 ui.note(
-    f"{LEFT_OUT} Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_si(setup.tolerance, unit, 2)}. "
+    f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_si(setup.tolerance, unit, 2)}. "
     f"Fingerprint of this run: {setup.digest()[:12]}."
 )

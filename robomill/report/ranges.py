@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.force import ForceSpread
 from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Kind
 from robomill.report.paper_lengths import over_lengths
 from robomill.simulation.band import LEVEL, deviation_band, size_band
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import alloy_spread, peak_force
+from robomill.simulation.spread import alloy_spread
+from robomill.simulation.tooth import tooth
 from robomill.simulation.verdict import Reading
 
 Ends = tuple[float, float]
@@ -45,20 +45,12 @@ def ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ..
         found.append(_range(result, "assumed lengths", "assumed", lambda i: over_lengths(result, i)))
     if spread is not None and len(spread.titles) > 1:
         found.append(_range(result, "the alloy's rows", "assumed", lambda i: spread.delta[:, i] @ result.R_MF[i]))
-    if any(not spring.each_joint for spring in result.setup.springs) and (peak := peak_force(result)) is not None:
-        found.append(_range(result, "mean force to a tooth's peak", "computed", lambda i: _to_peak(result, peak, i)))
+    if (turn := tooth(result)) is not None:
+        at = np.stack([turn.mean, turn.low, turn.high])
+        found.append(_range(result, "as teeth come by", "computed", lambda i: at[:, i]))
     if known is not None:
         found.append(_range(result, f"{LEVEL * 100:.0f} % band, {known.source}", "measured", *_band(result, known)))
     return tuple(found)
-
-
-def _to_peak(result: SimulationResult, peak: ForceSpread, i: int) -> FloatArray:
-    """(2, 3) m: under the mean force, and with the worst instant of a turn at tool and spindle: the joints are too slow
-    to follow a tooth, what is near the cut follows it."""
-    springs = [k for k, spring in enumerate(result.setup.springs) if not spring.each_joint]
-    R = result.R_MF[i]
-    more = R.T @ result.C_spring[i][springs].sum(axis=0) @ R @ (peak.at_peak[i] - result.force_components[i])
-    return np.stack([result.delta_in_cut[i], result.delta_in_cut[i] + more])
 
 
 def _band(result: SimulationResult, known: Knowledge) -> tuple[Callable[[int], FloatArray], Ends]:

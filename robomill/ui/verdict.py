@@ -13,6 +13,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import one_groove, place_at
+from robomill.simulation.tooth import LEFT_OUT
 from robomill.simulation.verdict import Reading, Verdict
 from robomill.ui import cached, session, uncertainty
 from robomill.ui.pieces import Tile
@@ -27,15 +28,16 @@ WORDS = {
     "missed": "Misses the stock",
 }
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
+NOTHING = {"unreached": "nothing reached", "unjudged": "not judged"}
 WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep")}
-LEFT_OUT = "Left out: run-out of the tool, ringing where a tooth enters, chatter, wear, heat."
+NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
     old = previous(result)
     verdict, before = result.verdict, None if old is None else old.verdict
-    share = "nothing reached"
+    share = NOTHING.get(verdict.level, "nothing cut")
     if np.isfinite(verdict.share):
         share = f"{format_percent(verdict.share)} of the tolerance used"
     if verdict.level == "unjudged":
@@ -85,7 +87,7 @@ def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None
     reading: Reading = getattr(verdict, name)
     digits = 4 if unit == "in" else 3
     if reading.worst < 0:
-        return Tile(label, "–", f"the cut leaves no {name}" if verdict.level != "unreached" else "nothing reached")
+        return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
     allowed = format_si(reading.tolerance, unit, 2 if unit == "mm" else 4)
     way = WAYS[name][0 if reading.value > 0 else 1]
     was = change = ""
@@ -102,7 +104,7 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
     digits = 4 if unit == "in" else 3
     i = result.worst
     if i < 0:
-        return Tile("Tip off its path", "–", "nothing reached")
+        return Tile("Tip off its path", "–", NOTHING.get(result.verdict.level, "nothing cut"))
 
     def shown(value: float) -> str:
         return format_si(value, unit, digits)

@@ -56,8 +56,8 @@ def profile_figure(
     for side in (1, -1):
         plot.level(side * curves.tolerance, p.bad)
     plot.zero()
-    known = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in (curves.offset, curves.floor)]
-    reach = 1.15 * max(curves.tolerance, *known, 0.0 if curves.band is None else np.nanmax(np.abs(curves.band)))
+    drawn = [curves.offset, curves.floor, *([] if curves.band is None else [curves.band])]
+    reach = 1.15 * max(curves.tolerance, *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))
     return plot.done(f"Error of the groove, {unit}", station, range=[-reach, reach])
 
 

@@ -1,4 +1,4 @@
-"""A program with two tools on the milling page: asked for by number, typed, read from a file, shown where they cut."""
+"""Two tools, a spindle that turns the wrong way: what the pages ask for, and what they do not judge."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
 from robomill.toolpath.source import GCodeSource
 
 PROGRAM = """G21 G90
@@ -50,12 +52,12 @@ def test_two_tools_without_a_table_are_asked_for_by_number(two_tools: AppTest) -
 def test_a_table_comes_from_a_file_in_its_unit_and_goes_again(two_tools: AppTest) -> None:
     app = two_tools
     box = next(b for b in app.file_uploader if b.label.startswith("Tool table"))
-    box.set_value(("mill.tbl", b"T1 P1 D8 Z50\nT2 P2 D12 Z60\n", "text/plain"))
+    box.set_value(("mill.tbl", b"T1 P1 D0.3 Z2\nT2 P2 D0.5 Z2.4\n", "text/plain"))
     app.run()
     assert not app.exception
-    assert [tool.length for tool in store(app).project.setup.tools.tools] == pytest.approx([0.05, 0.06])
+    assert [tool.length for tool in store(app).project.setup.tools.tools] == pytest.approx([0.002, 0.0024])
     app.button_group(key="milling.tools.unit").set_value("in").run()
-    assert [tool.length for tool in store(app).project.setup.tools.tools] == pytest.approx([1.27, 1.524])
+    assert [tool.length for tool in store(app).project.setup.tools.tools] == pytest.approx([0.0508, 0.06096])
     app.button(key="milling.tools.clear").click().run()
     assert not store(app).project.setup.tools
     assert app.number_input(key="cutter.diameter:mm").value == 8.0
@@ -68,3 +70,19 @@ def test_a_table_begins_with_the_cutter_in_force(app: AppTest) -> None:
     (tool,) = store(app).project.setup.tools.tools
     assert tool.cutter == store(app).project.setup.cutter
     assert "The groove is 0.23 mm off in Y and 0.10 mm too deep." in words(app)
+
+
+@pytest.mark.parametrize("page", ["app", "6_Milling", "7_Improve"])
+def test_a_cut_that_is_not_judged_is_said_on_every_page(app: AppTest, page: str) -> None:
+    """M4 with a right-hand cutter does not cut: never green, no traceback, and no number."""
+    held = store(app)
+    program = "G21 G90\nS12000 M4\nG0 X-50 Y0 Z20\nG0 Z-2\nG1 X50 F1800\nG0 Z20\nM2\n"
+    setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
+    held.project = held.project.replace(setup=setup.replace(source=GCodeSource(program)))
+    app.selectbox(key="view.joint_unit").set_value("kN m/rad").run()  # any change runs the page
+    go(app, page)
+    assert not app.exception
+    text = words(app)
+    assert "rm-tile ok" not in text
+    if page != "7_Improve":
+        assert "not judged" in text

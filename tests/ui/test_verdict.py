@@ -67,7 +67,8 @@ def test_what_is_not_judged_is_counted_and_never_green(setup: SimulationSetup, s
     sentence = panel.verdict_sentence(result)
     assert f"{count} of {total} points" in sentence
     if share == 1.0:
-        assert {shown[name].value for name in ("Wall error", "Floor error", "Tip off its path")} == {"–"}
+        empty = [shown[name] for name in ("Wall error", "Floor error", "Tip off its path")]
+        assert {(tile.value, tile.note) for tile in empty} == {("–", "not judged")}
 
 
 def test_inputs_in_the_other_direction_lead_to_the_other_wall(setup: SimulationSetup) -> None:

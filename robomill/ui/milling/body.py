@@ -23,7 +23,7 @@ from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import LEFT_OUT
+from robomill.ui.verdict import NOT_COUNTED
 from robomill.units import format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
@@ -59,7 +59,7 @@ def verdict_link(result: SimulationResult) -> None:
         disabled=result.worst < 0,
         help="Go there: code line, arm, force and section",
     )
-    pieces.note(f"{_mean_and_peak(result)}{LEFT_OUT}")
+    pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
 
 
 def _mean_and_peak(result: SimulationResult) -> str:

@@ -88,7 +88,7 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
     missed, length, _ = missed_blocks(reach)
     if missed:
         return f"{format_si(length, unit, 1)} of the cut cannot be reached."
-    if result is None or result.worst < 0:
+    if result is None or (result.worst < 0 and result.verdict.level != "unjudged"):
         return "The arm reaches all of the path."
     said = verdict_sentence(result, unit)
     return f"All in reach; {said[0].lower()}{said[1:]}"
