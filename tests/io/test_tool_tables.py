@@ -80,6 +80,7 @@ def test_a_set_up_keeps_every_tool(tmp_path: Path) -> None:
         ("tool,diameter_mm,flutes\n1,-1,2\n", "Diameter: found -1 mm"),
         ("[[tools]]\nnumber = 1\ndiamter_mm = 3\n", "diamter_mm: this key is not known"),
         ("[[tools]]\nnumber = 1\nkind = 'ball'\n", "diameter_mm: missing"),
+        ("[[tools]]\nnumber = 1\nkind = 'chamfer'\ndiameter_mm = 6\n", "tools 1, tip_angle_deg: A chamfer mill needs"),
         ("[[tools]]\nnumber = 1\nassumed = ['colour']\n", "a cutter has no 'colour'"),
     ],
 )
