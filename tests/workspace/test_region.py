@@ -65,3 +65,18 @@ def test_a_coarse_grid_has_about_the_cells_it_is_asked_for(cells: int) -> None:
     grid = coarse_grid(robot, np.array([-0.6, -1.6, -0.4]), np.array([0.6, -1.0, 0.1]), cells)
     assert cells / 2 < grid.cells < 3 * cells
     assert coarse_grid(robot, np.zeros(3), np.zeros(3)).cells == 1
+
+
+@pytest.mark.parametrize("flat", [0, 1])
+def test_the_region_of_a_planar_arm_turns_with_its_plane(flat: int) -> None:
+    arm = rm.load_robot("planar_2r")
+    level = largest_region(arm)
+    assert level is not None
+    T_base = np.eye(4)
+    order = {0: [2, 0, 1], 1: [1, 2, 0]}[flat]  # x, y, z of the level arm become these axes' values
+    T_base[:3, :3] = np.eye(3)[order]
+    turned = largest_region(arm.replace(T_base=T_base @ arm.T_base), A=0.0, B=0.0)
+    assert flat_axis(arm.replace(T_base=T_base @ arm.T_base)) == flat
+    assert turned is not None
+    np.testing.assert_allclose(turned.size[flat], 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.prod(np.delete(turned.size, flat)), np.prod(level.size[:2]), rtol=0.05)
