@@ -68,6 +68,7 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
             f"there     {vector(record['deviation_mm'], 'mm')}",
             f"force     {vector(record['force_N'], 'N')}",
         ]
+    if record["worst_block"] and record["joint_shares_add_up"]:
         lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
         lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]

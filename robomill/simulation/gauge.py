@@ -24,11 +24,12 @@ STEEP = 0.5  # share of the feed across the tool below which a move is a plunge:
 CORNER = np.radians(45.0)
 TURNS = np.radians(5.0)  # where the path turns more, walls ahead and behind are looked for too
 AROUND = np.radians(np.arange(0.0, 360.0, 22.5))
-ACROSS = (0.0, -0.6, 0.6, -0.95, 0.95)  # of the flat radius: where a floor is looked for
+ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is looked for
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
 LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
+ALIKE = 2e-6  # m: readings that differ by less are one
 SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
 REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded, and no further than the radius allows
 
@@ -36,18 +37,24 @@ REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded,
 @dataclass(frozen=True, eq=False)
 class Readings:
     """Places on the part: samples (q,) of the path that made them, signed errors (q,) m, lengths (q,) m along the path
-    and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +.
+    and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
+    (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
     """
 
     sample: IntArray
     error: FloatArray
     length: FloatArray
     height: FloatArray
+    own: FloatArray
 
     @property
     def worst(self) -> int:
-        """Which is largest, -1 where there is none."""
-        return int(np.argmax(np.abs(self.error))) if len(self.error) else -1
+        """Which is largest, -1 where there is none; among equals the one whose sample is off by as much itself."""
+        if not len(self.error):
+            return -1
+        size = np.abs(self.error)
+        equal = np.flatnonzero(size >= size.max() - ALIKE)
+        return int(equal[np.argmin(np.abs(self.error - self.own)[equal] + (size.max() - size[equal]))])
 
     def share_out(self, tolerance: float) -> float:
         """Share of the length that is out of ``tolerance`` (m); 0 where there is none."""
@@ -112,7 +119,7 @@ class Places:
 def gauge(result: Run) -> Gauge:
     """Everything that can be measured on the part that a run leaves."""
     if not (result.judged.any() and result.removes.any()):
-        nothing = Readings(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), np.zeros(0))
+        nothing = Readings(np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(4)))
         return Gauge(nothing, nothing, nothing)
     at = _places(result)
     return Gauge(_walls(at), _floors(at), _ends(at))
@@ -224,7 +231,7 @@ def _walls(at: Places) -> Readings:
     own = at.d[q, 0] * _dot(rims.u, at.feed[q]) + at.d[q, 1] * _dot(rims.u, at.left_of[q])
     left = _standing(at.left, at, rims)
     error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, left - told) * _upright(at, q, rims.height)
-    return Readings(at.i[q], error * rims.sign, rims.length, rims.deep)
+    return Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign)
 
 
 def _directions(at: Places, around: BoolArray) -> Rims:
@@ -255,6 +262,8 @@ def _floors(at: Places) -> Readings:
     level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
     chosen = np.tile(np.array(ACROSS) == 0.0, count) | ((flat > 0.0) & level)[q]
     chosen &= ~_steep(at)[q] | _bottoms(at)[q]
+    aside = np.hypot(at.d[q, 0], at.d[q, 1])
+    chosen &= (np.abs(offset) + aside < flat[q]) | (offset == 0.0)  # else metal left there is the wall's error
     q, offset = q[chosen], offset[chosen]
     inside = at.depth(q, at.c[q] + offset[:, None] * at.left_of[q]) > SAME
     q, offset = q[inside], offset[inside]
@@ -267,7 +276,7 @@ def _floors(at: Places) -> Readings:
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
     length = at.result.path.step_length[at.i[q]] / len(ACROSS)
-    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q])
+    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2])
 
 
 def _ends(at: Places) -> Readings:
@@ -277,7 +286,7 @@ def _ends(at: Places) -> Readings:
     way = np.concatenate([-np.ones(len(begin)), np.ones(len(end))])
     rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
     rims = rims.only(np.nan_to_num(_standing(at.told, at, rims), nan=np.inf) <= SAME)
-    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep)
+    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0])
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

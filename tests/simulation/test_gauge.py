@@ -216,9 +216,8 @@ def test_walls_count_by_their_length():
 
 
 def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
-    found = Readings(
-        np.arange(4), np.array([0.1, -0.3, 0.2, -0.2]), np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1])
-    )
+    error = np.array([0.1, -0.3, 0.2, -0.2])
+    found = Readings(np.arange(4), error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]), error)
     assert found.area() == pytest.approx(0.5 + 6.0 + 1.0 + 0.8)
     assert found.area(0.15) == pytest.approx(6.0 + 1.0 + 0.8)
     assert found.area(0.25) == pytest.approx(6.0)
@@ -244,3 +243,15 @@ def test_metal_left_over_the_whole_width_is_the_floors_error():
     assert np.abs(bent.gauge.walls.error).max() <= 0.3e-3 + 2e-6
     assert bent.verdict.wall.value == pytest.approx(0.3e-3, abs=2e-6)
     assert bent.verdict.floor.value == pytest.approx(0.8e-3, rel=0.02)
+
+
+def test_the_line_is_that_of_the_pass_that_made_the_surface():
+    """One track at two depths: the deeper pass is further off, and both walls and the floor are its work."""
+    lines = ["G0 X-40 Y0 Z5", "G0 Z-1.2", "G1 X20 F1800", "G0 Z5", "G0 X-40", "G0 Z-3", "G1 X20"]
+    result = run(*lines)
+    deep = result.path.block == 8
+    bent = pushed(result, left=np.where(deep, 0.278e-3, 0.185e-3), up=np.where(deep, -0.14e-3, -0.05e-3))
+    assert bent.verdict.wall.value == pytest.approx(0.278e-3, abs=1e-6)
+    assert bent.verdict.floor.value == pytest.approx(-0.14e-3, abs=1e-6)
+    assert result.path.block[bent.verdict.wall.worst] == 8
+    assert result.path.block[bent.verdict.floor.worst] == 8
