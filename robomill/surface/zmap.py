@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.passes import Passes, at_one_axis, feed_passes, leaning, moves_at_feed
-from robomill.surface.raster import stock_heights
+from robomill.surface.raster import crossings, stock_heights
 from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
 from robomill.surface.stock import AXES, Cells, Stock, stock_grid
 from robomill.units import format_si
@@ -33,6 +33,7 @@ class ZMap:
     overhang              number of cells where a tilted cutter left material over a void, which z cannot show
     skipped               feed moves left out because one of their ends is not a number (not reached)
     below                 True where the cutter would have gone through the bottom
+    void                  m^3 of no material between the stock's top and what was cut (cavities, undercuts of a mesh)
     """
 
     x: FloatArray
@@ -45,6 +46,7 @@ class ZMap:
     overhang: int = 0
     skipped: int = 0
     below: bool = False
+    void: float = 0.0
 
     @property
     def dx(self) -> float:
@@ -68,7 +70,7 @@ class ZMap:
         """Material cut away, m^3."""
         heights = float(self.z.sum()) + float((self.edge.mean - self.z.reshape(-1)[self.edge.index]).sum())
         before = float(self.z_stock) * self.z.size if self.z_stock.ndim == 0 else float(self.z_stock.sum())
-        return (before - heights) * self.dx * self.dy
+        return (before - heights) * self.dx * self.dy - self.void
 
     @property
     def cut_mask(self) -> BoolArray:
@@ -131,9 +133,31 @@ def cut(
     edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)), frozen(edge.wall))
     z.flags.writeable = False
     result = ZMap(x, y, cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
+    if stock.triangles is not None:
+        result = replace(result, void=_void(result, stock.triangles))
     if must_touch and result.removed_volume <= 0.0:
         raise SurfaceError(_misses(stock, ends))
     return result
+
+
+def _void(surface: ZMap, triangles: FloatArray) -> float:
+    """Volume (m^3) under the old top and above the new one where the mesh holds nothing: every other piece of a line
+    downwards, from its top, is material."""
+    mean = surface.mean
+    i, j = np.nonzero(mean < surface.z_stock)
+    if len(i) == 0:
+        return 0.0
+    rows, columns = slice(i.min(), i.max() + 1), slice(j.min(), j.max() + 1)
+    new, old = mean[rows, columns].reshape(-1), surface.z_stock[rows, columns].reshape(-1)
+    cell, height = crossings(triangles, surface.x[rows], surface.y[columns])
+    order = np.lexsort((height, cell))
+    cell, height = cell[order], height[order]
+    count = np.bincount(cell, minlength=len(new))
+    from_top = np.cumsum(count)[cell] - 1 - np.arange(len(cell))
+    above = np.maximum(height - new[cell], 0.0) * np.where(from_top % 2 == 0, 1.0, -1.0)
+    metal = np.bincount(cell, above, minlength=len(new))
+    closed = (count > 0) & (count % 2 == 0)
+    return float(np.sum(np.maximum(old - new, 0.0) - metal, where=closed)) * surface.dx * surface.dy
 
 
 def _cut_with(
