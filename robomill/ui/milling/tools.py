@@ -94,13 +94,13 @@ def _table(tools: ToolTable) -> None:
     unit = session.project().view.length
     kinds, hands = (list(quantities(Cutter)[name].options) for name in ("kind", "hand"))
     special = {
-        "kind": st.column_config.SelectboxColumn(options=kinds),
+        "kind": st.column_config.SelectboxColumn(options=kinds, width=92),
         "hand": st.column_config.SelectboxColumn(options=hands),
-        "number": st.column_config.NumberColumn(step=1, format="%d", width=52),
+        "number": st.column_config.NumberColumn(step=1, format="%d", width=72),
         NAME: st.column_config.TextColumn("Name"),
     }
     columns = {
-        _head(q, unit): special.get(q.name, st.column_config.NumberColumn(format="%.6g", width=76)) for q in _columns()
+        _head(q, unit): special.get(q.name, st.column_config.NumberColumn(format="%.6g", width=128)) for q in _columns()
     }
     inputs.table(
         TABLE,
