@@ -54,6 +54,7 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 F = TypeVar("F", bound=Callable[..., Any])
 _parts: list[Callable[..., Any]] = []  # marked, and not yet known to the compiler
+_called: set[Callable[..., Any]] = set()
 _lock = threading.RLock()  # around the compiler's configuration
 _building = threading.Lock()
 _tried = False
@@ -90,6 +91,12 @@ def part(function: F) -> F:
     """Mark a function that kernels call: compiled into each of them, for the types it is called with."""
     _parts.append(function)
     return function
+
+
+def called(function: F) -> F:
+    """Mark a long part that is called where it is used, not copied there: compiled once for all its callers."""
+    _called.add(function)
+    return part(function)
 
 
 @overload
@@ -151,9 +158,10 @@ def _compile(function: Callable[..., Any]) -> Any:
     from numba import njit
     from numba.extending import register_jitable
 
-    options: dict[str, Any] = {**OPTIONS, "forceinline": True, "_nrt": False}  # no counting of references to arrays
+    options: dict[str, Any] = {**OPTIONS, "_nrt": False}  # no counting of references to arrays
     while _parts:
-        register_jitable(**options)(_parts.pop())
+        marked = _parts.pop()
+        register_jitable(**options, forceinline=marked not in _called)(marked)
     return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)
 
 

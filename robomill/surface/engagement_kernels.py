@@ -16,19 +16,19 @@ import math
 from typing import NamedTuple
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Out1, Out2, part
+from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.tool import DISH
 from robomill.surface.envelope_kernels import CHAMFER, FLAT, Shape
 from robomill.surface.material_kernels import World, is_solid, top_over
 
-PANELS = 16  # of a half turn
+PANELS = 12  # of a half turn
 GAUSS = 0.5 - math.sqrt(3.0) / 6.0  # first node of Gauss' rule of two points on 0..1
 HALVINGS = 8  # of the angle across which the engaged length jumps
 JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
-ENDS = 10  # halvings of a piece of the profile in which material begins or ends
-END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 16, 96  # of each stretch of the profile, at most
+ENDS = 7  # halvings of a piece of the profile in which material begins or ends
+END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 12, 96  # of each stretch of the profile, at most
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
-INSIDE = 1e-3  # of a piece: how far inside the ends of a stretch is looked
+INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
 FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
 SECTORS = 18  # of the half turn, for the course of the force over a revolution
 MOMENTS = 8
@@ -36,12 +36,14 @@ MOMENTS = 8
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is measured at one angle: sums for each exponent, then the engaged length, its height along the axis, where it
 # begins and ends along the axis, and its largest radius
+END, NOSE, FLANK = range(3)  # the stretches of the profile
 LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, EXTRA = range(6)
 
 
 class Step(NamedTuple):
     """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
-    and the parts of the unit feed across and along the axis."""
+    the parts of the unit feed across and along the axis, and the run it
+    belongs to."""
 
     x: float
     y: float
@@ -57,16 +59,36 @@ class Step(NamedTuple):
     kz: float
     across: float
     along: float
+    run: int
+
+
+class Ray(NamedTuple):
+    """An angle of the cutter: its sine, and the unit vector e(phi) out of the axis, in {W}."""
+
+    sine: float
+    x: float
+    y: float
+    z: float
+
+
+class Piece(NamedTuple):
+    """A piece of the profile: which stretch of it, from where to where along it, m."""
+
+    stretch: int
+    start: float
+    end: float
 
 
 class Room(NamedTuple):
     """Room for what is measured (arrays in a tuple count as written, to the compiler).
 
-    exponents (e,), four angles of a panel (4, 3 e + 5) and three between two of them, and the part being summed:
-    moments and the rest (8 e + 6,) and, of each sector, where it begins and ends along the axis (36,), m.
+    exponents (e,), the table of the nose (37, 5), four angles of a panel (4, 3 e + 5), three between two of them, and
+    the part being summed: moments and the rest (8 e + 6,) and, of each sector, where it begins and ends along the axis
+    (36,), m.
     """
 
     exponents: Out1
+    nose: Out2
     panel: Out2
     between: Out2
     sum: Out1
@@ -74,7 +96,7 @@ class Room(NamedTuple):
 
 
 @part
-def step_between(ends: FloatArray, k: FloatArray, v: FloatArray) -> Step:
+def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
     """The middle of a step ``ends`` (6,) m of a tool along k (3,) that is fed along the unit vector v (3,)."""
     along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
     fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
@@ -99,6 +121,7 @@ def step_between(ends: FloatArray, k: FloatArray, v: FloatArray) -> Step:
         k[2],
         across,
         along,
+        run,
     )
 
 
@@ -106,9 +129,9 @@ def step_between(ends: FloatArray, k: FloatArray, v: FloatArray) -> Step:
 def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, float, float]:
     """A point of a stretch of the profile (0 end, 1 nose, 2 flank), s m along it: radius, height, sine and cosine of
     the angle between the axis and the normal."""
-    if stretch == 0:
+    if stretch == END:
         return s, 0.0, 0.0, 1.0
-    if stretch == 2:
+    if stretch == FLANK:
         return shape.R, s, 1.0, 0.0
     if shape.kind == CHAMFER:
         slant = math.sqrt(1.0 + shape.slope**2)
@@ -125,9 +148,9 @@ def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float
         nose = shape.slope * (shape.R - shape.r0)
     elif shape.kind != FLAT:
         nose = shape.rc
-    if stretch == 0:
+    if stretch == END:
         return 0.0, shape.r0
-    if stretch == 2:
+    if stretch == FLANK:
         return nose, max(nose, reach)
     if shape.kind == CHAMFER:
         return 0.0, min(nose, max(reach, 0.0)) / shape.slope * math.sqrt(1.0 + shape.slope**2)
@@ -137,89 +160,148 @@ def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float
 
 
 @part
-def cuts_at(world: World, shape: Shape, step: Step, turn: tuple[float, float], at: tuple[int, float]) -> bool:
-    """Whether the cutter cuts at a place of its profile (stretch, s m along it), at the angle of (sine, cosine)."""
-    r, t, sine, cosine = on_profile(shape, at[0], at[1])
-    if step.across * turn[0] * sine - step.along * cosine <= FACING:
+def cuts_at(world: World, step: Step, ray: Ray, at: tuple[float, float, float, float]) -> bool:
+    """Whether the cutter cuts at a place of its profile (radius, height, sine, cosine) at the angle of a ray."""
+    r, t, sine, cosine = at
+    if step.across * ray.sine * sine - step.along * cosine <= FACING:
         return False
-    ahead, aside = r * turn[0], r * turn[1]
-    x = step.x + ahead * step.fx + aside * step.lx + t * step.kx
-    y = step.y + ahead * step.fy + aside * step.ly + t * step.ky
-    z = step.z + ahead * step.fz + aside * step.lz + t * step.kz
-    return is_solid(world, (x, y, z))
+    x, y, z = step.x + r * ray.x + t * step.kx, step.y + r * ray.y + t * step.ky, step.z + r * ray.z + t * step.kz
+    return is_solid(world, (x, y, z), step.run)
 
 
 @part
-def add_stretch(
-    room: Room, row: FloatArray, shape: Shape, step: Step, turn: tuple[float, float], piece: tuple[int, float, float]
-) -> None:
-    """Add an engaged piece (stretch, from, to) of the profile to what is measured at one angle."""
-    stretch, a, b = piece
+def add_edge(room: Room, row: FloatArray, facing: float, at: tuple[float, float], length: float) -> None:
+    """Add a length of edge that faces the feed by so much, whose normal leans (sine, cosine), to the sums."""
+    for n in range(len(room.exponents)):
+        e = room.exponents[n]
+        load = length * (1.0 if e == 0.0 else facing if e == 1.0 else max(facing, 0.0) ** e)
+        row[3 * n] += load
+        row[3 * n + 1] += load * at[0]
+        row[3 * n + 2] += load * at[1]
+
+
+@part
+def add_extent(row: FloatArray, a: tuple[float, float], b: tuple[float, float], length: float) -> None:
+    """Add an engaged piece from (radius, height) a to b to what is known of the extent; ``row`` from there on."""
+    row[LENGTH] += length
+    row[HEIGHT] += b[1] - a[1]
+    row[LOWEST] = min(row[LOWEST], a[1])
+    row[HIGHEST] = max(row[HIGHEST], b[1])
+    row[WIDEST] = max(row[WIDEST], max(a[0], b[0]))
+
+
+@part
+def add_stretch(room: Room, row: FloatArray, shape: Shape, step: Step, ray: Ray, piece: Piece) -> None:
+    """Add an engaged piece of the profile to what is measured at one angle, by Gauss' rule."""
+    a, b = piece.start, piece.end
     if b <= a:
         return
-    count = len(room.exponents)
     for node in range(2):
         s = a + (GAUSS if node == 0 else 1.0 - GAUSS) * (b - a)
-        _, _, sine, cosine = on_profile(shape, stretch, s)
-        facing = max(step.across * turn[0] * sine - step.along * cosine, 0.0)
-        for n in range(count):
-            e = room.exponents[n]
-            load = 0.5 * (b - a) * (1.0 if e == 0.0 else facing if e == 1.0 else facing**e)
-            row[3 * n] += load
-            row[3 * n + 1] += load * sine
-            row[3 * n + 2] += load * cosine
-    r_a, t_a, _, _ = on_profile(shape, stretch, a)
-    r_b, t_b, _, _ = on_profile(shape, stretch, b)
-    rest = 3 * count
-    row[rest + LENGTH] += b - a
-    row[rest + HEIGHT] += t_b - t_a
-    row[rest + LOWEST] = min(row[rest + LOWEST], t_a)
-    row[rest + HIGHEST] = max(row[rest + HIGHEST], t_b)
-    row[rest + WIDEST] = max(row[rest + WIDEST], r_a, r_b)
+        _, _, sine, cosine = on_profile(shape, piece.stretch, s)
+        facing = step.across * ray.sine * sine - step.along * cosine
+        add_edge(room, row, facing, (sine, cosine), 0.5 * (b - a))
+    r_a, t_a, _, _ = on_profile(shape, piece.stretch, a)
+    r_b, t_b, _, _ = on_profile(shape, piece.stretch, b)
+    add_extent(row[3 * len(room.exponents) :], (r_a, t_a), (r_b, t_b), b - a)
 
 
 @part
+def add_whole(room: Room, row: FloatArray, step: Step, ray: Ray, first: int) -> None:
+    """Add a whole piece of the nose: rows of the table from its beginning on (its nodes, its end)."""
+    table, length = room.nose, room.nose[first + 3, 4] - room.nose[first, 4]
+    for n in range(first + 1, first + 3):
+        facing = step.across * ray.sine * table[n, 2] - step.along * table[n, 3]
+        add_edge(room, row, facing, (table[n, 2], table[n, 3]), 0.5 * length)
+    a, b = (table[first, 0], table[first, 1]), (table[first + 3, 0], table[first + 3, 1])
+    add_extent(row[3 * len(room.exponents) :], a, b, length)
+
+
+@part
+def lay_out_nose(room: Room, shape: Shape, step: Step, world: World) -> None:
+    """The table of the nose for one step: radius, height, sine, cosine and place of every piece's beginning and two
+    nodes, and the last one's end."""
+    start, end = stretch_ends(shape, NOSE, reach_of(shape, step, world))
+    width = (end - start) / NOSE_PIECES
+    for n in range(3 * NOSE_PIECES + 1):
+        within = 0.0 if n % 3 == 0 else GAUSS if n % 3 == 1 else 1.0 - GAUSS
+        s = start + (n // 3 + within) * width
+        r, t, sine, cosine = on_profile(shape, NOSE, s)
+        room.nose[n, 0], room.nose[n, 1], room.nose[n, 2], room.nose[n, 3], room.nose[n, 4] = r, t, sine, cosine, s
+
+
+@part
+def reach_of(shape: Shape, step: Step, world: World) -> float:
+    """How far up the axis material may stand, m above the tip."""
+    return (world.block.z_high - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
+
+
+@called
 def measure(room: Room, row: FloatArray, world: World, shape: Shape, step: Step, phi: float) -> None:
     """What is engaged at one angle, into ``row``."""
-    turn = (math.sin(phi), math.cos(phi))
-    rest = 3 * len(room.exponents)
+    sine, cosine = math.sin(phi), math.cos(phi)
+    ray = Ray(
+        sine,
+        sine * step.fx + cosine * step.lx,
+        sine * step.fy + cosine * step.ly,
+        sine * step.fz + cosine * step.lz,
+    )
     row[:] = 0.0
-    row[rest + LOWEST] = math.inf
-    top = world.block.z_high
-    reach = (top - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
+    row[3 * len(room.exponents) + LOWEST] = math.inf
     plain = world.columns.top.shape[2] == 1 and step.kx == 0.0 and step.ky == 0.0
     for stretch in range(3):
-        start, end = stretch_ends(shape, stretch, reach)
-        if end <= start or (stretch == 0 and step.along >= -DISH) or (stretch == 2 and turn[0] * step.across <= FACING):
+        start, end = stretch_ends(shape, stretch, reach_of(shape, step, world))
+        if (
+            end <= start
+            or (stretch == END and step.along >= -DISH)
+            or (stretch == FLANK and sine * step.across <= FACING)
+        ):
             continue
-        if stretch == 2 and plain:
-            x = step.x + shape.R * (turn[0] * step.fx + turn[1] * step.lx)
-            y = step.y + shape.R * (turn[0] * step.fy + turn[1] * step.ly)
-            material = top_over(world, x, y)
+        if stretch == FLANK and plain:
+            material = top_over(world, step.x + shape.R * ray.x, step.y + shape.R * ray.y)
             low = max(start, world.block.z_low - step.z)
-            add_stretch(room, row, shape, step, turn, (2, low, material - step.z))
+            add_stretch(room, row, shape, step, ray, Piece(FLANK, low, material - step.z))
             continue
-        pieces = END_PIECES if stretch == 0 else NOSE_PIECES
-        if stretch == 2:
+        pieces = END_PIECES if stretch == END else NOSE_PIECES
+        if stretch == FLANK:
             pieces = int(min(max((end - start) / world.columns.dx, 8.0), 1.0 * FLANK_PIECES))
-        width = (end - start) / pieces
-        since = cuts_at(world, shape, step, turn, (stretch, start + INSIDE * width))
-        for n in range(pieces):
-            a = start + n * width
-            b = a + width
-            cuts = cuts_at(world, shape, step, turn, (stretch, b - INSIDE * width if n == pieces - 1 else b))
-            if cuts != since:
-                low, high = a, b
-                for _ in range(ENDS):
-                    middle = 0.5 * (low + high)
-                    if cuts_at(world, shape, step, turn, (stretch, middle)) == since:
-                        low = middle
-                    else:
-                        high = middle
-                a, b = (a, low) if since else (low, b)
-            if cuts or since:
-                add_stretch(room, row, shape, step, turn, (stretch, a, b))
-            since = cuts
+        measure_stretch(room, row, world, shape, step, ray, Piece(stretch, start, end), pieces)
+
+
+@part
+def measure_stretch(
+    room: Room, row: FloatArray, world: World, shape: Shape, step: Step, ray: Ray, whole: Piece, pieces: int
+) -> None:
+    """What is engaged of a stretch of the profile at one angle, looked for at the ends of so many pieces."""
+    width = (whole.end - whole.start) / pieces
+    since = False
+    for n in range(pieces + 1):
+        s = whole.start + n * width
+        inside = s + INSIDE * width * (1.0 if n == 0 else -1.0 if n == pieces else 0.0)
+        if whole.stretch == NOSE and 0 < n < pieces:
+            known = room.nose[3 * n]
+            at = (known[0], known[1], known[2], known[3])
+        else:
+            at = on_profile(shape, whole.stretch, inside)
+        low, high, cuts = s - width, s, since
+        for halving in range(ENDS + 1):  # first the end of the piece, then, where material begins or ends, that place
+            if halving > 0:
+                at = on_profile(shape, whole.stretch, 0.5 * (low + high))
+            here = cuts_at(world, step, ray, at)
+            if halving == 0:
+                cuts = here
+                if n == 0 or cuts == since:
+                    break
+            elif here == since:
+                low = 0.5 * (low + high)
+            else:
+                high = 0.5 * (low + high)
+        if n > 0 and cuts and since and whole.stretch == NOSE:
+            add_whole(room, row, step, ray, 3 * (n - 1))
+        elif n > 0 and (cuts or since):
+            begin = s - width if since else high
+            add_stretch(room, row, shape, step, ray, Piece(whole.stretch, begin, s if cuts else low))
+        since = cuts
 
 
 @part
@@ -335,6 +417,7 @@ def add_part(room: Room, world: World, shape: Shape, step: Step) -> None:
     rest[PHI_ST], rest[PHI_EX] = math.inf, -math.inf
     room.spans[0::2] = math.inf
     room.spans[1::2] = -math.inf
+    lay_out_nose(room, shape, step, world)
     for n in range(PANELS * (2 if step.along < -FACING else 1)):
         add_panel(room, world, shape, step, n)
     if rest[PHI_EX] < rest[PHI_ST]:

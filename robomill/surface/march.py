@@ -15,7 +15,7 @@ from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, tool_axes
 from robomill.surface.raster import stock_layers
-from robomill.surface.stock import Stock, stock_grid
+from robomill.surface.stock import Cells, Stock, stock_grid
 
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
@@ -110,7 +110,7 @@ class March:
     def _state(self, first: BoolArray) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run."""
-        from robomill.surface.engagement_kernels import EXTRA, REST, SECTORS, Room
+        from robomill.surface.engagement_kernels import EXTRA, NOSE_PIECES, REST, SECTORS, Room
         from robomill.surface.envelope_kernels import cutter_shape
         from robomill.surface.material_kernels import NOBODY, Block, Columns, Runs, World
 
@@ -124,9 +124,8 @@ class March:
                 layered[1][:, :, 0] = float(self.stock.lower[2])
             top, low = layered
         by, under, beside = (np.full(each.shape, NOBODY, dtype=np.int32) for each in (top, low, top[:, :, 0]))
-        columns = Columns(
-            top, low, by, under, beside, np.zeros(1, dtype=np.int64), cells.x0, cells.y0, cells.dx, cells.dy
-        )
+        lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
+        columns = Columns(top, low, by, under, beside, lost, *grid, self._slack(cells, top.shape[2]))
         shapes = np.array([[float(n) for n in cutter_shape(cutter)] for cutter in self.tooling.cutters])
         tool = np.ascontiguousarray(self.tooling.of_step[self.steps][first])
         axes = np.ascontiguousarray(self._axes[first])
@@ -135,6 +134,7 @@ class March:
         e = len(self.exponents)
         room = Room(
             np.array(self.exponents, dtype=float),
+            np.zeros((3 * NOSE_PIECES + 1, 5)),
             np.zeros((4, 3 * e + EXTRA)),
             np.zeros((3, 3 * e + EXTRA)),
             np.zeros(8 * e + REST),
@@ -148,6 +148,16 @@ class March:
         number = np.full(len(self.points), -1, dtype=np.int64)
         number[self.steps] = np.arange(len(self.steps))
         return number
+
+    def _slack(self, cells: Cells, layers: int) -> float:
+        """How far off the heights of the cells around a place the height there may lie, m: a valley of the sharpest
+        nose between them; half a cell where cutters lean or the stock has voids."""
+        size = max(cells.dx, cells.dy)
+        if layers > 1:
+            return 0.5 * size
+        round_ = [size**2 / cutter.corner_radius for cutter in self.tooling.cutters if cutter.corner_radius]
+        sharp = [0.5 * size / np.tan(cutter.half_angle) for cutter in self.tooling.cutters if cutter.conical]
+        return float(max([0.01 * size, *round_, *sharp]))
 
     def run(self) -> tuple[FloatArray, FloatArray, int]:
         """Meet and cut every step: rows (m, 8 n_e + 6) and spans (m, sectors, 2) of what they meet, and how often a gap

@@ -9,11 +9,22 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out2, OutInt1, kernel, part
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import FACING, Room, add_part, copy, step_between
-from robomill.surface.envelope_kernels import FLAT, Shape, move_between, profile, row_interval, swept_height
+from robomill.surface.envelope_kernels import (
+    BALL,
+    FLAT,
+    Move,
+    Shape,
+    move_between,
+    nearest,
+    profile,
+    row_interval,
+    swept_height,
+)
 from robomill.surface.material_kernels import (
     NOBODY,
     SKIN,
     Columns,
+    Runs,
     World,
     cell_of,
     height_of_run,
@@ -33,22 +44,40 @@ class Steps(NamedTuple):
 
 
 @part
-def cut_step(world: World, r: int, ends: FloatArray, begins: bool) -> None:
-    """Cut a step ``ends`` (6,) m of run ``r`` into the columns."""
+def go_on(world: World, r: int, ends: FloatArray, begins: bool) -> None:
+    """Let run ``r`` begin with a step or go on with it. Nothing of it is cut before it ends: no step of a straight run
+    meets what the run has opened behind it."""
     runs = world.runs
     if begins:
         copy(ends, runs.ends[r])
-        runs.known[0] = r + 1
     else:
         copy(ends[3:], runs.ends[r, 3:])
-    shape, k = shape_of(runs, r), runs.axes[r]
+
+
+@part
+def cut_run(world: World, r: int) -> None:
+    """Cut a run into the columns, as far as it goes."""
+    runs, columns = world.runs, world.columns
+    ends, k, shape = runs.ends[r], runs.axes[r], shape_of(runs, r)
     if math.hypot(k[0], k[1]) > UPRIGHT:
         cut_leaning(world, shape, r, ends)
-    elif world.columns.top.shape[2] == 1:
-        cut_tops(world.columns, shape, r, ends, not begins and ends[5] >= ends[2])
+    elif columns.top.shape[2] == 1:
+        cut_tops(columns, shape, r, ends, follows(runs, r) and ends[5] >= ends[2])
     else:
         cut_from_above(world, shape, r, ends)
     note_sides(world, shape, r, ends)
+    runs.known[0] = r + 1
+
+
+@part
+def follows(runs: Runs, r: int) -> bool:
+    """Whether a run begins where the one before left off, with the same tool and axis."""
+    if r == 0 or runs.tool[r - 1] != runs.tool[r]:
+        return False
+    same = True
+    for n in range(3):
+        same = same and runs.ends[r - 1, 3 + n] == runs.ends[r, n] and runs.axes[r - 1, n] == runs.axes[r, n]
+    return same
 
 
 @part
@@ -72,14 +101,37 @@ def cut_tops(columns: Columns, shape: Shape, r: int, ends: FloatArray, goes_on: 
                 y_low, y_high = (max(y_low, edge), y_high) if move.uy > 0.0 else (y_low, min(y_high, edge))
             elif ahead < 0.0:
                 continue
-        j_first, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.top.shape[1])
-        for j in range(j_first, j_end):
-            top = columns.top[i, j, 0]
-            if top > move.az + SKIN:
-                height = move.az if level else swept_height(shape, move, x, columns.y0 + j * columns.dy)
-                if height < top - SKIN:
-                    columns.top[i, j, 0] = height
-                    columns.by[i, j, 0] = r
+        j, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.top.shape[1])
+        known = shape.R**2 - (x - ends[0]) ** 2 if goes_on and level else 0.0  # level with the end of the step before
+        skip, skip_end = j_end, j_end
+        if known > 0.0:
+            w = math.sqrt(known)
+            skip, skip_end = cells_between(ends[1] - w, ends[1] + w, columns.y0, columns.dy, columns.top.shape[1])
+        while j < j_end:
+            if skip <= j < skip_end:
+                j = skip_end
+                continue
+            lower_top(columns, shape, move, i, j, r)
+            j += 1
+
+
+@part
+def lower_top(columns: Columns, shape: Shape, move: Move, i: int, j: int, r: int) -> None:
+    """Lower a column of one layer, within the track, to what a move of run ``r`` leaves."""
+    top = columns.top[i, j, 0]
+    if top <= move.az + SKIN:
+        return
+    height = move.az
+    if shape.kind != FLAT or move.m != 0.0:
+        x, y = columns.x0 + i * columns.dx, columns.y0 + j * columns.dy
+        if shape.kind == BALL and move.m == 0.0:
+            ex, ey = nearest(move, x, y)
+            height += shape.R - math.sqrt(max(shape.R**2 - ex * ex - ey * ey, 0.0))
+        else:
+            height = swept_height(shape, move, x, y)
+    if height < top - SKIN:
+        columns.top[i, j, 0] = height
+        columns.by[i, j, 0] = r
 
 
 @part
@@ -207,9 +259,11 @@ def march(world: World, room: Room, steps: Steps, found: Out2, spans: Out2, do: 
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
         if do[0]:
-            step = step_between(ends, world.runs.axes[r], steps.feed[n])
+            step = step_between(ends, world.runs.axes[r], steps.feed[n], r)
             add_part(room, world, shape_of(world.runs, r), step)
             copy(room.sum, found[n])
             copy(room.spans, spans[n])
         if do[1]:
-            cut_step(world, r, ends, steps.begins[n] == 1)
+            go_on(world, r, ends, steps.begins[n] == 1)
+            if n + 1 == len(steps.ends) or steps.begins[n + 1] == 1:
+                cut_run(world, r)

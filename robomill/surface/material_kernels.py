@@ -34,6 +34,7 @@ class Columns(NamedTuple):
     beside (nx, ny)            the run whose side reaches furthest into the cell, even short of its centre
     lost (1,)                  how often a gap between layers was closed for want of room
     x0, y0, dx, dy             centre of cell [0, 0] and the size of a cell
+    slack                      how far off the ends of layers around a place the end there may lie
     One layer, as every upright cutter leaves it in a block, has no ``low`` and ``under``: it ends at the bottom.
     """
 
@@ -47,6 +48,7 @@ class Columns(NamedTuple):
     y0: float
     dx: float
     dy: float
+    slack: float
 
 
 class Runs(NamedTuple):
@@ -128,6 +130,14 @@ def cell_of(columns: Columns, x: float, y: float) -> tuple[int, int]:
 
 
 @part
+def cells_around(columns: Columns, x: float, y: float) -> tuple[int, int, int, int]:
+    """The four cells whose centres stand around a point in plan, as rows i, i_next and columns j, j_next."""
+    i, j = math.floor((x - columns.x0) / columns.dx), math.floor((y - columns.y0) / columns.dy)
+    rows, width = columns.top.shape[0] - 1, columns.top.shape[1] - 1
+    return max(0, min(i, rows)), max(0, min(i + 1, rows)), max(0, min(j, width)), max(0, min(j + 1, width))
+
+
+@part
 def in_column(columns: Columns, i: int, j: int, z: float, slack: float) -> int:
     """Whether a height lies in material of a column, in air, or within ``slack`` of an end of a layer."""
     for layer in range(columns.top.shape[2]):
@@ -135,7 +145,7 @@ def in_column(columns: Columns, i: int, j: int, z: float, slack: float) -> int:
             return AIR
         if z > columns.top[i, j, layer] - slack:
             return UNSURE
-        if columns.top.shape[2] == 1 or z > columns.low[i, j, layer] + slack:
+        if z > columns.low[i, j, layer] + slack:
             return SOLID
         if z > columns.low[i, j, layer] - slack:
             return UNSURE
@@ -143,14 +153,19 @@ def in_column(columns: Columns, i: int, j: int, z: float, slack: float) -> int:
 
 
 @part
-def looked_up(columns: Columns, i: int, j: int, z: float) -> int:
-    """What a cell and the eight around it say of a height: ``SOLID`` or ``AIR`` where all agree, else ``UNSURE``."""
-    slack = 0.5 * max(columns.dx, columns.dy)
+def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> int:
+    """What the cells around a point say of a height: ``SOLID`` or ``AIR`` where all agree, else ``UNSURE``."""
+    i, a, j, b = cells
+    slack = columns.slack
+    if columns.top.shape[2] == 1:
+        p, q, r, s = columns.top[i, j, 0], columns.top[i, b, 0], columns.top[a, j, 0], columns.top[a, b, 0]
+        if z < min(min(p, q), min(r, s)) - slack:
+            return SOLID
+        return AIR if z > max(max(p, q), max(r, s)) + slack else UNSURE
     said = in_column(columns, i, j, z, slack)
-    for a in range(max(0, i - 1), min(i + 2, columns.top.shape[0])):
-        for b in range(max(0, j - 1), min(j + 2, columns.top.shape[1])):
-            if said == UNSURE or in_column(columns, a, b, z, slack) != said:
-                return UNSURE
+    for n in range(1, 4):
+        if said == UNSURE or in_column(columns, a if n > 1 else i, b if n % 2 else j, z, slack) != said:
+            return UNSURE
     return said
 
 
@@ -162,24 +177,25 @@ def named(columns: Columns, i: int, j: int, n: int) -> int:
     layer = (n - 1) // 2
     if n % 2 == 1:
         return int(columns.by[i, j, layer])
-    return NOBODY if columns.top.shape[2] == 1 else int(columns.under[i, j, layer])
+    return int(columns.under[i, j, layer])
 
 
 @part
-def above_runs(columns: Columns, runs: Runs, i: int, j: int, point: tuple[float, float, float]) -> float:
-    """Height of a point (x, y, z) above the lowest of what the runs named around a cell, and the runs before and after
-    these, leave there, m; > 0 inside a swept body, -inf if none reaches the point in plan."""
-    names, height = 1 + 2 * columns.top.shape[2], -math.inf
+def above_runs(
+    columns: Columns, runs: Runs, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
+) -> float:
+    """Height of a point (x, y, z) above the lowest of what the runs named by the cells around it leave there, m; > 0
+    inside a swept body, -inf if none reaches the point in plan. ``but`` one run is not asked."""
+    names, height = 2 if columns.top.shape[2] == 1 else 1 + 2 * columns.top.shape[2], -math.inf
     last = before = NOBODY
-    for a in range(max(0, i - 1), min(i + 2, columns.top.shape[0])):
-        for b in range(max(0, j - 1), min(j + 2, columns.top.shape[1])):
-            for n in range(names):
-                name = named(columns, a, b, n)
-                if name in (NOBODY, last, before):
-                    continue
-                before, last = last, name
-                for r in range(max(0, name - 1), min(name + 2, runs.known[0])):
-                    height = max(height, height_of_run(runs, r, point[0], point[1], point[2]))
+    for cell in range(4):
+        i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
+        for n in range(names):
+            name = named(columns, i, j, n)
+            if name in (NOBODY, last, before, but):
+                continue
+            before, last = last, name
+            height = max(height, height_of_run(runs, name, point[0], point[1], point[2]))
     return height
 
 
@@ -219,19 +235,19 @@ def under_triangle(t: FloatArray, x: float, y: float, z: float) -> bool:
 
 
 @part
-def is_solid(world: World, point: tuple[float, float, float]) -> bool:
-    """Whether a point (x, y, z) m is still material."""
+def is_solid(world: World, point: tuple[float, float, float], run: int) -> bool:
+    """Whether a point (x, y, z) m is still material; it is known to be outside what ``run`` has swept."""
     x, y, z = point
     block, columns = world.block, world.columns
     if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
         return False
     if z < block.z_low or z > block.z_high:
         return False
-    i, j = cell_of(columns, x, y)
-    said = looked_up(columns, i, j, z)
+    cells = cells_around(columns, x, y)
+    said = looked_up(columns, cells, z)
     if said != UNSURE:
         return said == SOLID
-    return in_stock(block, world.mesh, point) and above_runs(columns, world.runs, i, j, point) <= SKIN
+    return in_stock(block, world.mesh, point) and above_runs(columns, world.runs, cells, point, run) <= SKIN
 
 
 @part
@@ -240,11 +256,10 @@ def top_over(world: World, x: float, y: float) -> float:
     block, columns = world.block, world.columns
     if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
         return -math.inf
-    i, j = cell_of(columns, x, y)
-    low, high = math.inf, -math.inf
-    for a in range(max(0, i - 1), min(i + 2, columns.top.shape[0])):
-        for b in range(max(0, j - 1), min(j + 2, columns.top.shape[1])):
-            low, high = min(low, columns.top[a, b, 0]), max(high, columns.top[a, b, 0])
-    if high - low <= SKIN:
+    cells = cells_around(columns, x, y)
+    i, a, j, b = cells
+    p, q, r, s = columns.top[i, j, 0], columns.top[i, b, 0], columns.top[a, j, 0], columns.top[a, b, 0]
+    high = max(max(p, q), max(r, s))
+    if high - min(min(p, q), min(r, s)) <= SKIN:
         return high
-    return block.z_high - max(0.0, above_runs(columns, world.runs, i, j, (x, y, block.z_high)))
+    return block.z_high - max(0.0, above_runs(columns, world.runs, cells, (x, y, block.z_high), NOBODY))

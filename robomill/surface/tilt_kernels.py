@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from robomill.arrays import FloatArray
-from robomill.compiled import In2, Out2, kernel, part
+from robomill.compiled import In2, Out2, called, kernel, part
 from robomill.surface.envelope_kernels import Move, Shape, move_between, row_interval, swept_height
 
 UPRIGHT = 1e-9  # an axis that leans less than this (sine) is upright
@@ -94,7 +94,7 @@ def hull_gap(shape: Shape, move: Move, frame: Frame, line: Line, z: float) -> fl
     return swept_height(shape, move, line.X, line.Y + z * frame.sine) - (line.h + z * frame.cosine)
 
 
-@part
+@called
 def tilted_interval(shape: Shape, move: Move, frame: Frame, line: Line, ceiling: float) -> tuple[float, float]:
     """Heights (low, high) m of a vertical line inside the body swept by a tilted cutter, not above ``ceiling``.
 
