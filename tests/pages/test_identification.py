@@ -31,6 +31,7 @@ from robomill.ui.identification.bench import KEY, SAMPLES, Bench, Trial, decoded
 from robomill.ui.identification.inputs import adopted
 from robomill.ui.project import Project, project_from_toml, project_to_toml
 from robomill.ui.session import KEY as PROJECT
+from tests.identification.cables import Arm, Rig, as_csv, make
 
 PAGE = Path(__file__).resolve().parents[2] / "pages" / "4_Identification.py"
 HEADER = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm"
@@ -538,3 +539,22 @@ def test_another_robot_is_measured_without_touching_the_project(page: AppTest) -
         pick(page, "identification.view", view)
         assert not page.exception
     assert page.session_state[PROJECT].project.setup.digest() == before
+
+
+def test_a_load_point_that_is_off_is_offered_and_fitted_by_a_click(page: AppTest) -> None:
+    """Cable tests whose stated load point is 150 mm off, from the independent simulator."""
+    arm, rig = Arm.of("kuka_kr500"), Rig()
+    off = 0.150 * np.array([0.6, 0.64, -0.48])
+    text = as_csv(arm, make(arm, rig, 43, seed=10), rig.load_point + off, rig.gauge_point)
+    page.selectbox(key="identification.robot").set_value("kuka_kr500").run()
+    typed(page, text)
+    pick(page, "identification.view", "points")
+    assert not page.exception
+    assert bench(page).fit_points == "none"
+    assert any("lines of pull" in info.value for info in page.info)
+    click(page, "identification.offer")
+    assert not page.exception
+    assert bench(page).fit_points == "force"
+    assert "Load point, fitted" in html(page)
+    click(page, "identification.stated")
+    assert bench(page).fit_points == "none"

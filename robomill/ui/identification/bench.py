@@ -7,7 +7,7 @@ session only (uploads are a person's own) and bounded. A text that is refused st
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -203,22 +203,25 @@ def tests_of(bench: Bench, robot: Robot) -> LoadTests | JointTests:
 
 def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
     """The fit of the model asked for. Raises LoadTestError."""
-    return bench.remembered(
-        ("fit", _choices(bench, robot), bench.model),
-        lambda: identify(robot, tests_of(bench, robot), bench.model, bench.treatment),
-    )
+    tests = tests_of(bench, robot)
+
+    def fit() -> IdentificationResult:
+        with st.spinner("Fitting, and predicting what was left out …"):
+            return identify(robot, tests, bench.model, bench.treatment)
+
+    return bench.remembered(("fit", _choices(bench, robot), bench.model), fit)
 
 
 def comparison_of(bench: Bench, robot: Robot) -> Comparison:
-    """Every model fitted to the same tests. Raises LoadTestError."""
+    """Every model fitted to the same tests, bending at the joints that are named. Raises LoadTestError."""
     tests = tests_of(bench, robot)
     if tests.single:
         raise LoadTestError(
             "One joint at a time shows nothing but joints: models are compared on displacements of the tool."
         )
+    treatment = replace(bench.treatment, bending=bench.bending)
     return bench.remembered(
-        ("models", _choices(bench, robot)),
-        lambda: compare_models(robot, tests, treatment=bench.treatment),
+        ("models", _choices(bench, robot)), lambda: compare_models(robot, tests, treatment=treatment)
     )
 
 

@@ -88,7 +88,7 @@ def _gaps(lines: LinesOfPull, unit: str, dark: bool) -> None:
         f"ident-gaps-{unit}",
         name="lines-of-pull",
         table=lambda: gap_columns(lines, unit),
-        caption=f"{_pulleys(lines, unit)} Ringed: cannot be.",
+        caption=_pulleys(lines, unit) + (" Ringed: cannot be." if odd.any() else ""),
         alt="Distance of each row's force line from its pulley, with the load point found and with the stated one.",
     )
 
