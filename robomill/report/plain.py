@@ -104,6 +104,8 @@ def _reading(found: dict[str, Any]) -> str:
     if found["line"] is None:
         return "none is left to measure"
     value, allowed = format_value(found["value_mm"], "mm", sign=True), format_value(found["tolerance_mm"], "mm", 2)
+    if not found["judged"]:
+        return f"{value} at line {found['line']}, not judged by itself"
     return f"{value} at line {found['line']}, {100 * found['share']:.0f} % of {allowed}"
 
 

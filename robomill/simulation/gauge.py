@@ -127,28 +127,37 @@ def gauge(result: Run) -> Gauge:
 
 def _places(result: Run) -> Places:
     i, path = np.flatnonzero(result.judged), result.path
-    axes = np.einsum("ji,mjk->mki", result.setup.T_MW[:3, :3], result.R_MF[i])
     tooling = result.tooling
     moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
     reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
+    axes, lift = _upright_balls(result)
+    to_W = result.setup.T_MW[:3, :3]
+    d: FloatArray = np.einsum("mij,mj->mi", axes[i], np.asarray(result.delta[i] @ to_W))
 
     def outline(p: FloatArray) -> Outline:
+        p = p + lift
         return Outline(np.hstack([p[moves - 1], p[moves]]), tooling.cutters, of[moves], reach)
 
     told, left = outline(path.p), outline(result.p_machined)
-    return Places(
-        result,
-        i,
-        path.p[i],
-        axes[:, 0],
-        axes[:, 1],
-        axes[:, 2],
-        result.delta_in_cut[i],
-        tooling.cutters,
-        of[i],
-        told,
-        left,
-    )
+    feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
+    return Places(result, i, (path.p + lift)[i], feed, left_of, axial, d, tooling.cutters, of[i], told, left)
+
+
+def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray]:
+    """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, and how far (m, 3) m from the tip the lowest point is:
+    a ball cuts the same however it leans, so it is taken upright; other tools have their own axes and their tip."""
+    to_W, path = result.setup.T_MW[:3, :3], result.path
+    axes = np.einsum("ji,mjk->mki", to_W, result.R_MF)
+    ball = np.array([cutter.flat_radius == 0.0 and not cutter.conical for cutter in result.tooling.cutters])
+    leans = ball[result.tooling.of_step] & (path.k[:, 2] < 1.0 - 1e-12)
+    up = np.array([0.0, 0.0, 1.0])
+    feed = axes[:, 0] * [1.0, 1.0, 0.0]
+    length = np.linalg.norm(feed, axis=1, keepdims=True)
+    leans &= length[:, 0] > STEEP
+    feed = feed / np.where(length > 0.0, length, 1.0)
+    upright = np.stack([feed, np.cross(up, feed), np.broadcast_to(up, feed.shape)], axis=1)
+    lift = result.tooling.each("radius")[:, None] * (path.k - up)
+    return np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0)
 
 
 def _steep(at: Places) -> BoolArray:

@@ -10,6 +10,7 @@ import shapely
 
 import robomill as rm
 from robomill.cutting.forces.along_path import PathForce
+from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
 from robomill.simulation.gauge import Readings
 from robomill.surface.stock import Stock
@@ -255,3 +256,25 @@ def test_the_line_is_that_of_the_pass_that_made_the_surface():
     assert bent.verdict.floor.value == pytest.approx(-0.14e-3, abs=1e-6)
     assert result.path.block[bent.verdict.wall.worst] == 8
     assert result.path.block[bent.verdict.floor.worst] == 8
+
+
+def test_the_floor_of_a_leaning_ball_is_its_lowest_point():
+    """A ball's lowest point moves as its tip does: the floor is off by the upward part of the deviation."""
+    ball = Cutter(kind="ball", diameter=6e-3)
+    result = run("G0 X-40 Y0 Z8 A-15", "G0 Z-2", "G1 X20 F1800", cutter=ball)
+    shift = np.where(result.path.cutting[:, None], [0.0, 0.2e-3, -0.125e-3], 0.0)
+    bent = dataclasses.replace(result, delta=shift @ result.setup.T_MW[:3, :3].T)
+    assert bent.verdict.floor.value == pytest.approx(bent.groove(40e-3).floor_error, abs=10e-6)
+    assert bent.verdict.floor.value < -0.1e-3
+
+
+@pytest.mark.parametrize("cycle", ["G81 Z-8 R2 F300", "G83 Z-8 R2 Q3 F300"])
+def test_a_drilled_hole_has_a_depth_and_a_place(cycle):
+    """The tip of the cone is aside and too high at the bottom only; further up it is elsewhere."""
+    drill = Cutter(kind="drill", diameter=8e-3, flutes=2, tip_angle=np.radians(118.0))
+    result = run("G0 X0 Y0 Z5", cycle, "G80", cutter=drill)
+    deep = -result.path.p[:, 2] / 8e-3
+    bent = pushed(result, left=0.1e-3, up=np.where(deep > 0.999, 0.35e-3, 0.05e-3))
+    assert bent.verdict.floor.value == pytest.approx(0.35e-3)
+    assert abs(bent.verdict.wall.value) == pytest.approx(0.1e-3)
+    assert bent.verdict.level == "out"
