@@ -278,7 +278,7 @@ def _floors(at: Places) -> Readings:
     q, offset = q[inside], offset[inside]
     places = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
     (told, upright), (left, _) = at.told.floors(places, offset), at.left.floors(places, offset)
-    found = np.isfinite(told) & np.isfinite(left)
+    found = np.isfinite(told) & np.isfinite(left) & ~(_bottoms(at)[q] & (told < -SAME))  # a peck's end is drilled away
     with np.errstate(invalid="ignore"):
         error = (left - told) * upright
     deepest = _bottoms(at)[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
