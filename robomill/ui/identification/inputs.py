@@ -137,7 +137,7 @@ def model_choice(bench: Bench, robot: Robot) -> None:
     with st.expander("How the tests are treated", icon=":material/tune:", expanded=bench.fit_points != "none"):
         for name, (label, options) in TREATMENTS.items():
             now, write = getattr(bench, name), bench.writer(name)
-            inputs.choice(label, f"identification.{name}", options, now, write, inputs.LISTED)
+            inputs.choice(label, f"identification.treatment.{name}", options, now, write, inputs.LISTED)
 
 
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
