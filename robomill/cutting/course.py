@@ -48,9 +48,10 @@ class Course:
         """Some of the cuts."""
         return Course(self.c[index], self.arc[index], self.span[index])
 
-    def alike(self) -> tuple[IntArray, IntArray]:
-        """One cut of each kind, and the kind (k,) of every cut; alike are those within a thousandth of the largest."""
-        numbers = np.concatenate([self.c[:, None], self.arc, self.span.reshape(len(self.c), -1)], axis=1)
+    def alike(self, mean: FloatArray) -> tuple[IntArray, IntArray]:
+        """One cut of each kind, and the kind (k,) of every cut; alike are those within a thousandth of the largest, in
+        their mean force (k, 3) too."""
+        numbers = np.concatenate([self.c[:, None], self.arc, self.span.reshape(len(self.c), -1), mean], axis=1)
         scale = np.max(np.abs(numbers), axis=0) * 1e-3
         rounded = np.round(numbers / np.where(scale > 0.0, scale, 1.0))
         _, first, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)

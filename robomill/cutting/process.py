@@ -131,7 +131,7 @@ class ProcessForce(ForceModel):
             if not index.size:
                 continue
             course = Course.of(conditions, cutter, index)
-            first, inverse = course.alike()
+            first, inverse = course.alike(mean[index])
             for start in range(0, len(first), CASES):
                 cases = first[start : start + CASES]
                 turns = force_over_pitch(edge_terms(self.material, cutter), cutter, course.at(cases))

@@ -18,8 +18,9 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import CHAMFER, FLAT, Shape
+from robomill.surface.envelope_kernels import Shape
 from robomill.surface.material_kernels import World, is_solid, top_over
+from robomill.surface.step_kernels import END, FACING, FLANK, NOSE, Step, on_profile, stretch_ends
 
 PANELS = 12  # of a half turn
 GAUSS = 0.5 - math.sqrt(3.0) / 6.0  # first node of Gauss' rule of two points on 0..1
@@ -29,37 +30,13 @@ ENDS = 7  # halvings of a piece of the profile in which material begins or ends
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 12, 96  # of each stretch of the profile, at most
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
-FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
 SECTORS = 18  # of the half turn, for the course of the force over a revolution
 MOMENTS = 8
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is measured at one angle: sums for each exponent, then the engaged length, its height along the axis, where it
 # begins and ends along the axis, and its largest radius
-END, NOSE, FLANK = range(3)  # the stretches of the profile
 LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, EXTRA = range(6)
-
-
-class Step(NamedTuple):
-    """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
-    the parts of the unit feed across and along the axis, and the run it
-    belongs to."""
-
-    x: float
-    y: float
-    z: float
-    fx: float
-    fy: float
-    fz: float
-    lx: float
-    ly: float
-    lz: float
-    kx: float
-    ky: float
-    kz: float
-    across: float
-    along: float
-    run: int
 
 
 class Ray(NamedTuple):
@@ -93,70 +70,6 @@ class Room(NamedTuple):
     between: Out2
     sum: Out1
     spans: Out1
-
-
-@part
-def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
-    """The middle of a step ``ends`` (6,) m of a tool along k (3,) that is fed along the unit vector v (3,)."""
-    along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
-    fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
-    across = math.sqrt(fx * fx + fy * fy + fz * fz)
-    if across < FACING:  # straight along the axis: any direction across it
-        across = 0.0
-        fx, fy, fz = (k[2], 0.0, -k[0]) if abs(k[0]) < 0.9 else (-k[1], k[0], 0.0)
-    size = math.sqrt(fx * fx + fy * fy + fz * fz)
-    fx, fy, fz = fx / size, fy / size, fz / size
-    return Step(
-        0.5 * (ends[0] + ends[3]),
-        0.5 * (ends[1] + ends[4]),
-        0.5 * (ends[2] + ends[5]),
-        fx,
-        fy,
-        fz,
-        k[1] * fz - k[2] * fy,
-        k[2] * fx - k[0] * fz,
-        k[0] * fy - k[1] * fx,
-        k[0],
-        k[1],
-        k[2],
-        across,
-        along,
-        run,
-    )
-
-
-@part
-def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, float, float]:
-    """A point of a stretch of the profile (0 end, 1 nose, 2 flank), s m along it: radius, height, sine and cosine of
-    the angle between the axis and the normal."""
-    if stretch == END:
-        return s, 0.0, 0.0, 1.0
-    if stretch == FLANK:
-        return shape.R, s, 1.0, 0.0
-    if shape.kind == CHAMFER:
-        slant = math.sqrt(1.0 + shape.slope**2)
-        return shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant
-    sine, cosine = math.sin(s / shape.rc), math.cos(s / shape.rc)
-    return shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine
-
-
-@part
-def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float]:
-    """(from, to) m of a stretch of the profile, up to height ``reach`` above the tip."""
-    nose = 0.0
-    if shape.kind == CHAMFER:
-        nose = shape.slope * (shape.R - shape.r0)
-    elif shape.kind != FLAT:
-        nose = shape.rc
-    if stretch == END:
-        return 0.0, shape.r0
-    if stretch == FLANK:
-        return nose, max(nose, reach)
-    if shape.kind == CHAMFER:
-        return 0.0, min(nose, max(reach, 0.0)) / shape.slope * math.sqrt(1.0 + shape.slope**2)
-    if shape.kind == FLAT or reach <= 0.0:
-        return 0.0, 0.0
-    return 0.0, shape.rc * (math.acos(1.0 - reach / shape.rc) if reach < shape.rc else 0.5 * math.pi)
 
 
 @part
@@ -265,14 +178,15 @@ def measure(room: Room, row: FloatArray, world: World, shape: Shape, step: Step,
         pieces = END_PIECES if stretch == END else NOSE_PIECES
         if stretch == FLANK:
             pieces = int(min(max((end - start) / world.columns.dx, 8.0), 1.0 * FLANK_PIECES))
-        measure_stretch(room, row, world, shape, step, ray, Piece(stretch, start, end), pieces)
+        measure_stretch(room, row, world, (shape, step, ray), Piece(stretch, start, end), pieces)
 
 
 @part
 def measure_stretch(
-    room: Room, row: FloatArray, world: World, shape: Shape, step: Step, ray: Ray, whole: Piece, pieces: int
+    room: Room, row: FloatArray, world: World, seen: tuple[Shape, Step, Ray], whole: Piece, pieces: int
 ) -> None:
     """What is engaged of a stretch of the profile at one angle, looked for at the ends of so many pieces."""
+    shape, step, ray = seen
     width = (whole.end - whole.start) / pieces
     since = False
     for n in range(pieces + 1):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import Out2, OutInt1, kernel, part
 from robomill.surface.cells_kernels import cells_between
-from robomill.surface.engagement_kernels import FACING, Room, add_part, copy, step_between
+from robomill.surface.engagement_kernels import Room, add_part, copy
 from robomill.surface.envelope_kernels import (
     BALL,
     FLAT,
@@ -30,6 +30,7 @@ from robomill.surface.material_kernels import (
     height_of_run,
     shape_of,
 )
+from robomill.surface.step_kernels import FACING, step_between
 from robomill.surface.tilt_kernels import UPRIGHT, move_in_frame, tilted_interval, tool_frame, vertical_line
 
 

@@ -1,0 +1,99 @@
+"""A step as the cutter sees it, and the places of the cutter's profile, compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from robomill.arrays import FloatArray
+from robomill.compiled import part
+from robomill.surface.envelope_kernels import CHAMFER, FLAT, Shape
+
+FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
+END, NOSE, FLANK = range(3)  # the stretches of the profile
+
+
+class Step(NamedTuple):
+    """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
+    the parts of the unit feed across and along the axis, and the run it
+    belongs to."""
+
+    x: float
+    y: float
+    z: float
+    fx: float
+    fy: float
+    fz: float
+    lx: float
+    ly: float
+    lz: float
+    kx: float
+    ky: float
+    kz: float
+    across: float
+    along: float
+    run: int
+
+
+@part
+def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
+    """The middle of a step ``ends`` (6,) m of a tool along k (3,) that is fed along the unit vector v (3,)."""
+    along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
+    fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
+    across = math.sqrt(fx * fx + fy * fy + fz * fz)
+    if across < FACING:  # straight along the axis: any direction across it
+        across = 0.0
+        fx, fy, fz = (k[2], 0.0, -k[0]) if abs(k[0]) < 0.9 else (-k[1], k[0], 0.0)
+    size = math.sqrt(fx * fx + fy * fy + fz * fz)
+    fx, fy, fz = fx / size, fy / size, fz / size
+    return Step(
+        0.5 * (ends[0] + ends[3]),
+        0.5 * (ends[1] + ends[4]),
+        0.5 * (ends[2] + ends[5]),
+        fx,
+        fy,
+        fz,
+        k[1] * fz - k[2] * fy,
+        k[2] * fx - k[0] * fz,
+        k[0] * fy - k[1] * fx,
+        k[0],
+        k[1],
+        k[2],
+        across,
+        along,
+        run,
+    )
+
+
+@part
+def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, float, float]:
+    """A point of a stretch of the profile (0 end, 1 nose, 2 flank), s m along it: radius, height, sine and cosine of
+    the angle between the axis and the normal."""
+    if stretch == END:
+        return s, 0.0, 0.0, 1.0
+    if stretch == FLANK:
+        return shape.R, s, 1.0, 0.0
+    if shape.kind == CHAMFER:
+        slant = math.sqrt(1.0 + shape.slope**2)
+        return shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant
+    sine, cosine = math.sin(s / shape.rc), math.cos(s / shape.rc)
+    return shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine
+
+
+@part
+def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float]:
+    """(from, to) m of a stretch of the profile, up to height ``reach`` above the tip."""
+    nose = 0.0
+    if shape.kind == CHAMFER:
+        nose = shape.slope * (shape.R - shape.r0)
+    elif shape.kind != FLAT:
+        nose = shape.rc
+    if stretch == END:
+        return 0.0, shape.r0
+    if stretch == FLANK:
+        return nose, max(nose, reach)
+    if shape.kind == CHAMFER:
+        return 0.0, min(nose, max(reach, 0.0)) / shape.slope * math.sqrt(1.0 + shape.slope**2)
+    if shape.kind == FLAT or reach <= 0.0:
+        return 0.0, 0.0
+    return 0.0, shape.rc * (math.acos(1.0 - reach / shape.rc) if reach < shape.rc else 0.5 * math.pi)
