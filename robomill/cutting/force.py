@@ -16,7 +16,7 @@ from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.conditions import PLUNGE, CutConditions
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
-from robomill.cutting.unjudged import Unjudged
+from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import described, settle
@@ -127,7 +127,7 @@ class ForceModel:
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Steps in the material whose force it has no model for, reason by reason; each is NaN in ``force_on_tool``."""
-        return ()
+        return against_hand(conditions, conditions.tooling) if conditions.tooling else ()
 
     def cut_by(self, cutter: Cutter) -> Self:
         """The same model for another cutter; itself where it does not depend on one."""

@@ -16,7 +16,7 @@ from robomill.cutting.force import ForceModel, ForceSpread
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
-from robomill.cutting.unjudged import Unjudged
+from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import switch
@@ -87,12 +87,8 @@ class ProcessForce(ForceModel):
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, thrusts unknown."""
         tooling, engaged = self._tooling(conditions), conditions.engaged
-        left, drill = (
-            np.array([test(each) for each in tooling.cutters])[tooling.of_step]
-            for test in (lambda each: each.hand == "left", lambda each: each.kind == "drill")
-        )
+        drill = np.array([each.kind == "drill" for each in tooling.cutters])[tooling.of_step]
         reasons = [
-            ("spindle_sense", conditions.ccw != left, "the spindle turns against the cutter's hand: it does not cut"),
             (
                 "spindle_speed",
                 ~np.isfinite(conditions.n_s),
@@ -104,7 +100,7 @@ class ProcessForce(ForceModel):
             down = ~drill & (conditions.along < -DISH)
             reasons.append(("thrust", down, f"{self.material.title} gives no radial coefficient, which a thrust needs"))
         found = (Unjudged(code, engaged & where, why) for code, where, why in reasons)
-        return tuple(each for each in found if each.where.any())
+        return against_hand(conditions, tooling) + tuple(each for each in found if each.where.any())
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air and on rapids.

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from robomill.arrays import BoolArray
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.tooling import Tooling
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,3 +18,12 @@ class Unjudged:
     code: str
     where: BoolArray
     why: str
+
+
+def against_hand(conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged, ...]:
+    """Steps in the material at which the spindle turns against the hand of its cutter: such teeth rub on their backs,
+    whatever force is stated. A spindle of which nothing is said turns with the cutter."""
+    left = np.array([cutter.hand == "left" for cutter in tooling.cutters])[tooling.of_step]
+    where = conditions.engaged & (conditions.ccw != left) & (conditions.n_s != 0.0)
+    why = "the spindle turns against the cutter's hand: it does not cut"
+    return (Unjudged("spindle_sense", where, why),) if where.any() else ()

@@ -94,6 +94,7 @@ def test_a_red_verdict_exits_with_1(capsys) -> None:
 SLOT = "G0 X-50 Y0 Z-2\nG1 X50 F1800"
 UNKNOWN = {
     "a spindle that turns the wrong way": ("setup_process.toml", f"S12000 M4\n{SLOT}", "spindle_sense"),
+    "the same under a stated force": ("setup.toml", f"S12000 M4\n{SLOT}", "spindle_sense"),
     "a spindle at an unknown speed": ("setup_process.toml", f"G96 S200 M3\n{SLOT}", "spindle_speed"),
     "a plunge under a stated force": ("setup.toml", "S12000 M3\nG0 X0 Y0 Z5\nG81 Z-8 R2 F300\nG80", ""),
 }

@@ -48,10 +48,10 @@ class PathForce(ForceModel):
         return (self.feed, self.feed_normal, self.axial)
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
-        """Plunges: stated along a path, it says nothing of a way straight down."""
+        """Plunges beside what holds for every force: stated along a path, it says nothing of a way straight down."""
         where = conditions.engaged & (conditions.across <= PLUNGE)
         why = "a force stated along the path says nothing of a plunge"
-        return (Unjudged("plunge_stated", where, why),) if where.any() else ()
+        return super().unjudged(conditions) + ((Unjudged("plunge_stated", where, why),) if where.any() else ())
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""
