@@ -18,7 +18,7 @@ from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
-from robomill.units import format_si
+from robomill.units import format_count, format_si
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
@@ -148,8 +148,9 @@ class CutConditions:
         return cls(v_f=v_f, n_s=n_s, a_p=a_p, phi_st=arc[0], phi_ex=arc[1], **given)  # type: ignore[arg-type]
 
 
-def cut_warnings(cutter: Cutter, conditions: CutConditions) -> tuple[str, ...]:
-    """What deserves a word though it can be computed: depth beyond the flutes, and what the force of a plunge is."""
+def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool = True) -> tuple[str, ...]:
+    """What deserves a word though it can be computed: depth beyond the flutes and, where the force is ``computed`` from
+    the material, what the thrust of a plunge or of a drill is."""
     found = []
     engaged = conditions.engaged
     tooling = Tooling.of(conditions.tooling or cutter, len(conditions))
@@ -165,10 +166,15 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions) -> tuple[str, ...]:
                 f"{format_si(each.flute_length, 'mm')}; the shank would rub ({deep.size} steps)."
             )
     drills = np.array([each.kind == "drill" for each in tooling.cutters])[tooling.of_step]
-    down = np.flatnonzero(engaged & (conditions.along < -DISH) & ~drills)
-    if down.size:
-        found.append(
-            f"{conditions.place(down[0])}: the tool goes down into the material; its thrust is that of the end teeth, "
-            f"to the centre, by the same coefficients as the flank: not measured ({down.size} steps)."
-        )
+    down = engaged & (conditions.along < -DISH) & computed
+    for steps, law in (
+        (np.flatnonzero(down & ~drills), "of the end teeth, to the centre, by the same coefficients as the flank"),
+        (np.flatnonzero(down & drills), "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)"),
+    ):
+        if steps.size:
+            where = conditions.place(steps[0])
+            found.append(
+                f"{where}: the tool goes down into the material; its thrust is that {law}: not measured "
+                f"({format_count(steps.size, 'step')})."
+            )
     return tuple(found)

@@ -111,6 +111,6 @@ def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, .
         notes.append(doubt)
     if not setup.engagement and setup.force.follows_cut:
         notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
-    if conditions.a_p.any():
-        notes += cut_warnings(setup.cutter, conditions)
+    if conditions.engaged.any():
+        notes += cut_warnings(setup.cutter, conditions, setup.force.follows_cut)
     return tuple(notes)

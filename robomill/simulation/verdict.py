@@ -43,8 +43,8 @@ class Verdict:
     floor   along the tool axis, up +: floors that are on the part in the end
     feed    along the feed, ahead +: the largest on the path. It leaves no mark on a straight groove; at corners it
             moves a wall and counts there
-    end     along the feed, where a cut begins or ends in the material: how far its end wall is moved. It decides only
-            where a tolerance of its own is stated for the feed
+    end     along the feed, where a cut begins or ends in the material: how far its end wall is moved
+            (``feed`` and ``end`` decide only where the feed has a tolerance of its own)
     """
 
     level: Level
@@ -65,7 +65,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     readings = _readings(result, gauge)
     wall, floor, feed, end = readings
     stated = result.setup.feed_tolerance is not None
-    deciding = [r for r in (wall, floor, *([end] if stated else [])) if r.worst >= 0]
+    deciding = [r for r in (wall, floor, *([end, feed] if stated else [])) if r.worst >= 0]
     share = max((r.share for r in deciding), default=float("nan"))
     if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
         share = result.max_deviation / wall.tolerance
@@ -82,6 +82,8 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
             "unreached",
             f"{int(missed.sum())} of {len(result.path)} points {why} ({where}); of the rest: {said}.",
         )
+    elif unjudged.any() and not deciding:
+        level, said = "unjudged", f"{_count(result)}."
     elif unjudged.any() and level != "out":
         level, said = "unjudged", f"{_count(result)}; of the rest: {said}."
     elif unjudged.any():
@@ -123,7 +125,7 @@ def _reading(found: Readings, tolerance: float) -> Reading:
 
 def _said(result: Run, readings: tuple[Reading, Reading, Reading, Reading], share: float) -> str:
     """What a gauge would read, without the judgement; the larger share of its tolerance comes first."""
-    wall, floor, _, end = readings
+    wall, floor, feed, end = readings
     parts = []
     if wall.worst >= 0:
         way = "left" if wall.value > 0 else "right"
@@ -132,8 +134,11 @@ def _said(result: Run, readings: tuple[Reading, Reading, Reading, Reading], shar
         way = "too high" if floor.value > 0 else "too deep"
         parts.append((floor.share, f"floor {_size(floor)} {way} {_of(result, floor)}"))
     parts.sort(key=lambda part: -part[0])
-    if end.worst >= 0 and result.setup.feed_tolerance is not None:
-        parts.append((end.share, f"end {_size(end)} along the feed {_of(result, end)}"))
+    if result.setup.feed_tolerance is not None:
+        if end.worst >= 0:
+            parts.append((end.share, f"end {_size(end)} along the feed {_of(result, end)}"))
+        elif feed.worst >= 0:
+            parts.append((feed.share, f"tip {_size(feed)} along the feed {_of(result, feed)}"))
     if not parts:
         largest, allowed = (format_si(v, "mm", 2) for v in (result.max_deviation, result.setup.tolerance))
         where = f"at line {result.worst_block} ({format_percent(share)} of {allowed})"

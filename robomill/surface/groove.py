@@ -100,12 +100,12 @@ def _section(
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():
-        return _empty(place, block, "the tool does not reach this point")
+        return _empty(place, block, "where the deflected tool is here is not known: out of reach, or not judged")
     shift = float((tip - place.centre) @ place.normal)
     low, high = stock_span(stock, place.centre, place.normal)
     window = 2.5 * cutter.radius + abs(shift)
     if not (low < 0.0 < high and low < shift < high):
-        return _empty(place, block, "the tool is outside the stock here")
+        return _empty(place, block, "the tool's axis is beside the stock here, so there is no groove to measure")
     w = np.linspace(max(low, -window), min(high, window), samples)
     skin = skin_on_line(stock, place.centre, place.normal)
     traces = []

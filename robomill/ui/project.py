@@ -257,7 +257,7 @@ CHOICES = {
     ("maps", "region"): ("paper", "largest", "reach", "own"),
     ("maps", "normal"): ("x", "y", "z"),
     ("maps", "picture"): ("plane", "pair", "solid"),
-    ("maps", "sheet"): ("nine", "shares", "dominant", "lines", "compare"),
+    ("maps", "sheet"): ("nine", "one", "shares", "dominant", "lines", "compare"),
     ("maps", "shares"): ("direct", "cross"),
     ("maps", "component"): ("xx", "yy", "zz", "xy", "xz", "yz"),
     ("maps", "quantity"): (

@@ -234,3 +234,25 @@ def test_rapids_through_material_are_named_once_in_order():
     assert " and more: a rapid" in more.surface_notes[-1]
     clear = program("G0 Z9", "G0 X-40 Y0", "G1 Z-2 F300", "G1 X40", "G0 X-40", "G0 Z9", "G0 X90 Y90", "G0 Z-2")
     assert clear.surface_notes == ()  # back through the groove it has cut, and beside the stock
+
+
+def test_a_feed_tolerance_of_its_own_is_judged():
+    """400 N against the feed on a straight groove move no wall: green, unless the feed has a tolerance it exceeds."""
+    pushed = SETUP.replace(force=PathForce(feed=-400.0))
+    run = rm.simulate(pushed)
+    along = np.nanmax(np.abs(run.delta[run.path.cutting] @ SETUP.T_MW[:3, 0]))
+    assert along > 0.3e-3
+    assert run.verdict.level == "ok"
+    assert rm.simulate(pushed.replace(feed_tolerance=1.01 * along)).verdict.level == "tight"
+    found = rm.simulate(pushed.replace(feed_tolerance=0.99 * along)).verdict
+    assert found.level == "out"
+    assert found.share == pytest.approx(1 / 0.99, rel=1e-9)
+
+
+def test_the_law_of_a_thrust_is_told_where_it_was_used():
+    hole = GCodeSource("G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG81 Z-4 R2 F300\nG80\nM2\n")
+    drill = dataclasses.replace(PROCESS.cutter, kind="drill", flutes=2, tip_angle=np.radians(118.0))
+    mill, lips = (rm.simulate(PROCESS.replace(source=hole, cutter=c)) for c in (PROCESS.cutter, drill))
+    stated = rm.simulate(SETUP.replace(source=hole))
+    assert ["end teeth" in " ".join(run.notes) for run in (mill, lips, stated)] == [True, False, False]
+    assert ["two lips" in " ".join(run.notes) for run in (mill, lips, stated)] == [False, True, False]

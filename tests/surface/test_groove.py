@@ -112,9 +112,9 @@ def test_what_cannot_be_measured_says_why():
     assert "along the tool axis" in plunge.note
     assert np.isnan(plunge.width)
     assert slot_.note == ""
-    assert "outside the stock" in outside.note
+    assert "beside the stock" in outside.note
     moved[2] = np.nan
-    assert "does not reach" in groove_section(stock, FLAT, p, moved, cutting, None, 0.03).note
+    assert "not known" in groove_section(stock, FLAT, p, moved, cutting, None, 0.03).note
     with pytest.raises(SurfaceError, match="runs from 0 to 207"):
         groove_section(stock, FLAT, p, moved, cutting, None, 0.3)
 

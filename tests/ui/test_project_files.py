@@ -8,8 +8,13 @@ import pytest
 
 from robomill.errors import ProjectError
 from robomill.io.projects import load_setup, setup_to_toml
+from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
-from robomill.ui.project import Project, View, project_from_toml, project_to_toml
+from robomill.ui.maps.sheets import SHEETS
+from robomill.ui.project import MapView, Project, View, project_from_toml, project_to_toml
+from robomill.workspace.quantities import quantities
+
+ASKED = quantities(load_robot("slavkovic_5r")).values()
 
 
 @pytest.fixture(scope="module")
@@ -31,6 +36,13 @@ def test_round_trip(project: Project) -> None:
     assert again.setup.digest() == project.setup.digest()
     assert again.view == project.view
     assert again.preset == project.preset
+
+
+@pytest.mark.parametrize("sheet", SHEETS)
+@pytest.mark.parametrize("quantity", [q.name for q in ASKED if q.rests_on == "geometry"])
+def test_whatever_the_maps_show_is_opened_again(project: Project, sheet: str, quantity: str) -> None:
+    seen = dataclasses.replace(project, maps=MapView(sheet=sheet, quantity=quantity))
+    assert project_from_toml(project_to_toml(seen)).maps == seen.maps
 
 
 def test_an_edited_robot_round_trips(project: Project) -> None:

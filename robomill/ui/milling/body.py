@@ -89,7 +89,10 @@ def inputs_column(result: SimulationResult | None) -> None:
         tools_panel.panel()
         if result is not None:
             for words in dict.fromkeys(
-                [*setup.stock_block.warnings(setup.cutter), *cut_warnings(setup.cutter, result.conditions)]
+                [
+                    *setup.stock_block.warnings(setup.cutter),
+                    *cut_warnings(setup.cutter, result.conditions, setup.force.follows_cut),
+                ]
             ):
                 st.warning(words, icon=":material/warning:")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
