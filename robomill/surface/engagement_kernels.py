@@ -30,7 +30,7 @@ ENDS = 7  # halvings of a piece of the profile in which material begins or ends
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 12, 96  # of each stretch of the profile, at most
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
-SECTORS = 18  # of the half turn, for the course of the force over a revolution
+SECTORS = PANELS  # of the half turn, for the course of the force over a revolution: each panel looks into its own
 MOMENTS = 8
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)

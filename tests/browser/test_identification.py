@@ -69,7 +69,8 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     page.keyboard.press("Enter")
     page.get_by_text("from the force").wait_for()
     wider = page.locator(".rm-tile", has_text="The cut at its worst").locator(".rm-value").inner_text()
-    assert float(wider.partition("±")[2].split("mm")[0]) > 10 * float(tile.partition("±")[2].split("mm")[0])
+    # 10 % of 0.29 mm, twice, against what the compliances leave: their noise and the model's error.
+    assert float(wider.partition("±")[2].split("mm")[0]) > 4 * float(tile.partition("±")[2].split("mm")[0])
 
     page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Use these compliances in the project").wait_for()

@@ -74,7 +74,7 @@ def test_coupling_says_what_it_did_and_needs_the_material(app: AppTest) -> None:
     app.toggle(key="coupling").set_value(True).run()
     assert not app.exception
     text = words(app)
-    assert "iterations" in text
+    assert "evaluations" in text
     assert "Against one pass" in text
     app.selectbox(key="force.kind").set_value("constant").run()
     assert not app.exception
@@ -158,6 +158,8 @@ def test_bending_and_weight_tables_to_springs_and_back() -> None:
     (spring,) = springs_panel.joint_springs(JointBending, frame)
     assert (spring.joint, spring.C_x, spring.C_y) == (2, 0.0, pytest.approx(3e-7))
     assert springs_panel.joint_frame(JointBending, 5, {2: spring}).loc[1, "about y"] == pytest.approx(3.0)
+    turned = springs_panel.joint_frame(JointBending, 5, {2: dataclasses.replace(spring, turned=True)})
+    assert [each.turned for each in springs_panel.joint_springs(JointBending, turned)] == [True]
     weight = springs_panel.weight_frame(5, None)
     assert springs_panel.weight_from(weight) is None
     weight.loc[2, ["kg", "x mm"]] = 40.0, 250.0
@@ -301,7 +303,7 @@ def test_stock_from_stl_in_its_own_unit(app: AppTest) -> None:
     app.button_group(key="milling.stock").set_value("stl").run()
     give(app, "milling.stock.file", "blank.stl", box(1e-3))
     assert not app.exception
-    assert any("looks like metres" in w.value for w in app.warning)
+    assert any("if they are metres" in w.value for w in app.warning)
     app.button_group(key="milling.stock.unit").set_value("m").run()
     assert not app.exception
     assert errors(app) == []

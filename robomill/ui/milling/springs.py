@@ -116,7 +116,13 @@ def _each_joint(kind: type[Spring]) -> None:
         lambda: joint_frame(kind, n, springs),
         lambda frame: _put(kind, *joint_springs(kind, frame), from_editor=True),
         inputs.Sheet(
-            columns={q.label: st.column_config.NumberColumn(q.label, format="%.4g") for q in columns}, locked=("joint",)
+            columns={
+                q.label: st.column_config.CheckboxColumn(q.label)
+                if q.kind == "switch"
+                else st.column_config.NumberColumn(q.label, format="%.4g")
+                for q in columns
+            },
+            locked=("joint",),
         ),
     )
     units = ", ".join(dict.fromkeys(unit_label(q.unit) for q in columns))
@@ -124,23 +130,34 @@ def _each_joint(kind: type[Spring]) -> None:
 
 
 def joint_columns(kind: type[Spring]) -> list[Quantity]:
-    """The declared numbers of a spring that each joint can have, beside the joint itself."""
+    """The declared numbers and switches of a spring that each joint can have, beside the joint itself."""
     return [q for q in quantities(kind).values() if q.name != "joint"]
 
 
 def joint_frame(kind: type[Any], n: int, springs: Mapping[int, Any]) -> pd.DataFrame:
     """One row a joint with its numbers; joints without the spring as it starts."""
     rows = [springs.get(joint, kind(joint)) for joint in range(1, n + 1)]
-    values = {q.label: [from_si(getattr(s, q.name), q.unit) for s in rows] for q in joint_columns(kind)}
+    values = {q.label: [_cell(q, getattr(s, q.name)) for s in rows] for q in joint_columns(kind)}
     return pd.DataFrame({"joint": [str(s.joint) for s in rows], **values})
+
+
+def _cell(q: Quantity, value: Any) -> Any:
+    """A number or a switch of a spring as its cell shows it."""
+    return value if q.kind == "switch" else from_si(value, q.unit)
+
+
+def _number(q: Quantity, cell: Any) -> Any:
+    """What a cell says: an empty one is 0, or off."""
+    if q.kind == "switch":
+        return not inputs.empty(cell) and bool(cell)
+    return 0.0 if inputs.empty(cell) else to_si(float(cell), q.unit)
 
 
 def joint_springs(kind: type[Any], frame: pd.DataFrame) -> list[Any]:
     """The springs of a table; joints whose numbers are all as at the start are left out."""
     found = []
     for i, joint in enumerate(frame["joint"]):
-        cells = {q: frame[q.label].iloc[i] for q in joint_columns(kind)}
-        values = {q.name: 0.0 if inputs.empty(cell) else to_si(float(cell), q.unit) for q, cell in cells.items()}
+        values = {q.name: _number(q, frame[q.label].iloc[i]) for q in joint_columns(kind)}
         spring = kind(int(joint), **values, provenance=TYPED)
         if spring != kind(int(joint), provenance=TYPED):
             found.append(spring)
