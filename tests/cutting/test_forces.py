@@ -10,10 +10,14 @@ from robomill.cutting.force import MeanForce
 from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.constant import ConstantForce
+from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.materials import Material
 from robomill.cutting.tool import SHAPES, Cutter
+from robomill.errors import CuttingError
 from robomill.io.materials import load_material
+from robomill.provenance import Provenance
 
 MILL = Cutter("flat", 8e-3, flutes=3)
 ROW = load_material("al7075_t6_carbide_ref190")
@@ -90,3 +94,26 @@ def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
         assert cutter.corner_radius == pytest.approx(expected)
         assert cutter.half_angle == pytest.approx({"chamfer": math.pi / 4, "drill": math.radians(59.0)}.get(kind, 0.0))
         assert cutter.conical == (kind in ("chamfer", "drill"))
+
+
+def test_unknown_axial_coefficients_are_named():
+    force = MechanisticForce(MILL, load_material("al6061_t6_carbide_ref160"))
+    assert force.components(SLOT)[0, 2] == 0.0
+    assert "axial coefficients are unknown" in force.notes[0]
+    assert MechanisticForce(MILL, ROW).notes == ()
+    assert force.provenance.kind == "computed"
+    assert "10.1186/s10033-021-00536-9" in force.provenance.source
+
+
+def test_refused_models():
+    with pytest.raises(CuttingError, match="has kienzle coefficients; a mechanistic force needs"):
+        MechanisticForce(MILL, load_material("al_wrought_cured_kienzle"))
+
+
+def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
+    source = Provenance("user", "test")
+    kienzle = Material("k", "k", "x", source, kc11=8e8, mc=0.0, radial_ratio=0.3, axial_ratio=0.1)
+    mechanistic = Material("m", "m", "x", source, Ktc=8e8, Kte=0.0, Krc=2.4e8, Kre=0.0, Kac=8e7, Kae=0.0)
+    np.testing.assert_allclose(
+        KienzleForce(MILL, kienzle).components(SLOT), MechanisticForce(MILL, mechanistic).components(SLOT), rtol=1e-12
+    )

@@ -54,3 +54,16 @@ def test_refusals() -> None:
     )
     with pytest.raises(ToolpathError, match="feed of 0"):
         write_gcode(stuck)
+
+
+WORDS = [
+    *("M3 S600", "G1 X1 F600", "X2", "M5", "X3", "M4", "X4", "G4 P0.5", "G4 P0.25", "G2 X6 I1", "X8 I1"),
+    *("M3", "G1 X9", "M4 S0", "X10", "S900", "G0 X11", "G4 P2", "M2"),
+]
+
+
+def test_written_and_read_again() -> None:
+    path = read_gcode("\n".join(word.replace("S0", "S1") for word in WORDS))
+    again = read_gcode(write_gcode(path))
+    assert again.ccw.tolist() == path.ccw.tolist()
+    assert again.dwell == pytest.approx(path.dwell)

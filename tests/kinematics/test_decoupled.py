@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.kinematics.decoupled import decoupled
+from tests.robot.written_otherwise import with_blocked
 
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
@@ -23,3 +25,12 @@ def test_the_arm_at_home_stands_in_front_with_its_wrist_plus(name, sign, at):
     np.testing.assert_allclose(there.theta, past, atol=1e-8)
     assert "front" in there.branch
     assert "wrist +" in there.branch
+
+
+def test_structures_recognised_from_the_table():
+    assert decoupled(rm.load_robot("slavkovic_5r")).n == 5
+    assert decoupled(rm.load_robot("kuka_kr500")).spindle_on_last_axis
+    assert not decoupled(rm.load_robot("fanuc_r2000ic")).spindle_on_last_axis
+    assert decoupled(rm.load_robot("planar_3r")) is None
+    # The paper's machine: a six-axis robot with axis 6 blocked.
+    assert decoupled(with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)).n == 5

@@ -77,3 +77,19 @@ def test_world_coordinates_round_trip():
     np.testing.assert_allclose(T_MT @ invert(T_MT), np.broadcast_to(np.eye(4), (100, 4, 4)), atol=1e-14)
     # Along X_M the tilt A is undetermined: 0 is given.
     np.testing.assert_allclose(tilt_from_axis([1.0, 0.0, 0.0]), [0.0, np.pi / 2])
+
+
+def test_what_is_not_reached_is_nan_in_every_law():
+    robot = rm.load_robot("slavkovic_5r")
+    theta = rm.inverse_kinematics(robot, rm.pose_from_world([[0, -1.3, 0, 0, 0], [0, -9, 0, 0, 0]])).theta
+    laws = (
+        rm.cartesian_compliance,
+        dexterity.determinant,
+        dexterity.manipulability,
+        dexterity.singular_values,
+        dexterity.limit_distance,
+    )
+    for law in laws:
+        values = law(robot, theta)
+        assert np.isfinite(values[0]).all(), law.__name__
+        assert np.isnan(values[1]).all(), law.__name__

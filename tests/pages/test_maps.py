@@ -1,4 +1,4 @@
-"""Workspace, compliance and learn pages: every picture, every kind of robot, every refusal in one sentence."""
+"""Workspace and compliance pages: every picture, every kind of robot, every refusal in one sentence."""
 
 from __future__ import annotations
 
@@ -233,44 +233,3 @@ def test_inches(app: AppTest) -> None:
     go(app, COMPLIANCE)
     assert "(0.0, −51.2, 0.0) in" in words(app)
     assert not app.exception
-
-
-def test_the_lesson_asks_then_reveals(app: AppTest) -> None:
-    go(app, LEARN)
-    assert "Where does the tip go?" in words(app)
-    assert "<b>0.102 mm</b>" not in words(app)
-    app.radio(key="learn.answer").set_value("y").run()
-    app.button(key="learn.reveal").click().run()
-    said = words(app)
-    assert "<b>0.102 mm</b> down" in said
-    assert '<td class="off">−1.024</td>' in said, "the off-diagonal term lights up"
-    assert "Look again" in said
-    app.radio(key="learn.answer").set_value("down").run()
-    assert "Right." in words(app)
-
-
-def test_the_ellipsoid_stretches_towards_the_edge(app: AppTest) -> None:
-    go(app, LEARN)
-    assert "3.39 µm/N" in words(app)
-    slider = app.select_slider[0]
-    slider.set_value(len(slider.options) - 1).run()
-    assert not app.exception
-    said = words(app)
-    assert "6.83 µm/N" in said
-    assert "A singularity: one direction is lost." in said
-
-
-def test_equations_hold_the_numbers_of_now(app: AppTest) -> None:
-    go(app, LEARN)
-    tex = "\n".join(e.value for e in app.get("latex")) if app.get("latex") else words(app)
-    assert "2.295" in tex
-    assert "-1.024" in tex
-    assert "229.5" in tex
-
-
-def test_the_reproduction_table_is_on_the_page(app: AppTest) -> None:
-    go(app, LEARN)
-    said = words(app)
-    for item in ("Table 1", "Table 3", "Fig. 5", "Fig. 16"):
-        assert item in said
-    assert "0.2644 mm from Table 3" in said

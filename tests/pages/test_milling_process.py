@@ -210,8 +210,6 @@ def test_the_papers_numbers_stand_on_one_chart(app: AppTest) -> None:
 
 FORCE_HEAD = "t_s,F_feed_normal_N\n"
 GOOD = FORCE_HEAD + "".join(f"{0.002 * k:.3f},{100 + (k % 2):d}\n" for k in range(20_000))
-
-
 BAD_FORCES = [
     (
         FORCE_HEAD + "0,1\n0.1,two\n0.2,3\n0.3,4\n0.4,5\n",

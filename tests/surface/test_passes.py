@@ -1,7 +1,11 @@
 """The feed moves of a path: which there are, which axes they may have, and how a turning axis is divided."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
@@ -98,3 +102,30 @@ def test_an_axis_that_turns_through_the_vertical_is_cut():
     mirrored = cut(stock, 5e-4, Cutter("ball", 0.008), p[::-1] * [-1, 1, 1] + [0.03, 0, 0], k[::-1] * [-1, 1, 1])
     np.testing.assert_allclose(surface.z, mirrored.z[::-1], atol=1e-12)
     assert surface.z.min() == pytest.approx(-0.002, abs=5e-5)
+
+
+steps = st.integers(-6, 6).map(lambda n: n * 1.7e-3)
+
+
+points = st.tuples(steps, steps, st.integers(-8, -1).map(lambda n: n * 4e-4))
+
+
+paths = st.lists(points, min_size=2, max_size=6, unique=True).map(np.array)
+
+
+few = settings(max_examples=25, deadline=None)
+
+
+@few
+@given(paths, st.integers(2, 9))
+def test_joined_moves_are_the_undivided_path(p, pieces):
+    t = np.arange(pieces) / pieces
+    divided = np.vstack([*(a + t[:, None] * (b - a) for a, b in pairwise(p)), p[-1:]])
+    ends = np.hstack([divided[:-1], divided[1:]])
+    whole, _ = joined(Passes(ends, np.tile([0.0, 0.0, 1.0], (len(ends), 2))))
+    assert len(whole) <= len(p) - 1
+    np.testing.assert_array_equal(whole[0, :3], p[0])
+    np.testing.assert_array_equal(whole[-1, 3:], p[-1])
+    turning = np.tile([0.0, 0.0, 1.0], (len(ends), 2))
+    turning[:, 3] = np.arange(len(ends)) * 1e-3
+    assert len(joined(Passes(ends, turning)).ends) == len(ends)

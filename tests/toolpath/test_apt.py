@@ -65,3 +65,12 @@ def test_refusals(text: str, says: str) -> None:
     with pytest.raises(GCodeError) as caught:
         read_apt(text)
     assert says in str(caught.value)
+
+
+def test_apt_says_it_too() -> None:
+    path = read_apt(
+        "UNITS/MM\nSPINDL/600,RPM,CCLW\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nDELAY/1.5\nSPINDL/600,CLW\nGOTO/2,0,0\n"
+        "DELAY/5,REV\nGOTO/3,0,0\nSPINDL/OFF\nGOTO/4,0,0\nFINI\n"
+    )
+    assert path.ccw.tolist() == [True, True, False, False, False]
+    assert path.dwell.tolist() == [0.0, 0.0, 1.5, 0.5, 0.0]

@@ -116,3 +116,14 @@ def test_grids():
         Grid(x=[0, 0], y=[0], z=[0])
     with pytest.raises(WorkspaceError, match="normal"):
         plane_grid("w", 0.0, *PAPER_BOX, 0.1)
+
+
+def test_a_planar_arm_keeps_its_elbow_side_over_a_map():
+    robot = rm.load_robot("planar_2r")
+    field = compliance_field(robot, plane_grid("z", 0.0, [-0.8, -0.8, 0], [0.8, 0.8, 0], 0.1))
+    theta = field.theta[field.reached]
+    other = theta[theta[:, 1] < 0]
+    # Where the elbow is on the other side, the first joint would be past its limit with it on this one.
+    mirrored = other[:, 0] + 2 * np.arctan2(0.4 * np.sin(other[:, 1]), 0.5 + 0.4 * np.cos(other[:, 1]))
+    mirrored = (mirrored + np.pi) % (2 * np.pi) - np.pi
+    assert (np.abs(mirrored) > robot.limits[0, 1] - 1e-9).all()

@@ -1,12 +1,13 @@
-"""What the toolpath page says about a program: its units and who said them, its moves, its first finding."""
+"""What the toolpath page says about a program: its units and who said them, its moves, counted plainly."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.summary import finding_words, move_words, worst_first, written_in
+from robomill.ui.toolpath.summary import distinct, finding_words, move_words, path_summary, worst_first, written_in
 
 APT = "PARTNO/X\n{}FEDRAT/600\nFROM/0,0,10\nGOTO/0,0,0\nGOTO/10,0,0\nFINI\n"
 
@@ -46,3 +47,32 @@ def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
     said = finding_words(long)
     assert said == "the part is 4.0 x 2.0 mm across; if the program means inches …"
     assert len(said) <= 66
+
+
+def program(lines: int) -> str:
+    body = "\n".join(f"G1 X{i % 100} Y{i % 7}" for i in range(lines))
+    return f"G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\n{body}\nG0 Z5\nM2\n"
+
+
+def test_the_summary_is_what_plain_counting_says() -> None:
+    path = GCodeSource(program(500)).read()
+    summary = path_summary(path)
+    assert summary.moves == len(path) - 1
+    assert summary.cuts == sum(bool(c) for c in path.cutting)
+    assert summary.blocks == len({int(b) for b, c in zip(path.block, path.cutting, strict=True) if c})
+    assert summary.rapids == pytest.approx(
+        sum(float(s) for s, c in zip(path.step_length, path.cutting, strict=True) if not c)
+    )
+    assert summary.feeds == pytest.approx((0.01, 0.01))
+    assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
+
+
+def test_distinct_values_by_counting_are_those_by_sorting() -> None:
+    rng = np.random.default_rng(0)
+    for values in (
+        rng.integers(0, 50, 1000),
+        rng.integers(-5, 5, 99),
+        np.array([7, 10**12]),
+        np.empty(0, dtype=np.int64),
+    ):
+        np.testing.assert_array_equal(distinct(values), np.unique(values))

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
-from robomill.errors import ProjectError
+from robomill.errors import CuttingError, ProjectError
 from robomill.io.projects import load_setup, setup_to_toml
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.ui.maps.sheets import SHEETS
-from robomill.ui.project import MapView, Project, View, project_from_toml, project_to_toml
+from robomill.ui.project import MapView, Project, View, project_from_toml, project_to_toml, read_field, with_field
 from robomill.workspace.quantities import quantities
 
 ASKED = quantities(load_robot("slavkovic_5r")).values()
@@ -80,3 +81,18 @@ def test_a_broken_file_is_refused_with_its_place(project: Project, old: str, new
 def test_what_is_no_project_is_refused(text: str) -> None:
     with pytest.raises(ProjectError):
         project_from_toml(text)
+
+
+def test_read_and_write() -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    assert read_field(setup, "cutter.diameter") == 0.008
+    assert read_field(setup, "T_MW[1,3]") == -1.3
+    changed = with_field(setup, "T_MW[1,3]", -1.25)
+    assert changed.T_MW[1, 3] == -1.25
+    assert setup.T_MW[1, 3] == -1.3
+    assert with_field(setup, "cutter.flutes", 2).cutter.flutes == 2
+    np.testing.assert_array_equal(with_field(setup, "stock.upper[2]", 0.001).stock.upper, [0.064, 0.02, 0.001])
+    with pytest.raises(CuttingError):
+        with_field(setup, "cutter.diameter", -1.0)
+    with pytest.raises(KeyError):
+        read_field(setup, "cutter.(diameter)")

@@ -1,13 +1,10 @@
 """Properties that hold for any path: material only goes, order and mirror do not matter."""
 
-from itertools import pairwise
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.passes import Passes, joined
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
 
@@ -42,18 +39,3 @@ def test_a_mirrored_path_cuts_a_mirrored_part(p, cutter):
     there = cut(STOCK, CELL, cutter, p, must_touch=False)
     back = cut(STOCK, CELL, cutter, p * [1, -1, 1], must_touch=False)
     np.testing.assert_allclose(back.z, there.z[:, ::-1], atol=1e-9)
-
-
-@few
-@given(paths, st.integers(2, 9))
-def test_joined_moves_are_the_undivided_path(p, pieces):
-    t = np.arange(pieces) / pieces
-    divided = np.vstack([*(a + t[:, None] * (b - a) for a, b in pairwise(p)), p[-1:]])
-    ends = np.hstack([divided[:-1], divided[1:]])
-    whole, _ = joined(Passes(ends, np.tile([0.0, 0.0, 1.0], (len(ends), 2))))
-    assert len(whole) <= len(p) - 1
-    np.testing.assert_array_equal(whole[0, :3], p[0])
-    np.testing.assert_array_equal(whole[-1, 3:], p[-1])
-    turning = np.tile([0.0, 0.0, 1.0], (len(ends), 2))
-    turning[:, 3] = np.arange(len(ends)) * 1e-3
-    assert len(joined(Passes(ends, turning)).ends) == len(ends)

@@ -8,11 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.io.gcode_out import write_gcode
-from robomill.toolpath.apt import read_apt
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import toolpath_from_lines
-from robomill.toolpath.sampling import resample
 
 WORDS = [
     *("M3 S600", "G1 X1 F600", "X2", "M5", "X3", "M4", "X4", "G4 P0.5", "G4 P0.25", "G2 X6 I1", "X8 I1"),
@@ -48,16 +45,6 @@ def test_the_sense_and_the_dwell_stand_with_the_move(padding: int) -> None:
     assert [bool(path.ccw[path.block == line].all()) for line in path.block[moves][: len(ccw)]] == ccw
 
 
-def test_short_steps_keep_the_sense_and_wait_once() -> None:
-    path = read_gcode("\n".join(WORDS))
-    fine = resample(path, 1e-4)
-    assert fine.dwell.sum() == pytest.approx(path.dwell.sum())
-    for line in np.unique(path.block):
-        assert set(fine.ccw[fine.block == line]) == set(path.ccw[path.block == line])
-    waits = np.flatnonzero(fine.dwell)
-    assert (fine.block[waits] != fine.block[waits - 1]).all()
-
-
 def test_the_sense_counts_in_the_digest_and_defaults_to_clockwise() -> None:
     right, left = (read_gcode(f"{m} S600\nG1 X1 F60\nM2\n") for m in ("M3", "M4"))
     assert right.digest() != left.digest()
@@ -69,22 +56,6 @@ def test_a_cycle_waits_at_the_bottom() -> None:
     waits = np.flatnonzero(path.dwell)
     assert path.dwell[waits].tolist() == [0.5, 0.5]
     assert path.p[waits - 1, 2] == pytest.approx(-2e-3)
-
-
-def test_written_and_read_again() -> None:
-    path = read_gcode("\n".join(word.replace("S0", "S1") for word in WORDS))
-    again = read_gcode(write_gcode(path))
-    assert again.ccw.tolist() == path.ccw.tolist()
-    assert again.dwell == pytest.approx(path.dwell)
-
-
-def test_apt_says_it_too() -> None:
-    path = read_apt(
-        "UNITS/MM\nSPINDL/600,RPM,CCLW\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nDELAY/1.5\nSPINDL/600,CLW\nGOTO/2,0,0\n"
-        "DELAY/5,REV\nGOTO/3,0,0\nSPINDL/OFF\nGOTO/4,0,0\nFINI\n"
-    )
-    assert path.ccw.tolist() == [True, True, False, False, False]
-    assert path.dwell.tolist() == [0.0, 0.0, 1.5, 0.5, 0.0]
 
 
 @pytest.mark.parametrize("padding", [0, 25_000])

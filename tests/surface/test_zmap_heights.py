@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.stock import Stock, fitting_cell, stock_grid, stock_span
+from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
 
 STOCK = Stock((0.0, 0.0, -0.02), (0.03, 0.02, 0.0))
@@ -75,60 +75,3 @@ def test_two_walls_in_one_cell_leave_a_rib():
     assert surface.removed_volume == pytest.approx(0.016 * 0.016 * 0.002, rel=1e-9)
     row = surface.mean[5]
     assert row[9] == pytest.approx(-0.002 * 0.7, abs=1e-9)
-
-
-def test_cells_fill_the_stock():
-    cells = stock_grid(Stock((0.001, 0.002, 0), (0.0313, 0.0081, 1)), 1e-3)
-    assert (cells.nx, cells.ny) == (31, 7)
-    assert cells.x[0] - 0.5 * cells.dx == pytest.approx(0.001, abs=1e-15)
-    assert cells.x[-1] + 0.5 * cells.dx == pytest.approx(0.0313, abs=1e-15)
-    assert cells.y[0] - 0.5 * cells.dy == pytest.approx(0.002, abs=1e-15)
-    assert cells.y[-1] + 0.5 * cells.dy == pytest.approx(0.0081, abs=1e-15)
-    assert (len(cells.x), len(cells.y)) == (31, 7)
-    exact = stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1e-3)
-    assert (exact.nx, exact.ny) == (30, 20)
-    assert stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1.0)[:2] == (1, 1)
-
-
-def test_the_smallest_cell_that_fits_is_not_much_too_large():
-    for length, width, budget in ((0.06, 0.04, 50_000_000), (0.2, 0.1, 10_000), (1.0, 3e-4, 1000)):
-        cell = fitting_cell(length, width, budget)
-        finer = cell * 0.95
-        assert np.ceil(length / cell - 1e-6) * np.ceil(width / cell - 1e-6) <= budget
-        assert np.ceil(length / finer) * np.ceil(width / finer) > 0.9 * budget
-
-
-def test_a_line_over_the_stock():
-    rng = np.random.default_rng(4)
-    box = shapely.box(0, 0, 0.03, 0.02)
-    for angle in [0.0, np.pi / 2, *rng.uniform(0, 7, 30)]:
-        centre = np.append(rng.uniform(-0.01, 0.04, 2), 0.0)
-        normal = np.array([round(np.cos(angle), 15), round(np.sin(angle), 15), 0.0])
-        line = shapely.LineString([centre[:2] - normal[:2], centre[:2] + normal[:2]])
-        over = line.intersection(box)
-        low, high = stock_span(STOCK, centre, normal)
-        if over.is_empty:
-            assert low >= high
-        else:
-            w = (np.array(over.coords) - centre[:2]) @ normal[:2]
-            assert (low, high) == pytest.approx((w.min(), w.max()), abs=1e-12)
-
-
-def test_a_stock_round_a_path():
-    cutter = CUTTERS["flat"]
-    p = np.array([[0.5, 0.5, 0.05], [0.0, 0.0, 0.01], [0.05, -0.02, 0.002], [9.0, 9.0, 0.05]])
-    stock = Stock.from_path(p, cutter, [False, False, True, False])
-    np.testing.assert_allclose(stock.lower, [-0.006, -0.026, -0.003], atol=1e-15)
-    np.testing.assert_allclose(stock.upper, [0.056, 0.006, 0.011], atol=1e-15)
-    np.testing.assert_allclose(Stock.from_path(p[1:3], cutter).upper[2], 0.011)
-    np.testing.assert_allclose(Stock.from_path(p[1:3], cutter, top=0.02).upper[2], 0.02)
-    np.testing.assert_allclose(stock.size, [0.062, 0.032, 0.014], atol=1e-15)
-
-
-def test_odd_stocks_are_said():
-    cutter = CUTTERS["flat"]
-    assert "check the unit" in Stock((0, 0, 0), (6.0, 1, 1)).warnings(cutter)[0]
-    assert "check the unit" in Stock((0, 0, 0), (1e-3, 1e-3, 1e-3)).warnings(cutter)[0]
-    assert Stock((0, 0, 0), (4.9, 0.1, 0.1)).warnings(cutter) == ()
-    assert Stock((0, 0, 0), (1, 0.0081, 1)).warnings(cutter) == ()
-    assert len(Stock((0, 0, 0), (0.0079, 1, 1)).warnings(cutter)) == 1

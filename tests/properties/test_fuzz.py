@@ -17,7 +17,7 @@ from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.support import SUPPORT
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).resolve().parents[1] / "toolpath" / "gcode" / "data"
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, 1e-3)) for n in range(1, 20)}
 ALPHABET = "GXYZABCIJKRFSPQLDHMTNO#<>[]()%;/=+-.,*^@$ 0123456789\n\t\r\0subifwhilecallendrepeat\u00e9\u2028"
 NASTY = [

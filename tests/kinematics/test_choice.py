@@ -5,18 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import KinematicsError
-from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.transforms import rotation_z, transform
-from tests.robot.written_otherwise import with_blocked
-
-
-def test_structures_recognised_from_the_table():
-    assert decoupled(rm.load_robot("slavkovic_5r")).n == 5
-    assert decoupled(rm.load_robot("kuka_kr500")).spindle_on_last_axis
-    assert not decoupled(rm.load_robot("fanuc_r2000ic")).spindle_on_last_axis
-    assert decoupled(rm.load_robot("planar_3r")) is None
-    # The paper's machine: a six-axis robot with axis 6 blocked.
-    assert decoupled(with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)).n == 5
 
 
 def _box(robot, count=200):

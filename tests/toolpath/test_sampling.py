@@ -1,4 +1,4 @@
-"""The toolpath as a value, tables of lines, and resampling."""
+"""Resampling: corners, length, lines and what begins is kept."""
 
 from __future__ import annotations
 
@@ -6,25 +6,13 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
+from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sampling import resample
 
 
 def two_lines():
     return toolpath_from_lines([[0, 0, 0], [0, 0.02, 0]], [[0.01, 0, 0], [0.01, 0.02, 0]], 0.03, 200.0)
-
-
-def test_lines_that_do_not_touch_are_joined_by_a_rapid() -> None:
-    path = two_lines()
-    assert path.cutting.tolist() == [False, True, False, True]
-    assert path.block.tolist() == [1, 1, 2, 2]
-    assert path.s[-1] == pytest.approx(0.02)
-    assert path.t[-1] == pytest.approx(0.02 / 0.03)
-
-
-def test_lines_that_touch_are_not() -> None:
-    path = toolpath_from_lines([[0, 0, 0], [0.01, 0, 0]], [[0.01, 0, 0], [0.01, 0.01, 0]], 0.03)
-    assert path.cutting.tolist() == [False, True, True]
 
 
 @pytest.mark.parametrize("step", [1e-3, 0.7e-3, 3.3e-3, 1.0])
@@ -43,20 +31,6 @@ def test_the_tool_axis_turns_on_the_great_circle() -> None:
     fine = resample(path, 0.05)
     middle = np.argmin(np.abs(fine.s - 0.05))
     assert fine.k[middle] == pytest.approx([0, np.sqrt(0.5), np.sqrt(0.5)])
-
-
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        (dict(v_f=0.0), "Row 1: feed is 0 mm/min; a cut needs more than 0"),
-        (dict(end=[[0.0, 0, 0]]), "Row 1: start and end are the same point"),
-        (dict(end=[[np.nan, 0, 0]]), "line ends: expected finite numbers"),
-    ],
-)
-def test_bad_rows_are_named(change: dict, sentence: str) -> None:
-    arguments = dict(start=[[0.0, 0, 0]], end=[[0.1, 0, 0]], v_f=0.03) | change
-    with pytest.raises(ToolpathError, match=sentence):
-        toolpath_from_lines(**arguments)
 
 
 @pytest.mark.parametrize("step", [0.0, -1.0, float("nan")])
@@ -101,3 +75,19 @@ def test_only_what_begins_or_turns_has_a_sample_at_its_start() -> None:
         expected += [i, i] if begin else [i]
     assert fine.block.tolist() == expected
     assert fine.p[:, 0] * 1e3 == pytest.approx([0, 0, 10, 20, 30, 30, 40, 40, 40, 50, 60, 60, 60, 60], abs=1e-12)
+
+
+WORDS = [
+    *("M3 S600", "G1 X1 F600", "X2", "M5", "X3", "M4", "X4", "G4 P0.5", "G4 P0.25", "G2 X6 I1", "X8 I1"),
+    *("M3", "G1 X9", "M4 S0", "X10", "S900", "G0 X11", "G4 P2", "M2"),
+]
+
+
+def test_short_steps_keep_the_sense_and_wait_once() -> None:
+    path = read_gcode("\n".join(WORDS))
+    fine = resample(path, 1e-4)
+    assert fine.dwell.sum() == pytest.approx(path.dwell.sum())
+    for line in np.unique(path.block):
+        assert set(fine.ccw[fine.block == line]) == set(path.ccw[path.block == line])
+    waits = np.flatnonzero(fine.dwell)
+    assert (fine.block[waits] != fine.block[waits - 1]).all()

@@ -1,19 +1,16 @@
-"""Tables on the screen to the model and back, in the units people type."""
+"""Tables of a robot on the screen to the model and back, in the units people type."""
 
 from __future__ import annotations
 
 import re
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from robomill.errors import RobotError, ToolpathError
+from robomill.errors import RobotError
 from robomill.io.robots import load_robot
 from robomill.robot.model import Robot
-from robomill.ui import inputs
 from robomill.ui.robot import tables
-from robomill.ui.toolpath import lines
 from robomill.units import to_si
 
 
@@ -124,30 +121,3 @@ def test_a_bad_table_cell_names_joint_and_column(robot: Robot) -> None:
     frame.loc[2, "upper"] = -170.0
     with pytest.raises(RobotError, match="3"):
         tables.with_limits(robot, frame)
-
-
-def test_lines_in_inches() -> None:
-    frame = pd.DataFrame([[0.0, 0.0, -0.1, 4.0, 0.0, -0.1, 60.0]], columns=list(lines.COLUMNS))
-    source = lines.lines_from_frame(frame, "in", "in/min", 200.0)
-    np.testing.assert_allclose(source.end, [[0.1016, 0.0, -0.00254]])
-    np.testing.assert_allclose(source.v_f, [0.0254])
-    back = lines.lines_frame(source, "in", "in/min")
-    np.testing.assert_allclose(back.to_numpy(), frame.to_numpy(), atol=1e-9)
-
-
-def test_an_empty_cell_of_a_line_is_named() -> None:
-    row = [0.0, 0.0, -2.0, 50.0, None, -2.0, 1800.0]
-    with pytest.raises(ToolpathError, match="Row 1: y₁ is missing"):
-        lines.lines_from_frame(pd.DataFrame([row], columns=list(lines.COLUMNS)), "mm", "mm/min")
-    with pytest.raises(ToolpathError, match="no rows"):
-        lines.lines_from_frame(pd.DataFrame([], columns=list(lines.COLUMNS)), "mm", "mm/min")
-
-
-def test_edits_of_the_screen_are_applied_in_order() -> None:
-    base = pd.DataFrame({"a": [1.0, 2.0, 3.0], "b": [4.0, 5.0, 6.0]})
-    changed = inputs.edited(
-        base, {"edited_rows": {0: {"a": 9.0}, "2": {"b": 8.0}}, "deleted_rows": [1], "added_rows": [{"a": 7.0}]}
-    )
-    assert changed["a"].tolist() == [9.0, 3.0, 7.0]
-    assert changed["b"].tolist()[:2] == [4.0, 8.0]
-    assert base["a"].tolist() == [1.0, 2.0, 3.0]

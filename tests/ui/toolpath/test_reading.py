@@ -1,14 +1,10 @@
-"""Reading beside the page: progress, cancel, refusals; and the summary of a path against plain counting."""
+"""Reading beside the page: progress, cancel, refusals."""
 
 from __future__ import annotations
-
-import numpy as np
-import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.reading import Reading
-from robomill.ui.toolpath.summary import distinct, path_summary
 
 
 def program(lines: int) -> str:
@@ -43,27 +39,3 @@ def test_a_reading_that_is_given_up_stops() -> None:
     finished(reading)
     assert isinstance(reading.error, GCodeError)
     assert "cancelled" in str(reading.error)
-
-
-def test_the_summary_is_what_plain_counting_says() -> None:
-    path = GCodeSource(program(500)).read()
-    summary = path_summary(path)
-    assert summary.moves == len(path) - 1
-    assert summary.cuts == sum(bool(c) for c in path.cutting)
-    assert summary.blocks == len({int(b) for b, c in zip(path.block, path.cutting, strict=True) if c})
-    assert summary.rapids == pytest.approx(
-        sum(float(s) for s, c in zip(path.step_length, path.cutting, strict=True) if not c)
-    )
-    assert summary.feeds == pytest.approx((0.01, 0.01))
-    assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
-
-
-def test_distinct_values_by_counting_are_those_by_sorting() -> None:
-    rng = np.random.default_rng(0)
-    for values in (
-        rng.integers(0, 50, 1000),
-        rng.integers(-5, 5, 99),
-        np.array([7, 10**12]),
-        np.empty(0, dtype=np.int64),
-    ):
-        np.testing.assert_array_equal(distinct(values), np.unique(values))

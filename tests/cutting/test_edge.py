@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robomill.cutting.conditions import CutConditions, cut_warnings
+from robomill.cutting.conditions import CutConditions
 from robomill.cutting.course import Course
 from robomill.cutting.course import force_over_pitch as over_pitch
 from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, mean_force, sine_integral
@@ -15,11 +15,9 @@ from robomill.cutting.force import force_on_tool
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
-from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.materials import alternatives
 from robomill.cutting.tool import Cutter
-from robomill.errors import CuttingError
 from robomill.io.materials import load_material, sample_materials
-from robomill.provenance import Provenance
 
 MILL = Cutter("flat", 8e-3, flutes=3)
 #: The paper's slot: 12 000 1/min, 30 mm/s, 2 mm deep.
@@ -179,35 +177,6 @@ def test_climb_pushes_away_from_the_wall_and_conventional_less_or_towards():
     np.testing.assert_allclose(climb + conventional, slot, rtol=1e-12)
 
 
-@pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
-def test_mean_over_a_pitch_is_the_mean_force(cutter):
-    turns = force_over_pitch(REF190.terms, cutter, CHIP, 2e-3, (0.3, 2.2), instants=720)
-    exact = mean_force(REF190.terms, cutter, CHIP, 2e-3, 0.3, 2.2)
-    assert np.linalg.norm(turns.mean(0) - exact) < 2e-3 * np.linalg.norm(exact)
-
-
-def test_peak_of_one_straight_tooth_in_a_slot():
-    """One straight tooth: F_y = a (Ktc c sin^2 + Kte sin - Krc c sin cos - Kre cos), searched on a fine grid."""
-    mill = MILL.replace(flutes=1, helix_angle=0.0)
-    conditions = CutConditions.steady(0.01, 200.0, 2e-3)
-    peak = MechanisticForce(mill, REF190).peak(conditions)
-    phi = np.linspace(0, np.pi, 20001)
-    F_t = 2e-3 * (REF190.Ktc * CHIP * np.sin(phi) + REF190.Kte)
-    F_r = 2e-3 * (REF190.Krc * CHIP * np.sin(phi) + REF190.Kre)
-    F_y = F_t * np.sin(phi) - F_r * np.cos(phi)
-    assert peak.high[0, 1] == pytest.approx(F_y.max(), rel=2e-3)
-    assert np.linalg.norm(peak.at_peak[0]) == pytest.approx(np.hypot(F_t, F_r).max(), rel=2e-3)
-
-
-def test_peak_is_at_least_the_mean_and_helix_smooths_it():
-    force = MechanisticForce(MILL, REF190)
-    mean, peak = force.components(SLOT), force.peak(SLOT)
-    assert (peak.high >= mean).all()
-    assert (peak.low <= mean).all()
-    steep = MechanisticForce(MILL.replace(helix_angle=math.radians(60)), REF190).peak(SLOT)
-    assert steep.high[0, 1] < peak.high[0, 1]
-
-
 def test_band_spans_the_alternative_rows_of_the_same_alloy():
     rows = alternatives(REF190, sample_materials())
     assert {row.name for row in rows} == {"al7075_hss_ref156", "al7075_carbide_ref47", "al7075_t6_carbide_ref160"}
@@ -278,17 +247,6 @@ def push_of_surface(row, cutter, c, depth, v, pieces=600):
     return total * cutter.flutes / turns
 
 
-def test_drawn_out_or_standing_a_tool_does_not_cut_and_a_plunge_is_said():
-    force = MechanisticForce(MILL, REF190)
-    out = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, along=1.0)
-    np.testing.assert_array_equal(force.components(out), 0.0)
-    assert not out.engaged.any()
-    plunge = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, along=-1.0, block=[7])
-    # the whole end face advances by f_z: N R (Krc f_z + Kre)
-    assert force.components(plunge)[0] == pytest.approx([0, 0, 3 * 4e-3 * (REF190.Krc * CHIP + REF190.Kre)], rel=1e-9)
-    assert len(cut_warnings(MILL, plunge)) == 1
-
-
 def test_the_end_of_a_mill_cuts_only_beyond_its_dish():
     """Teeth are ground hollow: on a slope of 0.3 degrees the face does not rub, at 1 degree it does."""
     thrust = [
@@ -340,66 +298,6 @@ def test_what_has_no_model_is_said_and_not_a_number():
     assert [each.code for each in mill.unjudged(unknown)] == ["spindle_speed"]
 
 
-def test_depth_beyond_the_flutes_is_warned_of():
-    mill = MILL.replace(flute_length=1.5e-3)
-    assert cut_warnings(mill, SLOT) == (
-        "Step 0: depth 2.000 mm is beyond the flute length 1.500 mm; the shank would rub (1 steps).",
-    )
-    assert cut_warnings(MILL, SLOT) == ()
-
-
-def test_unknown_axial_coefficients_are_named():
-    force = MechanisticForce(MILL, load_material("al6061_t6_carbide_ref160"))
-    assert force.components(SLOT)[0, 2] == 0.0
-    assert "axial coefficients are unknown" in force.notes[0]
-    assert MechanisticForce(MILL, REF190).notes == ()
-    assert force.provenance.kind == "computed"
-    assert "10.1186/s10033-021-00536-9" in force.provenance.source
-
-
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        ({"n_s": 0.0}, "Line 12: the spindle stands still while the tool is in the material; give S before the cut."),
-        ({"v_f": 0.0}, "Line 12: the feed rate is 0"),
-        ({"v_f": -0.01}, "Line 12: v_f is negative"),
-        ({"a_p": -1e-3}, "Line 12: a_p is negative"),
-        ({"phi_ex": 4.0}, "to 229.18°; expected 0° <= start <= end <= 180°"),
-        ({"phi_st": 2.0, "phi_ex": 1.0}, "arc of engagement from 114.59° to 57.30°"),
-        ({"v_f": math.nan}, "expected finite numbers"),
-        ({"v_f": [1.0, 1.0, 1.0], "t": [0.0, 1.0]}, "t: expected 3 values, found shape (2,)"),
-    ],
-)
-def test_refused_conditions(change, sentence):
-    base = {"v_f": 0.03, "n_s": 200.0, "a_p": 2e-3, "phi_st": 0.0, "phi_ex": np.pi, "cutting": True, "s": 0.0, "t": 0.0}
-    with pytest.raises(CuttingError) as refusal:
-        MechanisticForce(MILL, REF190).components(CutConditions(**{**base, "block": 12, **change}))
-    assert sentence in str(refusal.value)
-
-
-def test_refused_models():
-    with pytest.raises(CuttingError, match="has kienzle coefficients; a mechanistic force needs"):
-        MechanisticForce(MILL, load_material("al_wrought_cured_kienzle"))
-
-
-def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
-    source = Provenance("user", "test")
-    kienzle = Material("k", "k", "x", source, kc11=8e8, mc=0.0, radial_ratio=0.3, axial_ratio=0.1)
-    mechanistic = Material("m", "m", "x", source, Ktc=8e8, Kte=0.0, Krc=2.4e8, Kre=0.0, Kac=8e7, Kae=0.0)
-    np.testing.assert_allclose(
-        KienzleForce(MILL, kienzle).components(SLOT), MechanisticForce(MILL, mechanistic).components(SLOT), rtol=1e-12
-    )
-
-
 def test_moments_of_an_empty_arc_and_of_no_depth():
     assert np.all(np.array(arc_moments(0.0, np.array(1.2), np.array(1.2))) == 0.0)
     assert all(depth_moment(cutter, 0.0, -1.0, q) == 0.0 for cutter in CUTTERS for q in (0, 1))
-
-
-@pytest.mark.parametrize(("helix", "first", "last"), [("right", 1.0, 1.1 + 0.5774), ("left", 1.0 - 0.5774, 1.1)])
-def test_the_upper_edge_lags_on_a_pulling_helix_and_leads_on_a_pushing_one(helix, first, last):
-    mill = MILL.replace(flutes=1, helix=helix)  # 30 deg: the edge turns by tan(30 deg) over 4 mm
-    force = force_over_pitch(REF190.terms, mill, CHIP, 4e-3, (1.0, 1.1), instants=1440)
-    turn = (np.arange(1440) + 0.5) * 2 * np.pi / 1440
-    cuts = turn[np.abs(force).sum(1) > 0]
-    assert (cuts.min(), cuts.max()) == pytest.approx((first, last), abs=0.02)

@@ -1,4 +1,4 @@
-"""Cutting a path into the stock: exact volumes, heights by brute force, refusals."""
+"""Cutting a path into the stock: exact volumes, heights by brute force."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import shapely
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
-from robomill.surface.stock import Stock, fitting_cell, stock_grid
+from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
 
 FLAT = Cutter("flat", 0.008)
@@ -102,16 +102,6 @@ def test_a_path_that_misses_the_stock_says_where_both_are():
         cut(STOCK, 5e-4, FLAT, above + np.array([1.0, 0.0, -0.01]))
 
 
-def test_too_many_cells_are_refused_with_the_size_that_fits():
-    with pytest.raises(SurfaceError, match=r"at most 50 million fit, so use 0.00\d\d mm or more"):
-        cut(STOCK, 1e-6, FLAT, walk(3))
-    for length, width in ((0.06, 0.04), (0.123, 1.7), (2.0, 2e-4)):
-        cell = fitting_cell(length, width, 50_000_000)
-        nx, ny, _, _, dx, dy = stock_grid(Stock((0, 0, 0), (length, width, 1)), cell)
-        assert nx * ny <= 50_000_000
-        assert max(dx, dy) <= cell * (1 + 1e-9)
-
-
 @pytest.mark.parametrize("cell", [0.0, -1e-4, np.nan, np.inf])
 def test_a_cell_must_have_a_size(cell):
     with pytest.raises(SurfaceError, match="Cell size"):
@@ -125,16 +115,3 @@ def test_tiles_do_not_show(monkeypatch):
     tiled = cut(STOCK, 3e-4, CUTTERS["ball"], p)
     np.testing.assert_allclose(tiled.z, whole.z, atol=1e-15)
     assert tiled.removed_volume == pytest.approx(whole.removed_volume, rel=1e-12)
-
-
-def test_stock_refusals_and_defaults():
-    with pytest.raises(SurfaceError, match="Stock in Y.*upper end must lie above"):
-        Stock((0, 1, 0), (1, 1, 1))
-    with pytest.raises(SurfaceError, match="finite"):
-        Stock((0, np.nan, 0), (1, 1, 1))
-    p = np.array([[0.0, 0.0, 0.01], [0.0, 0.0, -0.002], [0.05, 0.0, -0.002], [0.05, 0.0, 0.01]])
-    stock = Stock.from_path(p, FLAT, [False, True, True, False], margin=0.001, below=0.004)
-    np.testing.assert_allclose(stock.lower, [-0.005, -0.005, -0.006])
-    np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
-    assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(FLAT)[0].startswith("Stock: the cutter (8.000 mm) is wider")
-    assert not STOCK.warnings(FLAT)

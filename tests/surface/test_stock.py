@@ -1,0 +1,91 @@
+"""The block and its cells: cells that fill it, the smallest cell that fits, blocks round paths."""
+
+import numpy as np
+import pytest
+import shapely
+
+from robomill.cutting.tool import Cutter
+from robomill.errors import SurfaceError
+from robomill.surface.stock import Stock, fitting_cell, stock_grid, stock_span
+from robomill.surface.zmap import cut
+
+STOCK = Stock((0.0, 0.0, -0.02), (0.03, 0.02, 0.0))
+CUTTER = Cutter("flat", 0.008)
+
+
+def test_cells_fill_the_stock():
+    cells = stock_grid(Stock((0.001, 0.002, 0), (0.0313, 0.0081, 1)), 1e-3)
+    assert (cells.nx, cells.ny) == (31, 7)
+    assert cells.x[0] - 0.5 * cells.dx == pytest.approx(0.001, abs=1e-15)
+    assert cells.x[-1] + 0.5 * cells.dx == pytest.approx(0.0313, abs=1e-15)
+    assert cells.y[0] - 0.5 * cells.dy == pytest.approx(0.002, abs=1e-15)
+    assert cells.y[-1] + 0.5 * cells.dy == pytest.approx(0.0081, abs=1e-15)
+    assert (len(cells.x), len(cells.y)) == (31, 7)
+    exact = stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1e-3)
+    assert (exact.nx, exact.ny) == (30, 20)
+    assert stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1.0)[:2] == (1, 1)
+
+
+def test_the_smallest_cell_that_fits_is_not_much_too_large():
+    for length, width, budget in ((0.06, 0.04, 50_000_000), (0.2, 0.1, 10_000), (1.0, 3e-4, 1000)):
+        cell = fitting_cell(length, width, budget)
+        finer = cell * 0.95
+        assert np.ceil(length / cell - 1e-6) * np.ceil(width / cell - 1e-6) <= budget
+        assert np.ceil(length / finer) * np.ceil(width / finer) > 0.9 * budget
+
+
+def test_a_line_over_the_stock():
+    rng = np.random.default_rng(4)
+    box = shapely.box(0, 0, 0.03, 0.02)
+    for angle in [0.0, np.pi / 2, *rng.uniform(0, 7, 30)]:
+        centre = np.append(rng.uniform(-0.01, 0.04, 2), 0.0)
+        normal = np.array([round(np.cos(angle), 15), round(np.sin(angle), 15), 0.0])
+        line = shapely.LineString([centre[:2] - normal[:2], centre[:2] + normal[:2]])
+        over = line.intersection(box)
+        low, high = stock_span(STOCK, centre, normal)
+        if over.is_empty:
+            assert low >= high
+        else:
+            w = (np.array(over.coords) - centre[:2]) @ normal[:2]
+            assert (low, high) == pytest.approx((w.min(), w.max()), abs=1e-12)
+
+
+def test_a_stock_round_a_path():
+    p = np.array([[0.5, 0.5, 0.05], [0.0, 0.0, 0.01], [0.05, -0.02, 0.002], [9.0, 9.0, 0.05]])
+    stock = Stock.from_path(p, CUTTER, [False, False, True, False])
+    np.testing.assert_allclose(stock.lower, [-0.006, -0.026, -0.003], atol=1e-15)
+    np.testing.assert_allclose(stock.upper, [0.056, 0.006, 0.011], atol=1e-15)
+    np.testing.assert_allclose(Stock.from_path(p[1:3], CUTTER).upper[2], 0.011)
+    np.testing.assert_allclose(Stock.from_path(p[1:3], CUTTER, top=0.02).upper[2], 0.02)
+    np.testing.assert_allclose(stock.size, [0.062, 0.032, 0.014], atol=1e-15)
+
+
+def test_odd_stocks_are_said():
+    assert "check the unit" in Stock((0, 0, 0), (6.0, 1, 1)).warnings(CUTTER)[0]
+    assert "check the unit" in Stock((0, 0, 0), (1e-3, 1e-3, 1e-3)).warnings(CUTTER)[0]
+    assert Stock((0, 0, 0), (4.9, 0.1, 0.1)).warnings(CUTTER) == ()
+    assert Stock((0, 0, 0), (1, 0.0081, 1)).warnings(CUTTER) == ()
+    assert len(Stock((0, 0, 0), (0.0079, 1, 1)).warnings(CUTTER)) == 1
+
+
+def test_too_many_cells_are_refused_with_the_size_that_fits():
+    with pytest.raises(SurfaceError, match=r"at most 50 million fit, so use 0.00\d\d mm or more"):
+        cut(STOCK, 1e-6, CUTTER, np.array([[0.01, 0.01, -0.002], [0.02, 0.01, -0.002]]))
+    for length, width in ((0.06, 0.04), (0.123, 1.7), (2.0, 2e-4)):
+        cell = fitting_cell(length, width, 50_000_000)
+        nx, ny, _, _, dx, dy = stock_grid(Stock((0, 0, 0), (length, width, 1)), cell)
+        assert nx * ny <= 50_000_000
+        assert max(dx, dy) <= cell * (1 + 1e-9)
+
+
+def test_stock_refusals_and_defaults():
+    with pytest.raises(SurfaceError, match="Stock in Y.*upper end must lie above"):
+        Stock((0, 1, 0), (1, 1, 1))
+    with pytest.raises(SurfaceError, match="finite"):
+        Stock((0, np.nan, 0), (1, 1, 1))
+    p = np.array([[0.0, 0.0, 0.01], [0.0, 0.0, -0.002], [0.05, 0.0, -0.002], [0.05, 0.0, 0.01]])
+    stock = Stock.from_path(p, CUTTER, [False, True, True, False], margin=0.001, below=0.004)
+    np.testing.assert_allclose(stock.lower, [-0.005, -0.005, -0.006])
+    np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
+    assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(CUTTER)[0].startswith("Stock: the cutter (8.000 mm) is wider")
+    assert not STOCK.warnings(CUTTER)

@@ -1,0 +1,40 @@
+"""The drawn arm against its kinematics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.kinematics.forward import joint_frames
+from robomill.simulation.result import SimulationResult
+from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
+from robomill.viz.views import arm_scene
+
+
+def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
+    scene = arm_scene(result, result.worst)
+    assert scene.displacement is not None
+    assert 500 < displacement_scale(scene.displacement, scene.frames) < 5000
+
+
+def test_the_arm_stands_where_its_kinematics_put_it(result: SimulationResult) -> None:
+    """The tip against the pose the path asked for; every joint turned about {M}'s upright axis as joint 1 turns."""
+    robot, i = result.setup.robot, result.worst
+    told = result.setup.T_MW @ np.append(result.path.p[i], 1.0)
+
+    def joints(theta: np.ndarray) -> np.ndarray:
+        fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=False)
+        (hover,) = [t for t in fig.data if t.type == "scatter3d" and t.mode == "markers"]
+        assert hover.text[-1] == "tool tip {T}"
+        return np.stack([hover.x, hover.y, hover.z], axis=1).astype(float)
+
+    here = joints(result.theta[i])
+    assert len(here) == robot.n + 1
+    np.testing.assert_allclose(here[-1], told[:3], atol=1e-6)
+    turn = np.array(result.theta[i])
+    turn[0] += 0.3
+    there = joints(turn)
+    np.testing.assert_allclose(there[:, 2], here[:, 2], atol=1e-9)
+    np.testing.assert_allclose(np.hypot(*there[:, :2].T), np.hypot(*here[:, :2].T), atol=1e-9)
+    angle = np.angle((there[-1, 0] + 1j * there[-1, 1]) / (here[-1, 0] + 1j * here[-1, 1]))
+    assert abs(angle) == pytest.approx(0.3)
