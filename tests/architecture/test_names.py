@@ -1,7 +1,7 @@
-"""A reader finds the tests of a module by its name: tests mirror the package, and a file begins with the module it tests.
+"""A reader finds the tests of a module by its name: tests mirror the package, a file begins with the module it tests.
 
-``robomill/kinematics/inverse.py`` is tested by ``tests/kinematics/test_inverse.py``, and by ``test_inverse_5r.py`` where
-that grew too long. Tests of whole walks through several rooms stand in folders that name their subject.
+``robomill/kinematics/inverse.py`` is tested by ``tests/kinematics/test_inverse.py``, and by ``test_inverse_5r.py``
+where that grew too long. Tests of whole walks through several rooms stand in folders that name their subject.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # What is no room of the package: tests of everything at once, by what they are about.
 SUBJECTS = ("architecture", "benchmarks", "cli", "convergence", "packaging", "paper", "properties", "samples")
 SCREEN = ("pages", "browser")
-FILES = [p for p in sorted((ROOT / "tests").rglob("test_*.py")) if p.relative_to(ROOT / "tests").parts[0] not in SUBJECTS]
+FILES = sorted(p for p in (ROOT / "tests").rglob("test_*.py") if p.relative_to(ROOT / "tests").parts[0] not in SUBJECTS)
 
 
 def names(folder: Path) -> set[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from scipy.optimize import curve_fit
@@ -12,17 +10,9 @@ import robomill as rm
 from robomill.identification.models import Model
 from robomill.identification.system import build_system
 from robomill.io.samples import samples_dir
+from tests.benchmarks.clock import fastest
 
 pytestmark = pytest.mark.benchmark
-
-
-def fastest(call, times=7):
-    best = np.inf
-    for _ in range(times):
-        start = time.perf_counter()
-        call()
-        best = min(best, time.perf_counter() - start)
-    return best
 
 
 def test_linear_least_squares_is_quicker_than_a_general_curve_fit():

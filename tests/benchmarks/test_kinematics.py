@@ -7,7 +7,6 @@ Run with ``pytest -m benchmark -s tests/benchmarks/test_kinematics.py``.
 import os
 import subprocess
 import sys
-import time
 from importlib.metadata import version
 
 import numpy as np
@@ -20,6 +19,7 @@ from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid, plane_grid
+from tests.benchmarks.clock import fastest
 
 pytestmark = pytest.mark.benchmark
 
@@ -29,15 +29,6 @@ PINOCCHIO_RATIO, EAIK_RATIO = 8.0, 8.0
 EAIK_RATIO_OF_ALL = {"slavkovic_5r": 5.0, "kuka_kr500": 2.5}
 BOX_SECONDS, PLANE_SECONDS = 0.25, 0.030
 GIB = 1 << 30
-
-
-def fastest(call, times=5):
-    best = np.inf
-    for _ in range(times):
-        start = time.perf_counter()
-        call()
-        best = min(best, time.perf_counter() - start)
-    return best
 
 
 def report(title, rows):

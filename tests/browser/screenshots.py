@@ -16,6 +16,7 @@ import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = "/usr/bin/chromium"
@@ -132,6 +133,11 @@ def main() -> None:
         return
     with served() as url:
         take(folder, url, wanted)
+
+
+def idle(page: Any) -> None:
+    """Wait until the page has run."""
+    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
 
 
 if __name__ == "__main__":

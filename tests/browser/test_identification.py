@@ -7,14 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from screenshots import idle
 
 from robomill.io.samples import samples_dir
 
 pytestmark = pytest.mark.browser
-
-
-def idle(page: Any) -> None:
-    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
 
 
 def open_identification(page: Any) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from screenshots import idle
 
 pytestmark = pytest.mark.browser
 
@@ -18,10 +19,6 @@ def open_page(page: Any, name: str) -> None:
     page.get_by_test_id("stSidebarNavLink").filter(has_text=name).click()
     page.wait_for_selector(f".rm-kicker:has-text('{name}')")
     idle(page)
-
-
-def idle(page: Any) -> None:
-    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
 
 
 def type_into_cell(page: Any, row: int, rows: int, text: str, sign: str) -> None:

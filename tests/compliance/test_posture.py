@@ -2,25 +2,11 @@
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
 from robomill.compliance.posture import over_posture
-from robomill.robot.model import Robot
 from robomill.simulation.posture import posture_notes
-
-
-def seven():
-    return Robot(
-        name="seven",
-        convention="modified",
-        alpha=np.radians([0, -90, 90, 90, -90, -90, 90]),
-        a=np.zeros(7),
-        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]),
-        theta_offset=np.zeros(7),
-        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]),
-        C_theta_all=np.full(7, 5e-6),
-        T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
-    )
 
 
 def walked(robot, theta, steps=4000):

@@ -68,3 +68,11 @@ def test_the_upper_edge_lags_on_a_pulling_helix_and_leads_on_a_pushing_one(helix
     turn = (np.arange(1440) + 0.5) * 2 * np.pi / 1440
     cuts = turn[np.abs(force).sum(1) > 0]
     assert (cuts.min(), cuts.max()) == pytest.approx((first, last), abs=0.02)
+
+
+def test_left_hand_cutter_is_the_mirror_image_at_every_instant():
+    arc = (0.2, 1.7)
+    mirrored = (np.pi - arc[1], np.pi - arc[0])
+    left = MILL.replace(hand="left", helix="left")
+    turns = [force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, arc), (left, CHIP, 2e-3, mirrored))]
+    np.testing.assert_allclose(turns[1], turns[0] * [1, -1, 1], atol=1e-12)

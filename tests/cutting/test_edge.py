@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.course import Course
-from robomill.cutting.course import force_over_pitch as over_pitch
 from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, mean_force, sine_integral
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.forces.along_path import PathForce
@@ -31,12 +29,6 @@ CUTTERS = [
     Cutter("chamfer", 8e-3, tip_angle=math.radians(80), tip_diameter=1e-3),
 ]
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(40)
-
-
-def force_over_pitch(terms, cutter, c, a_p, arc, instants=120):
-    """The course of one arc over the whole depth, (instants, 3) N."""
-    course = Course(np.array([c]), np.array([arc]), np.array([[[0.0, a_p]]]))
-    return over_pitch(terms, cutter, course, instants)[0]
 
 
 def gauss(low, high, panels=40):
@@ -162,8 +154,6 @@ def test_left_hand_cutter_is_the_mirror_image():
     left = MILL.replace(hand="left", helix="left")
     right = mean_force(REF190.terms, MILL, CHIP, 2e-3, *arc)
     np.testing.assert_allclose(mean_force(REF190.terms, left, CHIP, 2e-3, *mirrored), right * [1, -1, 1], rtol=1e-12)
-    turns = [force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, arc), (left, CHIP, 2e-3, mirrored))]
-    np.testing.assert_allclose(turns[1], turns[0] * [1, -1, 1], atol=1e-12)
 
 
 def test_climb_pushes_away_from_the_wall_and_conventional_less_or_towards():

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from streamlit.testing.v1 import AppTest
+from streamlit.testing.v1.element_tree import NumberInput
 
 from robomill.errors import RenderError
 from robomill.ui import cached
@@ -57,3 +58,8 @@ def words(app: AppTest) -> str:
 def errors(app: AppTest) -> list[str]:
     """What the page refuses."""
     return [element.value for element in app.error]
+
+
+def box(app: AppTest, label: str) -> NumberInput:
+    """The number box with this label."""
+    return next(b for b in app.number_input if b.label == label)

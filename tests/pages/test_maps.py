@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 from conftest import errors, go, store, words
+from random_arms import seven
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.robots import load_robot
@@ -37,21 +38,6 @@ def look(app: AppTest, **fields: object) -> AppTest:
 
 def charts(app: AppTest) -> list[dict[str, object]]:
     return [json.loads(chart.proto.spec) for chart in app.get("plotly_chart")]
-
-
-def seven() -> Robot:
-    """A redundant arm with seven joints, tool turned down, as lightweight arms are built."""
-    return Robot(
-        name="seven",
-        convention="modified",
-        alpha=np.radians([0, -90, 90, 90, -90, -90, 90]),
-        a=np.zeros(7),
-        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]),
-        theta_offset=np.zeros(7),
-        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]),
-        C_theta_all=np.full(7, 5e-6),
-        T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
-    )
 
 
 @pytest.mark.parametrize("picture", ["plane", "pair", "solid"])

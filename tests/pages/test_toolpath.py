@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 import pytest
-from conftest import errors, go, store, words
+from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
 from robomill.ui.toolpath.reading import BACKGROUND_CHARACTERS
-
-
-def box(app: AppTest, label: str) -> Any:
-    """The number box with this label."""
-    return next(b for b in app.number_input if b.label == label)
 
 
 def type_program(app: AppTest, text: str) -> None:

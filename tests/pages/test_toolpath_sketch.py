@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import errors, go, store, words
+from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.errors import ToolpathError
@@ -30,11 +28,6 @@ def sketching(app: AppTest) -> AppTest:
     app.button_group(key="toolpath.kind").set_value("sketch").run()
     assert not app.exception
     return app
-
-
-def box(app: AppTest, label: str) -> Any:
-    """The number box with this label."""
-    return next(b for b in app.number_input if b.label == label)
 
 
 def sketch_of(app: AppTest) -> Sketch:

@@ -1,9 +1,26 @@
-"""Random arms for property tests."""
+"""Arms for tests: random ones, and the seven-axis arm that several rooms ask."""
+
+from __future__ import annotations
 
 import numpy as np
 
 from robomill.robot.model import Robot
 from tests.robot.written_otherwise import with_convention
+
+
+def seven() -> Robot:
+    """A redundant arm with seven joints, tool turned down, as lightweight arms are built."""
+    return Robot(
+        name="seven",
+        convention="modified",
+        alpha=np.radians([0, -90, 90, 90, -90, -90, 90]),
+        a=np.zeros(7),
+        d=np.array([0.36, 0, 0.42, 0, 0.4, 0, 0.226]),
+        theta_offset=np.zeros(7),
+        limits_all=np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]]),
+        C_theta_all=np.full(7, 5e-6),
+        T_tool=np.diag([1.0, -1.0, -1.0, 1.0]),
+    )
 
 
 def rotation(rng):

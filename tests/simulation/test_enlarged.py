@@ -5,17 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.io.projects import load_setup
-from robomill.io.samples import samples_dir
 from robomill.simulation.enlarged import PICTURE_CELLS, enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import simulate
 from robomill.simulation.stations import nearest_feed
-
-
-@pytest.fixture(scope="module")
-def result() -> SimulationResult:
-    return simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml"))
 
 
 def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: SimulationResult) -> None:
@@ -30,16 +22,10 @@ def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: Simulat
     assert np.isnan(ten.error[:, 0]).all(), "untouched material carries no error"
 
 
-@pytest.fixture(scope="module")
-def process() -> SimulationResult:
-    """The paper's slot from process data."""
-    return simulate(load_setup(samples_dir() / "paper_flute" / "setup_process.toml"))
-
-
-def test_the_part_itself_tells_walls_sideways_and_not_as_heights(process: SimulationResult) -> None:
-    shown = enlarged(process, 1.0)
+def test_the_part_itself_tells_walls_sideways_and_not_as_heights(slot: SimulationResult) -> None:
+    shown = enlarged(slot, 1.0)
     i = int(np.argmin(np.abs(shown.drawn.x)))
-    most = float(np.linalg.norm(process.delta[nearest_feed(process, 0.05)])) + 0.5 * shown.drawn.cell
+    most = float(np.linalg.norm(slot.delta[nearest_feed(slot, 0.05)])) + 0.5 * shown.drawn.cell
     left_over = (shown.drawn.z[i] >= -1e-9) & (shown.ideal.z[i] < -1e-3)
     cut_off = (shown.ideal.z[i] >= -1e-9) & (shown.drawn.z[i] < -1e-3)
     assert left_over.any()
@@ -52,11 +38,11 @@ def test_the_part_itself_tells_walls_sideways_and_not_as_heights(process: Simula
 
 
 @pytest.mark.parametrize("times", [5.0, 50.0])
-def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(process: SimulationResult, times: float) -> None:
-    shown = enlarged(process, times)
+def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(slot: SimulationResult, times: float) -> None:
+    shown = enlarged(slot, times)
     i = int(np.argmin(np.abs(shown.drawn.x)))
-    sample = nearest_feed(process, 0.05)
-    aside, depth = float(np.linalg.norm(process.delta[sample, :2])), float(process.delta[sample, 2])
+    sample = nearest_feed(slot, 0.05)
+    aside, depth = float(np.linalg.norm(slot.delta[sample, :2])), float(slot.delta[sample, 2])
     error = shown.error[i]
     y = shown.drawn.y
     left_over = (y < 0.001) & (y > -0.004) & (shown.drawn.z[i] >= -1e-9) & (shown.ideal.z[i] < -1e-3)
@@ -70,25 +56,23 @@ def test_enlarged_pictures_keep_the_true_error_of_walls_and_floor(process: Simul
     assert np.isnan(error[np.isclose(shown.drawn.z[i], 0.0) & np.isclose(shown.ideal.z[i], 0.0)]).all()
 
 
-def test_the_cut_so_far_grows_to_the_whole(process: SimulationResult) -> None:
-    shown = enlarged(process, 10.0)
-    removed = [
-        so_far(process, shown, int(k)).drawn.removed_volume for k in np.linspace(0, len(process.path) - 1, 5)[1:]
-    ]
+def test_the_cut_so_far_grows_to_the_whole(slot: SimulationResult) -> None:
+    shown = enlarged(slot, 10.0)
+    removed = [so_far(slot, shown, int(k)).drawn.removed_volume for k in np.linspace(0, len(slot.path) - 1, 5)[1:]]
     assert np.all(np.diff(removed) > 0)
     assert removed[-1] == shown.drawn.removed_volume
-    start = so_far(process, shown, 0)
+    start = so_far(slot, shown, 0)
     assert np.isnan(start.error).all()
     assert (start.drawn.z == shown.ideal.z_stock).all()
-    middle = so_far(process, shown, nearest_feed(process, 0.05))
+    middle = so_far(slot, shown, nearest_feed(slot, 0.05))
     ahead = shown.drawn.x > 0.01
     assert np.isnan(middle.error[ahead]).all()
-    np.testing.assert_allclose(tip_drawn(process, shown, nearest_feed(process, 0.05))[1], 10 * 0.2773e-3, atol=5e-6)
-    i = nearest_feed(process, 0.02)
-    tip = tip_drawn(process, shown, i)
+    np.testing.assert_allclose(tip_drawn(slot, shown, nearest_feed(slot, 0.05))[1], 10 * 0.2773e-3, atol=5e-6)
+    i = nearest_feed(slot, 0.02)
+    tip = tip_drawn(slot, shown, i)
     # Ten times what the tip moves in {W}, whose axes are those of {M} here, from where it was told to be.
-    np.testing.assert_allclose((tip - process.path.p[i]) / 10, process.delta[i], atol=1e-12)
-    assert abs(process.path.p[i, 0]) > 0.01
+    np.testing.assert_allclose((tip - slot.path.p[i]) / 10, slot.delta[i], atol=1e-12)
+    assert abs(slot.path.p[i, 0]) > 0.01
 
 
 def test_a_picture_has_no_more_cells_than_a_screen_needs(result: SimulationResult) -> None:

@@ -25,11 +25,6 @@ from robomill.surface.metrology import groove_profile
 from robomill.toolpath.path import Toolpath
 
 
-@pytest.fixture(scope="module")
-def result() -> SimulationResult:
-    return simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml"))
-
-
 def test_place_is_on_the_path(result: SimulationResult) -> None:
     for station in (0.0, 0.0333, 0.05, 0.1):
         point, along = place_at(result.path, station)

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.improve.sensitivity import stiffened
 from robomill.ui import fields
-from robomill.ui.point import in_hand
 from robomill.ui.project import MapView
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
 
 POINT = (0.2, -1.2, -0.1)
-
-
-@pytest.fixture(scope="module")
-def found() -> PoseReport:
-    return in_hand(rm.load_robot("slavkovic_5r"), POINT, 0.0, 0.0).pose
 
 
 def test_the_report_is_the_field_at_its_cell(found: PoseReport) -> None:

@@ -5,17 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.ui.learn.edge import _ray
-from robomill.ui.point import in_hand
-
-POINT = (0.2, -1.2, -0.1)
-
-
-@pytest.fixture(scope="module")
-def found() -> PoseReport:
-    return in_hand(rm.load_robot("slavkovic_5r"), POINT, 0.0, 0.0).pose
 
 
 def test_the_ray_ends_at_a_singularity(found: PoseReport) -> None:

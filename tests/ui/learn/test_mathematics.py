@@ -7,17 +7,8 @@ import re
 import numpy as np
 import pytest
 
-import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.ui.learn.mathematics import component, product
-from robomill.ui.point import in_hand
-
-POINT = (0.2, -1.2, -0.1)
-
-
-@pytest.fixture(scope="module")
-def found() -> PoseReport:
-    return in_hand(rm.load_robot("slavkovic_5r"), POINT, 0.0, 0.0).pose
 
 
 def test_the_equation_s_terms_add_up(found: PoseReport) -> None:

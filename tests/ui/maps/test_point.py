@@ -17,11 +17,6 @@ from robomill.workspace.quantities import COMPONENTS
 POINT = (0.2, -1.2, -0.1)
 
 
-@pytest.fixture(scope="module")
-def found() -> PoseReport:
-    return in_hand(rm.load_robot("slavkovic_5r"), POINT, 0.0, 0.0).pose
-
-
 def test_shares_sum_to_c(found: PoseReport) -> None:
     C = rm.cartesian_compliance(found.robot, found.theta)
     for c in COMPONENTS:

@@ -9,6 +9,20 @@ from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.summary import distinct, finding_words, move_words, path_summary, worst_first, written_in
 
+CUTS = """G21 G90
+S1000 M3
+G0 Z5
+G1 Z-1 F600
+X3 Y1
+X9 Y4
+X2 Y7
+G0 Z5
+X0
+G1 Z-1
+Y-3
+G0 Z5
+M2
+"""
 APT = "PARTNO/X\n{}FEDRAT/600\nFROM/0,0,10\nGOTO/0,0,0\nGOTO/10,0,0\nFINI\n"
 
 
@@ -49,13 +63,10 @@ def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
     assert len(said) <= 66
 
 
-def program(lines: int) -> str:
-    body = "\n".join(f"G1 X{i % 100} Y{i % 7}" for i in range(lines))
-    return f"G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\n{body}\nG0 Z5\nM2\n"
-
-
 def test_the_summary_is_what_plain_counting_says() -> None:
-    path = GCodeSource(program(500)).read()
+    path = GCodeSource(
+        "G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\nG1 X3 Y1\nX9 Y4\nX2 Y7\nG0 Z5\nX0\nG1 Z-1 F600\nY-3\nG0 Z5\nM2\n"
+    ).read()
     summary = path_summary(path)
     assert summary.moves == len(path) - 1
     assert summary.cuts == sum(bool(c) for c in path.cutting)
