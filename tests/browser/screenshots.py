@@ -74,12 +74,17 @@ def served() -> Iterator[str]:
         process.wait(timeout=20)
 
 
-def settle(page: object, timeout_ms: int = 60_000) -> None:
+def idle(page: Any) -> None:
+    """Wait until the page has run."""
+    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
+
+
+def settle(page: Any) -> None:
     """Wait until the script has run and the pictures are drawn."""
-    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=timeout_ms)  # type: ignore[attr-defined]
+    idle(page)
     with contextlib.suppress(Exception):  # a page without tiles is drawn all the same
-        page.wait_for_selector(".rm-tiles, [data-testid='stAlert']", timeout=10_000)  # type: ignore[attr-defined]
-    page.wait_for_timeout(1800)  # type: ignore[attr-defined]
+        page.wait_for_selector(".rm-tiles, [data-testid='stAlert']", timeout=10_000)
+    page.wait_for_timeout(1800)
 
 
 def take(folder: Path, url: str, wanted: list[str]) -> None:
@@ -116,9 +121,9 @@ def take(folder: Path, url: str, wanted: list[str]) -> None:
 
 def _whole(page: object, width: int) -> None:
     """Make the window as tall as the page, so that one picture holds all of it."""
-    height = page.evaluate("document.querySelector('[data-testid=\"stMain\"]').scrollHeight")  # type: ignore[attr-defined]
-    page.set_viewport_size({"width": width, "height": min(max(int(height) + 20, 700), 2600)})  # type: ignore[attr-defined]
-    page.wait_for_timeout(900)  # type: ignore[attr-defined]
+    height = page.evaluate("document.querySelector('[data-testid=\"stMain\"]').scrollHeight")
+    page.set_viewport_size({"width": width, "height": min(max(int(height) + 20, 700), 2600)})
+    page.wait_for_timeout(900)
 
 
 def main() -> None:
@@ -133,11 +138,6 @@ def main() -> None:
         return
     with served() as url:
         take(folder, url, wanted)
-
-
-def idle(page: Any) -> None:
-    """Wait until the page has run."""
-    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
 
 
 if __name__ == "__main__":
