@@ -26,22 +26,35 @@ HARMLESS: dict[str, frozenset[int]] = {
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
 
-_FLAGS = re.IGNORECASE | re.MULTILINE
 _COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
-_SINUMERIK_TEXT = re.compile(r"\bMSG[ \t]*\([ \t]*\"|^[ \t]*;[ \t]*\$PATH", _FLAGS)
-_SINUMERIK = re.compile(
-    r"\b(?:CR|AR|TURN)[ \t]*=|\b[XYZIJKABCFS]\d?[ \t]*=|\bG(?:710|700|500|601|64[1-5])\b|\bM17\b|"
-    r"\bDEF[ \t]+(?:REAL|INT)|"
-    r"^[^\n]*\bG7[01]\b(?![^\n]*[QPUWRD][ \t]*[-.\d#\[])",
-    _FLAGS,
+
+
+def _words(*words: str) -> tuple[tuple[str, str], ...]:
+    return tuple((word, rf"\b{re.escape(word)}\b") for word in words)
+
+
+_LINUXCNC = (("#<", "#<"), ("o", r"\n[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)"))
+_SINUMERIK_TEXT = (("msg", r"\bmsg[ \t]*\([ \t]*\""), ("$path", r"\n[ \t]*;[ \t]*\$path"))
+_GRBL = (("$", r"\n[ \t]*\$(?:h|x|\d+=|j=)"),)
+_SINUMERIK = (
+    *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
+    ("=", r"\b(?:(?:cr|ar|turn)|[xyzijkabcfs]\d?)[ \t]*="),
+    ("def", r"\bdef[ \t]+(?:real|int)"),
+    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*[qpuwrd][ \t]*[-.\d#\[])"),
 )
-_FANUC = re.compile(
-    r"^[ \t]*(?::|O)\d{4,}[ \t]*$|\bM98[ \t]*P|\bG65\b|\bG54\.1\b|\bG05\b|\bG43\.4\b|"
-    r"\bIF[ \t]*\[.*\bGOTO\b|\bG28[ \t]*U0",
-    _FLAGS,
+_FANUC = (
+    *_words("g65", "g54.1", "g05", "g43.4"),
+    (":", r"\n[ \t]*:\d{4,}[ \t]*(?=\n)"),
+    ("o", r"\n[ \t]*o\d{4,}[ \t]*(?=\n)"),
+    ("m98", r"\bm98[ \t]*p"),
+    ("goto", r"\bif[ \t]*\[.*\bgoto\b"),
+    ("g28", r"\bg28[ \t]*u0"),
 )
-_GRBL = re.compile(r"^[ \t]*\$(?:H|X|\d+=|J=)", _FLAGS)
-_LINUXCNC = re.compile(r"^[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)|#<", _FLAGS)
+"""Signs of a dialect in lower-case text: characters that are quickly missed, and the pattern that they must be in."""
+
+
+def _shows(text: str, signs: tuple[tuple[str, str], ...]) -> bool:
+    return any(mark in text and re.search(pattern, text) for mark, pattern in signs)
 
 
 @dataclass(frozen=True)
@@ -110,14 +123,15 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         if wanted not in NAMES:
             raise GCodeError(f"Dialect {wanted!r} is not known; expected auto, {', '.join(NAMES)}.")
         return Dialect(wanted, guessed=False)
-    text = "\n".join(line[:LONGEST] for line in text.split("\n"))
-    if _LINUXCNC.search(text):
+    lines = "\n".join(line[:LONGEST] for line in text.lower().split("\n"))
+    text = f"\n{lines}\n"
+    if _shows(text, _LINUXCNC):
         return Dialect("linuxcnc")
-    if _SINUMERIK_TEXT.search(text):
+    if _shows(text, _SINUMERIK_TEXT):
         return Dialect("sinumerik")
     text = _COMMENT.sub("", text)
-    for name, pattern in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
-        if pattern.search(text):
+    for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
+        if _shows(text, signs):
             return Dialect(name)
     return Dialect("linuxcnc")
 
