@@ -28,6 +28,10 @@ RESIDUAL = 1e-9  # m and rad: an answer further off than this is not an answer
 LIMIT_SLACK = 1e-10  # rad or m past a limit that is still rounding
 
 
+Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]
+
+
 class Decoupled(NamedTuple):
     """Constants of a decoupled arm, as the kernels take them. Lengths in m.
 
@@ -38,19 +42,19 @@ class Decoupled(NamedTuple):
     direction (n,) turns the angles about S's and W's axes into theta.
     """
 
-    S: In2
-    origin: In1
+    S: Matrix
+    origin: Vector
     a_1: float
     h: float
     l_2: complex
     l_3: complex
-    W: In2
-    u: In1
-    g: In1
-    gn: In1
-    c_u: In1
-    c_g: In1
-    c_w: In1
+    W: Matrix
+    u: Vector
+    g: Vector
+    gn: Vector
+    c_u: Vector
+    c_g: Vector
+    c_w: Vector
     direction: In1
 
     @property
@@ -152,21 +156,31 @@ def _constants(
     sign = robot.chain.sign
     axis_sign = np.array([k[0] @ z, k[1] @ y, k[2] @ y, 1.0, flip, 1.0])[: robot.n]
     return Decoupled(
-        S=frozen(S),
-        origin=frozen(origin),
+        S=_matrix(S),
+        origin=_vector(origin),
         a_1=float(shoulder[0]),
         h=float(wrist[1]),
         l_2=l_2,
         l_3=l_3,
-        W=frozen(W),
-        u=frozen(u),
-        g=frozen(g),
-        gn=frozen(np.cross(u, g)),
-        c_u=frozen(c_u),
-        c_g=frozen(R.T @ S.T @ W.T @ g),
-        c_w=frozen(c_w),
+        W=_matrix(W),
+        u=_vector(u),
+        g=_vector(g),
+        gn=_vector(np.cross(u, g)),
+        c_u=_vector(c_u),
+        c_g=_vector(R.T @ S.T @ W.T @ g),
+        c_w=_vector(c_w),
         direction=frozen(np.sign(axis_sign) * sign),
     )
+
+
+def _vector(v: FloatArray) -> Vector:
+    x, y, z = map(float, v)
+    return x, y, z
+
+
+def _matrix(R: FloatArray) -> Matrix:
+    x, y, z = map(_vector, R)
+    return x, y, z
 
 
 def branch_names() -> tuple[str, ...]:
@@ -186,7 +200,7 @@ def branch_names() -> tuple[str, ...]:
 def shortfall(arm: Decoupled, T_MT: FloatArray) -> str:
     """Why no solution exists for one pose (4, 4) even without joint limits, in words; "" if that is not the reason."""
     R = T_MT[:3, :3]
-    p = arm.S @ (T_MT[:3, 3] - R @ arm.c_w - arm.origin)
+    p = np.array(arm.S) @ (T_MT[:3, 3] - R @ arm.c_w - arm.origin)
     rho = float(np.hypot(p[0], p[1]))
     if rho < abs(arm.h):
         return f"{abs(arm.h) - rho:.2g} m inside the arm's lateral offset, too close to axis 1"

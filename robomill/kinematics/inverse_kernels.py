@@ -2,7 +2,10 @@
 
 Everything is found in the arm's own frame {S}: z along axis 1, y along axis 2, origin on axis 1 at the height of axis
 2. There a turn by phi about z turns the complex number x + i y by exp(i phi), one about y turns x - i z; ``e_1`` ...
-``e_5`` are these factors. Where the geometry has no solution the nearest attempt is given.
+``e_6`` are these factors. Where the geometry has no solution the nearest attempt is given.
+
+The eight solutions stand side by side in one array of room, and inner loops run over them: the compiler takes all
+eight at once where such a loop writes to that array only and reads everything else before it begins.
 """
 
 # mypy: disable-error-code="no-untyped-def"
@@ -13,7 +16,7 @@ import numpy as np
 
 from robomill.compiled import FEW, In1, In2, In3, Out2, Out3, OutBool2, kernel, part
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, ROUNDING, Answer, Decoupled, Rules
-from robomill.kinematics.kernels import forward, forward_from, misfit
+from robomill.kinematics.kernels import forward, forward_side_by_side, gap, misfit, upper
 from robomill.kinematics.trig_kernels import arc_tangent, sin_cos
 from robomill.robot.dh import Chain
 
@@ -21,7 +24,8 @@ TURN = 2.0 * np.pi
 TINY = 1e-150
 ARM_WEIGHT = 1e6  # rad^2: far above any joint motion
 SPIN_HALVINGS = 7
-WRIST = 3  # joints of the arm before those of the wrist
+AXES = 6  # at most
+RE, IM, ANGLE, REAL = 0, 1, 2, 3  # rows of the room of the eight solutions
 
 
 @part
@@ -32,29 +36,45 @@ def unit(z):
 
 
 @part
-def aim(T, spin, arm, goal):
-    """Columns of goal (3, 3) in {S}: wrist centre (m), the direction u and its normal g, of T (4, 4) spun about z_T."""
+def aim(T, spin, arm):
+    """(p, u, g) in {S}: wrist centre (m), the direction u and its normal g, of T (4, 4) spun about z_T."""
     s, c = sin_cos(spin)
-    for r in range(3):
-        goal[r, 0] = goal[r, 1] = goal[r, 2] = 0.0
-    for k in range(3):
-        x, y, z = c * T[k, 0] + s * T[k, 1], c * T[k, 1] - s * T[k, 0], T[k, 2]
-        p = T[k, 3] - (x * arm.c_w[0] + y * arm.c_w[1] + z * arm.c_w[2]) - arm.origin[k]
-        u = x * arm.c_u[0] + y * arm.c_u[1] + z * arm.c_u[2]
-        g = x * arm.c_g[0] + y * arm.c_g[1] + z * arm.c_g[2]
-        for r in range(3):
-            goal[r, 0] += arm.S[r, k] * p
-            goal[r, 1] += arm.S[r, k] * u
-            goal[r, 2] += arm.S[r, k] * g
+    x = (c * T[0, 0] + s * T[0, 1], c * T[1, 0] + s * T[1, 1], c * T[2, 0] + s * T[2, 1])
+    y = (c * T[0, 1] - s * T[0, 0], c * T[1, 1] - s * T[1, 0], c * T[2, 1] - s * T[2, 0])
+    z = (T[0, 2], T[1, 2], T[2, 2])
+    w, o = blend(arm.c_w, x, y, z), arm.origin
+    p = (T[0, 3] - w[0] - o[0], T[1, 3] - w[1] - o[1], T[2, 3] - w[2] - o[2])
+    return along(arm.S, p), along(arm.S, blend(arm.c_u, x, y, z)), along(arm.S, blend(arm.c_g, x, y, z))
 
 
 @part
-def shoulder(goal, arm, side):
-    """(e_1, x of the wrist centre in the plane of the arm, whether it is real); side 1 is front, -1 is back."""
-    p = complex(goal[0, 0], goal[1, 0])
-    under = p.real * p.real + p.imag * p.imag - arm.h * arm.h
+def blend(c, x, y, z):
+    """The vector of components c on the axes x, y, z."""
+    return (
+        c[0] * x[0] + c[1] * y[0] + c[2] * z[0],
+        c[0] * x[1] + c[1] * y[1] + c[2] * z[1],
+        c[0] * x[2] + c[1] * y[2] + c[2] * z[2],
+    )
+
+
+@part
+def along(R, v):
+    """The components of v along the rows of R."""
+    return dot(R[0], v), dot(R[1], v), dot(R[2], v)
+
+
+@part
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@part
+def shoulder(p, arm, side):
+    """(e_1, x of the wrist centre p in the plane of the arm, whether it is real); side 1 is front, -1 is back."""
+    xy = complex(p[0], p[1])
+    under = p[0] * p[0] + p[1] * p[1] - arm.h * arm.h
     x = side * np.sqrt(max(under, 0.0))
-    return unit(p * complex(x, -arm.h)), x, under >= -ROUNDING
+    return unit(xy * complex(x, -arm.h)), x, under >= -ROUNDING
 
 
 @part
@@ -72,68 +92,56 @@ def elbow(r, arm, bend):
 
 
 @part
-def into_wrist(d_x, d_y, d_z, arm, e_1, e_23):
-    """A direction in {S} seen from the wrist before it turns."""
-    xy = complex(d_x, d_y) * e_1.conjugate()
-    xz = complex(xy.real, -d_z) * e_23.conjugate()
-    x, y, z = xz.real, xy.imag, -xz.imag
-    W = arm.W
-    return (
-        W[0, 0] * x + W[0, 1] * y + W[0, 2] * z,
-        W[1, 0] * x + W[1, 1] * y + W[1, 2] * z,
-        W[2, 0] * x + W[2, 1] * y + W[2, 2] * z,
-    )
+def past(d, e_z, e_y):
+    """A direction d seen from behind a turn about z and then one about y."""
+    xy = complex(d[0], d[1]) * e_z.conjugate()
+    xz = complex(xy.real, -d[2]) * e_y.conjugate()
+    return xz.real, xy.imag, -xz.imag
 
 
 @part
-def last_joint(g_x, g_y, g_z, arm, e_4, e_5):
-    """e_6 from the normal g, given in wrist axes before axes 4 and 5 turn."""
-    xy = complex(g_x, g_y) * unit(e_4).conjugate()
-    xz = complex(xy.real, -g_z) * unit(e_5).conjugate()
-    x, y, z = xz.real, xy.imag, -xz.imag
-    g, n = arm.g, arm.gn
-    return complex(x * g[0] + y * g[1] + z * g[2], x * n[0] + y * n[1] + z * n[2])
-
-
-@part
-def solve(goal, arm, posture, factors, theta):
-    """theta (2, n): both wrists, + and -, of a posture 0-3 (front or back x elbow up or down). True where real.
-
-    factors (3, 2 n) is room for the real and imaginary parts of e_1 ... e_n and their angles, which are taken at once.
-    """
-    n = len(arm.direction)
-    side, sense = 1.0 - 2.0 * (posture // 2), 1.0 - 2.0 * (posture % 2)
-    e_1, x, placed = shoulder(goal, arm, side)
-    e_2, e_3, bent = elbow(complex(x - arm.a_1, -goal[2, 0]), arm, side * sense)
-    e_23 = e_2 * e_3
-    v_x, v_y, v_z = into_wrist(goal[0, 1], goal[1, 1], goal[2, 1], arm, e_1, e_23)
-    g_x, g_y, g_z = into_wrist(goal[0, 2], goal[1, 2], goal[2, 2], arm, e_1, e_23)
+def wrist(v, arm, flip):
+    """(e_4, e_5, whether they are real) that bring u to the direction v, in wrist axes; flip 1 or -1."""
     u = arm.u
-    under = v_x * v_x + v_y * v_y - u[1] * u[1]
-    across = np.sqrt(max(under, 0.0))
-    for w in range(2):
-        x_w = across if w == 0 else -across
-        e_4 = complex(v_x, v_y) * complex(x_w, -u[1])
-        e_5 = complex(v_z, x_w) * complex(u[2], -u[0])
-        first = w * n
-        put(e_1, factors, first)
-        put(e_2, factors, first + 1)
-        put(e_3, factors, first + 2)
-        put(e_4, factors, first + 3)
-        put(e_5, factors, first + 4)
-        if n == 6:
-            put(last_joint(g_x, g_y, g_z, arm, e_4, e_5), factors, first + 5)
-    for k in range(2 * n):
-        factors[2, k] = arc_tangent(factors[1, k], factors[0, k])
-    for w in range(2):
-        for j in range(n):
-            theta[w, j] = arm.direction[j] * factors[2, w * n + j]
-    return placed and bent and under >= -ROUNDING
+    under = v[0] * v[0] + v[1] * v[1] - u[1] * u[1]
+    x = flip * np.sqrt(max(under, 0.0))
+    return complex(v[0], v[1]) * complex(x, -u[1]), complex(v[2], x) * complex(u[2], -u[0]), under >= -ROUNDING
 
 
 @part
-def put(e, factors, k):
-    factors[0, k], factors[1, k] = e.real, e.imag
+def solve(goal, arm, room):
+    """The eight solutions side by side into room (4, 8 AXES), joint by joint: entry 8 j + k of joint j, solution k.
+
+    Its rows: real and imaginary parts of e_1 ... e_6, the angles, and whether a solution is real (its first eight).
+    """
+    p, u, g = goal
+    for k in range(8):
+        side = 1.0 if k < 4 else -1.0  # front, back
+        sense = 1.0 if k % 4 < 2 else -1.0  # elbow up, down
+        flip = 1.0 if k % 2 == 0 else -1.0  # wrist +, -
+        e_1, x, placed = shoulder(p, arm, side)
+        e_2, e_3, bent = elbow(complex(x - arm.a_1, -p[2]), arm, side * sense)
+        e_4, e_5, aimed = wrist(along(arm.W, past(u, e_1, e_2 * e_3)), arm, flip)
+        normal = past(along(arm.W, past(g, e_1, e_2 * e_3)), unit(e_4), unit(e_5))
+        put(e_1, room, k)
+        put(e_2, room, 8 + k)
+        put(e_3, room, 16 + k)
+        put(e_4, room, 24 + k)
+        put(e_5, room, 32 + k)
+        put(complex(dot(normal, arm.g), dot(normal, arm.gn)), room, 40 + k)
+        room[REAL, k] = 1.0 if placed and bent and aimed else 0.0
+    n = len(arm.direction)
+    for k in range(8 * n):
+        room[ANGLE, k] = arc_tangent(room[IM, k], room[RE, k])
+    for j in range(n):
+        direction = arm.direction[j]
+        for k in range(8):
+            room[ANGLE, 8 * j + k] *= direction
+
+
+@part
+def put(e, room, k):
+    room[RE, k], room[IM, k] = e.real, e.imag
 
 
 @part
@@ -160,26 +168,25 @@ def settle(theta, limits, goal):
 
 
 @part
-def take_nearest(target, arm, rules, goal, least, factors, trial, best):
+def take_nearest(target, arm, rules, goal, least, room, best):
     """(cost, branch) of the solution nearest to goal, put into best (n,), where it costs less than ``least``.
 
     Else (least, -1). With ``arm_first`` the order of the postures goes before all motion.
     """
+    solve(target, arm, room)
     branch = -1
-    for posture in range(4):
-        order = ARM_WEIGHT * posture if rules.arm_first else 0.0
-        if order >= least:
-            break
-        if not solve(target, arm, posture, factors, trial):
+    for k in range(8):
+        order = ARM_WEIGHT * (k // 2) if rules.arm_first else 0.0
+        if order >= least or not (rules.wanted[k] and room[REAL, k]):
             continue
-        for w in range(2):
-            if rules.held:
-                trial[w, 5] = goal[5]
-            cost = order + settle(trial[w], rules.limits, goal)
-            if cost < least and rules.wanted[2 * posture + w]:
-                least, branch = cost, 2 * posture + w
-                for j in range(len(best)):
-                    best[j] = trial[w, j]
+        theta = room[ANGLE, k : 8 * len(best) : 8]
+        if rules.held:
+            theta[5] = goal[5]
+        cost = order + settle(theta, rules.limits, goal)
+        if cost < least:
+            least, branch = cost, k
+            for j in range(len(best)):
+                best[j] = theta[j]
     return least, branch
 
 
@@ -190,12 +197,10 @@ def choose(T, arm, rules, goal, room, best):
     ``rules.spins`` steps round the axis, then halved; 0: the pose as given. branch -1, and an attempt in best, where
     none is within limits.
     """
-    target, factors, trial = room
     least, branch, spin = np.inf, -1, 0.0
     step = TURN / max(rules.spins, 1)
     for i in range(max(rules.spins, 1)):
-        aim(T, i * step, arm, target)
-        least, found = take_nearest(target, arm, rules, goal, least, factors, trial, best)
+        least, found = take_nearest(aim(T, i * step, arm), arm, rules, goal, least, room, best)
         if found >= 0:
             branch, spin = found, i * step
     for _ in range(SPIN_HALVINGS if rules.spins > 0 else 0):
@@ -203,15 +208,13 @@ def choose(T, arm, rules, goal, room, best):
         centre = spin
         for way in range(2):
             at = centre + (step if way == 0 else -step)
-            aim(T, at, arm, target)
-            least, found = take_nearest(target, arm, rules, goal, least, factors, trial, best)
+            least, found = take_nearest(aim(T, at, arm), arm, rules, goal, least, room, best)
             if found >= 0:
                 branch, spin = found, at
     if branch < 0:
-        aim(T, 0.0, arm, target)
-        solve(target, arm, 0, factors, trial)
+        solve(aim(T, 0.0, arm), arm, room)
         for j in range(len(best)):
-            best[j] = trial[0, j]
+            best[j] = room[ANGLE, 8 * j]
     return branch, spin
 
 
@@ -219,8 +222,7 @@ def choose(T, arm, rules, goal, room, best):
 def nearest_of(T_MT: In3, arm: Decoupled, chain: Chain, rules: Rules, goals: In2, answer: Answer) -> None:
     """The answer for poses T_MT (m, 4, 4), nearest to goals (1 or m, n)."""
     n = len(chain.sign)
-    room = (np.empty((3, 3)), np.empty((3, 2 * n)), np.empty((2, n)))
-    best, turns, frames = np.empty(n), np.empty((n, 3)), np.empty((n + 1, 4, 4))
+    room, best, turns, frames = np.empty((4, 8 * AXES)), np.empty(n), np.empty((n, 3)), np.empty((n + 1, 4, 4))
     for i in range(len(T_MT)):
         goal = goals[i if len(goals) > 1 else 0]
         answer.branch[i], answer.fit[i, 0] = choose(T_MT[i], arm, rules, goal, room, best)
@@ -230,34 +232,22 @@ def nearest_of(T_MT: In3, arm: Decoupled, chain: Chain, rules: Rules, goals: In2
             answer.theta[i, j] = best[j]
 
 
-@part
-def solve_all(T, arm, chain, room, theta, sound):
-    """All solutions theta (8, n) of T (4, 4), and whether they meet it by forward kinematics, (8,)."""
-    target, factors, turns, frames = room
-    n = len(chain.sign)
-    aim(T, 0.0, arm, target)
-    for posture in range(4):
-        branch = 2 * posture
-        real = solve(target, arm, posture, factors, theta[branch : branch + 2])
-        sound[branch], sound[branch + 1] = False, False
-        if not real:
-            continue
-        for w in range(2):
-            if w == 0:
-                forward(theta[branch], chain, turns, frames)
-            else:  # both wrists stand on the same arm
-                forward_from(WRIST, theta[branch + 1], chain, turns, frames)
-            shift, angle = misfit(frames[n], T, n == 6)
-            sound[branch + w] = shift <= RESIDUAL and angle <= RESIDUAL
-
-
 @kernel(few=FEW)
 def every_of(T_MT: In3, arm: Decoupled, chain: Chain, theta: Out3, sound: OutBool2) -> None:
     """All solutions theta (m, 8, n) in (-pi, pi] of poses T_MT (m, 4, 4), and whether they meet them, (m, 8)."""
     n = len(chain.sign)
-    room = (np.empty((3, 3)), np.empty((3, 2 * n)), np.empty((n, 3)), np.empty((n + 1, 4, 4)))
+    room, turns, tips = np.empty((4, 8 * AXES)), np.empty((2, 8 * AXES)), np.empty((3, 4, 8))
     for i in range(len(T_MT)):
-        solve_all(T_MT[i], arm, chain, room, theta[i], sound[i])
+        wanted = upper(T_MT[i])
+        solve(aim(T_MT[i], 0.0, arm), arm, room)
+        forward_side_by_side(room[ANGLE], chain, turns, tips)
+        for k in range(8):
+            shift, chord = gap(upper(tips[:, :, k]), wanted, n == 6)
+            room[REAL, k] = 1.0 if room[REAL, k] and shift <= RESIDUAL and chord <= RESIDUAL else 0.0
+        for k in range(8):
+            sound[i, k] = room[REAL, k]
+            for j in range(n):
+                theta[i, k, j] = room[ANGLE, 8 * j + k]
 
 
 @kernel(few=FEW)

@@ -23,32 +23,67 @@ def copy(T, to):
 
 
 @part
-def forward(theta, chain, turns, frames):
-    """Frames (n + 1, 4, 4) in {M} at theta (n,): the frame each joint moves about, then {T}. Eqs. (4), (5), (7).
-
-    turns (n, 3) is room for each joint's sine, cosine and shift.
-    """
-    copy(chain.T_0, frames[0])
-    forward_from(0, theta, chain, turns, frames)
+def upper(T):
+    """The rows of a transform T above its last, 0 0 0 1."""
+    return (
+        (T[0, 0], T[0, 1], T[0, 2], T[0, 3]),
+        (T[1, 0], T[1, 1], T[1, 2], T[1, 3]),
+        (T[2, 0], T[2, 1], T[2, 2], T[2, 3]),
+    )
 
 
 @part
-def forward_from(first, theta, chain, turns, frames):
-    """As ``forward``, where the frames up to that of joint ``first`` (counted from 0) stand already."""
-    E = chain.E
-    for i in range(first, len(theta)):
+def carried(row, motion, E):
+    """A row (x, y, z, p) of a frame past a joint and its link: motion is the joint's (sine, cosine, slide)."""
+    x, y, z, p = row
+    s, c, slide = motion
+    x, y, p = c * x + s * y, c * y - s * x, p + slide * z
+    X, Y, Z = E
+    return (
+        x * X[0] + y * Y[0] + z * Z[0],
+        x * X[1] + y * Y[1] + z * Z[1],
+        x * X[2] + y * Y[2] + z * Z[2],
+        x * X[3] + y * Y[3] + z * Z[3] + p,
+    )
+
+
+@part
+def forward(theta, chain, turns, frames):
+    """Frames (n + 1, 4, 4) in {M} at theta (n,): the frame each joint moves about, then {T}. Eqs. (4), (5), (7).
+
+    turns (n, 3) is room for each joint's sine, cosine and slide.
+    """
+    copy(chain.T_0, frames[0])
+    for i in range(len(theta)):
         q = chain.sign[i] * theta[i] + chain.offset[i]
         turns[i, 0], turns[i, 1] = sin_cos(0.0 if chain.prismatic[i] else q)
         turns[i, 2] = q if chain.prismatic[i] else 0.0
-    for i in range(first, len(theta)):
-        s, c, slide = turns[i, 0], turns[i, 1], turns[i, 2]
+    for i in range(len(theta)):
+        motion, E = (turns[i, 0], turns[i, 1], turns[i, 2]), upper(chain.E[i])
+        T, after = frames[i], frames[i + 1]
         for r in range(3):
-            x, y, z, p = frames[i, r, 0], frames[i, r, 1], frames[i, r, 2], frames[i, r, 3]
-            x, y, p = c * x + s * y, c * y - s * x, p + slide * z
-            for k in range(4):
-                frames[i + 1, r, k] = x * E[i, 0, k] + y * E[i, 1, k] + z * E[i, 2, k]
-            frames[i + 1, r, 3] += p
-        frames[i + 1, 3, 0], frames[i + 1, 3, 1], frames[i + 1, 3, 2], frames[i + 1, 3, 3] = 0.0, 0.0, 0.0, 1.0
+            row = (T[r, 0], T[r, 1], T[r, 2], T[r, 3])
+            after[r, 0], after[r, 1], after[r, 2], after[r, 3] = carried(row, motion, E)
+        after[3, 0], after[3, 1], after[3, 2], after[3, 3] = 0.0, 0.0, 0.0, 1.0
+
+
+@part
+def forward_side_by_side(theta, chain, turns, T):
+    """Tool frames T (3, 4, w) of w configurations of turning joints, theta (n w,) joint by joint; turns (2, n w)."""
+    n, w = len(chain.sign), T.shape[2]
+    for i in range(n):
+        sign, zero = chain.sign[i], chain.offset[i]
+        for k in range(w):
+            turns[0, i * w + k], turns[1, i * w + k] = sin_cos(sign * theta[i * w + k] + zero)
+    for r in range(3):
+        T[r, 0], T[r, 1], T[r, 2], T[r, 3] = upper(chain.T_0)[r]
+    for i in range(n):
+        E = upper(chain.E[i])
+        for r in range(3):
+            for k in range(w):
+                row = (T[r, 0, k], T[r, 1, k], T[r, 2, k], T[r, 3, k])
+                motion = (turns[0, i * w + k], turns[1, i * w + k], 0.0)
+                T[r, 0, k], T[r, 1, k], T[r, 2, k], T[r, 3, k] = carried(row, motion, E)
 
 
 @part
@@ -107,21 +142,28 @@ def determinant(A, AAt):
 
 
 @part
-def misfit(T, wanted, whole):
-    """(m, rad) how far the frame T (4, 4) is from the wanted one: tips, and tool axes or the ``whole`` rotation.
+def gap(T, wanted, whole):
+    """(m, chord) how far the upper rows of a frame T are from the wanted ones: tips, and tool axes or ``whole`` turns.
 
     Two directions an angle apart have the chord 2 sin(angle / 2); a matrix turned by it is off by the square root of
     twice that squared.
     """
     shift, chord = 0.0, 0.0
     for r in range(3):
-        shift += (T[r, 3] - wanted[r, 3]) ** 2
-        chord += (T[r, 2] - wanted[r, 2]) ** 2
+        shift += (T[r][3] - wanted[r][3]) ** 2
+        chord += (T[r][2] - wanted[r][2]) ** 2
     if whole:
         for r in range(3):
-            chord += (T[r, 0] - wanted[r, 0]) ** 2 + (T[r, 1] - wanted[r, 1]) ** 2
+            chord += (T[r][0] - wanted[r][0]) ** 2 + (T[r][1] - wanted[r][1]) ** 2
         chord *= 0.5
-    return np.sqrt(shift), 2.0 * np.arcsin(min(0.5 * np.sqrt(chord), 1.0))
+    return np.sqrt(shift), np.sqrt(chord)
+
+
+@part
+def misfit(T, wanted, whole):
+    """(m, rad) how far the frame T (4, 4) is from the wanted one: tips, and tool axes or the ``whole`` rotation."""
+    shift, chord = gap(upper(T), upper(wanted), whole)
+    return shift, 2.0 * np.arcsin(min(0.5 * chord, 1.0))
 
 
 @kernel(few=FEW)

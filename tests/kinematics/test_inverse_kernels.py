@@ -41,6 +41,20 @@ def test_every_solution_is_found_and_meets_the_pose(robot):
 
 
 @pytest.mark.parametrize("robot", arms(), ids=lambda r: r.name)
+def test_a_solution_is_sound_where_forward_kinematics_says_so(robot):
+    """An arm a little other than the one that was solved: what it misses is found by its own table."""
+    theta = robot.home + np.random.default_rng(3).uniform(-0.5, 0.5, (50, robot.n))
+    T_MT = np.array([pose(robot, t) for t in theta])
+    for longer, seen in ((1e-6, True), (1e-10, False)):
+        other = robot.replace(a=robot.a + longer)
+        found, sound = every(other, decoupled(robot), T_MT)
+        off = [[np.abs(pose(other, t) - T)[:3, 3].max() for t in eight] for eight, T in zip(found, T_MT, strict=True)]
+        assert sound.any() != seen
+        assert (np.array(off)[sound] < 1e-9).all()
+        assert not seen or np.min(off) > 1e-8
+
+
+@pytest.mark.parametrize("robot", arms(), ids=lambda r: r.name)
 def test_branches_are_named_by_what_they_look_like(robot):
     names = branch_names()
     theta = np.random.default_rng(2).uniform(-1, 1, (200, robot.n)) + robot.home
