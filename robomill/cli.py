@@ -184,7 +184,7 @@ def run_ik(arguments: Any) -> int:
 def run_gcode(arguments: Any) -> int:
     from robomill.io.tool_tables import read_tool_table
     from robomill.report.plain import gcode_lines
-    from robomill.report.records import finding_record, path_record
+    from robomill.report.records import path_record
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
@@ -195,7 +195,7 @@ def run_gcode(arguments: Any) -> int:
         tools = read_tool_table(arguments.tools, unit=arguments.tools_unit) if arguments.tools else None
         program = interpret(file, dialect=arguments.dialect, tools=tools)
         record = gcode_report(program)
-        record["findings"] += [finding_record(f) for f in tools.findings] if tools is not None else []
+        record["findings"] += [finding.record() for finding in tools.findings] if tools is not None else []
         if arguments.moves:
             write_moves_jsonl(program, arguments.moves)
     return say(arguments, record, gcode_lines(record))
@@ -247,7 +247,6 @@ def run_identify(arguments: Any) -> int:
     from robomill.io.load_tests import read_load_tests
     from robomill.io.robots import load_robot, robot_to_toml
     from robomill.report.plain import identification_lines
-    from robomill.report.records import finding_record
 
     robot = load_robot(arguments.robot)
     tests = read_load_tests(Path(arguments.tests), robot)
@@ -262,7 +261,7 @@ def run_identify(arguments: Any) -> int:
     )
     result = identify(robot, tests, arguments.model, treatment)
     record, findings = identification_record(robot, tests, result)
-    record["findings"] = [finding_record(f) for f in findings]
+    record["findings"] = [finding.record() for finding in findings]
     if arguments.out:
         Path(arguments.out).write_text(robot_to_toml(result.applied_to(robot)), encoding="utf-8")
     return say(arguments, record, identification_lines(record))

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from robomill.errors import RobomillError
 
 Kind = Literal["paper", "measured", "assumed", "user", "computed", "synthetic"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 Level = Literal["error", "warning", "suspicious", "ignored", "info"]
+MANY = 3  # numbers that a sentence names
 
 
 @dataclass(frozen=True)
@@ -40,3 +42,18 @@ class Finding:
     message: str
     count: int = 1
     code: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The message, with its line before it where it has one."""
+        return f"Line {self.line}: {self.message}" if self.line else self.message
+
+    def record(self) -> dict[str, Any]:
+        """As JSON carries it."""
+        return {name: getattr(self, name) for name in ("line", "level", "code", "message", "count")}
+
+
+def named(numbers: Iterable[int]) -> str:
+    """Numbers of lines, joints or blocks in order, the first few: ``"3, 5, 9 and more"``."""
+    every = sorted(set(numbers))
+    return ", ".join(map(str, every[:MANY])) + (" and more" if len(every) > MANY else "")

@@ -18,6 +18,7 @@ from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
+from robomill.provenance import Finding
 from robomill.units import format_count, format_si
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
@@ -148,7 +149,14 @@ class CutConditions:
         return cls(v_f=v_f, n_s=n_s, a_p=a_p, phi_st=arc[0], phi_ex=arc[1], **given)  # type: ignore[arg-type]
 
 
-def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool = True) -> tuple[str, ...]:
+THRUSTS = {
+    "thrust-end-teeth": "of the end teeth, to the centre, by the same coefficients as the flank",
+    "thrust-lips": "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)",
+}
+"""Where the thrust of a tool that goes down comes from."""
+
+
+def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool = True) -> tuple[Finding, ...]:
     """What deserves a word though it can be computed: depth beyond the flutes and, where the force is ``computed`` from
     the material, what the thrust of a plunge or of a drill is."""
     found = []
@@ -161,20 +169,15 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool = Tru
         deep = np.flatnonzero(engaged & made & (highest > each.flute_length * (1.0 + 1e-9)))
         if deep.size:
             worst = deep[np.argmax(highest[deep])]
-            found.append(
-                f"{conditions.place(worst)}: depth {format_si(highest[worst], 'mm')} is beyond the flute length "
-                f"{format_si(each.flute_length, 'mm')}; the shank would rub ({deep.size} steps)."
+            text = (
+                f"depth {format_si(highest[worst], 'mm')} is beyond the flute length "
+                f"{format_si(each.flute_length, 'mm')}; the shank would rub ({format_count(deep.size, 'step')})."
             )
-    drills = np.array([each.kind == "drill" for each in tooling.cutters])[tooling.of_step]
+            found.append(Finding("warning", int(conditions.block[worst]), text, code="beyond-flutes"))
     down = engaged & (conditions.along < -DISH) & computed
-    for steps, law in (
-        (np.flatnonzero(down & ~drills), "of the end teeth, to the centre, by the same coefficients as the flank"),
-        (np.flatnonzero(down & drills), "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)"),
-    ):
-        if steps.size:
-            where = conditions.place(steps[0])
-            found.append(
-                f"{where}: the tool goes down into the material; its thrust is that {law}: not measured "
-                f"({format_count(steps.size, 'step')})."
-            )
+    for code, steps in (("thrust-end-teeth", down & ~tooling.drills), ("thrust-lips", down & tooling.drills)):
+        if steps.any():
+            count = format_count(int(steps.sum()), "step")
+            text = f"the tool goes down into the material; its thrust is that {THRUSTS[code]}: not measured ({count})."
+            found.append(Finding("info", int(conditions.block[np.argmax(steps)]), text, code=code))
     return tuple(found)

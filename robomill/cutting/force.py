@@ -18,7 +18,7 @@ from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import Finding, Provenance
 from robomill.quantities import described, settle
 
 BY_HAND = Provenance("user", "entered by hand")
@@ -98,8 +98,12 @@ class ForceModel:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is unknown or assumed, in sentences for the result."""
+        """What a person has noted of its numbers."""
         return ()
+
+    def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
+        """What is unknown or assumed, for the result."""
+        return tuple(Finding("info", 0, words, code="force-note") for words in self.notes)
 
     @property
     def numbers(self) -> str:

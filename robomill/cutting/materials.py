@@ -1,7 +1,7 @@
 """Work materials as cutting force coefficients, each with its source. SI: N/m^2, N/m.
 
 A row is either mechanistic (Ktc, Kte, Krc, Kre and perhaps Kac, Kae) or Kienzle's (kc1.1, mc), never both.
-A coefficient that no source gives is None: it is then taken as 0, and ``notes`` says so.
+A coefficient that no source gives is None: it is then taken as 0, and ``findings`` say so.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import Finding, Provenance
 from robomill.quantities import quantity, settle
 from robomill.units import to_si
 
@@ -114,7 +114,7 @@ class Material:
 
     @property
     def terms(self) -> tuple[EdgeTerm, ...]:
-        """The row as force law of the edge; unknown coefficients as 0 (see ``notes``)."""
+        """The row as force law of the edge; unknown coefficients as 0 (see ``findings``)."""
         if self.kind == "mechanistic":
             return (
                 EdgeTerm(1.0, float(self.Ktc or 0.0), float(self.Krc or 0.0), float(self.Kac or 0.0)),
@@ -125,8 +125,8 @@ class Material:
         return (EdgeTerm(1.0 - mc, K, K * float(self.radial_ratio or 0.0), K * float(self.axial_ratio or 0.0)),)
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What the source does not give and is therefore taken as 0, in sentences."""
+    def findings(self) -> tuple[Finding, ...]:
+        """What the source does not give and is therefore taken as 0."""
         unknown = []
         if self.kind == "mechanistic" and self.Kac is None:
             unknown.append("axial")
@@ -134,8 +134,9 @@ class Material:
             unknown += [
                 word for word, ratio in (("radial", self.radial_ratio), ("axial", self.axial_ratio)) if ratio is None
             ]
+        text = "{}: the {} coefficients are unknown, the force they give is taken as 0."
         return tuple(
-            f"{self.title}: the {word} coefficients are unknown, the force they give is taken as 0." for word in unknown
+            Finding("warning", 0, text.format(self.title, word), code=f"no-{word}-coefficient") for word in unknown
         )
 
     def replace(self, **changes: Any) -> Material:

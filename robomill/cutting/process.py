@@ -18,7 +18,7 @@ from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import Finding, Provenance
 from robomill.quantities import switch
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
@@ -64,10 +64,11 @@ class ProcessForce(ForceModel):
             "computed", f"{self.kind} force with {self.material.title}: {self.material.provenance.source}"
         )
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Unknown coefficients taken as 0."""
-        return self.material.notes
+    def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
+        """Unknown coefficients taken as 0; the law of a drill's thrust has none of them."""
+        engaged = conditions.engaged
+        drilled = engaged.any() and self._tooling(conditions).drills[engaged].all()
+        return () if drilled else self.material.findings
 
     @property
     def numbers(self) -> str:
@@ -87,7 +88,7 @@ class ProcessForce(ForceModel):
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, thrusts unknown."""
         tooling, engaged = self._tooling(conditions), conditions.engaged
-        drill = np.array([each.kind == "drill" for each in tooling.cutters])[tooling.of_step]
+        drill = tooling.drills
         reasons = [
             (
                 "spindle_speed",

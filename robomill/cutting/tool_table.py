@@ -100,8 +100,8 @@ class ToolTable(Mapping[int, TableTool]):
             )
         return cutter
 
-    def notes(self, numbers: Iterable[int]) -> tuple[str, ...]:
-        """What a reader must know of the tools ``numbers`` that cut: what of them is assumed, one sentence a tool."""
+    def notes(self, numbers: Iterable[int]) -> tuple[Finding, ...]:
+        """What a reader must know of the tools ``numbers`` that cut: what of them is assumed, one finding a tool."""
         declared = quantities(Cutter)
         said = []
         for number in sorted({*numbers} & {*self}):
@@ -112,5 +112,6 @@ class ToolTable(Mapping[int, TableTool]):
             assumed = ", ".join(
                 f"{each.label.lower()} {each.short(getattr(tool.cutter, each.name))}" for each in fields
             )
-            said.append(f"Tool {number}: {assumed} assumed; its table does not say.")
+            text = f"Tool {number}: {assumed} assumed; its table does not say."
+            said.append(Finding("info", 0, text, code="tool-assumed"))
         return tuple(said)

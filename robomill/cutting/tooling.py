@@ -53,6 +53,11 @@ class Tooling:
         """A number of every step's cutter, by its name, (m,)."""
         return np.array([float(getattr(cutter, name)) for cutter in self.cutters])[self.of_step]
 
+    @property
+    def drills(self) -> BoolArray:
+        """(m,) bool: steps that a drill makes."""
+        return np.array([cutter.kind == "drill" for cutter in self.cutters])[self.of_step]
+
     def steps_of_each(self) -> Iterator[tuple[Cutter, BoolArray]]:
         """Every cutter with the steps (m,) bool that it makes."""
         for n, cutter in enumerate(self.cutters):

@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import SurfaceError
+from robomill.provenance import Finding
 from robomill.surface.mesh import Mesh, kept_cells, to_mesh
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import ZMap
@@ -56,8 +57,10 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
         return target.read_bytes()
 
 
-def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = "") -> tuple[Stock, tuple[str, ...]]:
-    """A stock from an STL file (path or bytes), and one sentence for each thing odd about it.
+def read_stl_stock(
+    source: str | Path | bytes, *, unit: str = "mm", name: str = ""
+) -> tuple[Stock, tuple[Finding, ...]]:
+    """A stock from an STL file (path or bytes), and what is odd about it.
 
     STL carries no unit: ``unit`` ("mm", "in", "cm" or "m") is what its numbers are taken as. Raises SurfaceError for a
     file that is empty, not STL, flat, or not watertight.
@@ -92,15 +95,17 @@ def read_stl_stock(source: str | Path | bytes, *, unit: str = "mm", name: str = 
     return Stock(corners.min(axis=0), corners.max(axis=0), triangles), _size_findings(label, solid.extents, unit)
 
 
-def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[str, ...]:
+def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[Finding, ...]:
     longest = float(np.max(extents))
     shown = {name: format_si(float(to_si(longest, name)), "mm", 3 if longest < 2.0 else 0) for name in UNITS_OF_STL}
     if to_si(longest, unit) > LARGEST:
-        return (f"{label}: the part is {shown[unit]} long if its numbers are {unit}; check the unit of the file.",)
-    if unit == "mm" and longest < SMALLEST_MM:
+        text = f"{label}: the part is {shown[unit]} long if its numbers are {unit}; check the unit of the file."
+    elif unit == "mm" and longest < SMALLEST_MM:
         others = " or ".join(f"{shown[name]} if they are {UNITS_OF_STL[name]}" for name in ("in", "cm", "m"))
-        return (
+        text = (
             f"{label}: the part is only {shown[unit]} long if its numbers are millimetres; it would be {others}: "
-            "choose the unit that was meant.",
+            "choose the unit that was meant."
         )
-    return ()
+    else:
+        return ()
+    return (Finding("suspicious", 0, text, code="stock-unit"),)

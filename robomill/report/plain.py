@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from robomill.provenance import Finding, named
 from robomill.units import format_value, from_si
 
 AXES = "XYZ"
@@ -47,10 +48,15 @@ def gcode_lines(record: dict[str, Any]) -> list[str]:
         lines.append("extents of the cuts (rapids may reach further)")
         for axis, low, high in zip(AXES, *extents, strict=True):
             lines.append(f"{axis}        {format_value(low, 'mm')} to {format_value(high, 'mm')}")
-    for f in record["findings"]:
-        times = f" ({f['count']} times)" if f.get("count", 1) > 1 else ""
-        where = f"line {f['line']}: " if f["line"] else ""
-        lines.append(f"{f['level']:10} {where}{f['message']}{times}")
+    return lines + finding_lines(record["findings"])
+
+
+def finding_lines(findings: Sequence[dict[str, Any]]) -> list[str]:
+    """What was noticed, with its line and how often."""
+    lines = []
+    for f in findings:
+        times = f" ({f['count']} times)" if f["count"] > 1 else ""
+        lines.append(f"{f['level']:9} {Finding(f['level'], f['line'], f['message']).sentence}{times}")
     return lines
 
 
@@ -79,13 +85,11 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     lines.append(f"reached   {record['reached']['count']} of {record['reached']['of']} points")
     lost = record["not_judged"]
     if lost["count"]:
-        named = ", ".join(map(str, lost["blocks"][:5])) + (" and more" if len(lost["blocks"]) > 5 else "")
-        lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named}")
+        lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named(lost['blocks'])}")
         lines += [f"          {reason['why']} ({reason['count']} points)" for reason in lost["reasons"]]
     lines.append("groove    station    width    depth   centre off   floor off   (mm)")
     lines += [_section_line(section) for section in record["groove"]]
-    lines += [f"note      {note}" for note in record["notes"]]
-    return lines
+    return lines + finding_lines([f for f in record["findings"] if f["level"] != "ignored"])
 
 
 def _section_line(section: dict[str, Any]) -> str:
@@ -145,4 +149,4 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
     if record["outliers"]:
         lines.append(f"do not fit the others: row {', '.join(map(str, record['outliers']))}")
-    return lines + [f"{f['level']:10} {f['message']}" for f in record["findings"]]
+    return lines + finding_lines(record["findings"])

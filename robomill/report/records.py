@@ -128,7 +128,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
     """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}."""
     i, nan3 = result.worst, np.full(3, np.nan)
     n = result.setup.robot.n
-    verdict = result.verdict
+    verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
     missed = sorted(set(result.path.block[~result.reached].tolist()))
     return {
         "name": result.setup.name,
@@ -164,8 +164,8 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "verdict_sentence": verdict.sentence,
         **judged_record(result),
         "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
-        "notes": [*result.notes, *result.surface_notes],
-        "findings": [finding_record(f) for f in (*result.setup.toolpath.findings, *result.steadiness)],
+        "notes": [note.sentence for note in noticed],
+        "findings": [finding.record() for finding in (*result.setup.toolpath.findings, *noticed)],
         "digest": result.setup.digest(),
     }
 
@@ -299,13 +299,9 @@ def path_record(path: Toolpath) -> dict[str, Any]:
         "length_mm": {kind: float(from_si(path.step_length[chosen].sum(), "mm")) for kind, chosen in kinds.items()},
         "extents_mm": [shown(low, "mm"), shown(high, "mm")],
         "units": path.units,
-        "findings": [finding_record(finding) for finding in path.findings],
+        "findings": [finding.record() for finding in path.findings],
         "ok": all(finding.level != "error" for finding in path.findings),
     }
-
-
-def finding_record(finding: Any) -> dict[str, Any]:
-    return {"line": finding.line, "level": finding.level, "message": finding.message, "count": finding.count}
 
 
 def _first_reason(result: SimulationResult) -> str:

@@ -14,12 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.provenance import Finding, named
 from robomill.units import format_si
 
 TOLERANCE = 0.5e-6  # m: force and deflection agree to this
 MOST = 40  # evaluations of the force at a step
 RESTART = 12  # evaluations after which Broyden's matrix is begun anew from the best place so far
 TURNS = 8  # of the way on which a bracket is halved
+COUPLING = "coupling"
 LONGEST = 0.5e-3  # m: no correction goes further at once
 
 
@@ -148,16 +150,16 @@ class Coupling:
         return float(np.mean([each.evaluations for each in self.settled])) if self.settled else 0.0
 
     @property
-    def sentence(self) -> str:
+    def finding(self) -> Finding:
         """For the notes of the result."""
-        tolerance = format_si(TOLERANCE, "um", 1)
-        if not self.lines:
-            return (
-                f"Coupling: force and deflection agree to {tolerance} at every step ({self.mean_iterations:.1f} "
-                f"evaluations a step, at most {self.iterations}); against one pass the deflection differs by at most "
-                f"{format_si(self.difference, 'um')}."
-            )
-        return f"Coupling: on line {named(self.lines)} {self.why}."
+        if self.lines:
+            return Finding("warning", 0, f"Coupling: on line {named(self.lines)} {self.why}.", code=COUPLING)
+        text = (
+            f"Coupling: force and deflection agree to {format_si(TOLERANCE, 'um', 1)} at every step "
+            f"({self.mean_iterations:.1f} evaluations a step, at most {self.iterations}); against one pass the "
+            f"deflection differs by at most {format_si(self.difference, 'um')}."
+        )
+        return Finding("info", 0, text, code=COUPLING)
 
     @property
     def why(self) -> str:
@@ -169,8 +171,3 @@ class Coupling:
             f"evaluations, since there the force, times the compliance, changes {worst.gain:.1f} times as fast as the "
             "tool's place"
         )
-
-
-def named(lines: tuple[int, ...]) -> str:
-    """The first few source lines: ``"3, 5, 9 and more"``."""
-    return ", ".join(map(str, lines[:3])) + (" and more" if len(lines) > 3 else "")

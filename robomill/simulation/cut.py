@@ -12,6 +12,7 @@ from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.force import feed_along, feed_share
 from robomill.errors import SetupError
+from robomill.provenance import Finding
 from robomill.simulation.samples import at_starts, clock
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
@@ -74,22 +75,24 @@ def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     return np.nan_to_num(t)
 
 
-def suspicions(setup: SimulationSetup, pull: FloatArray) -> tuple[str, ...]:
+def suspicions(setup: SimulationSetup, pull: FloatArray) -> tuple[Finding, ...]:
     """What looks wrong in a measured force; ``pull`` (k, 3) N are its components along the path where it is judged."""
     force, found = setup.force, []
     if force.provenance.kind != "measured" or not len(pull):
         return ()
     size, along = float(np.linalg.norm(pull, axis=1).mean()), float(pull[:, 0].mean())
     if along > SUSPECTED * size:
-        found.append(
+        text = (
             f"Force: on average it pulls the tool along its feed, with {format_short(along, 'N')}; a cut holds it "
             "back, but for some climb cuts. Did the sensor feel the force on the part (force_on), or in other axes?"
         )
+        found.append(Finding("suspicious", 0, text, code="force-pulls"))
     if force.frame == "M" and not force.turns_with_part and np.abs(setup.T_MW[:3, :3] - np.eye(3)).max() > 1e-6:
-        found.append(
+        text = (
             "Force: its x, y and z are taken as the robot's, and the part is turned against them; where the sensor "
             "turns with the part, say so (force_axes)."
         )
+        found.append(Finding("suspicious", 0, text, code="force-axes"))
     return tuple(found)
 
 
@@ -104,13 +107,14 @@ def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: Fl
     return np.asarray(path.p + moved @ T_MW[:3, :3])
 
 
-def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[str, ...]:
+def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[Finding, ...]:
     """What a reader of the numbers must know about cutter, stock and force."""
-    notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.notes]
-    if setup.stock is not None and (doubt := unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)):
-        notes.append(doubt)
+    notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.findings(conditions)]
+    if setup.stock is not None:
+        notes += unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)
     if not setup.engagement and setup.force.follows_cut:
-        notes.append("The force is that of a full slot everywhere: the engagement with the part is switched off.")
+        text = "The force is that of a full slot everywhere: the engagement with the part is switched off."
+        notes.append(Finding("warning", 0, text, code="full-slot"))
     if conditions.engaged.any():
         notes += cut_warnings(setup.cutter, conditions, setup.force.follows_cut)
     return tuple(notes)

@@ -6,6 +6,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.unjudged import Unjudged
+from robomill.provenance import Finding
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, to_si
@@ -50,15 +51,17 @@ def beyond_map(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> tu
     return (Unjudged("map-axis", where, why),)
 
 
-def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[str, ...]:
+def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     """What a reader must know of the map in force."""
     if setup.measured_map is None:
         return ()
-    notes = [finding.message for finding in setup.measured_map.findings]
+    notes = list(setup.measured_map.findings)
     if setup.springs:
-        notes.append("The measured map holds whatever gives; the springs beside the joints are shown, not added.")
+        text = "The measured map holds whatever gives; the springs beside the joints are shown, not added."
+        notes.append(Finding("info", 0, text, code="springs-in-map"))
     largest = float(turned(setup, path).max())
     if NOTICED < largest <= MOST_TURNED:
         off = format_si(largest, "deg", 1)
-        notes.append(f"The tool stands up to {off} off the axis the measured map was taken with; it is used as it is.")
+        text = f"The tool stands up to {off} off the axis the measured map was taken with; it is used as it is."
+        notes.append(Finding("warning", 0, text, code="map-axis"))
     return tuple(notes)

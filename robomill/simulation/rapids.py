@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from robomill.provenance import Finding, named
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
 from robomill.surface.zmap import cut
@@ -13,8 +14,8 @@ LEAST_VOLUME = 1e-12  # m^3: less than this is rounding at a wall
 MANY = 2000
 
 
-def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int, ...]:
-    """Source lines of rapids that pass through material which no cut of the program removes, in order.
+def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
+    """Rapids that pass through material which no cut of the program removes, by their source lines.
 
     Told by cutting the stock once with the feed moves and once with all; so a rapid through material that is cut
     only later is not found. Looks at most at ``MANY`` rapids one by one.
@@ -47,4 +48,9 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     if with_rapids(suspects) - base <= LEAST_VOLUME:
         return ()
     bad = [int(path.block[i]) for i in suspects[:MANY] if with_rapids(np.array([i])) - base > LEAST_VOLUME]
-    return tuple(sorted(set(bad)))
+    if not bad:
+        return ()
+    first, *others = sorted(set(bad))
+    also = f" (also line {named(others)})" if others else ""
+    text = f"a rapid runs through material that no cut removes; lift the tool first{also}."
+    return (Finding("warning", first, text, code="rapid-in-material"),)

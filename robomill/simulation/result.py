@@ -156,14 +156,14 @@ class SimulationResult:
         return moved_points(self.setup.T_MW, self.path, self.answered, self.delta)
 
     @cached_property
-    def notes(self) -> tuple[str, ...]:
-        """What a reader of the numbers must know, one sentence each."""
+    def notes(self) -> tuple[Finding, ...]:
+        """What a reader of the numbers must know."""
         found = [*cut_notes(self.setup, self.conditions), *tool_notes(self.setup, self.path)]
         found += map_notes(self.setup, self.path)
         found += suspicions(self.setup, self.force_components[self.judged & self.conditions.engaged])
         if self.coupling is not None:
-            found.append(self.coupling.sentence)
-        found += [f"Line {f.line}: {f.message}" for f in self.steadiness]
+            found.append(self.coupling.finding)
+        found += self.steadiness
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
         return tuple(found)
@@ -194,14 +194,9 @@ class SimulationResult:
         return deviation(self.ideal, self.machined)
 
     @cached_property
-    def surface_notes(self) -> tuple[str, ...]:
+    def surface_notes(self) -> tuple[Finding, ...]:
         """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material."""
-        found = list(self.machined.notes())
-        lines = rapids_through_material(self.setup, self.setup.toolpath)
-        if lines:
-            named = ", ".join(map(str, lines[:5])) + (" and more" if len(lines) > 5 else "")
-            found.append(f"Line {named}: a rapid runs through material that no cut removes; lift the tool first.")
-        return tuple(found)
+        return self.machined.notes() + rapids_through_material(self.setup, self.setup.toolpath)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup

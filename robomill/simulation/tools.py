@@ -15,6 +15,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.spring import Spring
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SetupError
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -47,9 +48,9 @@ def tooling(setup: SimulationSetup, path: Toolpath) -> Tooling:
     if not setup.tools:
         known = numbers[numbers > 0]
         if len(known) > 1:
-            named = ", ".join(f"T{n}" for n in known)
+            these = ", ".join(f"T{n}" for n in known)
             raise SetupError(
-                f"Tools: the program cuts with {named}, and the set-up knows one cutter ({setup.cutter.title}); give a "
+                f"Tools: the program cuts with {these}, and the set-up knows one cutter ({setup.cutter.title}); give a "
                 "tool table with each of them.",
                 where="tools",
             )
@@ -94,16 +95,17 @@ def _reaching(robot: Robot, farther: float) -> Robot:
     return robot.replace(T_tool=robot.T_tool @ shift)
 
 
-def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[str, ...]:
+def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     """What a reader must know of the tools."""
     if not setup.tools:
         return ()
     numbers = [int(n) for n in cutting_numbers(path)]
-    found = [finding.message for finding in setup.tools.findings] + list(setup.tools.notes(numbers))
+    found = [*setup.tools.findings, *setup.tools.notes(numbers)]
     if farther(setup, path).any():
         length = format_si(setup.tools[numbers[0]].length, "mm", 2)
-        found.append(
+        text = (
             f"The robot's tool frame is taken as that of tool {numbers[0]} ({length} long), the first that cuts; the "
             "tips of the others stand as much farther as they are longer."
         )
+        found.append(Finding("info", 0, text, code="tool-frame"))
     return tuple(found)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from robomill.provenance import named
 from robomill.simulation.gauge import Gauge, Readings
 from robomill.simulation.seen import Run
 from robomill.units import format_percent, format_si
 
 TIGHT_FROM = 0.8
-MANY = 3  # lines named in a sentence
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
 
 
@@ -77,7 +76,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         level, said = _nothing(result)
     elif missed.any():
         why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
-        where = named_lines(result.path.block[missed].tolist())
+        where = f"line {named(result.path.block[missed].tolist())}"
         level, said = (
             "unreached",
             f"{int(missed.sum())} of {len(result.path)} points {why} ({where}); of the rest: {said}.",
@@ -91,12 +90,6 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     else:
         said += {"out": ": out of tolerance.", "tight": ": within tolerance, tight."}.get(level, ": within tolerance.")
     return Verdict(level, share, said, *readings)
-
-
-def named_lines(blocks: Sequence[int]) -> str:
-    """Source lines in words, the first few: ``"line 3, 7, 9 and more"``."""
-    lines = sorted(set(blocks))
-    return "line " + ", ".join(map(str, lines[:MANY])) + (" and more" if len(lines) > MANY else "")
 
 
 def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:
@@ -161,9 +154,9 @@ def _count(result: Run) -> str:
     lost = result.not_judged
     why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
     more = f" (and {len(result.unjudged) - 1} more reasons)" if len(result.unjudged) > 1 else ""
-    lines = named_lines(result.path.block[lost].tolist())
+    lines = named(result.path.block[lost].tolist())
     total = int(result.path.cutting.sum())
-    return f"{int(lost.sum())} of {total} points of the cut are not judged ({lines}): {why.rstrip('.')}{more}"
+    return f"{int(lost.sum())} of {total} points of the cut are not judged (line {lines}): {why.rstrip('.')}{more}"
 
 
 def _nothing(result: Run) -> tuple[Level, str]:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
+from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
 from robomill.units import format_si
 
@@ -79,18 +80,20 @@ class Stock:
         """SHA-256 of corners and mesh."""
         return digest((self.lower, self.upper, self.triangles))
 
-    def warnings(self, cutter: Cutter) -> tuple[str, ...]:
-        """What is odd about this stock with this cutter, one sentence each."""
+    def warnings(self, cutter: Cutter) -> tuple[Finding, ...]:
+        """What is odd about this stock with this cutter."""
         found = []
         longest = float(self.size.max())
         if not SMALLEST <= longest <= LARGEST:
-            found.append(f"Stock: the block is {format_si(longest, 'mm', 2)} long; check the unit of its numbers.")
+            text = f"Stock: the block is {format_si(longest, 'mm', 2)} long; check the unit of its numbers."
+            found.append(Finding("suspicious", 0, text, code="stock-unit"))
         width = float(self.size[:2].min())
         if cutter.diameter > width:
-            found.append(
+            text = (
                 f"Stock: the cutter ({format_si(cutter.diameter, 'mm')}) is wider than the block"
                 f" ({format_si(width, 'mm')}); no groove with two walls can be left."
             )
+            found.append(Finding("warning", 0, text, code="wide-cutter"))
         return tuple(found)
 
 

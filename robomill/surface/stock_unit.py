@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
+from robomill.provenance import Finding
 from robomill.surface.stock import Stock
 from robomill.units import format_si
 
@@ -24,28 +25,29 @@ LIKELY = 5.0
 """times: a block so much wider than all that is cut in it was hardly meant; one up to so much may have been."""
 
 
-def unit_doubt(stock: Stock, p: ArrayLike, cutting: ArrayLike) -> str:
-    """A sentence where the stock seems to be in another unit than the path, with its extents in both; else "".
+def unit_doubt(stock: Stock, p: ArrayLike, cutting: ArrayLike) -> tuple[Finding, ...]:
+    """Whether the stock seems to be in another unit than the path, with its extents in both.
 
     p (m, 3) m in {W}, cutting (m,) bool for the move that ends at p[i].
     """
     points, used = np.asarray(p, dtype=np.float64), np.asarray(cutting, dtype=bool)
     ends = points[used | np.append(used[1:], False)]
     if not len(ends):
-        return ""
+        return ()
     now, span = _held(stock, ends, 1.0), float(np.ptp(ends[:, :2], axis=0).max())
     large = now >= HELD and float(stock.size[:2].min()) > TOO_LARGE * max(span, 1e-3)
     if now >= LOST and not large:
-        return ""
+        return ()
     for times, what in TIMES.items():
         fits = float(stock.size[:2].max()) * times <= LIKELY * span and _held(stock, ends, times) >= HELD
         if (times < 1.0) == large and fits:
             found = "most of the path lies outside of it" if not large else "the path needs a small part of it"
-            return (
+            text = (
                 f"Stock: it is {_size(stock.size)} and {found}; were its numbers {what}, it would be "
                 f"{_size(stock.size * times)} and hold the path: check the unit."
             )
-    return ""
+            return (Finding("suspicious", 0, text, code="stock-unit"),)
+    return ()
 
 
 def _held(stock: Stock, ends: FloatArray, times: float) -> float:

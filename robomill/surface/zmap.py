@@ -12,6 +12,7 @@ from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.provenance import Finding
 from robomill.surface.passes import Passes, at_one_axis, feed_passes, leaning, moves_at_feed
 from robomill.surface.raster import crossings, stock_heights
 from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
@@ -81,18 +82,21 @@ class ZMap:
         """SHA-256 over every height."""
         return digest((self.x, self.y, self.z, self.edge.index, self.edge.mean, self.bottom))
 
-    def notes(self) -> tuple[str, ...]:
-        """What a reader must know about this surface, one sentence each."""
+    def notes(self) -> tuple[Finding, ...]:
+        """What a reader must know about this surface."""
         found = []
         if self.overhang:
-            found.append(
+            text = (
                 f"Surface: in {self.overhang} cells the tilted cutter undercuts the material; a height map shows"
                 " what is seen from above, not the void below it."
             )
+            found.append(Finding("warning", 0, text, code="undercut"))
         if self.skipped:
-            found.append(f"Surface: {self.skipped} feed moves have an end that is not reached and were not cut.")
+            text = f"Surface: {self.skipped} feed moves have an end that is not reached and were not cut."
+            found.append(Finding("warning", 0, text, code="not-cut"))
         if self.below:
-            found.append("Surface: the cutter goes through the bottom of the stock; heights end at its lower face.")
+            text = "Surface: the cutter goes through the bottom of the stock; heights end at its lower face."
+            found.append(Finding("warning", 0, text, code="through-bottom"))
         return tuple(found)
 
 

@@ -54,6 +54,6 @@ def test_a_run_says_that_one_posture_of_many_was_taken():
     T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
     (note,) = posture_notes(robot, T_MT, F)
     size = np.linalg.norm(over_posture(robot, T_MT) @ F, axis=1) * 1e3
-    assert f"{size.min():.3f} to {size.max():.3f} mm" in note
-    assert "7 axes" in note
-    assert posture_notes(rm.load_robot("kuka_kr500"), T_MT, F) == []
+    assert f"{size.min():.3f} to {size.max():.3f} mm" in note.message
+    assert "7 axes" in note.message
+    assert posture_notes(rm.load_robot("kuka_kr500"), T_MT, F) == ()

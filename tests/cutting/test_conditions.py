@@ -26,14 +26,14 @@ def test_drawn_out_or_standing_a_tool_does_not_cut_and_a_plunge_is_said():
     plunge = CutConditions.steady(0.03, 200.0, 2e-3, across=0.0, along=-1.0, block=[7])
     # the whole end face advances by f_z: N R (Krc f_z + Kre)
     assert force.components(plunge)[0] == pytest.approx([0, 0, 3 * 4e-3 * (REF190.Krc * CHIP + REF190.Kre)], rel=1e-9)
-    assert len(cut_warnings(MILL, plunge)) == 1
+    assert [(each.code, each.line) for each in cut_warnings(MILL, plunge)] == [("thrust-end-teeth", 7)]
 
 
 def test_depth_beyond_the_flutes_is_warned_of():
     mill = MILL.replace(flute_length=1.5e-3)
-    assert cut_warnings(mill, SLOT) == (
-        "Step 0: depth 2.000 mm is beyond the flute length 1.500 mm; the shank would rub (1 steps).",
-    )
+    (found,) = cut_warnings(mill, SLOT)
+    assert found.code == "beyond-flutes"
+    assert "depth 2.000 mm is beyond the flute length 1.500 mm" in found.message
     assert cut_warnings(MILL, SLOT) == ()
 
 

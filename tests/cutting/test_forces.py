@@ -99,8 +99,10 @@ def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
 def test_unknown_axial_coefficients_are_named():
     force = MechanisticForce(MILL, load_material("al6061_t6_carbide_ref160"))
     assert force.components(SLOT)[0, 2] == 0.0
-    assert "axial coefficients are unknown" in force.notes[0]
-    assert MechanisticForce(MILL, ROW).notes == ()
+    assert [each.code for each in force.findings(SLOT)] == ["no-axial-coefficient"]
+    assert MechanisticForce(MILL, ROW).findings(SLOT) == ()
+    drill = MILL.replace(kind="drill", flutes=2, tip_angle=np.radians(118.0))
+    assert MechanisticForce(drill, force.material).findings(SLOT) == ()  # its thrust asks for no such coefficient
     assert force.provenance.kind == "computed"
     assert "10.1186/s10033-021-00536-9" in force.provenance.source
 

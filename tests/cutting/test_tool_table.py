@@ -34,8 +34,8 @@ def test_what_is_missing_is_asked_for_by_number() -> None:
 def test_what_is_assumed_is_said_of_the_tools_that_cut() -> None:
     table = ToolTable((TableTool(1, SIX, assumed=("kind", "flutes")), TableTool(2, EIGHT), TableTool(3, SIX)))
     (note,) = table.notes([2, 1, 1])
-    assert note.startswith("Tool 1:")
-    assert "flutes 2" in note
+    assert note.message.startswith("Tool 1:")
+    assert "flutes 2" in note.message
     assert table.notes([2, 3, 9]) == ()
 
 

@@ -96,7 +96,7 @@ def test_broken_stocks_are_refused_or_questioned():
     with pytest.raises(SurfaceError, match=r"no triangles|not an STL"):
         read_stl_stock(b"G1 X0 Y0\n" * 30)
     _, findings = read_stl_stock(stl(trimesh.creation.box((0.03, 0.02, 0.01))))
-    assert "30.000 mm if they are metres" in findings[0]
+    assert "30.000 mm if they are metres" in findings[0].message
     stock, findings = read_stl_stock(stl(trimesh.creation.box((0.03, 0.02, 0.01))), unit="m")
     assert findings == ()
     assert stock.size[0] == pytest.approx(0.03)
@@ -134,8 +134,8 @@ def test_sizes_that_were_hardly_meant_are_said(unit, longest, said, tmp_path):
     np.testing.assert_allclose(stock.size, np.array([1, 0.5, 0.25]) * longest * one, rtol=1e-6)
     if said:
         assert len(findings) == 1
-        assert findings[0].startswith("stock.stl: ")
-        assert said in findings[0]
+        assert findings[0].message.startswith("stock.stl: ")
+        assert said in findings[0].message
     else:
         assert findings == ()
 

@@ -71,7 +71,7 @@ def test_coupling_matters_and_says_how_much():
     run, plain = shoulder(5e-3, False), simulate(shoulder(5e-3, False).setup.replace(coupling=False))
     assert run.coupling.difference == pytest.approx(float(np.nanmax(np.abs(run.delta - plain.delta))), abs=1e-9)
     assert run.coupling.difference > 3e-6
-    assert any("Coupling" in note for note in run.notes)
+    assert [note.level for note in run.notes if note.code == "coupling"] == ["info"]
 
 
 def test_a_later_pass_meets_what_a_deflected_one_has_left():

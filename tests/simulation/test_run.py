@@ -164,7 +164,8 @@ def test_a_rapid_through_the_part_is_said_with_its_line(setup, result) -> None:
     assert result.surface_notes == ()
     rash = setup.source.text.replace("N60 G0 Z20", "N60 G0 X0 Y15")
     run = simulate(setup.replace(source=GCodeSource(rash)))
-    assert run.surface_notes == ("Line 8: a rapid runs through material that no cut removes; lift the tool first.",)
+    (note,) = run.surface_notes
+    assert (note.code, note.line, note.level) == ("rapid-in-material", 8, "warning")
 
 
 def test_cuts_in_air_do_not_win_the_verdict(setup) -> None:

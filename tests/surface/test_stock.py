@@ -61,8 +61,8 @@ def test_a_stock_round_a_path():
 
 
 def test_odd_stocks_are_said():
-    assert "check the unit" in Stock((0, 0, 0), (6.0, 1, 1)).warnings(CUTTER)[0]
-    assert "check the unit" in Stock((0, 0, 0), (1e-3, 1e-3, 1e-3)).warnings(CUTTER)[0]
+    assert "check the unit" in Stock((0, 0, 0), (6.0, 1, 1)).warnings(CUTTER)[0].message
+    assert "check the unit" in Stock((0, 0, 0), (1e-3, 1e-3, 1e-3)).warnings(CUTTER)[0].message
     assert Stock((0, 0, 0), (4.9, 0.1, 0.1)).warnings(CUTTER) == ()
     assert Stock((0, 0, 0), (1, 0.0081, 1)).warnings(CUTTER) == ()
     assert len(Stock((0, 0, 0), (0.0079, 1, 1)).warnings(CUTTER)) == 1
@@ -87,5 +87,5 @@ def test_stock_refusals_and_defaults():
     stock = Stock.from_path(p, CUTTER, [False, True, True, False], margin=0.001, below=0.004)
     np.testing.assert_allclose(stock.lower, [-0.005, -0.005, -0.006])
     np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
-    assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(CUTTER)[0].startswith("Stock: the cutter (8.000 mm) is wider")
+    assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(CUTTER)[0].code == "wide-cutter"
     assert not STOCK.warnings(CUTTER)

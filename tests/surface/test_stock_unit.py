@@ -30,7 +30,7 @@ def block(times: float) -> Stock:
     ],
 )
 def test_the_unit_that_would_fit_is_named_with_both_extents(times: float, said: str) -> None:
-    doubt = unit_doubt(block(times), POCKET, CUTTING)
+    doubt = "".join(finding.message for finding in unit_doubt(block(times), POCKET, CUTTING))
     assert said in doubt
     assert bool(doubt) == bool(said)
     if said and times != 1000.0:
@@ -39,6 +39,6 @@ def test_the_unit_that_would_fit_is_named_with_both_extents(times: float, said: 
 
 def test_a_block_beside_the_path_is_not_a_matter_of_units() -> None:
     away = Stock((-0.3, -0.3, -0.01), (-0.2, -0.2, 0.0))
-    assert unit_doubt(away, POCKET, CUTTING) == ""
-    assert unit_doubt(block(0.7), POCKET, CUTTING) == ""
-    assert unit_doubt(block(1 / 25.4), POCKET, np.zeros(4, bool)) == ""
+    assert unit_doubt(away, POCKET, CUTTING) == ()
+    assert unit_doubt(block(0.7), POCKET, CUTTING) == ()
+    assert unit_doubt(block(1 / 25.4), POCKET, np.zeros(4, bool)) == ()

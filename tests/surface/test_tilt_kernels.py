@@ -100,7 +100,7 @@ def test_undercut_is_reported():
     p = np.array([[0.0, 0.0, -0.006], [0.04, 0.0, -0.006]])
     surface = cut(STOCK, 5e-4, CUTTERS["flat"], p, axis(0.4, 0.0))
     assert surface.overhang > 50
-    assert "undercut" in surface.notes()[0]
+    assert surface.notes()[0].code == "undercut"
     # seen from above the overhanging wall stays: nothing lower than the top beyond the lip
     assert surface.z.max() == 0.0
 

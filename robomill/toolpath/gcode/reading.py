@@ -114,8 +114,9 @@ def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
     wrong = np.flatnonzero(lift.any(axis=1) & (columns["kind"] != TRAVERSE) & (columns["kind"] != PROBE))
     for tool in np.unique(columns["tool"][wrong]):
         row = int(wrong[columns["tool"][wrong] == tool][0])
-        lower = format_si(-float(lift[row, 2]), "mm")
-        message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {lower} lower than is said"
+        lifted = float(lift[row, 2])
+        off = f"{format_si(abs(lifted), 'mm')} {'higher' if lifted > 0.0 else 'lower'}"
+        message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {off} than is said"
         machine.findings.add("wrong-length", "warning", int(columns["line"][row]), message)
     return frozen(lift)
 

@@ -34,9 +34,7 @@ def gcode_report(program: Program) -> dict[str, Any]:
         "dialect": program.dialect,
         "lines": program.lines,
         "dwells": program.dwells,
-        "findings": [
-            {"line": f.line, "level": f.level, "message": f.message, "count": f.count} for f in program.findings
-        ],
+        "findings": [finding.record() for finding in program.findings],
         "ok": program.ok,
     }
 

@@ -82,19 +82,19 @@ def inputs_column(result: SimulationResult | None) -> None:
     with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
         force_panel.inputs_panel()
         if result is not None and result.coupling is not None and not result.coupling.converged:
-            st.warning(result.coupling.sentence, icon=":material/warning:")
+            st.warning(result.coupling.finding.sentence, icon=":material/warning:")
     with st.expander("**Tools**" if setup.tools else "**Cutter**", expanded=True, key="milling.open.cutter"):
         if not setup.tools:
             cut_panel.cutter_inputs()
         tools_panel.panel()
         if result is not None:
-            for words in dict.fromkeys(
+            for finding in dict.fromkeys(
                 [
                     *setup.stock_block.warnings(setup.cutter),
                     *cut_warnings(setup.cutter, result.conditions, setup.force.follows_cut),
                 ]
             ):
-                st.warning(words, icon=":material/warning:")
+                st.warning(finding.sentence, icon=":material/warning:")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
         cut_panel.stock_inputs()
     with st.expander("**Beside the joints**", expanded=False, key="milling.open.springs"):

@@ -74,8 +74,8 @@ def _stl(stock: Stock | None) -> None:
     inputs.choice("Unit of the file", UNIT, UNITS_OF_STL, session.kept(UNIT, "mm"), _take_unit, look)
     inputs.upload("Stock as a closed solid (.stl), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
     if stock is not None and stock.triangles is not None:
-        for words in session.kept(ODD, ()):
-            st.warning(words, icon=":material/straighten:")
+        for finding in session.kept(ODD, ()):
+            st.warning(finding.sentence, icon=":material/straighten:")
         pieces.note(f"{pieces.badge('user')} solid of {format_count(len(stock.triangles), 'triangle')}, {_size(stock)}")
     elif FILE not in session.store().refused:
         pieces.note("Until a file is given, the stock stays as it was.")

@@ -9,6 +9,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
+from robomill.simulation.coupling import COUPLING
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
@@ -168,6 +169,6 @@ def coupling_facts(result: SimulationResult) -> None:
 
 def worth_knowing(result: SimulationResult) -> None:
     """Notes on force, stock and cutter."""
-    for words in result.notes:
-        if result.coupling is None or words != result.coupling.sentence:
-            pieces.note(f"• {html.escape(words)}")
+    for finding in result.notes:
+        if finding.code != COUPLING:  # stands among the facts
+            pieces.note(f"• {html.escape(finding.sentence)}")

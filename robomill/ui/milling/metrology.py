@@ -225,5 +225,5 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
             ("RMS error", format_si(error.rms, "um"), "over the cut area"),
         ]
     )
-    for words in result.machined.notes():
-        st.warning(words, icon=":material/layers:")
+    for finding in result.machined.notes():
+        st.warning(finding.sentence, icon=":material/layers:")

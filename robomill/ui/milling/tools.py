@@ -109,8 +109,8 @@ def _table(tools: ToolTable) -> None:
         inputs.Sheet(columns=columns | {NAME: special[NAME]}, dynamic=True),
     )
     pieces.note(f"{pieces.badge('user')} An empty cell is not stated: kind, flutes and helix are then assumed.")
-    for words in (*session.kept(ODD, ()), *tools.notes(_cut_with().tolist())):
-        pieces.note(f"{pieces.badge('assumed')} {html.escape(words)}")
+    for finding in (*session.kept(ODD, ()), *tools.notes(_cut_with().tolist())):
+        pieces.note(f"{pieces.badge('assumed')} {html.escape(finding.sentence)}")
 
 
 def _ways_in(tools: ToolTable) -> None:
@@ -146,7 +146,7 @@ def _take(data: bytes, name: str) -> None:
     session.keep(FILE, (data, name))
     tools = read_tool_table(data, unit=session.kept(UNIT, UNITS[0]), name=name)
     session.change(tools=tools)
-    session.keep(ODD, tuple(finding.message for finding in tools.findings))
+    session.keep(ODD, tools.findings)
 
 
 # ---- between the table on the page and the tools -------------------------------------------------------------------

@@ -46,6 +46,9 @@ def test_a_forgotten_length_is_said_with_the_line_of_the_cut() -> None:
     program = interpret("G21 G90\n" + cut(1, "G43 H1") + cut(2, "(G43 H2 is missing)") + "M2\n", tools=TOOLS)
     (found,) = (f for f in program.findings if f.code == "wrong-length")
     assert (found.level, found.line) == ("warning", 11)
+    assert "30.000 mm lower" in found.message
+    other = interpret("G21 G90\n" + cut(1, "G43 H2") + "M2\n", tools=TOOLS)
+    assert ["30.000 mm higher" in f.message for f in other.findings if f.code == "wrong-length"] == [True]
     assert program.extents[0][2] == pytest.approx((-2.0 + 50.0 - 80.0) * 1e-3)
     right = interpret("G21 G90\n" + cut(1, "G43 H1") + cut(2, "G43 H2") + "M2\n", tools=TOOLS)
     assert "wrong-length" not in {f.code for f in right.findings}

@@ -1,0 +1,28 @@
+"""Findings as sentences and records, and numbers named in a sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from robomill.errors import RobomillError
+from robomill.provenance import Finding, Provenance, named
+
+
+def test_a_finding_says_its_line_and_keeps_its_code() -> None:
+    found = Finding("warning", 12, "it rubs.", 3, "rubs")
+    assert found.sentence == "Line 12: it rubs."
+    assert Finding("warning", 0, "It rubs.").sentence == "It rubs."
+    assert found.record() == {"level": "warning", "line": 12, "message": "it rubs.", "count": 3, "code": "rubs"}
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [((), ""), ((7,), "7"), ((9, 3, 3, 5), "3, 5, 9"), (range(4, 0, -1), "1, 2, 3 and more")],
+)
+def test_numbers_are_named_once_in_order_and_not_all_of_many(numbers, words) -> None:
+    assert named(numbers) == words
+
+
+def test_a_provenance_is_of_a_kind() -> None:
+    with pytest.raises(RobomillError, match="kind is 'guessed'; expected one of paper, "):
+        Provenance("guessed", "a hunch")  # type: ignore[arg-type]
