@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 
 import robomill as rm
-from robomill.workspace.clear import clear_cells
+from robomill.workspace.clear import clear_cells, largest_clear_box
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 from robomill.workspace.region import largest_region
 from tests.kinematics.oracles import numeric_jacobian, pose
@@ -81,3 +81,30 @@ def test_cells_of_a_plane_and_of_a_planar_arm():
     assert not clear[r > 0.9].any()
     assert not clear[r < 0.1].any()
     assert clear.any()
+
+
+@pytest.mark.parametrize("cell", [(0, 0, 0), (3, 2, 1), (0, 2, 1), (3, 0, 0), (1, 1, 0), (2, 0, 1)])
+def test_what_only_a_finer_grid_shows_is_left_out(monkeypatch, cell):
+    """One bad place that cells of the coarse grid do not see: the box is the largest of all boxes without that cell."""
+    grid = Grid(np.linspace(0, 0.4, 5), np.linspace(1, 1.24, 4), np.linspace(-1, -0.84, 3))
+    place = [axis[i] + 0.55 * (axis[1] - axis[0]) for axis, i in zip((grid.x, grid.y, grid.z), cell, strict=True)]
+
+    def cells(robot, looked, A, B):
+        axes = (looked.x, looked.y, looked.z)
+        found = np.ones([len(axis) - 1 for axis in axes], dtype=bool)
+        if axes[0][1] - axes[0][0] < 0.05:
+            at = [np.searchsorted(axis, p) - 1 for axis, p in zip(axes, place, strict=True)]
+            if all(0 <= i < n for i, n in zip(at, found.shape, strict=True)):
+                found[tuple(at)] = False
+        return found
+
+    monkeypatch.setattr("robomill.workspace.clear.clear_cells", cells)
+    box = largest_clear_box(rm.load_robot("planar_2r"), grid)
+    spans = [list(itertools.combinations(axis, 2)) for axis in (grid.x, grid.y, grid.z)]
+    volumes = [
+        np.prod([high - low for low, high in ends])
+        for ends in itertools.product(*spans)
+        if not all(low < p < high for (low, high), p in zip(ends, place, strict=True))
+    ]
+    assert np.prod(box.size) == pytest.approx(max(volumes))
+    assert not ((box.lower < place) & (place < box.upper)).all()
