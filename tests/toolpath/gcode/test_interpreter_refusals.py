@@ -29,4 +29,4 @@ def test_endless_loop_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_there_are_many() -> None:
-    assert len(FILES) > 90
+    assert len(FILES) > 140
