@@ -74,3 +74,47 @@ def test_apt_says_it_too() -> None:
     )
     assert path.ccw.tolist() == [True, True, False, False, False]
     assert path.dwell.tolist() == [0.0, 0.0, 1.5, 0.5, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("units", "feed", "speed_mm_s"),
+    [
+        ("MM", "FEDRAT/600", 10),
+        ("INCHES", "FEDRAT/6", 2.54),
+        ("MM", "FEDRAT/6,IPM", 2.54),
+        ("INCHES", "FEDRAT/MMPM,600", 10),
+        ("MM", "FEDRAT/0.5,MMPR", 5),
+        ("MM", "FEDRAT/0.1,IPR", 25.4),
+        ("INCHES", "FEDRAT/0.1,PERREV", 25.4),
+        ("MM", "FEDRAT/0.5,PERREV", 5),
+    ],
+)
+def test_feeds_per_minute_and_per_turn(units: str, feed: str, speed_mm_s: float) -> None:
+    path = read_apt(f"PARTNO/X\nUNITS/{units}\nSPINDL/600,CLW\n{feed}\nFROM/0,0,10\nGOTO/1,0,0\nFINI\n")
+    assert path.v_f[-1] * 1e3 == pytest.approx(speed_mm_s)
+
+
+def test_a_rapid_counts_for_one_point() -> None:
+    path = read_apt("PARTNO/X\nUNITS/MM\nFEDRAT/600\nFROM/0,0,9\nFEDRAT/RAPID\nGOTO/1,0,0\nGOTO/2,0,0\nFINI\n")
+    assert path.cutting.tolist() == [False, False, True]
+
+
+def test_spindle_on_and_off_and_its_sense() -> None:
+    lines = "SPINDL/600,CLW\nGOTO/1,0,0\nSPINDL/OFF\nGOTO/2,0,0\nSPINDL/-300,CCLW\nGOTO/3,0,0\nSPINDL/ON\nGOTO/4,0,0\n"
+    path = read_apt(f"PARTNO/X\nUNITS/MM\nFEDRAT/600\nFROM/0,0,9\n{lines}FINI\n")
+    assert path.n_s[1:] == pytest.approx([10, 0, 5, 5])
+    assert path.ccw[1:].tolist() == [False, False, True, True]
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("FEDRAT/-1", "expected one rate of 0 or more"),
+        ("FEDRAT/IPM", "expected one rate of 0 or more"),
+        ("FEDRAT/1,2", "expected one rate of 0 or more"),
+        ("SPINDL/FAST", "expected a speed or OFF"),
+    ],
+)
+def test_rates_that_are_none_are_refused(line: str, found: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 2: .*{found}"):
+        read_apt(f"PARTNO/X\n{line}\nFROM/0,0,9\nFINI\n")

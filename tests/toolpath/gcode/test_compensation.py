@@ -163,3 +163,48 @@ def test_a_turned_or_mirrored_program_is_the_turned_or_mirrored_path(seed):
         found, at = moves_of(other.program("G42.1" if mirror else "G41.1"))
         np.testing.assert_array_equal(at, line)
         np.testing.assert_allclose(found, turned(points, angle, mirror), atol=1e-7)
+
+
+def test_a_change_of_units_on_the_way_changes_nothing():
+    """The same outline, from a line or an arc on in inches."""
+    lines = [
+        "G41.1 D4",
+        "G1 X10 Y-2",
+        "X30",
+        "G2 X40 Y-12 J-10",
+        "G1 Y-30",
+        "G3 X50 Y-40 I10",
+        "G1 X70",
+        "G40",
+        "G1 X80",
+    ]
+
+    def read(switch):
+        out = []
+        for i, line in enumerate(lines):
+            words = line.split()
+            if i >= switch:
+                words = [w if w[0] == "G" else f"{w[0]}{float(w[1:]) / 25.4:.15g}" for w in words]
+            out.append(("G20 " if i == switch else "") + " ".join(words))
+        return to_toolpath(interpret("G21 G90 F100\nG0 X0 Y0 Z0\n" + "\n".join(out) + "\nM2\n")).p
+
+    whole = read(99)
+    for switch in range(2, 9):
+        np.testing.assert_allclose(read(switch), whole, atol=1e-9)
+
+
+#: Noses of lathe tools as the handbook draws them: which way the programmed point lies from the centre (z, x).
+NOSES = {1: (1, -1), 2: (-1, -1), 3: (-1, 1), 4: (1, 1), 5: (1, 0), 6: (0, -1), 7: (-1, 0), 8: (0, 1), 9: (0, 0)}
+
+
+@pytest.mark.parametrize("orientation", NOSES)
+def test_a_lathe_tools_point_stands_beside_the_centre_of_its_nose(orientation):
+    lines = "G1 X10 Z0\nZ-20\nG2 X15 Z-25 I5\nG1 X30\nG40\nG1 X40 Z5\nM2\n"
+
+    def read(number):
+        program = interpret(f"G21 G90 G18 F100\nG0 X10 Z20\nG42.1 D1.6 L{number}\n{lines}")
+        return program.end[1:5, [2, 0]] * 1e3
+
+    np.testing.assert_allclose(
+        read(orientation) - read(0), np.broadcast_to(0.8 * np.array(NOSES[orientation]), (4, 2)), atol=1e-9
+    )

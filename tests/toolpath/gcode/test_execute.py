@@ -20,3 +20,42 @@ def test_a_change_to_no_tool_is_told_only_where_none_was_named_and_none_was_ther
     assert told == ([len(before) + 2] if nothing_named and not in_spindle else [])
     number = on_line if on_line is not None else selected or 0
     assert program.tool.tolist() == [number]
+
+
+MODES = {
+    "G20": "_imperial",
+    "G18": "_plane",
+    "G91": "_incremental",
+    "G95": "_units_per_rev",
+    "G56": "_coord_system",
+    "G99": "_retract_r_plane",
+    "G90.1": "_ijk_absolute_mode",
+    "G7": "_lathe_diameter_mode",
+}
+
+
+def kept(text: str) -> list[float]:
+    """What the modes are at the end of a program."""
+    lines = [f"#{1 + i}=#<{name}>" for i, name in enumerate(MODES.values())]
+    shown = "".join(f"(debug,#{1 + i})\n" for i in range(len(MODES)))
+    program = interpret("\n".join([text, *lines, shown + "M2", ""]))
+    return [float(said) for _, said in program.messages]
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize(("keep", "back"), [("M70", "M72"), ("O1 sub\nM73", "O1 endsub\nO1 call")])
+def test_modes_that_were_kept_come_back(mode: str, keep: str, back: str) -> None:
+    start = "G21 G17 G90 G94 G54 G98 G91.1 G8 F100 S100 M3\n"
+    before, changed = kept(start), kept(f"{start}{mode}\n")
+    assert changed != before
+    assert kept(f"{start}{keep}\n{mode}\n{back}\n") == before
+
+
+def test_a_point_is_kept_where_it_is_when_units_come_back() -> None:
+    program = interpret("G21 G90\nG0 X25.4 Y50.8\nM70\nG20\nG0 X3\nM72\nG0 Z5\nM2\n")
+    assert program.end[-1] * 1e3 == pytest.approx([76.2, 50.8, 5.0])
+
+
+def test_diameters_are_halved_until_radii_count_again() -> None:
+    program = interpret("G21 G90 G7\nG0 X30 Z1\nX20\nG8 X12\nG7 X12\nM2\n")
+    assert program.end[:, 0] * 1e3 == pytest.approx([15, 10, 12, 6])

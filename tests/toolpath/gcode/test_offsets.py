@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 
 
@@ -30,11 +30,11 @@ def test_a_system_takes_no_centre(kind, letters):
         interpret(f"G21\nG10 L{kind} P1 X1 {letters}\nM2\n")
 
 
-def read(text, *numbers):
+def read(text, *numbers, tools=None):
     """What the parameters hold at the end of a program, as moves of X."""
     kept = " ".join(f"#{101 + i}=#{number}" for i, number in enumerate(numbers))
     shown = "".join(f"G53 G0 X#{101 + i}\n" for i in range(len(numbers)))
-    program = interpret(f"{text}{kept}\n{shown}M2\n")
+    program = interpret(f"{text}{kept}\nG49\n{shown}M2\n", tools=tools)
     return program.end[-len(numbers) :, 0] * 1e3
 
 
@@ -64,3 +64,31 @@ def test_a_shift_put_aside_and_taken_up_again_is_the_same():
     np.testing.assert_allclose(again[-1], there, atol=1e-12)
     np.testing.assert_allclose(again[-2], [9e-3, 9e-3, 9e-3], atol=1e-12)
     np.testing.assert_allclose(there, [6e-3, -11e-3, -289e-3], atol=1e-12)
+
+
+TOOL = (5401, 5402, 5403)
+
+
+def test_a_tool_is_measured_by_words_or_by_where_it_stands():
+    """L1 says the offset; L10 says what is to be read here with that offset in force, L11 what in G59.3."""
+    start = "G21 G90\nG10 L2 P1 X7 Y-3 Z1 R35\nG10 L2 P9 X-2 Y8 Z11 R-20\nG54\nT3 M6\nG0 X5 Y3 Z2\nG43.1 X1 Z4\n"
+    np.testing.assert_allclose(read(f"{start}G10 L1 P3 X0.1 Y0.2 Z52.5\n", *TOOL), [0.1, 0.2, 52.5], atol=1e-9)
+    np.testing.assert_allclose(read(f"{start}G10 L1 P3 Z52.5\nG10 L1 P3 X0.1 R6\n", *TOOL, 5410), [0.1, 0, 52.5, 12])
+    np.testing.assert_allclose(read(f"{start}G10 L10 P3 Z12\nG43\n", 5422), [12], atol=1e-9)
+    np.testing.assert_allclose(read(f"{start}G10 L11 P3 Z12\nG59.3\nG43\n", 5422), [12], atol=1e-9)
+    plain = start.replace("R35", "").replace("R-20", "")
+    np.testing.assert_allclose(read(f"{plain}G10 L10 P3 X1 Y2 Z12\nG43\n", *HERE), [1, 2, 12], atol=1e-9)
+    np.testing.assert_allclose(read(f"{plain}G10 L11 P3 X1 Y2 Z12\nG59.3\nG43\n", *HERE), [1, 2, 12], atol=1e-9)
+
+
+def test_a_second_length_is_added_to_the_one_in_force():
+    """The machine reads the tip lower by every length it counts with."""
+    tools = {1: Tool(1, 0.0, (0.0, 0.0, 50e-3)), 2: Tool(2, 0.0, (3e-3, 0.0, 7e-3))}
+    start = "G21 G90\nG0 X0 Y0 Z200\n"
+    for words, here in (
+        ("G43 H1", [0, 0, 150]),
+        ("G43 H1\nG43.2 H2", [-3, 0, 143]),
+        ("G43.1 Z5\nG43.1 X2", [-2, 0, 195]),
+        ("G43 H1\nG49", [0, 0, 200]),
+    ):
+        np.testing.assert_allclose(read(f"{start}{words}\n", *HERE, tools=tools), here, atol=1e-9)

@@ -1,0 +1,71 @@
+"""Splines against Bernstein's polynomials and scipy's B-splines."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline
+from scipy.special import comb
+
+from robomill.toolpath.gcode import interpret
+
+START = np.array([1.0, -2.0])
+
+
+def read(lines):
+    program = interpret(f"G21 G90 F100\nG0 X{START[0]} Y{START[1]} Z3\n{lines}\nM2\n")
+    return [program.end[program.line == i][:, :2] * 1e3 for i in range(3, program.line.max() + 1)]
+
+
+def off(points, curve):
+    """The farthest of the points from a fine polyline (m, 2)."""
+    a, b = curve[:-1], curve[1:]
+    d = b - a
+    s = np.clip(np.einsum("kmi,mi->km", points[:, None] - a, d) / np.einsum("mi,mi->m", d, d), 0, 1)
+    return np.linalg.norm(points[:, None] - (a + s[..., None] * d), axis=2).min(axis=1).max()
+
+
+def bezier(points, m=4000):
+    n = len(points) - 1
+    t = np.linspace(0, 1, m)[:, None]
+    return sum(comb(n, k) * t**k * (1 - t) ** (n - k) * np.asarray(p) for k, p in enumerate(points))
+
+
+def test_cubic_and_the_smooth_one_after_it():
+    """P Q is measured from the end; without I J the next one leaves as the last one came."""
+    first, second = read("G5 X11 Y-2 I2 J6 P-3 Q5\nG5 X20 Y4 P1 Q-6")
+    end = (11, -2)
+    one = bezier([START, (3, 4), (8, 3), end])
+    two = bezier([end, (14, -7), (21, -2), [20, 4]])
+    for found, curve in ((first, one), (second, two)):
+        assert off(found, curve) < 1e-5
+        assert len(found) > 20
+        assert np.linalg.norm(np.diff(found, axis=0), axis=1).max() < 2.5
+        np.testing.assert_allclose(found[-1], curve[-1], atol=1e-9)
+
+
+def test_quadratic():
+    (found,) = read("G5.1 X9 Y1 I3 J7")
+    curve = bezier([START, (4, 5), [9, 1]])
+    assert off(found, curve) < 1e-5
+    np.testing.assert_allclose(found[-1], [9, 1], atol=1e-9)
+
+
+@pytest.mark.parametrize("order", [3, 4, 5])
+@pytest.mark.parametrize("first_weight", [None])
+def test_nurbs_is_a_rational_b_spline(order, first_weight):
+    """A first line with P alone weighs the start; L is the order."""
+    weights = np.array([first_weight or 1.0, 1.0, 3.0, 0.5, 2.0, 1.0])
+    points = np.array([START, [3, 4], [7, 5], [9, -3], [12, 0], [15, 2]])
+    begin = f"G5.2 P{first_weight} L{order}\n" if first_weight else f"G5.2 L{order} "
+    lines = "\n".join(f"X{x} Y{y} P{w}" for (x, y), w in zip(points[1:], weights[1:], strict=True))
+    program = interpret(f"G21 G90 F100\nG0 X{START[0]} Y{START[1]} Z3\n{begin}{lines}\nG5.3\nM2\n")
+    found = program.end[1:, :2] * 1e3
+    n, degree = len(points), order - 1
+    knots = np.concatenate([[0] * degree, np.arange(n - degree + 1), [n - degree] * degree]).astype(float)
+    u = np.linspace(0, n - degree, 6000)
+    homogeneous = BSpline(knots, np.column_stack([points * weights[:, None], weights]), degree)(u)
+    curve = homogeneous[:, :2] / homogeneous[:, 2:]
+    assert off(found, curve) < 2e-5
+    np.testing.assert_allclose(found[-1], [15, 2], atol=1e-9)
+    assert np.linalg.norm(np.diff(found, axis=0), axis=1).max() < 1.5

@@ -1,0 +1,72 @@
+"""Sources of a path: what a number of a block counts, what stands there; what stays the same is read once."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import ToolpathError
+from robomill.toolpath.gcode import Tool
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.sketch_presets import PRESETS, preset
+from robomill.toolpath.source import MAX_KEPT, GCodeSource, LinesSource, SketchSource
+from robomill.toolpath.tools import Tools
+
+TEXT = "G21 G90 S600 M3\nT1 M6\nG0 X0 Y0 Z5\nG43 H1\nG1 Z-1 F600\nX10\nG0 Z5\nM2\n"
+
+
+def test_a_program_is_read_once_for_each_table_of_tools() -> None:
+    source = GCodeSource(TEXT)
+    first = source.read()
+    assert source.read() is first
+    assert GCodeSource(TEXT).read() is first
+    assert GCodeSource(TEXT.replace("X10", "X11")).read() is not first
+    assert source.read({}) is first
+    tools: Tools = {1: Tool(1, 8e-3, (0.0, 0.0, 0.05))}
+    other = source.read(tools)
+    assert other is not first
+    assert source.read(tools) is other
+
+
+def test_the_last_few_programs_are_kept() -> None:
+    """Whoever was asked for last stays longest."""
+    sources = [GCodeSource(TEXT.replace("X10", f"X{10 + i}"), "kept.nc") for i in range(MAX_KEPT + 1)]
+    paths = [source.read() for source in sources[:-1]]
+    assert sources[0].read() is paths[0]
+    sources[-1].read()
+    assert sources[0].read() is paths[0]
+    assert sources[1].read() is not paths[1]
+
+
+def test_apt_is_told_from_g_code_by_its_text() -> None:
+    path = GCodeSource("PARTNO/X\nUNITS/MM\nFEDRAT/600\nFROM/0,0,10\nGOTO/10,0,0\nFINI\n").read()
+    np.testing.assert_allclose(path.p[-1], [0.01, 0, 0])
+
+
+def test_blocks_are_lines_rows_and_shapes() -> None:
+    program = GCodeSource("G21\r\nG1 X1 F1\rM2")
+    assert (program.kind, program.block_name) == ("program", "line")
+    assert program.block_texts() == ["G21", "G1 X1 F1", "M2"]
+    table = LinesSource([[0, 0, 0], [0.01, 0, 0]], [[0.01, 0, 0], [0.01, 0.0255, -1e-3]], [0.01, 0.03], 200.0)
+    assert (table.kind, table.block_name) == ("lines", "row")
+    assert table.block_texts() == ["(0, 0, 0) → (10, 0, 0)  600 mm/min", "(10, 0, 0) → (10, 25.5, −1)  1800 mm/min"]
+    path = table.read()
+    assert path.n_s.tolist() == [200.0] * len(path)
+    np.testing.assert_allclose(path.v_f[path.cutting], [0.01, 0.03])
+    sketch = SketchSource(preset(next(iter(PRESETS))))
+    assert (sketch.kind, sketch.block_name) == ("sketch", "shape")
+    assert len(sketch.block_texts()) == len(sketch.sketch.elements)
+    assert sketch.read().digest() == sketch.sketch.toolpath().digest()
+
+
+def test_names_do_not_tell_sources_apart() -> None:
+    drawn = Sketch()
+    assert SketchSource(drawn, "one") == SketchSource(drawn, "two")
+    assert GCodeSource(TEXT, "one") != GCodeSource(TEXT, "two")
+
+
+@pytest.mark.parametrize("values", [{"start": [[0.0, 0]]}, {"v_f": [np.nan]}, {"end": [0.0, 0, 0]}])
+def test_tables_that_are_none_are_refused(values: dict[str, object]) -> None:
+    given = {"start": [[0.0, 0, 0]], "end": [[0.1, 0, 0]], "v_f": [0.01]}
+    with pytest.raises(ToolpathError):
+        LinesSource(**{**given, **values}).read()
