@@ -53,7 +53,7 @@ def test_blocks_are_lines_rows_and_shapes() -> None:
     path = table.read()
     assert path.n_s.tolist() == [200.0] * len(path)
     np.testing.assert_allclose(path.v_f[path.cutting], [0.01, 0.03])
-    sketch = SketchSource(preset(next(iter(PRESETS))))
+    sketch = SketchSource(preset(next(iter(PRESETS)), Sketch(), 8e-3))
     assert (sketch.kind, sketch.block_name) == ("sketch", "shape")
     assert len(sketch.block_texts()) == len(sketch.sketch.elements)
     assert sketch.read().digest() == sketch.sketch.toolpath().digest()
