@@ -76,7 +76,8 @@ class Comparison:
             return ""
         with np.errstate(invalid="ignore", divide="ignore"):
             grown = joints.C_theta / richer.C_theta - 1.0
-        order = [int(k) for k in np.argsort(-np.nan_to_num(np.abs(grown))) if np.isfinite(grown[k])][:2]
+        most = np.argsort(-np.nan_to_num(np.abs(grown)).round(9), kind="stable")
+        order = [int(k) for k in most if np.isfinite(grown[k])][:2]
         changes = " and ".join(f"joint {joints.labels[k].joint} by {grown[k]:+.0%}" for k in order)
         return (
             f"The joint-only values have absorbed what is not in the joints ({changes} against the model "

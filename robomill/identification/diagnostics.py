@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.identification.confidence import quantile
 from robomill.identification.least_squares import Fit, robust_fit, triangle
 from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
@@ -127,7 +128,7 @@ def half_share(fit: Fit, k: int) -> float:
     """Half the 95 % interval of parameter ``k`` as a share of its estimate."""
     if fit.dof <= 0 or not fit.x[k] > 0:
         return float("inf")
-    return float(stdtrit(fit.dof, 0.975) * fit.stderr[k] / fit.x[k])
+    return float(quantile(fit.dof) * fit.stderr[k] / fit.x[k])
 
 
 def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict[str, str]) -> list[Finding]:

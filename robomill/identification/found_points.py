@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, frozen
+from robomill.identification.confidence import quantile
 from robomill.identification.load_test import LoadTests
 from robomill.identification.points import Point, PointFit
 from robomill.provenance import Finding
@@ -73,7 +73,7 @@ class FoundPoint:
 
     @property
     def _t(self) -> float:
-        return float(stdtrit(self.dof, 0.975)) if self.dof > 0 else float("inf")
+        return quantile(self.dof)
 
     def sentence(self) -> str:
         """How far the point is from the stated one."""
@@ -104,17 +104,20 @@ class Offer:
         return Finding("warning", 0, text, len(self.points), code=f"fit-{self.fit_points}")
 
 
-def found_points(robot: Robot, tests: LoadTests, freed: tuple[Point, ...], found: PointFit) -> tuple[FoundPoint, ...]:
-    """The points that were fitted, in the order of ``freed``."""
+def found_points(
+    robot: Robot, tests: LoadTests, freed: tuple[Point, ...], found: PointFit, moved: FloatArray | None = None
+) -> tuple[FoundPoint, ...]:
+    """The points that were fitted, in the order of ``freed``; the force point was ``moved`` (m, 3) m before the fit."""
     p = len(found.fit.x) - 3 * len(freed)
     stated = {"force": tests.force_point, "gauge": tests.measuring_point}
     result = []
     for i, point in enumerate(freed):
+        before = moved[0] if moved is not None and point == "force" else 0.0
         own = slice(p + 3 * i, p + 3 * i + 3)
         result.append(
             FoundPoint(
                 point,
-                frozen(found.shift[3 * i : 3 * i + 3]),
+                frozen(found.shift[3 * i : 3 * i + 3] + before),
                 frozen(found.fit.covariance[own, own]),
                 frozen(stated[point].mean(axis=0)),
                 robot.T_tool,

@@ -18,14 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
-from scipy.special import stdtrit
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.identification.confidence import BISQUARE, LEVEL, MAD, bisquare, quantile
 
 NULL = 1e-9  # singular values below this share of the largest (columns scaled) count as zero
-BISQUARE = 4.685  # Tukey's constant: 95 % efficient on normal noise
-HUBER = 1.345
-MAD = 0.6744897501960817  # median |x| of the standard normal
 ROUNDS = 30
 BLOCK = 256  # equations factored at a time; well above the number of parameters
 
@@ -54,9 +51,9 @@ class Fit:
         """(p,) standard errors; infinite for what is not seen."""
         return np.where(self.seen, np.sqrt(np.clip(np.diag(np.nan_to_num(self.covariance)), 0.0, None)), np.inf)
 
-    def interval(self, signed: BoolArray, level: float = 0.95) -> FloatArray:
+    def interval(self, signed: BoolArray, level: float = LEVEL) -> FloatArray:
         """(p, 2) intervals; cut at zero unless ``signed``; they always hold the estimate."""
-        t = float(stdtrit(self.dof, 0.5 + level / 2.0)) if self.dof > 0 else np.inf
+        t = quantile(self.dof, level)
         half = np.where(self.stderr > 0, t * self.stderr, 0.0) if np.isfinite(t) else np.full(len(self.x), np.inf)
         low, high = np.minimum(self.free - half, self.x), np.maximum(self.free + half, self.x)
         return np.stack([np.where(signed, low, np.maximum(low, 0.0)), high], axis=-1)
@@ -172,7 +169,7 @@ class RobustFit:
 
 
 def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
-    """Weights that leave gross equations out. Starts as Huber's fit, so that a few bad rows cannot hide one another.
+    """Weights that leave gross equations out.
 
     Works in an orthonormal basis of the columns, where the small normal equations are well conditioned.
     """
@@ -184,22 +181,16 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
     spare = np.sqrt(len(b) / max(len(b) - B.shape[1], 1))
     tiny = 1e-12 * float(np.abs(b).max(initial=0.0))
     weights, scale, residual = np.ones(len(b)), 0.0, b
-    huber = True
-    for k in range(ROUNDS):
+    for _ in range(ROUNDS):
         weighted = B * weights[:, None]
         residual = b - B @ np.linalg.lstsq(weighted.T @ B, weighted.T @ b, rcond=None)[0]
         size = np.abs(residual)
         scale = max(float(np.median(size)) / MAD * spare, tiny)
         if scale == 0.0:
             break
-        u = size / scale
-        bisquare = np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
-        new = np.minimum(1.0, HUBER / np.maximum(u, 1e-12)) if huber else bisquare
-        settled = float(np.sqrt(np.mean((new - weights) ** 2))) < 1e-4
-        weights = new
-        if settled and not huber:
+        last, weights = weights, bisquare(size / scale)
+        if float(np.sqrt(np.mean((weights - last) ** 2))) < 1e-4:
             break
-        huber = huber and not settled and k < ROUNDS // 3
     return RobustFit(weights, residual, scale, _robust_sigma(residual, scale, B.shape[1]))
 
 

@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.special import stdtrit
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.identification.confidence import BISQUARE, bisquare, quantile
 from robomill.identification.load_test import LoadTests
 from robomill.robot.model import Robot
 
-Says = Literal["met", "apart", "parallel", "too-few", "held-loosely"]
+Says = Literal["met", "apart", "parallel", "too-few", "held-loosely", "aimed"]
 FEWEST = 8  # rows, at four poses: less leaves nothing to check
 SHARING = 4  # rows that a pulley must have
 POSES = 4
@@ -30,7 +30,6 @@ MOST_PULLEYS = 3
 ROUNDS = 60
 TRIALS = 400  # draws of rows from which the first guess is made
 MOST = 2000  # rows that are looked at; more are thinned evenly
-BISQUARE = 4.685
 MEDIAN = 1.1774100225154747  # median length of two standard normals
 HELD = 1e-10  # squared metre of gap a metre moved, a row: a direction that costs less is not held
 FLOOR = 1e-3  # m: a gap below this is none
@@ -44,7 +43,8 @@ NEAR = 0.03  # the same of one row from which it is not drawn to that pulley in 
 class LinesOfPull:
     """What the lines say. m rows, g pulleys, lengths m.
 
-    says: "met"; "apart" (they meet nowhere); "parallel", "too-few", "held-loosely": nothing can be said, and why.
+    says: "met"; "apart" (they meet nowhere); "parallel", "too-few", "held-loosely", "aimed" (at a stated pulley, by
+    calculation): nothing can be said, and why.
     pulley (g, 3) in {M}; which (m,) pulley of each row; gap (m,) of each line from its pulley with the load point that
     makes them meet best, gap_stated (m,) with the stated one, both NaN where there is no pulley; shift (3,) of the load
     point in {T}, covariance (3, 3), None where these poses do not hold it (then the stated one is used);
@@ -66,7 +66,7 @@ class LinesOfPull:
     @property
     def t(self) -> float:
         """Quantile of a 95 % interval."""
-        return float(stdtrit(self.dof, 0.975)) if self.dof > 0 else float("inf")
+        return quantile(self.dof)
 
 
 class _Lines:
@@ -129,7 +129,7 @@ class _Lines:
             scale = max(float(np.median(gap)) / MEDIAN * spare, 1e-9)
             old, u = weight, gap / scale
             first = 1.0 / np.maximum(u, 0.1)
-            weight = first if k < ROUNDS // 2 else np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2
+            weight = first if k < ROUNDS // 2 else bisquare(u)
             if k > ROUNDS // 2 and float(np.abs(weight - old).max()) < 1e-6:
                 break
         return gap, which, scale
@@ -172,11 +172,14 @@ class _Lines:
 
 def lines_of_pull(robot: Robot, tests: LoadTests) -> LinesOfPull:
     """Where the force lines meet, and the load point with which they meet best. The tests' joints must be known."""
+    tests = tests.select(~tests.aimed) if not tests.aimed.all() else tests
     if len(tests) > MOST:
         tests = tests.select(slice(None, None, -(-len(tests) // MOST)))
     m = len(tests)
     unknown = np.full(m, np.nan)
     nothing = LinesOfPull("parallel", tests.row, np.empty((0, 3)), np.full(m, -1), unknown, unknown)
+    if tests.aimed.any():
+        return replace(nothing, says="aimed")
     if m < FEWEST or int(tests.pose_index().max()) + 1 < POSES:
         return replace(nothing, says="too-few")
     lines = _Lines(robot, tests)

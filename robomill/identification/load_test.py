@@ -9,37 +9,61 @@ Table 2). Everything in SI and in {M}; offsets of the force and measuring points
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Literal
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, IntArray, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.errors import LoadTestError
+from robomill.identification.configurations import checked, solved, ways
 from robomill.kinematics.forward import tool_pose
-from robomill.kinematics.inverse import inverse_kinematics
-from robomill.kinematics.transforms import pose_from_world
-from robomill.provenance import Finding
+from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_si
 
-LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit
 POSE_DIGITS = 9  # configurations equal to 1e-9 rad (m) are one pose
+MEASURED = Provenance("measured", "")
+
+
+class _Rows:
+    """What both kinds do with their rows: every array of theirs holds one entry a test."""
+
+    row: IntArray
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def select(self, chosen: ArrayLike | slice) -> Self:
+        """The tests at ``chosen`` (a mask, indices or a slice), in that order."""
+        index = np.arange(len(self))[chosen if isinstance(chosen, slice) else np.asarray(chosen)]
+        return self._with({name: value[index] for name, value in self._arrays().items()})
+
+    def without(self, rows: Iterable[int]) -> Self:
+        """The tests without those of the named rows."""
+        return self.select(~np.isin(self.row, list(rows)))
+
+    def _arrays(self) -> dict[str, Any]:
+        values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+        return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+
+    def _with(self, changed: dict[str, Any]) -> Self:
+        return replace(self, **changed)  # type: ignore[type-var]
 
 
 @dataclass(frozen=True, eq=False)
-class LoadTests:
+class LoadTests(_Rows):
     """Loads on the tool and the displacements they caused, one entry a test.
 
     wrench        (m, 6) N, N m     force and moment *differences* on the tool, at the force point, in {M}
     displacement  (m, 6) m, rad     what was measured at the measuring point, in {M}; NaN: not measured
     theta         (m, n) rad        configurations, or None when the poses are given in the world
-    x_M           (m, 5) m, rad     world coordinates X, Y, Z, A, B, or None when given as joints
+    x_M           (m, 5 or 6) m, rad  world coordinates X, Y, Z, A, B and perhaps C (``configurations``), or None
     force_point, measuring_point    (m, 3) m, offsets from the tool tip, in {T}
     noise         (m,) m            standard deviation of one measured displacement, NaN: not stated
     row           (m,) int          the row of the file each test came from (1 = first line)
-    synthetic     made by calculation: no measurement of a real robot
+    gauges        (m, 3, 3)         unit vectors in {M} along which displacement[:, :3] is read; None: along x, y, z
+    pulley        (m, 3) m          in {M}, where the force is ``aimed`` at it from the force point; NaN: it is measured
     """
 
     single: ClassVar[Literal[False]] = False  # not tests of single joints: the tool was loaded
@@ -52,9 +76,10 @@ class LoadTests:
     measuring_point: FloatArray = None  # type: ignore[assignment]
     noise: FloatArray = None  # type: ignore[assignment]
     row: IntArray = None  # type: ignore[assignment]
+    gauges: FloatArray | None = None
+    pulley: FloatArray = None  # type: ignore[assignment]
     findings: tuple[Finding, ...] = ()
-    source: str = ""
-    synthetic: bool = False
+    provenance: Provenance = MEASURED
     protocol: str = "displacements"
 
     def __post_init__(self) -> None:
@@ -66,24 +91,27 @@ class LoadTests:
         if row.shape != (m,):
             raise LoadTestError(f"row: expected {m} row numbers, found an array of shape {row.shape}.")
         displacement = _six(self.displacement, "displacement")
-        fields = {
+        values = {
             "wrench": wrench,
             "displacement": displacement,
             "force_point": _default(self.force_point, m, "force_point"),
             "measuring_point": _default(self.measuring_point, m, "measuring_point"),
             "noise": np.full(m, np.nan) if self.noise is None else np.broadcast_to(self.noise, (m,)),
+            "pulley": np.full((m, 3), np.nan) if self.pulley is None else np.asarray(self.pulley, dtype=np.float64),
         }
         if (self.theta is None) == (self.x_M is None):
             raise LoadTestError("Load tests: give the poses either as theta or as x_M, one of the two.")
         name = "theta" if self.theta is not None else "x_M"
         poses = np.asarray(getattr(self, name), dtype=np.float64)
-        if poses.ndim != 2 or len(poses) != m or (name == "x_M" and poses.shape[1] != 5):
+        if poses.ndim != 2 or len(poses) != m or (name == "x_M" and poses.shape[1] not in (5, 6)):
             raise LoadTestError(f"{name}: expected one pose for each of the {m} tests, found shape {poses.shape}.")
-        fields[name] = poses
+        values[name] = poses
+        if self.gauges is not None:
+            values["gauges"] = np.asarray(self.gauges, dtype=np.float64)
         if displacement.shape != (m, 6):
             raise LoadTestError(f"displacement: expected shape {(m, 6)}, found {displacement.shape}.")
-        for key, value in fields.items():
-            bad = ~np.isfinite(value) if key not in ("displacement", "noise") else np.isinf(value)
+        for key, value in values.items():
+            bad = ~np.isfinite(value) if key not in ("displacement", "noise", "pulley") else np.isinf(value)
             if bad.any():
                 where = int(row[np.argwhere(bad)[0][0]])
                 raise LoadTestError(
@@ -93,55 +121,55 @@ class LoadTests:
         object.__setattr__(self, "row", frozen(row, np.int64))
         _refuse_empty(wrench, displacement, row)
 
-    def __len__(self) -> int:
-        return len(self.wrench)
-
-    def without(self, rows: Iterable[int]) -> LoadTests:
-        """The tests without those of the named rows."""
-        keep = ~np.isin(self.row, list(rows))
-        return self.select(keep)
-
-    def select(self, chosen: ArrayLike | slice) -> LoadTests:
-        """The tests at ``chosen`` (a mask, indices or a slice), in that order."""
-        index = np.arange(len(self))[chosen if isinstance(chosen, slice) else np.asarray(chosen)]
-        return self._with({key: None if value is None else value[index] for key, value in self._arrays().items()})
-
     def joined(self, other: LoadTests) -> LoadTests:
-        """These tests, then ``other``'s; both must give their poses the same way. Rows are renumbered."""
-        if (self.theta is None) != (other.theta is None):
-            raise LoadTestError("Load tests: joints and world poses cannot be joined; call with_joints(robot) first.")
+        """These tests, then ``other``'s, given the same way (poses, gauges). Rows are renumbered."""
         mine, others = self._arrays(), other._arrays()
-        both = {k: None if v is None else np.concatenate([v, others[k]]) for k, v in mine.items()}
-        return replace(self._with({**both, "row": None}), findings=self.findings + other.findings)
-
-    def _arrays(self) -> dict[str, Any]:
-        names = ("wrench", "displacement", "theta", "x_M", "force_point", "measuring_point", "noise", "row")
-        return {name: getattr(self, name) for name in names}
-
-    def _with(self, arrays: dict[str, Any]) -> LoadTests:
-        return replace(self, **arrays)
+        if mine.keys() != others.keys():
+            raise LoadTestError("Load tests: joints and world poses cannot be joined; call with_joints(robot) first.")
+        both: dict[str, Any] = {name: np.concatenate([value, others[name]]) for name, value in mine.items()}
+        return self._with({**both, "row": None, "findings": self.findings + other.findings})
 
     def with_joints(self, robot: Robot) -> LoadTests:
-        """The same tests with ``theta`` known and checked against the robot's limits.
+        """The same tests with ``theta`` known and checked against the robot's limits, and cables aimed.
 
         Raises LoadTestError naming the row whose pose cannot be reached or lies outside the limits.
         """
+        tests = self
         if self.theta is not None:
-            _check_joints(robot, self.theta, self.row)
-            return self
-        assert self.x_M is not None
-        poses, back = np.unique(self.x_M, axis=0, return_inverse=True)
-        solved = inverse_kinematics(robot, pose_from_world(poses))
-        if not solved.reached.all():
-            first = int(np.argmin(solved.reached[back.ravel()]))
-            row, k = int(self.row[first]), int(back.ravel()[first])
-            raise LoadTestError(
-                f"Row {row}: the pose X, Y, Z = {_mm(poses[k, :3])} is not reached ({solved.reason(k)}); "
-                "check the coordinates, the tool or the robot's limits.",
-                where=f"row {row}",
-            )
-        found = (*self.findings, _solved_finding(robot))
-        return replace(self, theta=solved.theta[back.ravel()], x_M=None, findings=found)
+            checked(robot, self.theta, self.row)
+        elif self.x_M is not None:
+            theta, said = solved(robot, self.x_M, self.row)
+            tests = replace(self, theta=theta, x_M=None, findings=(*self.findings, said))
+        return tests.moved(robot, np.zeros(3)) if self.aimed.any() else tests
+
+    @property
+    def aimed(self) -> BoolArray:
+        """(m,) rows whose force points from the force point to a pulley, by calculation."""
+        return np.asarray(np.isfinite(self.pulley).all(axis=1))
+
+    def moved(self, robot: Robot, shift: FloatArray) -> LoadTests:
+        """The same with the force point moved by ``shift`` (3,) m in {T}, and cables aimed from there."""
+        point, aimed, wrench = self.force_point + shift, self.aimed, np.array(self.wrench)
+        way = ways(self.tool_poses(robot), point, self.pulley)[aimed]
+        size = np.linalg.norm(wrench[aimed, :3], axis=1) / np.linalg.norm(way, axis=1)
+        wrench[aimed, :3] = way * size[:, None]
+        return replace(self, wrench=wrench, force_point=point)
+
+    @property
+    def vectors(self) -> FloatArray:
+        """(m, 3) m, the displacement of the measuring point in {M}; NaN where gauges do not give (all of) it."""
+        read = self.displacement[:, :3]
+        if self.gauges is None:
+            return read
+        whole = np.isfinite(read).all(axis=1) & (np.abs(np.linalg.det(self.gauges)) > 1e-3)
+        found = np.full(read.shape, np.nan)
+        found[whole] = np.linalg.solve(self.gauges[whole], read[whole, :, None])[..., 0]
+        return found
+
+    @property
+    def directions(self) -> FloatArray:
+        """(m, 3, 3) unit vectors in {M} along which displacement[:, :3] is read."""
+        return np.broadcast_to(np.eye(3), (len(self), 3, 3)) if self.gauges is None else self.gauges
 
     def pose_index(self) -> IntArray:
         """(m,) number of the pose of each test: equal configurations share a number, from 0."""
@@ -162,7 +190,7 @@ class LoadTests:
 
 
 @dataclass(frozen=True, eq=False)
-class JointTests:
+class JointTests(_Rows):
     """One joint loaded at a time, the joints below it blocked: the paper's Table 2.
 
     joint (m,) int from 1; torque (m,) N m about the joint's axis; angle (m,) rad by which it turned
@@ -177,8 +205,7 @@ class JointTests:
     noise: FloatArray = None  # type: ignore[assignment]
     row: IntArray = None  # type: ignore[assignment]
     findings: tuple[Finding, ...] = ()
-    source: str = ""
-    synthetic: bool = False
+    provenance: Provenance = MEASURED
     protocol: str = "one joint at a time"
 
     def __post_init__(self) -> None:
@@ -198,21 +225,6 @@ class JointTests:
             object.__setattr__(self, name, frozen(value))
         object.__setattr__(self, "joint", frozen(self.joint, np.int64))
         object.__setattr__(self, "row", frozen(row, np.int64))
-
-    def __len__(self) -> int:
-        return len(self.torque)
-
-    def without(self, rows: Iterable[int]) -> JointTests:
-        """The tests without those of the named rows."""
-        keep = ~np.isin(self.row, list(rows))
-        return replace(
-            self,
-            joint=self.joint[keep],
-            torque=self.torque[keep],
-            angle=self.angle[keep],
-            noise=self.noise[keep],
-            row=self.row[keep],
-        )
 
 
 def _six(value: ArrayLike, name: str) -> FloatArray:
@@ -249,41 +261,3 @@ def _refuse_empty(wrench: FloatArray, displacement: FloatArray, row: IntArray) -
         raise LoadTestError(
             f"Row {where}: no displacement was measured; enter it or delete the row.", where=f"row {where}"
         )
-
-
-def _check_joints(robot: Robot, theta: FloatArray, row: IntArray) -> None:
-    if theta.shape[1] != robot.n:
-        raise LoadTestError(
-            f"Load tests: {theta.shape[1]} joint columns for a robot of {robot.n} joints; give theta1_deg to "
-            f"theta{robot.n}_deg, one column a free joint."
-        )
-    lower, upper = robot.limits[:, 0], robot.limits[:, 1]
-    outside = (theta < lower - LIMIT_SLACK) | (theta > upper + LIMIT_SLACK)
-    if not outside.any():
-        return
-    k, i = (int(v) for v in np.argwhere(outside)[0])
-    unit = "mm" if robot.chain.prismatic[i] else "deg"
-    low, high, found = (format_si(float(v), unit) for v in (lower[i], upper[i], theta[k, i]))
-    raise LoadTestError(
-        f"Row {row[k]}, theta{i + 1}: {found} is outside joint {i + 1}'s limits of {low} to {high}; "
-        "check the angle, its sign, or the robot's limits.",
-        where=f"row {row[k]}",
-    )
-
-
-def _solved_finding(robot: Robot) -> Finding:
-    """World poses do not say how the arm stood; which way was taken for granted is said."""
-    if robot.n >= 6:
-        text = (
-            "Poses as X, Y, Z, A, B leave the turn about the tool axis open: it was taken as near home as the limits "
-            "allow; give joints if the robot stood otherwise, since its compliance depends on it."
-        )
-        return Finding("warning", 0, text, code="turn-about-the-tool")
-    text = (
-        "Joints were solved from X, Y, Z, A, B with shoulder and elbow as at home; give joints if they stood otherwise."
-    )
-    return Finding("info", 0, text, code="joints-solved")
-
-
-def _mm(p: FloatArray) -> str:
-    return ", ".join(format_si(float(v), "mm", 1) for v in p)

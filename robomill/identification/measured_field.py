@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
 from robomill.errors import LoadTestError
-from robomill.identification.load_test import LoadTests
+from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
-from robomill.provenance import Finding
+from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
@@ -40,8 +40,7 @@ class MeasuredField:
     C: FloatArray
     AB: FloatArray = None  # type: ignore[assignment]
     reach: float = 0.0
-    source: str = ""
-    synthetic: bool = False
+    provenance: Provenance = MEASURED
     stderr: FloatArray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
@@ -67,13 +66,14 @@ class MeasuredField:
 
         Raises LoadTestError naming the row of a pose loaded in fewer than three directions.
         """
+        tests = tests.with_joints(robot) if tests.aimed.any() else tests
         pose = tests.pose_index()
-        x_M = tests.x_M if tests.x_M is not None else world_from_pose(tests.tool_poses(robot))
+        x_M = tests.x_M[:, :5] if tests.x_M is not None else world_from_pose(tests.tool_poses(robot))
         count = int(pose.max()) + 1
         C, where, spread = np.empty((count, 3, 3)), np.empty((count, 5)), np.empty((count, 3))
         for k in range(count):
             here = np.flatnonzero(pose == k)
-            F, moved = tests.wrench[here, :3], tests.displacement[here, :3]
+            F, moved = tests.wrench[here, :3], tests.vectors[here]
             if np.linalg.matrix_rank(F, tol=1e-6 * np.abs(F).max()) < 3 or not np.isfinite(moved).all():
                 raise LoadTestError(
                     f"Row {tests.row[here[0]]}: this pose is not fully measured; a map needs dx, dy, dz under forces "
@@ -83,7 +83,7 @@ class MeasuredField:
             spread[k] = np.sqrt(np.diag(np.linalg.inv(F.T @ F)))
             where[k] = x_M[here[0]]
         stderr = noise_of_tests(C, spread, tests.noise) * np.repeat(spread[:, None, :], 3, axis=1)
-        return cls(where[:, :3], C, where[:, 3:], reach, tests.source, tests.synthetic, stderr)
+        return cls(where[:, :3], C, where[:, 3:], reach, tests.provenance, stderr)
 
     # ---- between the points ----------------------------------------------------------------------------------------
     def compliance(self, p: ArrayLike) -> FloatArray:

@@ -17,13 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
-from scipy.special import stdtrit
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.identification.confidence import LEVEL, quantile
 from robomill.identification.least_squares import triangle
 from robomill.units import format_si
 
-LEVEL = 0.95
 ROUNDS = 8
 CLIP = 9.0  # squared errors beyond this many variances count as this many: a gross row is no measure of the model
 MOST = 5000  # errors that are looked at, evenly spread over more
@@ -78,7 +77,7 @@ def model_error(errors: Errors, dof: int) -> ModelError | None:
     errors = errors.thinned()
     if len(np.unique(errors.fold)) < FEWEST or dof <= 0:
         return None
-    t = float(stdtrit(dof, 0.5 + LEVEL / 2.0))
+    t = quantile(dof)
     e2, v = errors.error**2, errors.variance
     parts = _spread(e2, v, np.stack([errors.size**2, errors.load**2, np.ones_like(e2)], axis=1))
     beyond = ModelError(*np.sqrt(parts)).variance(errors.size, errors.load)
@@ -117,7 +116,7 @@ def held(errors: Errors, dof: int) -> float:
         spread = model_error(errors.chosen(~here), dof)
         if spread is None:
             return float("nan")
-        t = float(stdtrit(dof, 0.5 + LEVEL / 2.0))
+        t = quantile(dof)
         half = t * np.sqrt(errors.variance[here] + spread.variance(errors.size[here], errors.load[here]))
         inside[here] = np.abs(errors.error[here]) <= half
     return float(inside.mean()) if len(inside) else float("nan")

@@ -22,6 +22,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.springs.joint_bending import bending_axes
 from robomill.errors import LoadTestError
+from robomill.identification.configurations import ways
 from robomill.identification.load_test import LoadTests
 from robomill.identification.points import Point
 from robomill.kinematics.forward import joint_frames
@@ -183,6 +184,8 @@ class Model:
         if "gauge" not in freed:
             at_gauge = at_gauge[:, :1]
         load = np.einsum("mfcs,mc->mfs", at_force, tests.wrench)
+        if "force" in freed and tests.aimed.any():
+            load[tests.aimed] = self._aimed(robot, tests.select(tests.aimed))
         each = np.einsum("mgcs,mfs->mcfgs", at_gauge, load)
         return self._collect(each.reshape(*each.shape[:2], -1, each.shape[-1]))
 
@@ -193,6 +196,22 @@ class Model:
             return here
         moved = self.columns(robot, theta[:, None, :], offset[:, None, :] + np.eye(3))
         return np.concatenate([here, moved - here], axis=1)
+
+    def _aimed(self, robot: Robot, tests: LoadTests) -> FloatArray:
+        """(m, 4, s) the work that cables do on each spring, and its change per m of the force point along {T}.
+
+        A cable's line always runs through its pulley, so its force may act there: it only turns when the point moves.
+        """
+        assert tests.theta is not None
+        T, F = tests.tool_poses(robot), tests.wrench[:, :3]
+        way = ways(T, tests.force_point, tests.pulley)
+        far, u = np.linalg.norm(way, axis=1), F / np.linalg.norm(F, axis=1, keepdims=True)
+        across = np.eye(3) - u[:, :, None] * u[:, None, :]
+        turned = -np.einsum("m,mij,mjk->mki", np.linalg.norm(F, axis=1) / far, across, T[:, :3, :3])
+        W = np.zeros((len(tests), 4, 6))
+        W[:, 0], W[:, 1:, :3] = tests.wrench, turned
+        at_pulley = tests.force_point + np.einsum("mji,mj->mi", T[:, :3, :3], way)
+        return np.asarray(np.einsum("mcs,mfc->mfs", self.columns(robot, tests.theta, at_pulley), W))
 
     def tip_regressor(self, robot: Robot, theta: FloatArray, F: FloatArray) -> FloatArray:
         """(..., 3, p) D with delta = D @ parameters, for a force F (..., 3) N in {M} at the tool tip."""

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
 from scipy.stats import qmc
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
+from robomill.identification.confidence import quantile
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
@@ -24,6 +24,7 @@ from robomill.identification.system import build_system
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
+from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
@@ -59,7 +60,9 @@ class Plan:
 
     def as_tests(self) -> LoadTests:
         """The plan as a measuring sheet: displacements zero, to be filled in."""
-        return LoadTests(self.F, np.zeros_like(self.F), theta=self.theta, source=f"plan: {self.goal}")
+        return LoadTests(
+            self.F, np.zeros_like(self.F), theta=self.theta, provenance=Provenance("computed", f"plan: {self.goal}")
+        )
 
     def rows(self) -> list[dict[str, object]]:
         """One row a parameter: standard error and half 95 % interval before and after, SI, and the gain as a share."""
@@ -165,7 +168,7 @@ def next_best(
     path = [float(np.sqrt(np.trace(weight @ Q))) if aim.path and weight is not None else np.nan for Q in (before, P)]
     errors = [np.sqrt(np.diag(Q)) / scale for Q in (before, P)]
     errors[0][~np.isfinite(result.parameter_stderr)] = np.inf
-    half = [_quantile(result.dof + 3 * added) * error for added, error in zip((0, count), errors, strict=True)]
+    half = [quantile(result.dof + 3 * added) * error for added, error in zip((0, count), errors, strict=True)]
     theta = candidates.theta[picked]
     return Plan(
         theta=frozen(theta),
@@ -180,10 +183,6 @@ def next_best(
         path_before=path[0],
         path_after=path[1],
     )
-
-
-def _quantile(dof: int) -> float:
-    return float(stdtrit(dof, 0.975)) if dof > 0 else np.inf
 
 
 def _best(P: FloatArray, blocks: FloatArray, weight: FloatArray | None, picked: list[int]) -> int:

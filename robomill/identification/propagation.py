@@ -17,10 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import RobomillError
+from robomill.identification.confidence import LEVEL, quantile
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
@@ -48,21 +48,15 @@ class Uncertain:
         """(..., 3) m, one standard deviation of each component."""
         return _spread(self.covariance)
 
-    def half_width(self, level: float = 0.95) -> FloatArray:
+    def half_width(self, level: float = LEVEL) -> FloatArray:
         """(..., 3) m: delta +- this holds the truth with that probability."""
-        return quantile(level, self.dof) * self.std
+        return quantile(self.dof, level) * self.std
 
-    def half_along(self, direction: ArrayLike, level: float = 0.95) -> FloatArray:
+    def half_along(self, direction: ArrayLike, level: float = LEVEL) -> FloatArray:
         """(...) m: the same of the component along unit vectors (..., 3)."""
         u = np.asarray(direction, dtype=np.float64)
         variance = np.einsum("...i,...ij,...j->...", u, self.covariance, u)
-        return quantile(level, self.dof) * np.sqrt(variance)
-
-
-def quantile(level: float = 0.95, dof: int | None = None) -> float:
-    """How many standard deviations a two-sided interval takes: Student's t with ``dof``, normal when None."""
-    upper = 0.5 + 0.5 * level
-    return float(ndtri(upper)) if dof is None else float(stdtrit(max(dof, 1), upper))
+        return quantile(self.dof, level) * np.sqrt(variance)
 
 
 def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Knowledge) -> Uncertain:

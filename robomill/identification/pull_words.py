@@ -14,6 +14,8 @@ from robomill.robot.model import Robot
 from robomill.units import format_si
 
 NOTHING: dict[Says, str] = {
+    "aimed": "The cables' directions were calculated from the pulley and the load point, so their lines meet there by "
+    "construction and say nothing of the load point; the fit may still find it.",
     "parallel": "The forces are parallel (dead weights, or pushes along axes): their lines meet in no pulley, so they "
     "say nothing of the load point.",
     "too-few": "Too few loaded poses for their lines of pull to say anything of the load point.",

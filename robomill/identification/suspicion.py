@@ -29,21 +29,25 @@ def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tup
 
 
 def _signs(tests: LoadTests) -> list[Finding]:
-    F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
+    F, read, moved = tests.wrench[:, :3], tests.displacement[:, :3], tests.vectors
     size = np.linalg.norm(F, axis=1)
+    along = np.einsum("mgi,mi->mg", tests.directions, F)
+    names = [(f"d{axis}", f"F{axis}", axis) for axis in _AXES]
+    if tests.gauges is not None:
+        names = [(f"gauge {k}", "the force", "it") for k in (1, 2, 3)]
     found = []
     flipped = []
-    for i in range(3):
-        main = (np.abs(F[:, i]) > 0.9 * size) & np.isfinite(moved[:, i]) & (size > 0)
-        against = main & (F[:, i] * moved[:, i] < 0)
+    for i, (name, force, main_axis) in enumerate(names):
+        main = (np.abs(along[:, i]) > 0.9 * size) & np.isfinite(read[:, i]) & (size > 0)
+        against = main & (along[:, i] * read[:, i] < 0)
         if main.sum() >= 2 and against.sum() > 0.5 * main.sum():
-            flipped.append(i)
+            flipped.append(name)
             found.append(
-                f"d{_AXES[i]} runs against F{_AXES[i]} in {int(against.sum())} of the {int(main.sum())} tests loaded "
-                f"along {_AXES[i]}"
+                f"{name} runs against {force} in {int(against.sum())} of the {int(main.sum())} tests loaded along "
+                f"{main_axis}"
             )
     if flipped:
-        what = "the sign of the displacements" if len(flipped) == 3 else f"the sign of d{_AXES[flipped[0]]}"
+        what = "the sign of the displacements" if len(flipped) == 3 else f"the sign of {flipped[0]}"
         return [Finding("suspicious", 0, f"{'; '.join(found)}: is {what} or of the forces turned round?", code="sign")]
     work = np.nansum(F * moved, axis=1)
     loaded = np.isfinite(moved).all(axis=1) & (size > 0)

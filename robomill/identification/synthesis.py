@@ -10,7 +10,10 @@ from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
+from robomill.provenance import Provenance
 from robomill.robot.model import Robot
+
+SYNTHETIC = Provenance("synthetic", "calculated, with noise by chance")
 
 
 def true_parameters(robot: Robot, model: Model, extra: Mapping[str, float] | None = None) -> FloatArray:
@@ -65,4 +68,4 @@ def simulated_tests(
     moved = moved + noise * rng.standard_normal(moved.shape)
     if resolution > 0.0:
         moved = np.round(moved / resolution) * resolution
-    return LoadTests(F, moved, theta=theta, source="synthetic", synthetic=True)
+    return LoadTests(F, moved, theta=theta, provenance=SYNTHETIC)

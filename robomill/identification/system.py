@@ -106,6 +106,8 @@ def build_system(
     tests = tests.with_joints(robot)
     parameters = model.parameters(robot)
     D = model.terms(robot, tests, freed)
+    if tests.gauges is not None:
+        D = np.concatenate([np.einsum("mgc,mckp->mgkp", tests.gauges, D[:, :3]), D[:, 3:]], axis=1)
     measured = np.isfinite(tests.displacement) & np.isfinite(D[:, :, 0, 0])
     if not measured.any():
         raise LoadTestError("Load tests: nothing measured that this model predicts; give displacements.")

@@ -26,7 +26,7 @@ from robomill.units import to_si
 class Layout:
     """What a table may hold: quantities by lower-case name, each with the units (of ``units.UNITS``) it may come in.
 
-    ``aliases`` maps other names of a quantity to the one of ``units``.
+    ``aliases`` maps other names of a quantity to the one of ``units``; cells of ``open_cells`` may be empty: NaN.
     """
 
     subject: str
@@ -35,6 +35,7 @@ class Layout:
     example: str
     fewest: int = 1
     aliases: Mapping[str, str] = field(default_factory=dict)
+    open_cells: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> t
             else f"only a header (row {body.place.head}) and nothing below it"
         )
         raise layout.error(f"{name or layout.subject}: found {found}; expected at least {layout.fewest}.")
-    values = _numbers(body, list(known.values()))
+    values = _numbers(body, list(known.values()), layout.open_cells)
     in_si = {column.quantity: to_si(values[:, i], column.unit) for i, column in enumerate(known.values())}
     return Columns(in_si, known, body.row, passed_over, remarks, body.place), name
 
@@ -206,8 +207,11 @@ class _Body:
     place: Place
 
 
-def _numbers(body: _Body, wanted: list[Column]) -> FloatArray:
-    """(m, wanted) finite numbers. The quick reader first; only where it fails is each cell looked at."""
+def _numbers(body: _Body, wanted: list[Column], open_cells: frozenset[str]) -> FloatArray:
+    """(m, wanted) finite numbers, NaN where an open cell is empty.
+
+    The quick reader first; only where it fails is each cell looked at.
+    """
     for k, line in enumerate(body.lines):
         if '"' in line or line.count(body.mark) != len(body.names) - 1:
             _check_width(body, k)
@@ -220,7 +224,12 @@ def _numbers(body: _Body, wanted: list[Column]) -> FloatArray:
     if np.isfinite(values).all():
         return values
     rows = [_cells(line, body.mark) for line in lines]
-    return np.array([[_cell(body, k, column, cells[column.at]) for column in wanted] for k, cells in enumerate(rows)])
+    return np.array(
+        [
+            [_cell(body, k, column, cells[column.at], column.quantity in open_cells) for column in wanted]
+            for k, cells in enumerate(rows)
+        ]
+    )
 
 
 def _check_width(body: _Body, k: int) -> None:
@@ -238,11 +247,13 @@ def _cells(line: str, mark: str) -> list[str]:
     return line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark), [""])
 
 
-def _cell(body: _Body, k: int, column: Column, text: str) -> float:
+def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> float:
     found = text.strip()
     number = _number(found)
     if number is not None and math.isfinite(number):
         return number
+    if not found and is_open:
+        return math.nan
     if not found:
         message = "the cell is empty, expected a number; measure it again or delete the row"
     elif number is None:

@@ -8,76 +8,87 @@ from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.plan import Plan
-from robomill.units import format_si, from_si
+from robomill.units import format_many, from_si
 
 AXES = "xyz"
-WORLD = ("X", "Y", "Z", "A", "B")
-_PROTOCOLS = ("joints", "world", "joint by joint", "compliances")
+Block = list[tuple[str, FloatArray, int]]  # columns: name, values, decimals
+TEMPLATES = {
+    "joints": "Poses as joint angles",
+    "world": "Poses as X, Y, Z, A, B",
+    "cable": "Cable and dial gauge, poses of the flange",
+    "joint by joint": "One joint at a time",
+    "compliances": "Measured compliances",
+}
+_DIFFERENCES = "# One row a loaded pose. Forces and displacements are differences to the preloaded reading, in {M}."
+_CABLE = """# frame: flange
+# angles: kuka
+# One row a loaded pose: the flange in {M} (frame: flange or tool), A, B, C as on a KUKA (angles: kuka or robomill; W,
+# P, R for FANUC; joint angles do as well). The cable pulls with load_N along the unit vector cable_x, _y, _z in {M};
+# the pulley's place pulley_x_mm, _y, _z in {M} may stand for it. load_point and gauge_point are points of the tool in
+# the flange; the dial gauge reads along the unit vector gauge_x, _y, _z in {M}."""
 
 
 def load_test_template(protocol: str = "joints", n: int = 5) -> str:
-    """An empty measuring sheet with one example row; protocols: joints, world, joint by joint, compliances."""
+    """An empty measuring sheet with one example row, for one of ``TEMPLATES``."""
     world, zeros = "X_mm,Y_mm,Z_mm,A_deg,B_deg", ",".join(["0"] * n)
+    joints = ",".join(f"theta{i + 1}_deg" for i in range(n))
     loads = "Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm"
     example = "0,250,0,0.012,0.574,-0.256"
+    points = ",".join(f"{name}_{a}{unit}" for name, unit in _POINTS for a in AXES)
     sheets = {
-        "joints": (f"{','.join(f'theta{i + 1}_deg' for i in range(n))},{loads}", f"{zeros},{example}"),
-        "world": (f"{world},{loads}", f"0,-1300,0,0,0,{example}"),
-        "joint by joint": ("joint,torque_Nm,angle_mrad", "1,300,0.214"),
+        "joints": (_DIFFERENCES, f"{joints},{loads}", f"{zeros},{example}"),
+        "world": (_DIFFERENCES, f"{world},{loads}", f"0,-1300,0,0,0,{example}"),
+        "cable": (
+            _CABLE,
+            f"{'X_mm,Y_mm,Z_mm,A_deg,B_deg,C_deg' if n >= 6 else joints},load_N,{points},reading_mm",
+            f"{'1600,0,1300,0,90,0' if n >= 6 else zeros},400,0.8,0,0.6,60,100,420,-50,120,380,0,0,1,0.215",
+        ),
+        "joint by joint": (_DIFFERENCES, "joint,torque_Nm,angle_mrad", "1,300,0.214"),
         "compliances": (
+            _DIFFERENCES,
             f"{world},load_N," + ",".join(f"C{r}{c}_um_N" for r in AXES for c in AXES),
             "0,-1300,0,0,0,250,1.8,0,0,0,2.3,-1.0,0,-1.0,1.9",
         ),
     }
     if protocol not in sheets:
-        raise LoadTestError(f"Template {protocol!r}: expected one of {', '.join(_PROTOCOLS)}.")
-    header, row = sheets[protocol]
-    return (
-        "# One row a loaded pose. Forces and displacements are differences to the preloaded reading, in {M}.\n"
-        "# The row below is an example: replace it.\n"
-        f"{header}\n{row}\n"
-    )
+        raise LoadTestError(f"Template {protocol!r}: expected one of {', '.join(TEMPLATES)}.")
+    said, header, row = sheets[protocol]
+    return f"{said}\n# The row below is an example: replace it.\n{header}\n{row}\n"
 
 
-def measuring_sheet(plan: Plan) -> str:
+_POINTS = (("cable", ""), ("load_point", "_mm"), ("gauge_point", "_mm"), ("gauge", ""))
+
+
+def measuring_sheet(plan: Plan, after: str = "") -> str:
     """A plan as CSV to take to the robot: poses, forces, empty dx, dy, dz; what it promises stands in the remarks."""
-    lines = [f"Next tests for {plan.goal}: {plan.sentence()}"]
+    lines = [f"Next tests for {plan.goal}{f', after {after}' if after else ''}: {plan.sentence()}"]
     lines.append("Fill in dx_mm, dy_mm, dz_mm: differences between loaded and unloaded readings, in {M}.")
     for k, pose in enumerate(plan.x_M, 1):
-        place = ", ".join(format_si(float(v), "mm", 0) for v in pose[:3])
-        lines.append(
-            f"Test {k}: X, Y, Z = {place}; A, B = {', '.join(format_si(float(v), 'deg', 1) for v in pose[3:])}"
-        )
+        place, tilt = format_many(pose[:3], "mm", 0), format_many(pose[3:], "deg", 1)
+        lines.append(f"Test {k}: X, Y, Z = {place}; A, B = {tilt}")
     return load_tests_to_csv(plan.as_tests(), "\n".join(lines), blank=True)
 
 
 def load_tests_to_csv(tests: LoadTests, remarks: str = "", digits: int = 4, blank: bool = False) -> str:
     """Tests as CSV (deg or world mm, N, mm), ``digits`` decimals of a millimetre; ``blank`` leaves dx, dy, dz empty.
 
-    Moments, rotations and point offsets are written where there are any.
+    Moments, rotations, gauges, pulleys and point offsets are written where there are any; so is a provenance.
     """
-    columns: list[tuple[str, FloatArray, int]] = []
-    if tests.theta is not None:
-        columns += [(f"theta{i + 1}_deg", from_si(tests.theta[:, i], "deg"), 6) for i in range(tests.theta.shape[1])]
-    else:
-        assert tests.x_M is not None
-        units = ("mm", "mm", "mm", "deg", "deg")
-        columns += [
-            (f"{name}_{unit}", from_si(tests.x_M[:, i], unit), 4)
-            for i, (name, unit) in enumerate(zip(WORLD, units, strict=True))
-        ]
-    columns += _block("F", tests.wrench[:, :3], "N", 3)
-    if tests.wrench[:, 3:].any():
-        columns += _block("M", tests.wrench[:, 3:], "N m", 4)
-    columns += _block("d", tests.displacement[:, :3], "mm", digits)
+    head = remarks.splitlines()
+    if tests.provenance.kind != "measured" and not blank:
+        head.insert(0, f"provenance: {tests.provenance.kind}")
+    if tests.x_M is not None and tests.x_M.shape[1] == 6:
+        head += ["frame: tool", "angles: robomill"]
+    read = _readings(tests, digits)
+    columns = _poses(tests) + _forces(tests) + read
     if np.isfinite(tests.displacement[:, 3:]).any():
         columns += _block("r", tests.displacement[:, 3:], "mrad", digits)
     for name, points in (("FP", tests.force_point), ("MP", tests.measuring_point)):
-        if points is not None and points.any():
+        if points.any():
             columns += _block(name, points, "mm", 3)
-    lines = [f"# {line}" for line in remarks.splitlines()]
+    empty = {name for name, _, _ in read} if blank else set()
+    lines = [f"# {line}" for line in head]
     lines.append(",".join(name for name, _, _ in columns))
-    empty = {f"d{axis}_mm" for axis in AXES} if blank else set()
     lines += [
         ",".join("" if name in empty else _cell(values[k], places) for name, values, places in columns)
         for k in range(len(tests))
@@ -85,7 +96,34 @@ def load_tests_to_csv(tests: LoadTests, remarks: str = "", digits: int = 4, blan
     return "\n".join(lines) + "\n"
 
 
-def _block(name: str, values: FloatArray, unit: str, digits: int) -> list[tuple[str, FloatArray, int]]:
+def _poses(tests: LoadTests) -> Block:
+    if tests.theta is not None:
+        return [(f"theta{i + 1}_deg", from_si(q, "deg"), 6) for i, q in enumerate(tests.theta.T)]
+    assert tests.x_M is not None
+    units = zip("XYZABC", ("mm",) * 3 + ("deg",) * 3, tests.x_M.T, strict=False)
+    return [(f"{name}_{unit}", from_si(values, unit), 4 if unit == "mm" else 6) for name, unit, values in units]
+
+
+def _forces(tests: LoadTests) -> Block:
+    F, M = tests.wrench[:, :3], tests.wrench[:, 3:]
+    if tests.aimed.all():
+        columns = [("load_N", np.linalg.norm(F, axis=1), 3), *_block("pulley_", tests.pulley, "mm", 3)]
+    else:
+        columns = _block("F", F, "N", 3)
+    return columns + (_block("M", M, "N m", 4) if M.any() else [])
+
+
+def _readings(tests: LoadTests, digits: int) -> Block:
+    if tests.gauges is None:
+        return _block("d", tests.displacement[:, :3], "mm", digits)
+    columns: Block = []
+    for k in np.flatnonzero(np.isfinite(tests.displacement[:, :3]).any(axis=0)):
+        columns += [(f"gauge{k + 1}_{axis}", tests.gauges[:, k, i], 6) for i, axis in enumerate(AXES)]
+        columns.append((f"reading{k + 1}_mm", from_si(tests.displacement[:, k], "mm"), digits))
+    return columns
+
+
+def _block(name: str, values: FloatArray, unit: str, digits: int) -> Block:
     suffix = unit.replace(" ", "")
     return [(f"{name}{axis}_{suffix}", from_si(values[:, i], unit), digits) for i, axis in enumerate(AXES)]
 

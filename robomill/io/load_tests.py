@@ -1,60 +1,44 @@
 """Load tests from CSV (or pasted cells) and back. Units stand in the header; a bad cell is named by row and column.
 
 Rows are numbered as an editor or spreadsheet shows them: the first line of the file is row 1. Lines that start with
-``#`` are remarks. Commas, semicolons or tabs separate; with the latter two, decimal commas are understood.
+``#`` are remarks, of which ``# provenance: synthetic`` (or measured ...) and two others declare what they say. Commas,
+semicolons or tabs separate; with the latter two, decimal commas are understood.
 
 Protocols, told apart by their columns (angles deg or rad; lengths mm, um, m, in; forces N, kN; moments Nm, kNm):
 
-displacements            theta1_deg ... thetaN_deg  or  X_mm,Y_mm,Z_mm,A_deg,B_deg;  Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm
+displacements            a pose, Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm; the pose as theta1_deg ... thetaN_deg or
+                         X_mm,Y_mm,Z_mm with A_deg,B_deg, or with A,B,C or W,P,R (``load_test_poses``)
   optional               Mx_Nm.. rx_mrad..           moment on the tool and measured rotation
                          F0x_N.. d0x_mm..            force and reading at the preload; differences are used
                          FPx_mm.. MPx_mm..           force and measuring point from the tool tip, in {T}
+                         load_point_x_mm.. gauge_point_x_mm..  the same points in the frame of the flange
                          noise_um                    standard deviation of one reading
+  a cable for Fx..       load_N with cable_x.. (unit vector), or pulley_x_mm.., also with hook_x_mm.., all in {M}
+  gauges for dx..        gauge1_x.. (unit vector in {M}) and reading1_mm, up to three; a reading may be left empty
 one joint at a time      joint,torque_Nm,angle_mrad
 measured compliances     a pose, and any of Cxx_um_N ... Czz_um_N, eq. (17): Cxy is dx by Fy; optional load_N
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
-from robomill.io.columns import Columns, Layout, read_columns, spelled
-from robomill.provenance import Finding
+from robomill.io.columns import Columns, read_columns
+from robomill.io.load_test_columns import LAYOUT, XYZ, axes, group, head_of, kind_of
+from robomill.io.load_test_poses import force_and_points, gauges, poses
+from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import from_si
 
 NOMINAL_LOAD = 250.0  # N, the paper's dead weight: residuals of measured compliances are stated for it
-
-_ANGLE, _LENGTH, _FORCE, _MOMENT = ("deg", "rad"), ("mm", "um", "m", "in"), ("N", "kN"), ("N m", "kN m")
-_ROTATION, _COMPLIANCE = ("mrad", "urad", "rad", "deg"), ("um/N", "mm/N", "m/N")
-_XYZ = "xyz"
-_WORLD = ("x", "y", "z", "a", "b")
-_UNITS: dict[str, tuple[str, ...]] = {
-    **{f"theta{joint}": (*_ANGLE, "mm", "m") for joint in range(1, 10)},
-    **dict.fromkeys(("x", "y", "z"), _LENGTH),
-    **dict.fromkeys(("a", "b"), _ANGLE),
-    **{f"{name}{axis}": _FORCE for name in ("f", "f0") for axis in _XYZ},
-    **{f"{name}{axis}": _LENGTH for name in ("d", "d0", "fp", "mp") for axis in _XYZ},
-    **{f"m{axis}": _MOMENT for axis in _XYZ},
-    **{f"r{axis}": _ROTATION for axis in _XYZ},
-    **{f"c{row}{column}": _COMPLIANCE for row in _XYZ for column in _XYZ},
-    "joint": ("1",),
-    "torque": (*_MOMENT, *_FORCE),
-    "angle": (*_ROTATION, "mm", "um"),
-    "load": _FORCE,
-    "noise": (*_LENGTH, "mrad", "urad"),
-}
-LAYOUT = Layout("Load tests", LoadTestError, _UNITS, "theta1_deg,...,Fx_N,...,dz_mm")
+COMPLIANCES = tuple(f"c{row}{column}" for row in XYZ for column in XYZ)
 
 
 def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> LoadTests | JointTests:
@@ -62,23 +46,25 @@ def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> Loa
 
     Raises LoadTestError naming file, row and column. What only looks odd is in ``.findings``.
     """
+    tests = _read(path_or_text, robot)
+    return tests if tests.single or robot is None else tests.with_joints(robot)
+
+
+def _read(path_or_text: str | Path, robot: Robot | None) -> LoadTests | JointTests:
     table, name = read_columns(path_or_text, LAYOUT)
-    if any(key.startswith("c") for key in table.values):
-        tests: LoadTests | JointTests = _compliances(table)
+    if any(key in table for key in COMPLIANCES):
+        tests: LoadTests | JointTests = _compliances(table, robot)
     elif "torque" in table or "joint" in table:
         tests = _joints(table)
     else:
-        tests = _displacements(table)
-    if not tests.single and robot is not None:
-        tests = tests.with_joints(robot)
+        tests = _displacements(table, robot)
     head = table.place.head
     ignored = tuple(
         Finding("ignored", head, f"Column {column!r} is not one of ours and is passed over.", code="passed-over")
         for column in table.passed_over
     )
-    source = f"{name or 'pasted cells'}\n{table.remarks}".strip()
-    made = "synthetic" in table.remarks.lower()
-    return replace(tests, source=source, synthetic=made, findings=ignored + tests.findings + _pose_suspicions(table))
+    made = Provenance(kind_of(head_of(table)), f"{name or 'pasted cells'}\n{table.remarks}".strip())
+    return replace(tests, provenance=made, findings=ignored + tests.findings + _pose_suspicions(table))
 
 
 def read_findings(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
@@ -98,51 +84,43 @@ def _pose_suspicions(table: Columns) -> tuple[Finding, ...]:
 
 
 # ---- the three protocols -------------------------------------------------------------------------------------------
-def _poses(table: Columns) -> dict[str, Any]:
-    joints = sorted((int(key[5:]), key) for key in table.values if key.startswith("theta"))
-    world = [key for key in _WORLD if key in table]
-    if joints and world:
-        raise table.place.refuse(
-            f"poses are given twice, as {table.written(joints[0][1])} and {table.written(world[0])}; keep one."
-        )
-    if joints:
-        for k, (number, key) in enumerate(joints, 1):
-            if number != k:
-                raise table.place.refuse(f"found {table.written(key)} but no theta{k}_deg; number the joints from 1.")
-        return {"theta": np.stack([table.values[key] for _, key in joints], axis=-1)}
-    x_M = _group(table, _WORLD)
-    if x_M is None:
-        raise table.place.refuse("no pose columns; give theta1_deg to thetaN_deg, or X_mm,Y_mm,Z_mm,A_deg,B_deg.")
-    return {"x_M": x_M}
-
-
-def _displacements(table: Columns) -> LoadTests:
-    F, moved = _group(table, _axes("f")), _group(table, _axes("d"))
-    moment, turned = _group(table, _axes("m")), _group(table, _axes("r"))
-    poses = _poses(table)
+def _displacements(table: Columns, robot: Robot | None) -> LoadTests:
+    where = poses(table, robot)
+    found: tuple[Finding, ...] = where.pop("findings", ())
+    points = force_and_points(table, robot, where)
+    found += points.pop("findings", ())
+    cable = points.pop("F", None)
+    F, moment = group(table, axes("f")), group(table, axes("m"))
+    if F is not None and cable is not None:
+        raise table.place.refuse("the force is given twice, by Fx and by a cable; keep one.")
+    F = cable if F is None else F
     if F is None and moment is None:
-        raise table.place.refuse("no force columns; give Fx_N,Fy_N,Fz_N.")
+        raise table.place.refuse("no force columns; give Fx_N,Fy_N,Fz_N, or load_N with a cable's direction.")
+    read, turned, dials = group(table, axes("d")), group(table, axes("r")), gauges(table)
+    if read is not None and dials is not None:
+        raise table.place.refuse("displacements are given twice, by dx and by gauges; keep one.")
+    moved, along = (read, None) if dials is None else dials
     if moved is None and turned is None:
-        raise table.place.refuse("the displacement columns are missing; give dx_mm,dy_mm,dz_mm.")
-    m = len(table.row)
-    F0, d0 = _group(table, _axes("f0")), _group(table, _axes("d0"))
-    nothing, unknown = np.zeros((m, 3)), np.full((m, 3), np.nan)
-    F, moved = (nothing if F is None else F), (unknown if moved is None else moved)
-    found: tuple[Finding, ...] = ()
+        raise table.place.refuse(
+            "the displacement columns are missing; give dx_mm,dy_mm,dz_mm, or gauge_x, _y, _z with reading_mm."
+        )
+    F0, d0 = group(table, axes("f0")), group(table, axes("d0"))
     if F0 is None and d0 is None:
         text = "Displacements are taken as differences between loaded and unloaded readings; gravity cancels in them."
-        found = (Finding("info", 0, text, code="differences"),)
+        found += (Finding("info", 0, text, code="differences"),)
+    nothing, unknown = np.zeros((len(table.row), 3)), np.full((len(table.row), 3), np.nan)
+    F, moved = (nothing if F is None else F), (unknown if moved is None else moved)
     return LoadTests(
         wrench=np.concatenate([F - (0.0 if F0 is None else F0), nothing if moment is None else moment], axis=1),
         displacement=np.concatenate(
             [moved - (0.0 if d0 is None else d0), unknown if turned is None else turned], axis=1
         ),
-        force_point=_group(table, _axes("fp")),  # type: ignore[arg-type]
-        measuring_point=_group(table, _axes("mp")),  # type: ignore[arg-type]
+        gauges=along,
         noise=table.values.get("noise"),  # type: ignore[arg-type]
         row=table.row,
         findings=found,
-        **poses,
+        **points,
+        **where,
     )
 
 
@@ -166,19 +144,20 @@ def _joints(table: Columns) -> JointTests:
     )
 
 
-def _compliances(table: Columns) -> LoadTests:
+def _compliances(table: Columns, robot: Robot | None) -> LoadTests:
     m = len(table.row)
     load = table.values.get("load")
-    found: tuple[Finding, ...] = ()
+    where = poses(table, robot)
+    found: tuple[Finding, ...] = where.pop("findings", ())
     if load is None:
         text = f"No load_N column: residuals are stated for the paper's dead weight of {NOMINAL_LOAD:g} N."
-        found, load = (Finding("info", 0, text, code="nominal-load"),), np.full(m, NOMINAL_LOAD)
+        found, load = (*found, Finding("info", 0, text, code="nominal-load")), np.full(m, NOMINAL_LOAD)
     if (load <= 0).any():
         k = int(np.argmax(load <= 0))
         raise table.refuse(k, "load", "expected a load above zero.")
     C = np.full((m, 3, 3), np.nan)
     for i, j in np.ndindex(3, 3):
-        C[:, i, j] = table.values.get(f"c{_XYZ[i]}{_XYZ[j]}", np.nan)
+        C[:, i, j] = table.values.get(f"c{XYZ[i]}{XYZ[j]}", np.nan)
     F = np.broadcast_to(np.eye(3), (m, 3, 3)) * load[:, None, None]
     measured = np.isfinite(C).any(axis=1)  # by force direction
     each = np.repeat(np.arange(m), 3)[measured.ravel()]
@@ -190,37 +169,13 @@ def _compliances(table: Columns) -> LoadTests:
         noise=None if noise is None else noise[each],  # type: ignore[arg-type]
         findings=found,
         protocol="measured compliances",
-        **{key: value[each] for key, value in _poses(table).items()},
+        **{key: value[each] for key, value in where.items()},
     )
-
-
-def _axes(name: str) -> tuple[str, str, str]:
-    return (f"{name}x", f"{name}y", f"{name}z")
-
-
-def _group(table: Columns, names: Sequence[str]) -> FloatArray | None:
-    """The named columns side by side, None if there is none of them; a part of them is refused."""
-    present = [name for name in names if name in table]
-    if not present:
-        return None
-    for name in names:
-        if name not in table:
-            needed = ", ".join(_written(n) for n in names)
-            raise table.place.refuse(
-                f"column {_written(name)} is missing beside {table.written(present[0])}; all of {needed} are needed."
-            )
-    return np.stack([table.values[name] for name in names], axis=-1)
-
-
-def _written(name: str) -> str:
-    """A quantity as the header would write it: forces, moments, points and world coordinates start with a capital."""
-    capitals = name.upper() if name in _WORLD else (name[:-1].upper() + name[-1] if name[0] in "fm" else name)
-    return f"{capitals}_{spelled(_UNITS[name][0])}"
 
 
 def read_measured_map(path_or_text: str | Path, robot: Robot) -> MeasuredField:
     """The paper's second method: a grid of measured compliances (or displacements in three directions) as a map."""
-    tests = read_load_tests(path_or_text)
+    tests = _read(path_or_text, robot)
     if tests.single:
         raise LoadTestError("Measured map: found tests of single joints; give compliances Cxx_um_N ... at poses.")
     return MeasuredField.from_tests(robot, tests)

@@ -10,6 +10,7 @@ import numpy as np
 from robomill.identification.measured_field import MeasuredField
 from robomill.io.load_tests import read_measured_map
 from robomill.io.tables import Table, shown
+from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 
 
@@ -23,13 +24,20 @@ def map_from_table(table: Table, robot: Robot, folder: Path | None) -> MeasuredF
         AB = table.rows("tilt_deg", 2, "deg")
         if not len(p) == len(C) == len(AB):
             raise table.refuse("C_m_N", f"expected {len(p)} rows like p_mm, found {len(C)} and {len(AB)} of tilt_deg.")
-        reach, source = table.number("reach_m", "m", 0.0), table.text("source", "")
+        reach, made = table.number("reach_m", "m", 0.0), _provenance(table)
         stderr = table.rows("stderr_m_N", 9, "m/N").reshape(-1, 3, 3) if table.has("stderr_m_N") else None
         if stderr is not None and len(stderr) != len(p):
             raise table.refuse("stderr_m_N", f"expected {len(p)} rows like p_mm, found {len(stderr)}.")
-        field = MeasuredField(p, C, AB, reach, source, table.flag("synthetic", False), stderr)  # type: ignore[arg-type]
+        field = MeasuredField(p, C, AB, reach, made, stderr)  # type: ignore[arg-type]
     table.finish()
     return field
+
+
+def _provenance(table: Table) -> Provenance:
+    """Of the map; files of older versions say ``source`` and ``synthetic``."""
+    if table.has("provenance"):
+        return table.provenance("provenance")
+    return Provenance("synthetic" if table.flag("synthetic", False) else "measured", table.text("source", ""))
 
 
 def map_to_table(field: MeasuredField) -> dict[str, Any]:
@@ -43,8 +51,7 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
         "C_m_N": rows(field.C.reshape(-1, 9), "m/N"),
         "tilt_deg": rows(field.AB, "deg"),
         "reach_m": shown(field.reach, "m"),
-        "source": field.source,
-        "synthetic": field.synthetic,
+        "provenance": {"kind": field.provenance.kind, "source": field.provenance.source},
     }
     if np.isfinite(field.stderr).all():
         data["stderr_m_N"] = rows(field.stderr.reshape(-1, 9), "m/N")

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Kind
 from robomill.report.paper_lengths import over_lengths
-from robomill.simulation.band import LEVEL, deviation_band, size_band
+from robomill.simulation.band import deviation_band, size_band
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread
 from robomill.simulation.tooth import tooth

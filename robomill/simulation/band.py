@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.propagation import Uncertain, uncertain_by_map, uncertain_deflection
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.tools import held
-
-LEVEL = 0.95
 
 
 def deviation_band(result: SimulationResult, known: Knowledge, at: int | None = None) -> Uncertain:

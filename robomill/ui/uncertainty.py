@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
-from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
+from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import session

@@ -7,7 +7,8 @@ import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.load_test import LIMIT_SLACK, JointTests, LoadTests
+from robomill.identification.configurations import LIMIT_SLACK
+from robomill.identification.load_test import JointTests, LoadTests
 
 ROBOT = rm.load_robot("slavkovic_5r")
 RNG = np.random.default_rng(2)
@@ -30,7 +31,7 @@ def test_what_is_left_out_is_filled_in():
     np.testing.assert_array_equal(given.force_point, np.tile([0, 0, 0.1], (6, 1)))
     full = LoadTests(np.ones((6, 6)), np.ones((6, 6)), theta=THETA)
     assert (full.wrench == 1).all()
-    assert not full.synthetic
+    assert full.provenance.kind == "measured"
 
 
 @pytest.mark.parametrize(
@@ -42,7 +43,7 @@ def test_what_is_left_out_is_filled_in():
         ({"x_M": np.zeros((6, 5))}, "one of the two"),
         ({"theta": THETA[:4]}, "theta: expected one pose for each of the 6"),
         ({"theta": THETA[0]}, "theta: expected one pose"),
-        ({"theta": None, "x_M": np.zeros((6, 6))}, "x_M: expected one pose"),
+        ({"theta": None, "x_M": np.zeros((6, 7))}, "x_M: expected one pose"),
         ({"displacement": MOVED[:3]}, "displacement: expected shape"),
         ({"wrench": F[:, :2]}, "wrench: expected shape"),
         ({"wrench": F[0]}, "wrench: expected shape"),
@@ -119,7 +120,7 @@ def test_world_poses_are_solved_once_each_and_said():
     assert [(f.level, f.code) for f in found] == [("warning", "turn-about-the-tool")]
     far = x_M.copy()
     far[1, 1] = -9.0
-    with pytest.raises(LoadTestError, match=r"Row 2: the pose X, Y, Z = 0\.0 mm, −9000\.0 mm, 50\.0 mm is not reached"):
+    with pytest.raises(LoadTestError, match=r"Row 2: the pose X, Y, Z = 0\.0, −9000\.0, 50\.0 mm is not reached"):
         LoadTests(F[:3], MOVED[:3], x_M=far).with_joints(ROBOT)
 
 
@@ -143,7 +144,7 @@ def test_joint_tests_are_checked_row_by_row():
     tests = JointTests(joint, torque, torque * 1e-6, row=np.array([4, 5, 6]))
     assert len(tests) == 3
     assert np.isnan(tests.noise).all()
-    assert not tests.synthetic
+    assert tests.provenance.kind == "measured"
     np.testing.assert_array_equal(JointTests(joint, torque, torque, noise=1e-6).noise, [1e-6] * 3)
     np.testing.assert_array_equal(JointTests(joint, torque, torque).row, [1, 2, 3])
     left = tests.without([5])

@@ -12,6 +12,7 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.identification.synthesis import simulated_tests, three_directions
 from robomill.io.load_tests import read_measured_map
 from robomill.io.samples import samples_dir
+from robomill.provenance import Provenance
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 FILES = samples_dir() / "load_tests"
@@ -149,15 +150,15 @@ def test_matrices_are_the_columns_of_what_each_force_moves():
     theta, C = theta_at(p), linear_field(p)
     F = rng.normal(size=(8, 3)) * 100
     moved = np.einsum("mij,mj->mi", np.repeat(C, 4, axis=0), F) + 1e-6 * rng.normal(size=(8, 3))
-    tests = LoadTests(F, moved, theta=np.repeat(theta, 4, axis=0), source="by hand", synthetic=True)
+    tests = LoadTests(F, moved, theta=np.repeat(theta, 4, axis=0), provenance=Provenance("synthetic", "by hand"))
     field = MeasuredField.from_tests(ROBOT, tests)
     order = np.argsort(field.p[:, 0])
     for k, rows in zip(order, (slice(0, 4), slice(4, 8)), strict=True):
         expected = [np.linalg.lstsq(F[rows], moved[rows, i], rcond=None)[0] for i in range(3)]
         np.testing.assert_allclose(field.C[k], expected, rtol=1e-9)
     np.testing.assert_allclose(field.p[order], p, atol=1e-9)
-    assert field.source == "by hand"
-    assert field.synthetic
+    assert field.provenance.source == "by hand"
+    assert field.provenance.kind == "synthetic"
     world = LoadTests(F, moved, x_M=np.repeat(np.column_stack([p, [[0.1, 0.2]] * 2]), 4, axis=0))
     np.testing.assert_allclose(np.sort(MeasuredField.from_tests(ROBOT, world).AB[0]), [0.1, 0.2])
     assert MeasuredField.from_tests(ROBOT, tests, reach=0.7).reach == 0.7
@@ -174,11 +175,11 @@ def test_matrices_are_the_columns_of_what_each_force_moves():
 def test_symmetric_is_the_mean_with_its_mirror():
     p = grid_points(2, 2, 1)
     C = np.random.default_rng(1).normal(size=(4, 3, 3))
-    field = MeasuredField(p, C, np.full((4, 2), 0.1), 0.4, "words")
+    field = MeasuredField(p, C, np.full((4, 2), 0.1), 0.4, Provenance("user", "words"))
     mended = field.symmetric()
     np.testing.assert_allclose(mended.C, (C + np.swapaxes(C, 1, 2)) / 2)
     np.testing.assert_array_equal(mended.AB, field.AB)
-    assert (mended.reach, mended.source) == (0.4, "words")
+    assert (mended.reach, mended.provenance) == (0.4, Provenance("user", "words"))
     np.testing.assert_allclose(mended.asymmetry, 0.0, atol=1e-15)
     size = [np.sqrt((c**2).sum()) for c in C]
     skewed = [np.sqrt(((c - c.T) ** 2).sum()) / s for c, s in zip(C, size, strict=True)]

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.identification.confidence import quantile
 from robomill.identification.estimate import identify
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.models import Model
-from robomill.identification.propagation import length_derivative, quantile, uncertain_deflection
+from robomill.identification.propagation import length_derivative, uncertain_deflection
 from robomill.identification.synthesis import simulated_tests
 from robomill.io.samples import samples_dir
 from tests.identification.oracles import guessed, monte_carlo
@@ -134,7 +135,7 @@ def test_unreached_points_are_nan():
 
 
 def test_quantiles():
-    assert quantile(0.95) == pytest.approx(1.959964, abs=1e-6)
-    assert quantile(0.95, 76) == pytest.approx(1.9917, abs=1e-4)
+    assert quantile(None) == pytest.approx(1.959964, abs=1e-6)
+    assert quantile(76) == pytest.approx(1.9917, abs=1e-4)
     found = uncertain_deflection(ROBOT, THETA, F, Knowledge.of(RESULT, ROBOT))
-    np.testing.assert_allclose(found.half_width(), quantile(0.95, RESULT.dof) * found.std)
+    np.testing.assert_allclose(found.half_width(), quantile(RESULT.dof) * found.std)

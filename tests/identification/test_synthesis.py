@@ -31,7 +31,7 @@ def test_without_noise_they_are_c_times_f():
     np.testing.assert_allclose(read(), expected, rtol=1e-12, atol=1e-18)
     np.testing.assert_array_equal(read(), read(seed=3))
     tests = simulated_tests(ROBOT, *three_directions(THETA, 250.0))
-    assert tests.synthetic
+    assert tests.provenance.kind == "synthetic"
     assert np.isnan(tests.noise).all()
 
 

@@ -36,7 +36,7 @@ def test_written_tests_read_back():
     np.testing.assert_allclose(back.wrench, tests.wrench, atol=6e-4)
     np.testing.assert_allclose(back.displacement, tests.displacement, atol=1e-12)
     np.testing.assert_allclose(back.force_point, tests.force_point)
-    assert "two\nremarks" in back.source
+    assert "two\nremarks" in back.provenance.source
 
 
 def table(text: str) -> tuple[list[str], list[list[str]]]:
@@ -98,6 +98,5 @@ def test_a_measuring_sheet_leaves_the_readings_open_and_says_where_to_go() -> No
         assert all(cells[name] for name in header if not name.startswith("d"))
     x, y, z, a, b = plan.x_M[0]
     said = remarks[0].replace("−", "-")
-    assert said.startswith(f"# Test 1: X, Y, Z = {x * 1e3:.0f} mm, {y * 1e3:.0f} mm, {z * 1e3:.0f} mm; A, B = ")
-    assert f"{np.rad2deg(a):.1f}°" in said
-    assert f"{np.rad2deg(b):.1f}°" in said
+    assert said.startswith(f"# Test 1: X, Y, Z = {x * 1e3:.0f}, {y * 1e3:.0f}, {z * 1e3:.0f} mm; A, B = ")
+    assert f"{np.rad2deg(a):.1f}, {np.rad2deg(b):.1f}°" in said

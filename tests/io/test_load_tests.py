@@ -252,8 +252,8 @@ def test_each_compliance_goes_to_its_place_and_keeps_its_row_and_noise():
 def test_files_name_themselves_and_their_remarks(tmp_path):
     file = tmp_path / "monday.csv"
     file.write_text("# cell 4\n" + HEADER + ROW, encoding="utf-8-sig")
-    assert read_load_tests(file).source == "monday.csv\ncell 4"
-    assert read_load_tests(HEADER + ROW).source == "pasted cells"
+    assert read_load_tests(file).provenance.source == "monday.csv\ncell 4"
+    assert read_load_tests(HEADER + ROW).provenance.source == "pasted cells"
     file.write_text(HEADER + ROW.replace("0.5", "half"))
     with pytest.raises(LoadTestError, match="^monday.csv, row 2, column dy_mm: found 'half'"):
         read_load_tests(file)

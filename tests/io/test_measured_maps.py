@@ -11,6 +11,7 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table
+from robomill.provenance import Provenance
 
 ROBOT = rm.load_robot("slavkovic_5r")
 P_MM = [[0.0, -1300.0, 10.0], [100.0, -1300.0, 10.0], [0.0, -1200.5, 10.0]]
@@ -27,12 +28,14 @@ def rows(points=3, matrices=3, tilts=3):
 
 
 def test_rows_are_points_matrices_and_tilts():
-    field = read(**rows(), source="gauge", synthetic=True)
+    field = read(**rows(), provenance={"kind": "synthetic", "source": "gauge"})
     np.testing.assert_allclose(field.p, np.array(P_MM) / 1000, rtol=1e-15)
     for row, C in zip(C_M_N, field.C, strict=True):
         np.testing.assert_array_equal(C, [row[0:3], row[3:6], row[6:9]])
     np.testing.assert_allclose(field.AB, np.array(TILT_DEG) * np.pi / 180, rtol=1e-15)
-    assert (field.reach, field.source, field.synthetic) == (0.25, "gauge", True)
+    assert (field.reach, field.provenance) == (0.25, Provenance("synthetic", "gauge"))
+    older = read(**rows(), source="gauge", synthetic=True)
+    assert older.provenance == field.provenance
 
 
 @pytest.mark.parametrize("counts", [(2, 3, 3), (3, 2, 3), (3, 3, 2), (3, 2, 2), (2, 2, 3), (1, 2, 3)])
@@ -48,7 +51,7 @@ def test_a_map_comes_back_to_the_last_bit():
     for name in ("p", "C", "AB"):
         np.testing.assert_allclose(getattr(again, name), getattr(field, name), rtol=4e-16)
     np.testing.assert_array_equal(again.C, field.C)
-    assert (again.reach, again.source, again.synthetic) == (field.reach, field.source, field.synthetic)
+    assert (again.reach, again.provenance) == (field.reach, field.provenance)
 
 
 def test_a_file_of_measurements_is_looked_for_beside_the_set_up():

@@ -233,7 +233,7 @@ def test_three_more_tests_shrink_joint_4_by_a_third(page: AppTest, goal: str) ->
 
 def test_the_measuring_sheet_is_read_back_after_filling_in(page: AppTest) -> None:
     from robomill.identification.plan import box_candidates, next_best
-    from robomill.ui.identification.plan import measuring_sheet
+    from robomill.io.load_test_sheets import measuring_sheet
 
     robot = load_robot("slavkovic_5r")
     tests = read_load_tests(sample_text("nine_points"), robot)
@@ -250,8 +250,9 @@ def test_the_measuring_sheet_is_read_back_after_filling_in(page: AppTest) -> Non
 
 def test_a_filled_sheet_joins_the_tests_and_narrows_joint_4(page: AppTest) -> None:
     """The loop closed: plan, measure (here: compute from Table 3), bring the sheet back."""
+    from robomill.io.load_test_sheets import measuring_sheet
     from robomill.ui.identification.bench import fit_of
-    from robomill.ui.identification.plan import _take_sheet, measuring_sheet, plan_of
+    from robomill.ui.identification.plan import _take_sheet, plan_of
 
     robot = load_robot("slavkovic_5r")
     kept = Bench(goal="joint", goal_joint=4)

@@ -40,7 +40,9 @@ SAMPLES = {
     "grid_45x6": "Grid of 45 x 6 points",
     "nine_points_compliances": "Nine points as compliances",
     "one_joint_at_a_time": "One joint at a time",
+    "cable_six_axis": "Cable on a six-axis arm, points misstated",
 }
+SAMPLE_ROBOTS = {"cable_six_axis": "kuka_kr270"}  # the others were made for SAMPLE_ROBOT
 MAP_SAMPLES = {"grid_45x6": SAMPLES["grid_45x6"], "nine_points_compliances": SAMPLES["nine_points_compliances"]}
 
 
@@ -154,7 +156,8 @@ def take_sample(bench: Bench, sample: str) -> None:
 
 def _sample_robot(bench: Bench) -> None:
     bench.seen_robot = session.project().setup.robot.name
-    bench.robot_name = "" if bench.seen_robot == SAMPLE_ROBOT else SAMPLE_ROBOT
+    made_for = SAMPLE_ROBOTS.get(bench.sample, SAMPLE_ROBOT)
+    bench.robot_name = "" if bench.seen_robot == made_for else made_for
 
 
 @st.cache_data(max_entries=8, show_spinner=False)

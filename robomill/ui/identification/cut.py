@@ -9,10 +9,11 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
+from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.simulation.band import LEVEL, deviation_band, size_band, worst_half
+from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
 from robomill.ui.box import Box

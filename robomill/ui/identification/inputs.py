@@ -12,7 +12,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS, Model
 from robomill.identification.result import IdentificationResult
-from robomill.io.load_test_sheets import load_test_template
+from robomill.io.load_test_sheets import TEMPLATES, load_test_template
 from robomill.io.load_tests import read_findings
 from robomill.io.robots import robot_names
 from robomill.provenance import Finding, Provenance
@@ -45,12 +45,6 @@ MAX_MB = 50
 EDITABLE = 60_000
 OWN = "own"
 IDENTIFIED = "compliance.identified"
-TEMPLATES = {
-    "joints": "Poses as joint angles",
-    "world": "Poses as X, Y, Z, A, B",
-    "joint by joint": "One joint at a time",
-    "compliances": "Measured compliances",
-}
 
 
 def choose(key: str, options: dict[str, str]) -> str:
@@ -146,7 +140,8 @@ def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, fo
         pieces.error(refusal)
     if tests is None:
         return
-    pieces.note(summary(tests) + (" " + pieces.badge("computed", "synthetic") if tests.synthetic else ""))
+    made = tests.provenance.kind
+    pieces.note(summary(tests) + (f" {pieces.badge(made)}" if made != "measured" else ""))
     loud = [f for f in found if f.level in ("error", "suspicious", "warning")]
     for finding in loud[:4]:
         st.warning(finding.message, icon=":material/visibility:" if finding.level == "suspicious" else None)

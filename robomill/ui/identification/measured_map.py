@@ -129,7 +129,7 @@ def tiles(field: MeasuredField, model: FloatArray, cut: SimulationResult | None,
     where = format_many(field.p[worst], unit, digits, with_unit=False)
     text, note = cut_words(field, cut, unit)
     return [
-        pieces.Tile("Measured points", f"{len(field.p)}", f"{shape}, three directions each", kind=kind_of(field)),
+        pieces.Tile("Measured points", f"{len(field.p)}", f"{shape}, three ways each", kind=field.provenance.kind),
         pieces.Tile(
             "Off the joint model",
             format_percent(np.nanmean(gap), 1) if seen else NOT_REACHED,
@@ -138,11 +138,6 @@ def tiles(field: MeasuredField, model: FloatArray, cut: SimulationResult | None,
         pieces.Tile("Asymmetry", format_percent(field.asymmetry.mean(), 1), "of |C|, on average"),
         pieces.Tile("The cut by the map", text, note),
     ]
-
-
-def kind_of(field: MeasuredField) -> str:
-    """Provenance of the map: measured, unless its file says that it is synthetic."""
-    return "computed" if field.synthetic else "measured"
 
 
 def along_cut(field: MeasuredField, cut: SimulationResult) -> FloatArray:
@@ -264,7 +259,7 @@ def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bo
             (axis.upper(), format_si(float(a), unit, digits, sign=True), format_si(float(b), unit, digits, sign=True))
             for axis, a, b in zip("xyz", mapped[cut.worst], cut.delta[cut.worst], strict=True)
         ]
-        head = f"map {pieces.badge(kind_of(field))}", f"joints {pieces.badge('computed')}"
+        head = f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
         body = "".join(f'<tr><td>{q}</td><td class="n">{a}</td><td class="n">{b}</td></tr>' for q, a, b in rows)
         st.html(
             f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'

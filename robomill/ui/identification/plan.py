@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
 from robomill.identification.plan import PathLoad, Plan, box_candidates, next_best
 from robomill.identification.result import IdentificationResult
-from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
@@ -145,10 +145,3 @@ def plan_columns(plan: Plan, unit: str) -> dict[str, Any]:
 def _direction(F: FloatArray) -> str:
     i = int(np.argmax(np.abs(F)))
     return f"{'+' if F[i] > 0 else '−'}{'XYZ'[i]}"
-
-
-def measuring_sheet(plan: Plan, name: str) -> str:
-    """The plan as a CSV with empty displacement columns, in the form that is read back."""
-    remarks = f"Measuring sheet of robomill: tests to make {plan.goal} more certain, after {name}.\n"
-    remarks += "Displacements are differences between loaded and preloaded reading, in {M}; fill in dx, dy, dz."
-    return load_tests_to_csv(plan.as_tests(), remarks, blank=True)

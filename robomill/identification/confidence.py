@@ -1,0 +1,28 @@
+"""How wide an interval is at which level, and Tukey's weights of readings that stray."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import ndtri, stdtrit
+
+from robomill.arrays import FloatArray
+
+LEVEL = 0.95
+BISQUARE = 4.685  # Tukey's constant: 95 % efficient on normal noise
+MAD = 0.6744897501960817  # median |x| of the standard normal
+
+
+def quantile(dof: int | None, level: float = LEVEL) -> float:
+    """How many standard deviations a two-sided interval takes: Student's t with ``dof``, normal where that is None.
+
+    Infinite where nothing was left to judge the noise by.
+    """
+    upper = 0.5 + 0.5 * level
+    if dof is None:
+        return float(ndtri(upper))
+    return float(stdtrit(dof, upper)) if dof > 0 else float("inf")
+
+
+def bisquare(u: FloatArray) -> FloatArray:
+    """(e,) Tukey's weights of residuals (e,) in standard deviations: none from ``BISQUARE`` on."""
+    return np.asarray(np.clip(1.0 - (u / BISQUARE) ** 2, 0.0, None) ** 2)
