@@ -16,11 +16,12 @@ robot, view, dark = project.setup.robot, project.view, ui.dark()
 result = ui.attempt(ui.result, project.setup)
 theta = pose.configuration(project, result)
 now, old = pose.compared(project, theta)
+push = now.delta([0.0, 100.0, 0.0])
 
 ui.headline(
     f"Robot · {robot.title or robot.name}",
-    f"At this pose 100 N along Y move the tip {format_si(100 * abs(now.C[1, 1]), view.length, 3)} in Y "
-    f"and {format_si(100 * abs(now.C[2, 1]), view.length, 3)} in Z.",
+    f"At this pose 100 N along Y move the tip {format_si(abs(push[1]), view.length, 3)} in Y "
+    f"and {format_si(abs(push[2]), view.length, 3)} in Z.",
 )
 tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)
 ui.tiles(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.cartesian import full_compliance, joint_contributions
-from robomill.compliance.deflection import deflection, soft_direction
+from robomill.compliance.deflection import deflection, displacement, soft_direction
 from robomill.errors import KinematicsError
 from robomill.kinematics import dexterity
 from robomill.kinematics.forward import joint_frames
@@ -66,6 +66,11 @@ class PoseReport:
         return float(dexterity.determinant(self.robot, self.theta))
 
     @property
+    def near_singular(self) -> bool:
+        """Whether det(J) is so small that a singular configuration is near (see ``dexterity.near_singular``)."""
+        return bool(dexterity.near_singular(self.robot, self.det_J))
+
+    @property
     def det_J_unit(self) -> str:
         """A key of ``UNITS``."""
         return dexterity.determinant_unit(self.robot)
@@ -112,6 +117,10 @@ class PoseReport:
     def deflection(self, F: ArrayLike) -> FloatArray:
         """(n, 3) m in {M}: each joint's share of the tip displacement under F (3,) N on the tool. Eqs. (15), (16)."""
         return deflection(self.C_joint, F)
+
+    def delta(self, F: ArrayLike) -> FloatArray:
+        """(3,) m in {M}: the tip displacement under F (3,) N on the tool, C F. Eq. (16)."""
+        return displacement(self.C, F)
 
     def _known(self, value: FloatArray) -> FloatArray:
         return value if self.reached else np.full(value.shape, np.nan)

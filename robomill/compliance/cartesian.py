@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.kinematics.forward import rows
 from robomill.kinematics.jacobian import geometric_jacobian, pose_and_jacobian
 from robomill.robot.model import Robot
 
@@ -18,9 +19,20 @@ def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
     the translational compliance C.
     """
     J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
-    C_theta = as_floats(C_theta, "C_theta", (J_v.shape[-1],), error=KinematicsError)
-    columns = np.swapaxes(J_v, -1, -2)
-    return (C_theta[..., None] * columns)[..., :, None] * columns[..., None, :]
+    return _shares(J_v, as_floats(C_theta, "C_theta", (J_v.shape[-1],), error=KinematicsError))
+
+
+def _shares(J: FloatArray, C_theta: FloatArray) -> FloatArray:
+    """(..., n, r, r) of all rows of J (..., r, n)."""
+    from robomill.kinematics import kernels
+
+    lead, (r, n) = np.broadcast_shapes(J.shape[:-2], C_theta.shape[:-1]), J.shape[-2:]
+    C_joint = np.empty((*lead, n, r, r))
+    if C_theta.ndim > 1:
+        C_theta = np.broadcast_to(C_theta, (*lead, n))
+    J = np.ascontiguousarray(np.broadcast_to(J, (*lead, r, n)).reshape(-1, r, n))
+    kernels.shares_of(J, rows(C_theta), C_joint.reshape(-1, n, r, r))
+    return C_joint
 
 
 def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
@@ -43,5 +55,4 @@ def full_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
 
     It maps the wrench (force on the tool, moment about the tip) to (tip displacement, small rotation).
     """
-    J = geometric_jacobian(robot, theta)
-    return (J * robot.C_theta) @ np.swapaxes(J, -1, -2)
+    return _shares(geometric_jacobian(robot, theta), robot.C_theta).sum(axis=-3)

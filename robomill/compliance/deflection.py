@@ -16,7 +16,12 @@ def deflection(C_joint: ArrayLike, F: ArrayLike) -> FloatArray:
     """
     C_joint = as_floats(C_joint, "C_joint", (None, 3, 3), error=KinematicsError, finite=False)
     F = as_floats(F, "F", (3,), error=KinematicsError, finite=False)
-    return np.einsum("...nij,...j->...ni", C_joint, F)
+    return displacement(C_joint, F[..., None, :])
+
+
+def displacement(C: FloatArray, F: ArrayLike) -> FloatArray:
+    """delta (..., 3) m = C F: how far a force F (..., 3) N moves a tip of compliance C (..., 3, 3) m/N. Eq. (16)."""
+    return np.einsum("...ij,...j->...i", C, np.asarray(F, dtype=np.float64))
 
 
 def soft_direction(C: ArrayLike) -> tuple[FloatArray, FloatArray]:

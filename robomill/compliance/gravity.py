@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import RobotError
 from robomill.kinematics.forward import joint_frames
+from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, settle
 from robomill.robot.model import Robot
@@ -78,7 +79,7 @@ def _columns(robot: Robot, frames: FloatArray, points: FloatArray) -> FloatArray
     """
     axis = robot.chain.sign[:, None] * frames[..., :-1, :3, 2]
     arm = points[..., None, :, :] - frames[..., :-1, None, :3, 3]
-    moved = np.where(robot.chain.prismatic[:, None, None], axis[..., None, :], np.cross(axis[..., None, :], arm))
+    moved = twists(axis[..., None, :], arm, robot.chain.prismatic[:, None])[..., :3]
     if points.shape[-2] == 1:
         return moved
     carried = np.arange(robot.n)[:, None] <= np.arange(points.shape[-2])

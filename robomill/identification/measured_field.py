@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
+from robomill.compliance.deflection import displacement
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
@@ -23,6 +24,7 @@ from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_si
+from robomill.vectors import angle_between
 
 GRID = 1e-6  # m: coordinates closer than this are one grid line
 ASYMMETRY = 0.15  # |C - C^T| / |C| from which a point is named
@@ -100,7 +102,7 @@ class MeasuredField:
 
     def deflection(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
         """delta (..., 3) m under F (..., 3) N, eq. (15) with the measured C; NaN outside."""
-        return np.einsum("...ij,...j->...i", self.compliance(p), np.asarray(F, dtype=np.float64))
+        return displacement(self.compliance(p), F)
 
     def standard_error(self, p: ArrayLike) -> FloatArray:
         """(..., 3, 3) m/N standard error of each entry of ``compliance(p)``; NaN where that is NaN or it is not known.
@@ -119,9 +121,7 @@ class MeasuredField:
     def turned(self, p: ArrayLike, k: ArrayLike) -> FloatArray:
         """(...) rad between unit tool axes k (..., 3) at p (..., 3) m in {M} and that of the nearest measured point."""
         measured = axis_from_tilt(*self.AB.T)[self._nearest(p)[1]]
-        k = np.asarray(k, dtype=np.float64)
-        across = np.linalg.norm(np.cross(measured, k), axis=-1)
-        return np.asarray(np.arctan2(across, np.einsum("...i,...i->...", measured, k)), dtype=np.float64)
+        return angle_between(measured, k)
 
     def distance(self, p: ArrayLike) -> FloatArray:
         """(...) m to the nearest measured point."""

@@ -20,12 +20,15 @@ from typing import Literal
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import joint_contributions
+from robomill.compliance.deflection import deflection
 from robomill.compliance.springs.joint_bending import bending_axes
 from robomill.errors import LoadTestError
 from robomill.identification.configurations import ways
 from robomill.identification.load_test import LoadTests
 from robomill.identification.points import Point
 from robomill.kinematics.forward import joint_frames
+from robomill.kinematics.jacobian import twists
 from robomill.robot.model import Robot
 
 Kind = Literal["joint", "bending", "tool", "entry"]
@@ -151,12 +154,7 @@ class Model:
                 ]
         if self.has("tool"):
             shafts += [(p, frames[..., -1, :3, k], True) for k in range(3)]
-        a = np.zeros((*p.shape[:-1], 6, len(shafts)))
-        for s, (origin, axis, slides) in enumerate(shafts):
-            a[..., :3, s] = axis if slides else np.cross(axis, p - origin)
-            if not slides:
-                a[..., 3:, s] = axis
-        return a
+        return np.stack([twists(axis, p - origin, slides) for origin, axis, slides in shafts], axis=-1)
 
     def _collect(self, each: FloatArray) -> FloatArray:
         """Spring by spring -> parameter by parameter: the two springs across the tool share a compliance."""
@@ -219,8 +217,8 @@ class Model:
         if self.has("entry"):
             return np.broadcast_to(_constant(F), (*np.broadcast_shapes(theta.shape[:-1], F.shape[:-1]), 3, 6))
         a = self.columns(robot, theta)[..., :3, :]
-        load = np.einsum("...cs,...c->...s", a, F)
-        return self._collect(a * load[..., None, :])
+        shares = deflection(joint_contributions(a, np.ones(a.shape[-1])), F)
+        return self._collect(np.swapaxes(shares, -1, -2))
 
     def compliance(self, robot: Robot, theta: FloatArray, parameters: Sequence[float] | FloatArray) -> FloatArray:
         """C (..., 3, 3) m/N at the tool tip in {M}, for given parameters (p,)."""

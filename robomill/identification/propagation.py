@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.compliance.deflection import displacement
 from robomill.errors import RobomillError
 from robomill.identification.confidence import LEVEL, quantile
 from robomill.identification.knowledge import Knowledge
@@ -88,7 +89,7 @@ def uncertain_by_map(field: MeasuredField, p: ArrayLike, F: ArrayLike, force: Fl
     force: (3, 3) N^2 covariance of the force, None: certain. NaN where the map does not answer or knows no error.
     """
     C, F = field.compliance(p), as_floats(F, "F", (3,), error=RobomillError, finite=False)
-    delta = np.einsum("...ij,...j->...i", C, F)
+    delta = displacement(C, F)
     parts = [field.covariance(p, F), *(np.zeros((*delta.shape, 3)) for _ in range(3))]
     if force is not None:
         parts[2] = parts[2] + C @ force @ np.swapaxes(C, -1, -2)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
+from robomill.compliance.deflection import displacement
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -94,7 +95,7 @@ def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
         return None
     chosen = np.linspace(0, len(tests) - 1, min(len(tests), 200)).astype(int)
     F = tests.wrench[chosen, :3]
-    moved = np.einsum("mij,mj->mi", cartesian_compliance(robot, tests.theta[chosen]), F)
+    moved = displacement(cartesian_compliance(robot, tests.theta[chosen]), F)
     size = np.linalg.norm(F, axis=1)
     ratio = np.linalg.norm(moved, axis=1)[size > 0] / size[size > 0]
     return float(np.median(ratio)) if len(ratio) and np.median(ratio) > 0 else None

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.deflection import displacement
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
@@ -64,7 +65,7 @@ def simulated_tests(
         twist = np.eye(3) + 0.5 * model_error * rng.standard_normal((int(pose.max()) + 1, 3, 3))
         C = choice.compliance(robot, tests.theta, true_parameters(robot, choice, extra))  # type: ignore[arg-type]
         C = twist[pose] @ C @ np.swapaxes(twist[pose], -1, -2)
-        moved = np.einsum("mij,mj->mi", C, F)
+        moved = displacement(C, F)
     moved = moved + noise * rng.standard_normal(moved.shape)
     if resolution > 0.0:
         moved = np.round(moved / resolution) * resolution

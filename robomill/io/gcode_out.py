@@ -6,6 +6,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
+from robomill.kinematics.transforms import tilt_from_axis
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
 
@@ -59,12 +60,10 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
 
 def _angles(k: FloatArray) -> FloatArray:
     """(m, 2) deg: A and B of tool axes (m, 3); A goes on smoothly, and stays where the axis lies along X."""
-    b = np.degrees(np.arcsin(np.clip(k[:, 0], -1.0, 1.0)))
+    a, b = from_si(tilt_from_axis(k), "deg").T
     free = np.hypot(k[:, 1], k[:, 2]) < 1e-9
-    a = np.where(free, np.nan, np.degrees(np.arctan2(-k[:, 1], k[:, 2])))
     known = np.maximum.accumulate(np.where(free, 0, np.arange(len(a))))
-    a = np.nan_to_num(a[known])
-    return np.stack([np.unwrap(a, period=360.0), b], axis=1)
+    return np.stack([np.unwrap(np.where(free[known], 0.0, a[known]), period=360.0), b], axis=1)
 
 
 class _Writer:

@@ -7,11 +7,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.forward import joint_angles
 from robomill.kinematics.jacobian import pose_and_jacobian, task_rows
 from robomill.robot.model import Robot
 
+NEAR = 0.02  # of the largest |det(J)|: below it a singular configuration is near
+SAMPLES = 4096
 ROWS = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 FIVE_AXIS_ROWS = ("v_x", "v_y", "v_z", "omega_x'", "omega_y'")
 
@@ -74,6 +76,22 @@ def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
     det = np.empty(A.shape[:-2])
     kernels.determinant_of(np.ascontiguousarray(A.reshape(-1, *A.shape[-2:])), det.reshape(-1))
     return det
+
+
+@lru_cache(maxsize=64)
+def largest_determinant(robot: Robot) -> float:
+    """The largest |det(J)| of the arm: of ``SAMPLES`` configurations drawn within its limits, always the same ones."""
+    low, high = robot.limits.T
+    theta = np.random.default_rng(0).uniform(low, high, (SAMPLES, robot.n))
+    return float(np.abs(determinant(robot, theta)).max())
+
+
+def near_singular(robot: Robot, det: ArrayLike) -> BoolArray:
+    """Where det(J) (...,) is so small that the arm is at a singular configuration or close to one; False for NaN.
+
+    Closer than ``NEAR`` of the largest that this arm has: a rule that knows neither its size nor the unit, nor a grid.
+    """
+    return np.asarray(np.abs(np.asarray(det, dtype=np.float64)) <= NEAR * largest_determinant(robot))
 
 
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:

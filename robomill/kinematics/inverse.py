@@ -17,8 +17,9 @@ from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
 from robomill.robot.model import Robot
 
-Spin = float | Literal["least motion", "fixed"]
-SPINS = ("least motion", "fixed")
+Spin = float | Literal["least_motion", "fixed"]
+LEAST_MOTION: Literal["least_motion"] = "least_motion"
+SPINS = (LEAST_MOTION, "fixed")
 THINNED = 200  # poses of a path by which its spins are compared
 
 
@@ -57,13 +58,13 @@ def inverse_kinematics(
     *,
     branch: str | None = None,
     near: ArrayLike | Literal["path"] | None = None,
-    spin: Spin = "least motion",
+    spin: Spin = LEAST_MOTION,
 ) -> IKResult:
     """Configurations theta (..., n) that bring the tool to T_MT (..., 4, 4), within the joint limits.
 
     What of the pose counts: up to four joints the tip only (a planar arm reaches points of its plane); five joints the
     tip and the tool axis z_T; six and seven joints the same, and the spin about the tool axis, which is free in
-    milling, follows ``spin``: "least motion" (the turn that moves the joints least from ``near`` or from home; along a
+    milling, follows ``spin``: "least_motion" (the turn that moves the joints least from ``near`` or from home; along a
     path one turn for the whole path), "fixed" (the pose as given, all six coordinates) or an angle in rad by which the
     given pose is turned about z_T.
 
@@ -116,10 +117,10 @@ def _wish(
     if along_path and (near != "path" or not lead):
         raise KinematicsError(f"near: expected a configuration, or 'path' for a batch of poses; found {near!r}.")
     if isinstance(spin, str) and spin not in SPINS:
-        raise KinematicsError(f"spin: expected 'least motion', 'fixed' or an angle in rad, found {spin!r}.")
+        raise KinematicsError(f"spin: expected 'least_motion', 'fixed' or an angle in rad, found {spin!r}.")
     if robot.n >= 6 and not isinstance(spin, str):
         flat = spun(flat, float(spin))
-    free_spin = robot.n >= 6 and spin == "least motion"
+    free_spin = robot.n >= 6 and spin == LEAST_MOTION
     given = None if robot.n < 6 or free_spin else 0.0 if isinstance(spin, str) else float(spin)
     mode: Mode = "axis" if free_spin else task_mode(robot)
     goal = None if along_path else robot.home[None] if near is None else _reference(robot, near, lead)

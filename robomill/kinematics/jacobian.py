@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.forward import joint_angles, rows
 from robomill.kinematics.transforms import rotation_x, rotation_y, tilt_from_axis
 from robomill.robot.model import Robot
@@ -29,6 +29,20 @@ def pose_and_jacobian(robot: Robot, theta: ArrayLike) -> tuple[FloatArray, Float
     T_MT, J = np.empty((*lead, 4, 4)), np.empty((*lead, 6, robot.n))
     kernels.jacobian_of(rows(theta), robot.chain, T_MT.reshape(-1, 4, 4), J.reshape(-1, 6, robot.n))
     return T_MT, J
+
+
+def twists(axis: FloatArray, reach: FloatArray, slides: BoolArray | bool = False) -> FloatArray:
+    """(..., 6) how points move: rows v (m) and omega (rad) by a unit turn about ``axis`` (..., 3) at ``reach`` from it.
+
+    reach (..., 3) m; by a unit shift along it where it ``slides`` (...). Eqs. (8), (9).
+    """
+    from robomill.kinematics import kernels
+
+    lead = np.broadcast_shapes(axis.shape[:-1], reach.shape[:-1], np.shape(slides))
+    axis, reach = (rows(np.broadcast_to(each, (*lead, 3))) for each in (axis, reach))
+    found = np.empty((*lead, 6))
+    kernels.twists_of(axis, reach, np.broadcast_to(slides, lead).flatten(), found.reshape(-1, 6))
+    return found
 
 
 def task_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:

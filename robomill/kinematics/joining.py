@@ -13,7 +13,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.kinematics.course import FROM_HOME, Course
-from robomill.kinematics.transforms import angle_between
+from robomill.kinematics.transforms import turn_between
 from robomill.robot.model import Robot
 
 # A joint turns easily by so much for a length of path and for a turn of the tool. Away from singular configurations
@@ -39,7 +39,7 @@ def easy_turn(T_MT: FloatArray, whole: bool) -> FloatArray:
     By the tip's way and the turn of the tool axis, or of the ``whole`` tool where its spin is commanded, too.
     """
     way = np.linalg.norm(np.diff(T_MT[:, :3, 3], axis=0), axis=1)
-    turn = angle_between(T_MT[:-1, :3, :3], T_MT[1:, :3, :3], whole)
+    turn = turn_between(T_MT[:-1, :3, :3], T_MT[1:, :3, :3], whole)
     return np.append(0.0, EASY_PER_LENGTH * way + EASY_PER_TURN * turn)[: len(T_MT)]
 
 

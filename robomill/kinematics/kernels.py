@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robomill.compiled import FEW, In1, In2, In3, Out1, Out3, Out4, kernel, part
+from robomill.compiled import FEW, In1, In2, In3, InBool1, Out1, Out2, Out3, Out4, kernel, part
 from robomill.kinematics.trig_kernels import sin_cos
 from robomill.robot.dh import Chain
 
@@ -87,21 +87,38 @@ def forward_side_by_side(theta, chain, turns, T):
 
 
 @part
+def twist(z, r, slides):
+    """(v, omega) of a point at r from an axis z by a unit of its joint: z x r and z where it turns, z where it slides.
+
+    Eqs. (8), (9).
+    """
+    if slides:
+        return z[0], z[1], z[2], 0.0, 0.0, 0.0
+    return (
+        z[1] * r[2] - z[2] * r[1],
+        z[2] * r[0] - z[0] * r[2],
+        z[0] * r[1] - z[1] * r[0],
+        z[0],
+        z[1],
+        z[2],
+    )
+
+
+@part
 def jacobian(frames, chain, J):
-    """J (6, n) from the frames: a turning joint moves the tip by z x r, a sliding one by z. Eqs. (8), (9)."""
+    """J (6, n) from the frames: the twists of the tip. Eqs. (8), (9)."""
     n = len(chain.sign)
     for i in range(n):
-        s = chain.sign[i]
-        z_x, z_y, z_z = s * frames[i, 0, 2], s * frames[i, 1, 2], s * frames[i, 2, 2]
-        r_x = frames[n, 0, 3] - frames[i, 0, 3]
-        r_y = frames[n, 1, 3] - frames[i, 1, 3]
-        r_z = frames[n, 2, 3] - frames[i, 2, 3]
-        if chain.prismatic[i]:
-            J[0, i], J[1, i], J[2, i] = z_x, z_y, z_z
-            J[3, i], J[4, i], J[5, i] = 0.0, 0.0, 0.0
-        else:
-            J[0, i], J[1, i], J[2, i] = z_y * r_z - z_z * r_y, z_z * r_x - z_x * r_z, z_x * r_y - z_y * r_x
-            J[3, i], J[4, i], J[5, i] = z_x, z_y, z_z
+        F, s = frames[i], chain.sign[i]
+        z = (s * F[0, 2], s * F[1, 2], s * F[2, 2])
+        r = (frames[n, 0, 3] - F[0, 3], frames[n, 1, 3] - F[1, 3], frames[n, 2, 3] - F[2, 3])
+        J[0, i], J[1, i], J[2, i], J[3, i], J[4, i], J[5, i] = twist(z, r, chain.prismatic[i])
+
+
+@part
+def share(c, J, i, r, k):
+    """What joint i of compliance c gives of C_rk: c J_ri J_ki. Eqs. (13), (14)."""
+    return c * J[r, i] * J[k, i]
 
 
 @part
@@ -196,14 +213,36 @@ def jacobian_of(theta: In2, chain: Chain, T_MT: Out3, J: Out3) -> None:
 
 
 @kernel(few=FEW)
+def twists_of(axis: In2, reach: In2, slides: InBool1, twists: Out2) -> None:
+    """twists (m, 6) of points at reach (m, 3) from axes (m, 3)."""
+    for i in range(len(axis)):
+        z, r = (axis[i, 0], axis[i, 1], axis[i, 2]), (reach[i, 0], reach[i, 1], reach[i, 2])
+        v = twist(z, r, slides[i])
+        for c in range(6):
+            twists[i, c] = v[c]
+
+
+@kernel(few=FEW)
+def shares_of(J: In3, C_theta: In2, C_joint: Out4) -> None:
+    """C_joint (m, n, r, r) of J (m, r, n) and C_theta (1 or m, n). Eqs. (13), (14)."""
+    m, rows, n = J.shape
+    for i in range(m):
+        c = C_theta[i if len(C_theta) > 1 else 0]
+        for j in range(n):
+            for r in range(rows):
+                for k in range(rows):
+                    C_joint[i, j, r, k] = share(c[j], J[i], j, r, k)
+
+
+@kernel(few=FEW)
 def compliance_of(J: In3, C_theta: In1, C: Out3) -> None:
-    """C (m, 3, 3) = J_v diag(C_theta) J_v^T, the rows v of J (m, 6, n). Eqs. (11), (12)."""
+    """C (m, 3, 3), the sum of the joints' shares, of the rows v of J (m, 6, n). Eqs. (11), (12)."""
     for i in range(len(J)):
         for r in range(3):
             for k in range(3):
                 total = 0.0
                 for j in range(len(C_theta)):
-                    total += C_theta[j] * J[i, r, j] * J[i, k, j]
+                    total += share(C_theta[j], J[i], j, r, k)
                 C[i, r, k] = total
 
 

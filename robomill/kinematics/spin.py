@@ -10,10 +10,10 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.kinematics.choice import SPIN_STEPS
-from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.inverse import LEAST_MOTION, inverse_kinematics
 from robomill.robot.model import Robot
 
-LEAST_MOTION, LEAST_DEVIATION = "least_motion", "least_deviation"
+LEAST_DEVIATION = "least_deviation"
 RULES = (LEAST_MOTION, LEAST_DEVIATION)
 
 

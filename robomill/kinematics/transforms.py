@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.vectors import angle_between
 
 
 def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
@@ -62,15 +63,15 @@ def invert(T: ArrayLike) -> FloatArray:
     return transform(R, -np.einsum("...ij,...j->...i", R, T[..., :3, 3]))
 
 
-def angle_between(R: FloatArray, Q: FloatArray, whole: bool) -> FloatArray:
+def turn_between(R: FloatArray, Q: FloatArray, whole: bool) -> FloatArray:
     """(...,) rad by which R and Q (..., 3, 3) are turned against each other: their z axes, or as ``whole`` rotations.
 
     By the chord 2 sin(angle / 2), which is exact for small angles, where the cosine is not.
     """
-    chord = ((R[..., 2] - Q[..., 2]) ** 2).sum(axis=-1)
-    if whole:
-        chord = 0.5 * ((R - Q) ** 2).sum(axis=(-1, -2))
-    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * np.sqrt(chord), 1.0)))
+    if not whole:
+        return angle_between(R[..., 2], Q[..., 2])
+    chord = np.sqrt(0.5 * ((R - Q) ** 2).sum(axis=(-1, -2)))
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)))
 
 
 def pose_from_world(x_M: ArrayLike) -> FloatArray:

@@ -19,6 +19,7 @@ from robomill.simulation.seen import Run
 from robomill.surface.outline import Outline
 from robomill.surface.raster import stock_heights
 from robomill.surface.stock import stock_grid
+from robomill.vectors import angle_between
 
 STEEP = 0.5  # share of the feed across the tool below which a move is a plunge: its wall is a hole's
 CORNER = np.radians(45.0)
@@ -182,7 +183,7 @@ def _bottoms(at: Places) -> BoolArray:
 def _turn(at: Places) -> FloatArray:
     """(q,) rad: the sharpest turn of the path at each place, towards the sample before or after it."""
     path, R = at.result.path, at.result.R_MF[..., 0]
-    angle = np.arccos(np.clip(np.einsum("mi,mi->m", R[1:], R[:-1]), -1.0, 1.0))
+    angle = angle_between(R[1:], R[:-1])
     angle[~(path.cutting[1:] & path.cutting[:-1])] = 0.0
     return np.maximum(np.append(0.0, angle), np.append(angle, 0.0))[at.i]
 

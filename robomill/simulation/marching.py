@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.tooling import Tooling
@@ -42,7 +43,7 @@ class Bent:
 
     def delta(self, F: FloatArray) -> FloatArray:
         """(m, 3) m: C F, eq. (15), and the offset."""
-        return np.asarray(np.einsum("mij,mj->mi", self.C, F) + self.offset)
+        return np.asarray(displacement(self.C, F) + self.offset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +133,7 @@ class _Walk:
             self.moved[j] = self.moved[j + 1]
 
     def _bent(self, i: int, F: FloatArray) -> FloatArray:
-        return np.nan_to_num(self.bent.C[i] @ F + self.bent.offset[i])
+        return np.nan_to_num(displacement(self.bent.C[i], F) + self.bent.offset[i])
 
 
 def _only(conditions: CutConditions, i: int) -> CutConditions:

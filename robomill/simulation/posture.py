@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.deflection import displacement
 from robomill.compliance.posture import over_posture
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -18,7 +19,7 @@ def posture_notes(robot: Robot, T_MT: FloatArray, F: FloatArray) -> tuple[Findin
     found = over_posture(robot, T_MT)
     if not len(found):
         return ()
-    size = np.linalg.norm(found @ F, axis=1)
+    size = np.linalg.norm(displacement(found, F), axis=1)
     text = (
         f"The arm has {robot.n} axes, so one posture of many was taken: at the worst point the deflection "
         f"ranges over {format_many((size.min(), size.max()), 'mm', 3, ' to ')} ({len(found)} postures looked at)."

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
@@ -81,7 +82,7 @@ class SimulationResult:
     @cached_property
     def delta_component(self) -> FloatArray:
         """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
-        return np.einsum("mij,mjc,mc->mci", self.C, self.R_MF, self.force_components)
+        return displacement(self.C[:, None], np.swapaxes(self.R_MF * self.force_components[:, None], 1, 2))
 
     @cached_property
     def answered(self) -> BoolArray:

@@ -16,10 +16,10 @@ from robomill.cutting.force import feed_frame
 from robomill.cutting.unjudged import Unjudged
 from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
-from robomill.kinematics.inverse import IKResult, Spin, inverse_kinematics
+from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
-from robomill.kinematics.transforms import pose_from_world
+from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_conditions, told_conditions
 from robomill.simulation.mapped import beyond_map, total_compliance
@@ -68,7 +68,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
 
 def configurations(setup: SimulationSetup, path: Toolpath) -> IKResult:
     """How the arm stands along the sampled path: branches joined, the spin about the tool as the set-up has it."""
-    spin: Spin = setup.spin if isinstance(setup.spin, float) else "least motion"
+    spin: Spin = setup.spin if isinstance(setup.spin, float) else LEAST_MOTION
     if setup.spin == LEAST_DEVIATION and setup.robot.n >= 6:
         over = deviation_over_spin(setup, path)
         spin = float(over.angle[over.best])
@@ -141,9 +141,7 @@ def tool_poses(setup: SimulationSetup, path: Toolpath) -> FloatArray:
 
 def tool_frames(path: Toolpath, back: FloatArray | float = 0.0) -> FloatArray:
     """(m, 4, 4) T_WT: the point ``back`` (m,) m behind the tip p, z_T = k, spin about z_T as R_x(A) R_y(B) gives it."""
-    A = np.arctan2(-path.k[:, 1], path.k[:, 2])
-    B = np.arcsin(np.clip(path.k[:, 0], -1.0, 1.0))
-    return pose_from_world(np.column_stack([path.p + np.reshape(back, (-1, 1)) * path.k, A, B]))
+    return pose_from_world(np.column_stack([path.p + np.reshape(back, (-1, 1)) * path.k, tilt_from_axis(path.k)]))
 
 
 def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.deflection import displacement
 from robomill.cutting.force import ForceSpread
 from robomill.cutting.materials import Material
 from robomill.simulation.result import SimulationResult
@@ -50,8 +51,8 @@ def alloy_spread(result: SimulationResult) -> AlloySpread | None:
     at_feed = result.conditions.cutting[:, None]
     C = result.C
     F = np.stack([np.where(at_feed, np.einsum("mij,mj->mi", result.R_MF, f), 0.0) for _, f in rows])
-    rest = result.delta - np.einsum("mij,mj->mi", C, result.F)
-    delta = np.einsum("mij,rmj->rmi", C, F) + rest
+    rest = result.delta - displacement(C, result.F)
+    delta = displacement(C, F) + rest
     return AlloySpread(tuple(material for material, _ in rows), F, delta)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import SurfaceError
+from robomill.vectors import angle_between
 
 STRAIGHT = 1e-11  # rad: a divided line bends less by rounding
 SMALLEST_RISE = 0.1
@@ -94,7 +95,7 @@ def at_one_axis(moves: Passes, R: float, cell: float) -> tuple[FloatArray, Float
     a cell.
     """
     k_a, k_b = moves.axes[:, :3], moves.axes[:, 3:]
-    turn = np.arctan2(np.linalg.norm(np.cross(k_a, k_b), axis=1), np.einsum("ni,ni->n", k_a, k_b))
+    turn = angle_between(k_a, k_b)
     pieces = np.maximum(1, np.ceil(turn * R / (STRAY * cell))).astype(int)
     owner = np.repeat(np.arange(len(moves.ends)), pieces)
     n = (np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces))[:, None]

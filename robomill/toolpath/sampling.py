@@ -11,6 +11,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import PER_MOVE, Toolpath
 from robomill.units import from_si
+from robomill.vectors import angle_between
 
 MAX_SAMPLES = 5_000_000
 CORNER = math.radians(10.0)
@@ -60,8 +61,7 @@ def _begins(path: Toolpath) -> BoolArray:
     move = np.diff(path.p, axis=0, prepend=path.p[:1])
     moved = path.step_length > 0
     angle = np.zeros(len(path))
-    cross = np.linalg.norm(np.cross(move[:-1], move[1:]), axis=1)
-    angle[1:] = np.arctan2(cross, np.einsum("ij,ij->i", move[:-1], move[1:]))
+    angle[1:] = angle_between(move[:-1], move[1:])
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
     begins = path.cutting & moved & (resumed | (angle > CORNER))
     begins[0] = False
@@ -71,7 +71,7 @@ def _begins(path: Toolpath) -> BoolArray:
 def _slerp(k_a: FloatArray, k_b: FloatArray, fraction: FloatArray) -> FloatArray:
     if np.array_equal(k_a, k_b):
         return k_b
-    angle = np.arctan2(np.linalg.norm(np.cross(k_a, k_b), axis=1), np.einsum("ij,ij->i", k_a, k_b))
+    angle = angle_between(k_a, k_b)
     sine = np.sin(angle)
     turning = sine > 1e-12
     safe = np.where(turning, sine, 1.0)

@@ -12,14 +12,13 @@ from itertools import combinations
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
-from robomill.kinematics.dexterity import determinant
+from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 from robomill.workspace.reach import Box, largest_box
 
-NEAR = 0.02  # of the largest |det(J)|: below it a singular configuration is near
 SWING = np.pi / 2  # rad along an edge
 FINER = 3  # times finer is what a found box is looked through again with
 ROUNDS = 30
@@ -51,8 +50,7 @@ def clear_cells(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> Boo
     ik = inverse_kinematics(robot, pose_from_world(np.concatenate([points, tilts], axis=-1)))
     det = np.full(grid.shape, np.nan)
     det[ik.reached] = determinant(robot, ik.theta[ik.reached])
-    size = np.nan_to_num(np.abs(det))
-    able: BoolArray = ik.reached & (size > NEAR * size.max(initial=0.0))
+    able: BoolArray = ik.reached & ~near_singular(robot, det)
     wide = [axis for axis in range(3) if grid.shape[axis] > 1]
     if robot.n > 6:  # one of many postures, which is not carried on from point to point
         return _cells(able, wide)

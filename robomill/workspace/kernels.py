@@ -7,18 +7,19 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.compiled import In1, In2, kernel, part
-from robomill.kinematics.kernels import determinant, forward, jacobian
+from robomill.kinematics.kernels import determinant, forward, jacobian, share
 from robomill.robot.dh import Chain
 from robomill.workspace.laws import Laws
+
+ROW, COLUMN = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)  # of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz
 
 
 @part
 def joint_shares(J, C_theta, shares):
     """shares (n, 6): each joint's part C_theta,i J_i J_i^T of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz. Eqs. (13), (14)."""
     for i in range(len(C_theta)):
-        x, y, z = J[0, i], J[1, i], J[2, i]
-        shares[i, 0], shares[i, 1], shares[i, 2] = C_theta[i] * x * x, C_theta[i] * y * y, C_theta[i] * z * z
-        shares[i, 3], shares[i, 4], shares[i, 5] = C_theta[i] * x * y, C_theta[i] * x * z, C_theta[i] * y * z
+        for e in range(6):
+            shares[i, e] = share(C_theta[i], J, i, ROW[e], COLUMN[e])
 
 
 @kernel

@@ -16,6 +16,17 @@ def test_planar_2r_determinant_is_l1_l2_sin_theta_2():
     assert dexterity.square_rows(rm.load_robot("planar_3r")) == ("v_x", "v_y", "omega_z")
 
 
+@pytest.mark.parametrize("size", [0.01, 1.0, 30.0])
+def test_near_a_singular_configuration_by_the_arms_own_measure(size):
+    robot = rm.load_robot("planar_2r")
+    robot = robot.replace(a=size * robot.a, limits=np.tile([-3.0, 3.0], (2, 1)))  # |sin theta_2| comes up to 1
+    theta = np.column_stack([np.zeros(9), [-3.0, -2.0, -0.03, -0.005, 0.0, 0.015, 0.05, 1.0, 3.0]])
+    near = dexterity.near_singular(robot, dexterity.determinant(robot, theta))
+    assert near.tolist() == (np.abs(np.sin(theta[:, 1])) < 0.02).tolist()
+    assert not dexterity.near_singular(robot, np.nan)
+    assert dexterity.largest_determinant(robot) == pytest.approx(0.2 * size**2, rel=1e-3)
+
+
 def test_five_axis_rows_are_those_of_the_paper_at_a_vertical_tool():
     robot = rm.load_robot("slavkovic_5r")
     theta = rm.inverse_kinematics(robot, rm.pose_from_world([0.2, -1.3, 0.0, 0, 0])).theta

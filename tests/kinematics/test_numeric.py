@@ -74,7 +74,7 @@ def test_the_jacobian_of_a_task_is_how_its_error_falls(arm, mode):
         np.testing.assert_allclose(-after / step, jacobian[:, :, j], atol=5e-6)
 
 
-@pytest.mark.parametrize("spin", ["fixed", "least motion"])
+@pytest.mark.parametrize("spin", ["fixed", "least_motion"])
 def test_poses_of_an_arm_without_a_closed_form_are_found_and_met(arm, spin):
     theta = configurations(arm, 60)
     T_MT = rm.tool_pose(arm, theta)

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
+from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.spring import ASSUMED, Spring, checked_frames
 from robomill.errors import RobotError
+from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, switch, whole
 
@@ -62,10 +64,5 @@ class JointBending(Spring):
             raise RobotError(f"Joint bending: there is no joint {self.joint}; the robot has {n}.", where="joint")
         frame = frames[..., self.joint - 1, :, :]
         reach = frames[..., -1, :3, 3] - frame[..., :3, 3]
-        C = np.zeros((*frames.shape[:-3], 3, 3))
-        for axis, compliance in zip(
-            bending_axes(frames, self.joint - 1, self.turned), (self.C_x, self.C_y), strict=True
-        ):
-            column = np.cross(axis, reach)
-            C += compliance * column[..., :, None] * column[..., None, :]
-        return C
+        J = np.stack([twists(axis, reach) for axis in bending_axes(frames, self.joint - 1, self.turned)], axis=-1)
+        return joint_contributions(J[..., :3, :], [self.C_x, self.C_y]).sum(axis=-3)

@@ -14,7 +14,7 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.decoupled import decoupled
-from robomill.kinematics.dexterity import determinant
+from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import pose_from_world
@@ -151,11 +151,7 @@ def _measure(pose: PoseReport, way: Ray, i: int) -> None:
     det = float(way.det[i])
     softest_here = pose.principal[0][-1]
     number, label = split_unit(format_si(det, what.unit, 3))
-    near = (
-        "A singularity: one direction is lost."
-        if abs(det) < 0.05 * float(np.abs(way.det).max())
-        else ("Far from a singularity.")
-    )
+    near = "A singularity: one direction is lost." if near_singular(pose.robot, det) else "Far from a singularity."
     st.html(
         f'<p class="rm-note">det(J)</p><div class="rm-det">{number} <small>{label}</small></div>'
         f'<p class="rm-note">{near}</p>'

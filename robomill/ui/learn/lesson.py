@@ -11,6 +11,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray, digest
 from robomill.compliance.at_pose import PoseReport
+from robomill.compliance.deflection import displacement
 from robomill.robot.model import Robot
 from robomill.ui import cached, fields, inputs, pieces, session, shell
 from robomill.ui.point import FORCE, InHand, default_point, in_hand
@@ -100,7 +101,7 @@ def _answer(C: FloatArray, now: Lesson) -> None:
     if not now.revealed:
         st.html('<p class="rm-say">Ask the class first. Then show.</p>')
         return
-    delta = FORCE * C[:, 1]
+    delta = displacement(C, [0.0, FORCE, 0.0])
     truth = went(delta)
     unit = session.project().view.length
     st.html(f'<p class="rm-say">100 N along Y move the tip {_moves(delta, unit)}.</p>')
@@ -152,7 +153,7 @@ def compliance_table(C: FloatArray) -> str:
 
 
 def _push(pose: PoseReport, revealed: bool) -> None:
-    delta = FORCE * pose.C[:, 1]
+    delta = pose.delta([0.0, FORCE, 0.0])
     unit, dark = session.project().view.length, shell.dark()
     scene = ArmScene(
         frames=pose.frames,

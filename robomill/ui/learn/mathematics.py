@@ -9,6 +9,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
+from robomill.compliance.deflection import displacement
 from robomill.identification.estimate import identify
 from robomill.io.load_tests import read_load_tests
 from robomill.io.materials import sample_materials
@@ -68,7 +69,7 @@ def product(C: FloatArray) -> str:
     """C F = delta with numbers, as TeX."""
     rows = from_si(C, "um/N")
     matrix = r" \\ ".join(" & ".join(_number(v, 3) for v in row) for row in rows)
-    moved = r" \\ ".join(_number(v, 1) for v in rows[:, 1] * FORCE)
+    moved = r" \\ ".join(_number(v, 1) for v in from_si(displacement(C, [0.0, FORCE, 0.0]), "um"))
     return (
         rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} 0 \\ {FORCE:.0f} \\ 0 \end{{bmatrix}}"
         rf" = \begin{{bmatrix}} {moved} \end{{bmatrix}}"

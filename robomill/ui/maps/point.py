@@ -35,7 +35,7 @@ def headline(found: InHand, unit: str) -> str:
     pose = found.pose
     if not pose.reached:
         return f"The tool does not get to {where}: {found.reason}."
-    delta = pose.C[:, 1] * FORCE
+    delta = pose.delta([0.0, FORCE, 0.0])
     digits = 3 if unit == "mm" else 4
     ways = [
         f"{format_si(abs(float(v)), unit, digits)} {w}"
@@ -69,7 +69,7 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
 def _arm(pose: PoseReport, component: str, unit: str) -> None:
     F = np.zeros(3)
     F["xyz".index(component[1])] = FORCE
-    delta = pose.deflection(F).sum(axis=0)
+    delta = pose.delta(F)
     frames = pose.frames
     scene = ArmScene(
         frames=frames,

@@ -13,6 +13,7 @@ import streamlit as st
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
 from robomill.errors import RobomillError
+from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.maps import plane
@@ -53,7 +54,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     largest = fields.proposed_box(robot, view.A, view.B)
     size = "none" if largest is None else format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
     note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
-    singular = len(det) > 0 and float(det.min()) < 0.02 * float(det.max())
+    singular = bool(near_singular(robot, det).any())
     return [
         pieces.Tile(
             "Region in reach",
@@ -98,7 +99,8 @@ def sentence(robot: Robot, known: ComplianceField | None) -> str:
     det = known.det_J[known.reached]
     crosses = bool((det > 0).any() and (det < 0).any())
     where = "all of this region" if share > 0.999 else f"{format_percent(share)} of this region"
-    fit = "passes a singularity" if crosses else "meets no singularity"
+    near = bool(near_singular(robot, det).any())
+    fit = "passes a singularity" if crosses else "comes close to a singularity" if near else "meets no singularity"
     return f"The arm reaches {where} and {fit} there."
 
 

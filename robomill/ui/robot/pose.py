@@ -113,7 +113,7 @@ def det_words(pose: PoseReport) -> str:
     """What det(J) says in words."""
     if pose.robot.n > 6:
         return "the task Jacobian of this arm is not square"
-    return "singular here" if abs(pose.det_J) < 1e-6 else "0 at a singularity"
+    return "a singularity is near" if pose.near_singular else "0 at a singularity"
 
 
 def compliance_matrix(now: PoseReport, old: PoseReport | None) -> None:

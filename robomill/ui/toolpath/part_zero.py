@@ -13,6 +13,7 @@ from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import Box
 from robomill.units import format_si, from_si, to_si, unit_label
+from robomill.vectors import angle_between
 
 TOUCHED = "toolpath.touched"
 WAYS = {"numbers": "By numbers", "points": "By three points"}
@@ -53,7 +54,7 @@ def _turn(angle: float) -> None:
 
 def tilt_of(T_MW: FloatArray) -> float:
     """rad between z_W and z_M."""
-    return float(np.arctan2(np.hypot(T_MW[0, 2], T_MW[1, 2]), T_MW[2, 2]))
+    return float(angle_between(T_MW[:3, 2], [0.0, 0.0, 1.0]))
 
 
 def _by_points() -> None:

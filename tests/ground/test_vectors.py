@@ -1,0 +1,16 @@
+"""Angles between directions against directions turned by known angles."""
+
+import numpy as np
+
+from robomill.vectors import angle_between
+
+
+def test_the_angle_is_the_one_it_was_turned_by():
+    rng = np.random.default_rng(1)
+    for angle in (0.0, 1e-12, 1e-7, 0.3, 1.5, 3.0, np.pi - 1e-9, np.pi):
+        x, other = rng.standard_normal((2, 50, 3))
+        y = np.cross(x, other)
+        x, y = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (x, y))
+        turned = np.cos(angle) * x + np.sin(angle) * y
+        np.testing.assert_allclose(angle_between(3.0 * x, 0.2 * turned), angle, rtol=1e-3, atol=1e-15)
+    assert angle_between([0, 0, 1.0], [[0, 0, 2.0], [0, 5.0, 0], [0, 0, -1.0]]).tolist() == [0.0, np.pi / 2, np.pi]
