@@ -47,7 +47,7 @@ def solved(robot: Robot, x_M: FloatArray, rows: IntArray) -> tuple[FloatArray, F
             "poses as X, Y, Z, A, B or as joints."
         )
     poses, back = np.unique(x_M, axis=0, return_inverse=True)
-    found = inverse_kinematics(robot, pose_of(poses), spin="fixed" if whole else "least motion")
+    found = inverse_kinematics(robot, pose_of(poses), spin="fixed" if whole else "least_motion")
     if not found.reached.all():
         first = int(np.argmin(found.reached[back.ravel()]))
         row, k = int(rows[first]), int(back.ravel()[first])
