@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -10,11 +11,12 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.edge import EdgeTerm, depth_sums
-from robomill.cutting.tool import Cutter
+from robomill.cutting.edge import EdgeTerm
+from robomill.cutting.engaged import FACING, nose_pieces, pushes, sector_edges
+from robomill.cutting.tool import DISH, Cutter
 
-#: Pieces of the depth over which the lag of the helix is taken as one.
-SLICES = 48
+#: Pieces of the flank over which the lag of the helix is taken as one.
+SLICES = 36
 #: Instants of one tooth pitch.
 INSTANTS = 120
 
@@ -23,39 +25,64 @@ INSTANTS = 120
 class Course:
     """Cuts as the teeth pass through them, one a row.
 
-    c     (k,)       feed per tooth across the axis, m
-    arc   (k, 2)     first and last angle in the material, rad
-    span  (k, s, 2)  where the material begins and ends along the axis in s equal sectors of the half turn, m
+    c        (k,)       feed per tooth, m
+    feed     (k, 2)     the parts of the unit feed across and along the axis
+    arc      (k, 2)     first and last angle in the material in the half turn ahead, rad
+    sectors  (k, s, 4)  m, what is engaged in each sector of the turn, as in ``EngagedPart``
     """
 
     c: FloatArray
+    feed: FloatArray
     arc: FloatArray
-    span: FloatArray
+    sectors: FloatArray
 
     @classmethod
     def of(cls, conditions: CutConditions, cutter: Cutter, index: IntArray) -> Self:
         """Some steps (k,) of ``conditions``, made by one cutter."""
-        c = (conditions.f_z(cutter.flutes) * conditions.across)[index]
+        c = conditions.f_z(cutter.flutes)[index]
+        feed = np.stack([conditions.across[index], conditions.along[index]], axis=1)
         arc = np.clip(np.stack([conditions.phi_st[index], conditions.phi_ex[index]], axis=1), 0.0, np.pi)
-        if conditions.part is None:
-            span = np.stack([0.0 * c, conditions.a_p[index]], axis=-1)[:, None]
-        else:
-            span = conditions.part.spans[index].astype(float)
-            span = np.where(span[..., :1] <= span[..., 1:], span, 0.0)
-        return cls(c, arc, span)
+        if conditions.part is not None:
+            return cls(c, feed, arc, _within(conditions.part.sectors[index].astype(float), arc))
+        a_p, face = conditions.a_p[index], np.where(feed[:, 1] < -DISH, cutter.flat_radius, 0.0)
+        sector = np.stack([a_p, 0.0 * a_p, a_p, face], axis=1)
+        return cls(c, feed, arc, np.stack([sector, sector], axis=1))
 
     def at(self, index: IntArray) -> Course:
         """Some of the cuts."""
-        return Course(self.c[index], self.arc[index], self.span[index])
+        return Course(self.c[index], self.feed[index], self.arc[index], self.sectors[index])
 
     def alike(self, mean: FloatArray) -> tuple[IntArray, IntArray]:
         """One cut of each kind, and the kind (k,) of every cut; alike are those within a thousandth of the largest, in
         their mean force (k, 3) too."""
-        numbers = np.concatenate([self.c[:, None], self.arc, self.span.reshape(len(self.c), -1), mean], axis=1)
+        each = (self.c[:, None], self.feed, self.arc, self.sectors.reshape(len(self.c), -1), mean)
+        numbers = np.concatenate(each, axis=1)
         scale = np.max(np.abs(numbers), axis=0) * 1e-3
         rounded = np.round(numbers / np.where(scale > 0.0, scale, 1.0))
         _, first, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
         return first, inverse.ravel()
+
+    def slices(self, cutter: Cutter) -> Iterator[tuple[FloatArray, FloatArray, float, FloatArray]]:
+        """The cutter from its tip up, in slices of the nose and of the flank: where each begins and ends along the axis
+        (k, 1) m, the angle of its normal from the axis, and its length along the profile (k, 1) m."""
+        one = np.ones((len(self.c), 1))
+        top, end = self.sectors[..., 2].max(axis=1)[:, None], cutter.nose_height
+        for low, high, kappa, ds in zip(*nose_pieces(cutter, min(end, float(top.max()))), strict=True):
+            yield low * one, high * one, float(kappa), ds * one
+        step = np.maximum(top - end, 0.0) / SLICES
+        for i in range(SLICES if step.any() else 0):
+            yield end + i * step, end + (i + 1) * step, 0.5 * np.pi, step
+
+
+def _within(sectors: FloatArray, arc: FloatArray) -> FloatArray:
+    """Sectors (k, s, 4) whose means are those of their part within the arc (k, 2), if they lie ahead."""
+    edges = sector_edges(sectors.shape[1])
+    first, last = (np.clip(end, edges[:-1], edges[1:]) for end in (arc[:, :1], arc[:, 1:]))
+    share = np.where(edges[1:] > np.pi + FACING, 1.0, (last - first) / np.diff(edges))
+    result = sectors.copy()
+    for n in (0, 3):
+        np.divide(sectors[..., n], share, out=result[..., n], where=share > 0.0)
+    return result
 
 
 def force_over_pitch(
@@ -63,36 +90,48 @@ def force_over_pitch(
 ) -> FloatArray:
     """Force ON the tool at ``instants`` evenly spread over one tooth pitch, (k, instants, 3) N, with helix lag.
 
-    The depth is cut into ``SLICES``; the edge lags by z tan(helix angle) / R (constant lead). The pattern repeats
-    every pitch (teeth alike, no run-out), so its mean is the mean force and its extremes are those of a revolution.
+    The edge lags by z tan(helix angle) / R (constant lead); the teeth of the end face do not. The pattern repeats every
+    pitch (teeth alike, no run-out), so its mean is the mean force and its extremes are those of a revolution.
     """
-    c, arc, span = course.c[:, None], course.arc, course.span
-    mirror = cutter.hand == "left"
-    if mirror:  # a left-hand cutter is a right-hand one seen in a mirror along the feed
-        arc, span = np.pi - arc[:, ::-1], span[:, ::-1]
-    sectors, top = span.shape[1], span[..., 1].max(axis=1)[:, None]
-    pitch = 2.0 * np.pi / cutter.flutes
-    turn = (np.arange(instants) + 0.5) * (pitch / instants)
-    lag_per_depth = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
-    force = np.zeros((len(c), instants, 3))
-    for i in range(SLICES):
-        low, high = top * (i / SLICES), top * ((i + 1) / SLICES)
-        middle = 0.5 * (low + high)
-        loads = []
-        for term in terms:
-            above, below = (depth_sums(term, cutter, depth, cutter.pull) for depth in (high, low))
-            loads.append([c**term.exponent * (x - y) for x, y in zip(above, below, strict=True)])
-        for tooth in range(cutter.flutes):
-            phi = (turn + tooth * pitch - middle * lag_per_depth) % (2.0 * np.pi)
-            sector = np.minimum(phi * (sectors / np.pi), sectors - 1).astype(np.int64)
-            first, last = (np.take_along_axis(span[..., end], sector, axis=1) for end in (0, 1))
-            inside = (phi >= arc[:, :1]) & (phi <= arc[:, 1:]) & (middle >= first) & (middle <= last)
-            sine, cosine = np.sin(np.minimum(phi, np.pi)), np.cos(phi)
-            for term, (tangential, radial, axial) in zip(terms, loads, strict=True):
-                power = np.where(inside, np.maximum(sine, 0.0) ** term.exponent, 0.0)
-                force[..., 0] -= power * (tangential * cosine + radial * sine)
-                force[..., 1] += power * (tangential * sine - radial * cosine)
-                force[..., 2] += power * axial
-    if mirror:
-        force[..., 1] *= -1.0
+    pitch, sense = 2.0 * np.pi / cutter.flutes, 1.0 if cutter.hand == "right" else -1.0
+    turn = ((np.arange(instants) + 0.5) / instants + np.arange(cutter.flutes)[:, None]).ravel() * pitch
+    lag = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
+    pushed = [(term.exponent, *pushes(term, cutter)) for term in terms]
+    force = np.zeros((len(course.c), instants, 3))
+    sectors = course.sectors
+    thick = sectors[..., 2] - sectors[..., 1]
+    share = np.divide(sectors[..., 0], thick, out=np.zeros(thick.shape), where=thick > 0.0)
+    edges = sector_edges(sectors.shape[1])
+
+    def add(phi: FloatArray, sector: IntArray, kappa: float, engaged: FloatArray) -> None:
+        """A slice whose normal leans kappa, so much of which (k, teeth instants) m is engaged as teeth stand at phi."""
+        inside = (sector < sectors.shape[1]) & (phi > np.pi)
+        inside |= (phi >= course.arc[:, :1]) & (phi <= course.arc[:, 1:])
+        sine, cosine, s, t = np.sin(phi), np.cos(phi), math.sin(kappa), math.cos(kappa)
+        facing = course.feed[:, :1] * sine * s - course.feed[:, 1:] * t
+        engaged = np.where(inside & (facing > FACING), engaged, 0.0)
+        h = course.c[:, None] * np.maximum(facing, FACING)
+        for exponent, Kt, Kr, Ka in pushed:
+            load = (engaged * h**exponent).reshape(len(phi), cutter.flutes, instants)
+            push = (-Kt * cosine - (Kr * s + Ka * t) * sine, Kt * sine - (Kr * s + Ka * t) * cosine)
+            for n in range(2):
+                force[..., n] += (load * push[n].reshape(load.shape)).sum(axis=1)
+            force[..., 2] += (Kr * t - Ka * s) * load.sum(axis=1)
+
+    def seen(height: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Angles of the teeth at a height (k, 1) m, and the sectors they are in."""
+        phi = ((0.0 if sense > 0.0 else np.pi) + sense * (turn - height * lag)) % (2.0 * np.pi)
+        return phi, np.searchsorted(edges, phi, side="right") - 1
+
+    for low, high, kappa, ds in course.slices(cutter):
+        phi, sector = seen(0.5 * (low + high))
+        here = np.minimum(sector, sectors.shape[1] - 1)
+        start, stop, dense = (np.take_along_axis(q, here, axis=1) for q in (sectors[..., 1], sectors[..., 2], share))
+        met = np.clip(np.minimum(stop, high) - np.maximum(start, low), 0.0, None)
+        covered = np.divide(met, high - low, out=np.zeros(met.shape), where=high > low)
+        add(phi, sector, kappa, dense * covered * ds)
+    if sectors[..., 3].any():
+        phi, sector = seen(np.zeros((len(course.c), 1)))
+        here = np.minimum(sector, sectors.shape[1] - 1)
+        add(phi, sector, 0.0, np.take_along_axis(sectors[..., 3], here, axis=1))
     return force

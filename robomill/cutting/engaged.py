@@ -17,7 +17,9 @@ Budak 2007 (5-axis ball-end milling).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,6 +30,7 @@ from robomill.cutting.tool import DISH, Cutter
 from robomill.errors import CuttingError
 
 MOMENTS = 8
+PANELS = 12  # of a half turn that an engaged part is summed over
 ANGLES, PIECES = 720, 64  # of the turn and of a rounded nose, for a full slot
 FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
 
@@ -38,21 +41,22 @@ class EngagedPart:
 
     exponents  (n_e,)       of the chip thickness, as the force law needs them
     moments    (m, n_e, 8)  m (rad m): the sums above; zero in air
-    spans      (m, s, 2)    m, float32: where the part begins and ends along the axis, in s equal sectors of the half
-                            turn from the left of the feed to its right; inf, -inf where a sector is in air
+    sectors    (m, s, 4)    m, float16, means over each of the ``sector_edges``: the height engaged along the axis
+                            (gaps count as zero), where it begins and where it ends, and how much of the end face is; 0
+                            in air
     """
 
     exponents: tuple[float, ...]
     moments: FloatArray
-    spans: np.ndarray
+    sectors: np.ndarray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "moments", frozen(self.moments))
-        object.__setattr__(self, "spans", frozen(self.spans, np.float32))
+        object.__setattr__(self, "sectors", frozen(self.sectors, np.float16))
 
     def at(self, index: IntArray) -> EngagedPart:
         """The part at some of the steps (k,)."""
-        return EngagedPart(self.exponents, self.moments[index], self.spans[index])
+        return EngagedPart(self.exponents, self.moments[index], self.sectors[index])
 
     def __len__(self) -> int:
         return len(self.moments)
@@ -74,16 +78,31 @@ class EngagedPart:
     def force(self, terms: tuple[EdgeTerm, ...], cutter: Cutter, c: ArrayLike) -> FloatArray:
         """Mean force ON the tool over a revolution, (m, 3) N: feed, feed-normal, axial; ``c`` (m,) m feed per tooth."""
         c = np.asarray(c, dtype=np.float64)
-        turning = 1.0 if cutter.hand == "right" else -1.0
         force = np.zeros((len(self), 3))
         for term in terms:
-            load = (c**term.exponent)[:, None]
-            M = self.of(term.exponent) * load
-            Kt, Kr, Ka = turning * term.Kt, term.Kr, cutter.pull * term.Ka
+            M = self.of(term.exponent) * (c**term.exponent)[:, None]
+            Kt, Kr, Ka = pushes(term, cutter)
             force[:, 0] -= Kt * M[:, 0] + Kr * M[:, 2] + Ka * M[:, 5]
             force[:, 1] += Kt * M[:, 1] - Kr * M[:, 3] - Ka * M[:, 6]
             force[:, 2] += Kr * M[:, 4] - Ka * M[:, 7]
         return np.asarray(force * (cutter.flutes / (2.0 * np.pi)))
+
+
+def pushes(term: EdgeTerm, cutter: Cutter) -> tuple[float, float, float]:
+    """A term's coefficients with the signs of a cutter's hand (tangential) and helix (along the edge)."""
+    return (term.Kt if cutter.hand == "right" else -term.Kt), term.Kr, cutter.pull * term.Ka
+
+
+def sector_edges(count: int) -> FloatArray:
+    """Angles (count + 1,) rad from the left of the feed, clockwise, that part so many sectors: one or two half turns,
+    or the quarters of their panels, which are finer towards the sides of the tool."""
+    halves = 2 if count in (2, 8 * PANELS) else 1
+    if count <= 2:
+        return np.asarray(np.pi * np.arange(count + 1), dtype=np.float64)
+    panels = 0.5 - 0.5 * np.cos(np.pi * np.arange(PANELS + 1) / PANELS)
+    within = (panels[:-1, None] + np.diff(panels)[:, None] * np.arange(4) / 4).ravel()
+    one = np.append(within, 1.0)
+    return np.asarray(np.pi * np.concatenate([[0.0], *(half + one[1:] for half in range(halves))]), dtype=np.float64)
 
 
 def full_slot(cutter: Cutter, exponents: tuple[float, ...], a_p: FloatArray, along: FloatArray) -> EngagedPart:
@@ -91,14 +110,17 @@ def full_slot(cutter: Cutter, exponents: tuple[float, ...], a_p: FloatArray, alo
     feed along the axis, negative on the way down."""
     pairs, inverse = np.unique(np.stack([a_p, along], axis=1), axis=0, return_inverse=True)
     moments = np.array([[_slot_moments(cutter, e, *pair) for e in exponents] for pair in pairs])
-    spans = np.stack([0.0 * a_p, a_p], axis=-1)[:, None, :]
-    return EngagedPart(exponents, moments.reshape(len(pairs), len(exponents), MOMENTS)[inverse.ravel()], spans)
+    none = np.zeros((len(a_p), 0, 4))
+    return EngagedPart(exponents, moments.reshape(len(pairs), len(exponents), MOMENTS)[inverse.ravel()], none)
 
 
 def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatArray:
     phi = (np.arange(ANGLES) + 0.5) * (2.0 * np.pi / ANGLES)
     sine, cosine = np.sin(phi)[:, None], np.cos(phi)[:, None]
-    kappa, ds = _profile(cutter, a_p, along)
+    face = cutter.flat_radius if along < -DISH else 0.0
+    nose = nose_pieces(cutter, min(a_p, cutter.nose_height))
+    kappa = np.concatenate([[0.0], nose.kappa, [0.5 * np.pi]])
+    ds = np.concatenate([[face], nose.ds, [max(a_p - cutter.nose_height, 0.0)]])
     facing = np.sqrt(max(1.0 - along * along, 0.0)) * sine * np.sin(kappa) - along * np.cos(kappa)
     w = np.where(facing > FACING, np.maximum(facing, FACING) ** e, 0.0) * ds * (2.0 * np.pi / ANGLES)
     up, lying = w * np.sin(kappa), w * np.cos(kappa)
@@ -106,20 +128,25 @@ def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatAr
     return np.array([each.sum() for each in sums])
 
 
-def _profile(cutter: Cutter, a_p: float, along: float) -> tuple[FloatArray, FloatArray]:
-    """Angles kappa (q,) of the profile up to a depth, and the lengths (q,) m that they stand for."""
-    nose = min(a_p, cutter.nose_height)
-    kappa, ds = [np.zeros(0)], [np.zeros(0)]
-    if along < -DISH:
-        kappa.append(np.zeros(1))
-        ds.append(np.array([cutter.flat_radius]))
-    if nose > 0.0 and cutter.conical:
-        kappa.append(np.array([0.5 * np.pi - cutter.half_angle]))
-        ds.append(np.hypot([nose], cutter.radius_at(nose) - cutter.flat_radius))
-    elif nose > 0.0:
-        end = np.arccos(1.0 - nose / cutter.corner_radius)
-        kappa.append((np.arange(PIECES) + 0.5) * (end / PIECES))
-        ds.append(np.full(PIECES, cutter.corner_radius * end / PIECES))
-    kappa.append(np.array([0.5 * np.pi]))
-    ds.append(np.array([a_p - nose]))
-    return np.concatenate(kappa), np.concatenate(ds)
+class NosePieces(NamedTuple):
+    """Pieces of the profile between the end face and the flank: heights where each begins and ends, its angle from
+    the axis and its length, (q,) each."""
+
+    low: FloatArray
+    high: FloatArray
+    kappa: FloatArray
+    ds: FloatArray
+
+
+def nose_pieces(cutter: Cutter, top: float) -> NosePieces:
+    """The nose up to a height ``top`` (m) in equal pieces: of a cone or an arc; none of a flat mill."""
+    if top <= 0.0:
+        return NosePieces(*np.zeros((4, 0)))
+    if cutter.conical:
+        low = np.arange(PIECES) * (top / PIECES)
+        kappa = np.full(PIECES, 0.5 * np.pi - cutter.half_angle)
+        return NosePieces(low, low + top / PIECES, kappa, (top / PIECES) / np.sin(kappa))
+    rho = cutter.corner_radius
+    edges = np.linspace(0.0, math.acos(1.0 - top / rho), PIECES + 1, dtype=np.float64)
+    height = np.asarray(rho * (1.0 - np.cos(edges)), dtype=np.float64)
+    return NosePieces(height[:-1], height[1:], 0.5 * (edges[:-1] + edges[1:]), np.diff(edges) * rho)

@@ -58,7 +58,7 @@ def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions) -
 def met_conditions(path: Toolpath, told: CutConditions, found: Engagement) -> CutConditions:
     """What was told, with what each step really meets; a step of no length takes that of the step it begins."""
     arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex", "reach")}
-    sums = (at_starts(path, each) for each in (found.part.moments, found.part.spans))
+    sums = (at_starts(path, each) for each in (found.part.moments, found.part.sectors))
     return replace(told, **arc, part=EngagedPart(found.part.exponents, *sums))
 
 

@@ -61,8 +61,8 @@ def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
     path, told = bent.path, bent.told
     march = through_stock(bent.setup, path, told)
     walk = _Walk(bent, march, np.zeros((len(path), 3)))
-    rows, spans, settled = walk.every_step()
-    found = engagement(march.exponents, rows, spans)
+    rows, sectors, settled = walk.every_step()
+    found = engagement(march.exponents, rows, sectors)
     conditions = met_conditions(path, told, found)
     F = bent.force(conditions, bent.R_MF)
     open_ = np.zeros(len(path), dtype=bool)
@@ -85,19 +85,18 @@ class _Walk:
     moved: FloatArray
 
     def every_step(self) -> tuple[FloatArray, FloatArray, dict[int, Settled]]:
-        """Rows and spans of what each step meets, and how it was settled."""
+        """Rows and sectors of what each step meets, and how it was settled."""
         first = self.march.meet(int(self.march.steps[0]), *self.march.points[[0, 0]]) if len(self.march.steps) else None
         m = len(self.bent.path)
         rows = np.zeros((m, 0 if first is None else len(first[0])))
-        spans = np.empty((m, *(first[1].shape if first is not None else (0, 2))))
-        spans[...] = np.inf, -np.inf
+        sectors = np.zeros((m, *(first[1].shape if first is not None else (0, 4))))
         settled: dict[int, Settled] = {}
         for i in map(int, self.march.steps):
-            settled[i], rows[i], spans[i] = self._step(i)
-        return rows, spans, settled
+            settled[i], rows[i], sectors[i] = self._step(i)
+        return rows, sectors, settled
 
     def _step(self, i: int) -> tuple[Settled, FloatArray, FloatArray]:
-        """Solve step i and cut it: how it was settled, and what it meets, row and spans."""
+        """Solve step i and cut it: how it was settled, and what it meets, row and sectors."""
         bent, p, to_W = self.bent, self.march.points, self.bent.setup.T_MW[:3, :3]
         told = _only(bent.told, i)
 
@@ -105,8 +104,8 @@ class _Walk:
             shift = np.nan_to_num(delta) @ to_W
             return self.march.meet(i, p[i - 1] + shift, p[i] + shift)
 
-        def pushed(row: FloatArray, spans: FloatArray) -> FloatArray:
-            found = engagement(self.march.exponents, row[None], spans[None])
+        def pushed(row: FloatArray, sectors: FloatArray) -> FloatArray:
+            found = engagement(self.march.exponents, row[None], sectors[None])
             arc = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
             return bent.force(replace(told, **arc), bent.R_MF[i : i + 1])[0]
 

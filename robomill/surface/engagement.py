@@ -44,10 +44,10 @@ def engage(march: March) -> Engagement:
     return engagement(march.exponents, *march.run())
 
 
-def engagement(exponents: tuple[float, ...], rows: FloatArray, spans: FloatArray, lost: int = 0) -> Engagement:
-    """Rows and spans of what steps meet (see ``March``), by name."""
+def engagement(exponents: tuple[float, ...], rows: FloatArray, sectors: np.ndarray, lost: int = 0) -> Engagement:
+    """Rows and sectors of what steps meet (see ``March``), by name."""
     count = len(exponents)
     moments = rows[:, : MOMENTS * count].reshape(len(rows), count, MOMENTS)
     phi_st, phi_ex, a_p, a_e, reach = (frozen(column) for column in rows[:, MOMENTS * count :].T[:5])
-    part = EngagedPart(exponents, moments, np.asarray(spans))
+    part = EngagedPart(exponents, moments, sectors)
     return Engagement(phi_st, phi_ex, a_p, a_e, reach, part, lost)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from robomill.arrays import FloatArray
 from robomill.compiled import part
 from robomill.cutting.tool import Cutter
 
@@ -50,6 +51,12 @@ def cutter_shape(cutter: Cutter) -> Shape:
     if r0 >= R:
         return Shape(FLAT, R, R, 0.0, 0.0)
     return Shape(BALL if r0 <= 0.0 else BULL, R, max(r0, 0.0), R - max(r0, 0.0), 0.0)
+
+
+@part
+def shape_of(numbers: FloatArray) -> Shape:
+    """The shape whose numbers these (5,) are, first of a longer row or alone."""
+    return Shape(int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4])
 
 
 @part

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
+from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
@@ -17,6 +18,7 @@ from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed
 from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 
+AT_ONCE = 8192  # steps: what they meet is kept in half precision where it serves only the course over a revolution
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
 
@@ -110,37 +112,41 @@ class March:
     def _state(self, first: BoolArray) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run."""
-        from robomill.surface.engagement_kernels import EXTRA, NOSE_PIECES, REST, SECTORS, Room
         from robomill.surface.envelope_kernels import cutter_shape
-        from robomill.surface.material_kernels import NOBODY, Block, Columns, Runs, World
+        from robomill.surface.material_kernels import AXIS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
 
         cells = stock_grid(self.stock, self.cell)
-        top, low, mesh = stock_layers(self.stock, cells)
-        if leaning(self._axes).any() or len(mesh.triangles):
-            wide = (*top.shape[:2], top.shape[2] + SPARE_LAYERS)
-            layered = np.full(wide, -np.inf), np.full(wide, np.inf)
-            layered[0][:, :, : top.shape[2]], layered[1][:, :, : low.shape[2]] = top, low
-            if not len(mesh.triangles):
-                layered[1][:, :, 0] = float(self.stock.lower[2])
-            top, low = layered
-        by, under, beside = (np.full(each.shape, NOBODY, dtype=np.int32) for each in (top, low, top[:, :, 0]))
+        heights, mesh = stock_layers(self.stock, cells, SPARE_LAYERS if leaning(self._axes).any() else 0)
+        names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
-        columns = Columns(top, low, by, under, beside, lost, *grid, self._slack(cells, top.shape[2]))
+        columns = Columns(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
         shapes = np.array([[float(n) for n in cutter_shape(cutter)] for cutter in self.tooling.cutters])
-        tool = np.ascontiguousarray(self.tooling.of_step[self.steps][first])
-        axes = np.ascontiguousarray(self._axes[first])
-        runs = Runs(np.zeros((len(tool), 6)), axes, tool, shapes, np.zeros(1, dtype=np.int64))
+        runs = np.zeros((int(first.sum()), RUN))
+        runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
+        runs[:, AXIS:MOVE] = self._axes[first]
         world = World(columns, runs, Block(*map(float, (*self.stock.lower, *self.stock.upper))), mesh)
-        e = len(self.exponents)
-        room = Room(
+        return world, self._room()
+
+    def _room(self) -> Any:
+        from robomill.surface import engagement_kernels as kernels
+
+        places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
+        gaps = 6 * kernels.PANELS
+        rows = np.zeros((kernels.ROWS, kernels.SUMS + 3 * len(self.exponents)))
+        for half in range(2):
+            phi = half * np.pi + kernels.half_turn()
+            main = rows[half * kernels.ANGLES : (half + 1) * kernels.ANGLES]
+            main[:, : kernels.LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
+        down = len(self.steps) and (np.einsum("ni,ni->n", self._feed, self._axes) < -FACING).any()
+        return kernels.Room(
             np.array(self.exponents, dtype=float),
-            np.zeros((3 * NOSE_PIECES + 1, 5)),
-            np.zeros((4, 3 * e + EXTRA)),
-            np.zeros((3, 3 * e + EXTRA)),
-            np.zeros(8 * e + REST),
-            np.zeros(2 * SECTORS),
+            np.zeros((3, 4)),
+            np.zeros((places, 4)),
+            rows,
+            np.zeros((gaps, 7)),
+            np.zeros((gaps * (2 * kernels.HALVINGS + 2), 4)),
+            np.zeros((4 * PANELS * (2 if down else 1), 5)),
         )
-        return world, room
 
     @cached_property
     def _number(self) -> IntArray:
@@ -149,38 +155,42 @@ class March:
         number[self.steps] = np.arange(len(self.steps))
         return number
 
-    def _slack(self, cells: Cells, layers: int) -> float:
+    def _slack(self, cells: Cells, layered: bool) -> float:
         """How far off the heights of the cells around a place the height there may lie, m: a valley of the sharpest
         nose between them; half a cell where cutters lean or the stock has voids."""
         size = max(cells.dx, cells.dy)
-        if layers > 1:
+        if layered:
             return 0.5 * size
         round_ = [size**2 / cutter.corner_radius for cutter in self.tooling.cutters if cutter.corner_radius]
         sharp = [0.5 * size / np.tan(cutter.half_angle) for cutter in self.tooling.cutters if cutter.conical]
         return float(max([0.01 * size, *round_, *sharp]))
 
-    def run(self) -> tuple[FloatArray, FloatArray, int]:
-        """Meet and cut every step: rows (m, 8 n_e + 6) and spans (m, sectors, 2) of what they meet, and how often a gap
+    def run(self) -> tuple[FloatArray, np.ndarray, int]:
+        """Meet and cut every step: rows (m, 8 n_e + 6) and sectors (m, s, 4) of what they meet, and how often a gap
         between layers of material was closed because a column had no room for another."""
+        from robomill.surface.engagement_kernels import REST
+
         state, begins = self._state(self._begins), self._begins
         n = np.arange(len(self.steps))
-        rows, spans = self._march(state, n, self._ends, (np.cumsum(begins) - 1, begins), (True, True))
-        all_rows = np.zeros((len(self.points), rows.shape[1]))
-        all_spans = np.empty((len(self.points), *spans.shape[1:]))
-        all_spans[...] = np.inf, -np.inf
-        all_rows[self.steps], all_spans[self.steps] = rows, spans
-        return all_rows, all_spans, int(state[0].columns.lost[0])
+        rows = np.zeros((len(self.points), MOMENTS * len(self.exponents) + REST))
+        sectors = np.zeros((len(self.points), len(state[1].sectors), 4), dtype=np.float16)
+        for some in np.array_split(n, len(n) // AT_ONCE + 1):
+            runs = np.cumsum(begins)[some] - 1, begins[some]
+            rows[self.steps[some]], sectors[self.steps[some]] = self._march(
+                state, some, self._ends[some], runs, (True, True)
+            )
+        return rows, sectors, int(state[0].columns.lost[0])
 
-    def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What step ``i`` meets when it runs from a (3,) to b (3,) m: its row (8 n_e + 6,) and spans; cuts nothing."""
-        rows, spans = self._one(i, np.concatenate([a, b]), (True, False))
-        return rows[0], spans[0]
+    def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, np.ndarray]:
+        """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 6,) and sectors; cuts nothing."""
+        rows, sectors = self._one(i, np.concatenate([a, b]), (True, False))
+        return rows[0], sectors[0]
 
     def cut(self, i: int, a: FloatArray, b: FloatArray) -> None:
         """Cut step ``i`` from a (3,) to b (3,) m; every step is cut once, in the order of the path."""
         self._one(i, np.concatenate([a, b]), (False, True))
 
-    def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, FloatArray]:
+    def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, np.ndarray]:
         n = self._number[[i]]
         return self._march(self._stepwise, n, ends[None], (n, np.ones(1, dtype=bool)), do)
 
@@ -191,11 +201,13 @@ class March:
         ends: FloatArray,
         runs: tuple[IntArray, BoolArray],
         do: tuple[bool, bool],
-    ) -> tuple[FloatArray, FloatArray]:
+    ) -> tuple[FloatArray, np.ndarray]:
+        from robomill.surface.engagement_kernels import REST
         from robomill.surface.march_kernels import Steps, march
 
         world, room = state
-        found, spans = np.zeros((len(n), len(room.sum))), np.zeros((len(n), len(room.spans)))
+        found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
+        sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
         steps = Steps(np.ascontiguousarray(ends), self._feed[n], runs[0], runs[1].astype(np.int64))
-        march(world, room, steps, found, spans, do)
-        return found, spans.reshape(len(n), spans.shape[1] // 2, 2)
+        march(world, room, steps, found, sectors, do)
+        return found, sectors.reshape(len(n), len(room.sectors), 4)

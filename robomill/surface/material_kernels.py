@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, part
-from robomill.surface.envelope_kernels import Move, Shape, move_between, nearest, swept_height
-from robomill.surface.tilt_kernels import UPRIGHT, move_in_frame, tool_frame, vertical_line
+from robomill.surface.envelope_kernels import Move, move_between, nearest, profile, shape_of, swept_height
+from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
-Names2 = Annotated[NDArray[np.int32], Axes("int32", 2, written=True)]
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
 
 AIR, SOLID, UNSURE = range(3)
@@ -29,37 +28,23 @@ NOBODY = -1  # made by no run: the stock's own surface
 class Columns(NamedTuple):
     """Material over the cells of a grid, m: layers from the top down, and which run of moves made their ends.
 
-    top, low (nx, ny, layers)  upper and lower ends; -inf and inf where there is no layer
-    by, under                  the run that made either end, ``NOBODY`` for the stock itself
-    beside (nx, ny)            the run whose side reaches furthest into the cell, even short of its centre
-    lost (1,)                  how often a gap between layers was closed for want of room
-    x0, y0, dx, dy             centre of cell [0, 0] and the size of a cell
-    slack                      how far off the ends of layers around a place the end there may lie
-    One layer, as every upright cutter leaves it in a block, has no ``low`` and ``under``: it ends at the bottom.
+    heights (nx, ny, n)    upper and lower end of one layer after the other; -inf and inf where there is none. Of one
+                           layer, as upright cutters leave it in a block, only the upper: it ends at the bottom
+    names (nx, ny, 1 + n)  the run whose side reaches furthest into the cell, even short of its centre, then those that
+                           made the ends; ``NOBODY`` for the stock itself
+    lost (1,)              how often a gap between layers was closed for want of room
+    x0, y0, dx, dy         centre of cell [0, 0] and the size of a cell
+    slack                  how far off the ends of layers around a place the end there may lie
     """
 
-    top: Out3
-    low: Out3
-    by: Names3
-    under: Names3
-    beside: Names2
+    heights: Out3
+    names: Names3
     lost: OutInt1
     x0: float
     y0: float
     dx: float
     dy: float
     slack: float
-
-
-class Runs(NamedTuple):
-    """Straight runs of moves as far as they are cut: ends (r, 6) m, unit axes (r, 3), tools (r,) (rows of ``shapes``
-    (t, 5), the numbers of ``Shape``) and how many runs are known by now, (1,)."""
-
-    ends: Out2
-    axes: Out2
-    tool: OutInt1
-    shapes: Out2
-    known: OutInt1
 
 
 class Block(NamedTuple):
@@ -84,41 +69,58 @@ class Mesh(NamedTuple):
 
 
 class World(NamedTuple):
-    """The stock as it stands in the middle of a march."""
+    """The stock as it stands in the middle of a march.
+
+    runs (r, 21): straight runs of moves as far as they are cut: the five numbers of the tool's ``Shape``, ends (m),
+    unit axis, and the seven of the ``Move`` as the tool sees it, once it is cut.
+    """
 
     columns: Columns
-    runs: Runs
+    runs: Out2
     block: Block
     mesh: Mesh
 
 
-@part
-def shape_of(runs: Runs, r: int) -> Shape:
-    """The cutter of a run."""
-    numbers = runs.shapes[runs.tool[r]]
-    return Shape(int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4])
+SHAPE, ENDS, AXIS, MOVE, RUN = 0, 5, 11, 14, 21  # where in a run its parts begin
 
 
 @part
-def seen_by(runs: Runs, r: int, x: float, y: float, z: float) -> tuple[Move, float, float, float]:
-    """A run and a point of {W} as its tool sees them: the move, and the point's (x, y, height)."""
-    k, ends = runs.axes[r], runs.ends[r]
-    if math.hypot(k[0], k[1]) <= UPRIGHT:
-        return move_between(ends[0], ends[1], ends[2], ends[3], ends[4], ends[5]), x, y, z
-    frame = tool_frame(k[0], k[1], k[2])
-    line = vertical_line(frame, x, y)
-    return move_in_frame(frame, ends), line.X, line.Y + z * frame.sine, line.h + z * frame.cosine
+def is_upright(run: FloatArray) -> bool:
+    """Whether the tool of a run stands upright."""
+    return bool(run[AXIS] == 0.0 and run[AXIS + 1] == 0.0)
 
 
 @part
-def height_of_run(runs: Runs, r: int, x: float, y: float, z: float) -> float:
+def see_move(run: FloatArray) -> Move:
+    """The move of a run as its tool sees it, noted in the run."""
+    ends = run[ENDS:AXIS]
+    if is_upright(run):
+        move = move_between(ends[0], ends[1], ends[2], ends[3], ends[4], ends[5])
+    else:
+        move = move_in_frame(tool_frame(run[AXIS], run[AXIS + 1], run[AXIS + 2]), ends)
+    run[MOVE], run[MOVE + 1], run[MOVE + 2], run[MOVE + 3] = move.ax, move.ay, move.az, move.ux
+    run[MOVE + 4], run[MOVE + 5], run[MOVE + 6] = move.uy, move.length, move.m
+    return move
+
+
+@part
+def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> float:
     """Height of a point of {W} above what a run leaves there, along its tool's axis, m; -inf beside its track."""
-    shape = shape_of(runs, r)
-    move, px, py, h = seen_by(runs, r, x, y, z)
-    ex, ey = nearest(move, px, py)
-    if h <= move.az or ex * ex + ey * ey >= shape.R * (shape.R - 2.0 * SKIN):
+    run = runs[r]
+    R = run[SHAPE + 1]
+    move = Move(run[MOVE], run[MOVE + 1], run[MOVE + 2], run[MOVE + 3], run[MOVE + 4], run[MOVE + 5], run[MOVE + 6])
+    if not is_upright(run):
+        frame = tool_frame(run[AXIS], run[AXIS + 1], run[AXIS + 2])
+        line = vertical_line(frame, x, y)
+        x, y, z = line.X, line.Y + z * frame.sine, line.h + z * frame.cosine
+    ex, ey = nearest(move, x, y)
+    distance = ex * ex + ey * ey
+    if z <= move.az or distance >= R * (R - 2.0 * SKIN):
         return -math.inf
-    return h - swept_height(shape, move, px, py)
+    shape = shape_of(run)
+    if move.m == 0.0:
+        return z - move.az - profile(shape, math.sqrt(distance))
+    return z - swept_height(shape, move, x, y)
 
 
 @part
@@ -126,76 +128,55 @@ def cell_of(columns: Columns, x: float, y: float) -> tuple[int, int]:
     """The cell that holds a point in plan; beyond the grid the nearest one."""
     i = math.floor((x - columns.x0) / columns.dx + 0.5)
     j = math.floor((y - columns.y0) / columns.dy + 0.5)
-    return max(0, min(i, columns.top.shape[0] - 1)), max(0, min(j, columns.top.shape[1] - 1))
+    return max(0, min(i, columns.heights.shape[0] - 1)), max(0, min(j, columns.heights.shape[1] - 1))
 
 
 @part
 def cells_around(columns: Columns, x: float, y: float) -> tuple[int, int, int, int]:
     """The four cells whose centres stand around a point in plan, as rows i, i_next and columns j, j_next."""
     i, j = math.floor((x - columns.x0) / columns.dx), math.floor((y - columns.y0) / columns.dy)
-    rows, width = columns.top.shape[0] - 1, columns.top.shape[1] - 1
+    rows, width = columns.heights.shape[0] - 1, columns.heights.shape[1] - 1
     return max(0, min(i, rows)), max(0, min(i + 1, rows)), max(0, min(j, width)), max(0, min(j + 1, width))
 
 
 @part
-def in_column(columns: Columns, i: int, j: int, z: float, slack: float) -> int:
-    """Whether a height lies in material of a column, in air, or within ``slack`` of an end of a layer."""
-    for layer in range(columns.top.shape[2]):
-        if z > columns.top[i, j, layer] + slack:
-            return AIR
-        if z > columns.top[i, j, layer] - slack:
+def in_column(columns: Columns, i: int, j: int, z: float) -> int:
+    """Whether a height lies in material of a column, in air, or within the slack of an end of a layer."""
+    slack, said = columns.slack, AIR
+    for n in range(columns.heights.shape[2]):
+        end = columns.heights[i, j, n]
+        if z > end + slack:
+            return said
+        if z > end - slack:
             return UNSURE
-        if z > columns.low[i, j, layer] + slack:
-            return SOLID
-        if z > columns.low[i, j, layer] - slack:
-            return UNSURE
-    return AIR
+        said = AIR if said == SOLID else SOLID
+    return said
 
 
 @part
 def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> int:
     """What the cells around a point say of a height: ``SOLID`` or ``AIR`` where all agree, else ``UNSURE``."""
     i, a, j, b = cells
-    slack = columns.slack
-    if columns.top.shape[2] == 1:
-        p, q, r, s = columns.top[i, j, 0], columns.top[i, b, 0], columns.top[a, j, 0], columns.top[a, b, 0]
-        if z < min(min(p, q), min(r, s)) - slack:
-            return SOLID
-        return AIR if z > max(max(p, q), max(r, s)) + slack else UNSURE
-    said = in_column(columns, i, j, z, slack)
+    said = in_column(columns, i, j, z)
     for n in range(1, 4):
-        if said == UNSURE or in_column(columns, a if n > 1 else i, b if n % 2 else j, z, slack) != said:
+        if said == UNSURE or in_column(columns, a if n > 1 else i, b if n % 2 else j, z) != said:
             return UNSURE
     return said
 
 
 @part
-def named(columns: Columns, i: int, j: int, n: int) -> int:
-    """The n-th run that a cell names: it beside, then those of the ends of its layers."""
-    if n == 0:
-        return int(columns.beside[i, j])
-    layer = (n - 1) // 2
-    if n % 2 == 1:
-        return int(columns.by[i, j, layer])
-    return int(columns.under[i, j, layer])
-
-
-@part
-def above_runs(
-    columns: Columns, runs: Runs, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
-) -> float:
+def above_runs(world: World, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int) -> float:
     """Height of a point (x, y, z) above the lowest of what the runs named by the cells around it leave there, m; > 0
     inside a swept body, -inf if none reaches the point in plan. ``but`` one run is not asked."""
-    names, height = 2 if columns.top.shape[2] == 1 else 1 + 2 * columns.top.shape[2], -math.inf
-    last = before = NOBODY
+    names, height, last, before = world.columns.names, -math.inf, NOBODY, NOBODY
     for cell in range(4):
         i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
-        for n in range(names):
-            name = named(columns, i, j, n)
+        for n in range(names.shape[2]):
+            name = names[i, j, n]
             if name in (NOBODY, last, before, but):
                 continue
             before, last = last, name
-            height = max(height, height_of_run(runs, name, point[0], point[1], point[2]))
+            height = max(height, height_of_run(world.runs, name, point[0], point[1], point[2]))
     return height
 
 
@@ -247,7 +228,7 @@ def is_solid(world: World, point: tuple[float, float, float], run: int) -> bool:
     said = looked_up(columns, cells, z)
     if said != UNSURE:
         return said == SOLID
-    return in_stock(block, world.mesh, point) and above_runs(columns, world.runs, cells, point, run) <= SKIN
+    return in_stock(block, world.mesh, point) and above_runs(world, cells, point, run) <= SKIN
 
 
 @part
@@ -258,8 +239,9 @@ def top_over(world: World, x: float, y: float) -> float:
         return -math.inf
     cells = cells_around(columns, x, y)
     i, a, j, b = cells
-    p, q, r, s = columns.top[i, j, 0], columns.top[i, b, 0], columns.top[a, j, 0], columns.top[a, b, 0]
+    tops = columns.heights
+    p, q, r, s = tops[i, j, 0], tops[i, b, 0], tops[a, j, 0], tops[a, b, 0]
     high = max(max(p, q), max(r, s))
     if high - min(min(p, q), min(r, s)) <= SKIN:
         return high
-    return block.z_high - max(0.0, above_runs(columns, world.runs, cells, (x, y, block.z_high), NOBODY))
+    return block.z_high - max(0.0, above_runs(world, cells, (x, y, block.z_high), NOBODY))

@@ -20,6 +20,7 @@ from robomill.surface.envelope_kernels import (
     move_between,
     nearest,
     radius_at,
+    shape_of,
     swept_height,
 )
 
@@ -51,13 +52,6 @@ class Seen(NamedTuple):
     du: float
     dv: float
     dz: float
-
-
-@part
-def shape_of(tracks: Tracks, n: int) -> Shape:
-    """The cutter of a move."""
-    row = tracks.shapes[tracks.cutter[n]]
-    return Shape(int(row[0]), row[1], row[2], row[3], row[4])
 
 
 @part
@@ -132,7 +126,7 @@ def wall_at(tracks: Tracks, place: In1, height: float, start: float) -> float:
                 rise = height - (move.z + 0.5 * move.dz)
                 if rise <= 0.0:
                     continue
-                rho = radius_at(shape_of(tracks, n), rise)
+                rho = radius_at(shape_of(tracks.shapes[tracks.cutter[n]]), rise)
                 end = furthest(move, rho, 1.0)
                 if end > out and furthest(move, rho, -1.0) <= out + TOUCH:
                     out, grown, found = end, True, True
@@ -160,7 +154,7 @@ def floor_at(tracks: Tracks, place: In1, offset: float) -> tuple[float, float]:
     for i in range(i0, i1):
         row = i * tracks.squares[1]
         for n in range(tracks.first[row + j0], tracks.first[row + j1]):
-            seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks, n)
+            seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks.shapes[tracks.cutter[n]])
             move = move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
             ex, ey = nearest(move, offset, 0.0)
             if math.hypot(ex, ey) > shape.R:

@@ -60,30 +60,36 @@ def crossings(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[IntA
     return np.concatenate(cells), np.concatenate(heights)
 
 
-def stock_layers(stock: Stock, cells: Cells) -> tuple[FloatArray, FloatArray, Mesh]:
-    """The material of a stock over cells, top down: upper ends (nx, ny, layers) m, lower ends likewise, and its mesh.
+def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray, Mesh]:
+    """The material of a stock over cells and its mesh: heights (nx, ny, n) m where it begins and ends, top down.
 
-    A block is one layer down to its bottom, whose lower ends need no room ((1, 1, 1)); -inf and inf where a mesh has
-    no more layers. Crossings of a mesh that do not pair (an open mesh) reach down to the bottom.
+    A block is one layer down to its bottom, and needs no lower end if no room for others is wanted (``spare`` layers);
+    -inf and inf where there are no more layers. Crossings of a mesh that do not pair (an open mesh) reach down to the
+    bottom.
     """
     from robomill.surface.material_kernels import Mesh
 
+    shape, bottom = (cells.nx, cells.ny), float(stock.lower[2])
     if stock.triangles is None:
-        top = np.full((cells.nx, cells.ny, 1), float(stock.upper[2]))
+        heights = _no_layers((*shape, 2 * spare + 2 if spare else 1))
+        heights[:, :, :2] = [float(stock.upper[2]), bottom][: heights.shape[2]]
         nothing = np.zeros(0, dtype=np.int64)
-        return top, np.full((1, 1, 1), np.inf), Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
+        return heights, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
     cell, z = crossings(stock.triangles, cells.x, cells.y)
     order = np.lexsort((-z, cell))
     cell, z = cell[order], z[order]
     number = np.arange(len(cell)) - np.searchsorted(cell, cell)
-    layers = max(1, (int(number.max(initial=0)) + 2) // 2)
-    top, low = np.full((cells.nx * cells.ny, layers), -np.inf), np.full((cells.nx * cells.ny, layers), np.inf)
-    upper = number % 2 == 0
-    top[cell[upper], number[upper] // 2] = z[upper]
-    low[cell[upper], number[upper] // 2] = float(stock.lower[2])
-    low[cell[~upper], number[~upper] // 2] = z[~upper]
-    shape = cells.nx, cells.ny, layers
-    return top.reshape(shape), low.reshape(shape), binned(stock)
+    layers = max(1, (int(number.max(initial=0)) + 2) // 2) + spare
+    heights = _no_layers((cells.nx * cells.ny, 2 * layers))
+    heights[cell[number % 2 == 0], number[number % 2 == 0] + 1] = bottom
+    heights[cell, number] = z
+    return heights.reshape(*shape, -1), binned(stock)
+
+
+def _no_layers(shape: tuple[int, ...]) -> FloatArray:
+    heights = np.full(shape, -np.inf)
+    heights[..., 1::2] = np.inf
+    return heights
 
 
 def binned(stock: Stock) -> Mesh:

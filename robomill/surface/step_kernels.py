@@ -7,16 +7,17 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import part
+from robomill.cutting.engaged import FACING
 from robomill.surface.envelope_kernels import CHAMFER, FLAT, Shape
 
-FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
 END, NOSE, FLANK = range(3)  # the stretches of the profile
+GAUSS = 0.5 - math.sqrt(3.0) / 6.0  # first node of Gauss' rule of two points on 0..1
+NOSE_PIECE = 0.13  # rad of a round nose between such nodes
 
 
 class Step(NamedTuple):
     """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
-    the parts of the unit feed across and along the axis, and the run it
-    belongs to."""
+    the parts of the unit feed across and along the axis, and the run it belongs to."""
 
     x: float
     y: float
@@ -97,3 +98,45 @@ def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float
     if shape.kind == FLAT or reach <= 0.0:
         return 0.0, 0.0
     return 0.0, shape.rc * (math.acos(1.0 - reach / shape.rc) if reach < shape.rc else 0.5 * math.pi)
+
+
+@part
+def power(facing: float, exponent: float) -> float:
+    """Chip thickness of a place that faces the feed by so much, as a force law's term has it, for a unit of feed."""
+    if exponent == 1.0:
+        return facing
+    return 1.0 if exponent == 0.0 else max(facing, 0.0) ** exponent
+
+
+@part
+def edge_sums(
+    shape: Shape, stretch: int, ends: tuple[float, float], faces: tuple[float, float], exponent: float
+) -> tuple[float, float, float]:
+    """Integrals of facing^exponent times 1, sin(kappa) and cos(kappa) over a stretch of the profile between two places.
+
+    facing = a sin(kappa) - b cos(kappa) with ``faces`` (a, b). Straight stretches and the exponents 0 and 1 in closed
+    form; other exponents over a round nose by Gauss' rule of two points.
+    """
+    start, end = ends
+    a, b = faces
+    _, _, s, c = on_profile(shape, stretch, start)
+    if stretch != NOSE or shape.kind == CHAMFER:
+        load = (end - start) * power(a * s - b * c, exponent)
+        return load, load * s, load * c
+    _, _, s_end, c_end = on_profile(shape, NOSE, end)
+    if exponent == 0.0:
+        return end - start, shape.rc * (c - c_end), shape.rc * (s_end - s)
+    if exponent == 1.0:
+        turned, twice = end - start, shape.rc * (s_end * c_end - s * c)
+        upright, lying = 0.5 * (turned - twice), 0.5 * (turned + twice)
+        mixed = 0.5 * shape.rc * (s_end * s_end - s * s)
+        plain = shape.rc * (a * (c - c_end) - b * (s_end - s))
+        return plain, a * upright - b * mixed, a * mixed - b * lying
+    pieces = int((end - start) / (NOSE_PIECE * shape.rc)) + 1
+    plain = up = lying = 0.0
+    for n in range(2 * pieces):
+        within = n // 2 + (GAUSS if n % 2 == 0 else 1.0 - GAUSS)
+        _, _, s, c = on_profile(shape, NOSE, start + within / pieces * (end - start))
+        load = 0.5 * (end - start) / pieces * power(a * s - b * c, exponent)
+        plain, up, lying = plain + load, up + load * s, lying + load * c
+    return plain, up, lying

@@ -175,16 +175,19 @@ class Cut:
     def over_pitch(
         self, cutter: Cutter, terms: Iterable[EdgeTerm], tip: Floats, feed: Floats, k: Floats = UPRIGHT
     ) -> Floats:
-        """Force ON a right-hand tool in {W}, (60, 3) N, as it turns by one pitch: the edge lags with height."""
+        """Force ON the tool in {W}, (60, 3) N, as it turns by one pitch: the edge lags with height."""
         instants, pitch = 60, 2.0 * np.pi / cutter.flutes
-        lead = math.tan(cutter.helix_angle) / (0.5 * cutter.diameter) * (1.0 if cutter.helix == cutter.hand else -1.0)
+        hand, pull = (1.0 if cutter.hand == "right" else -1.0), (1.0 if cutter.helix == cutter.hand else -1.0)
+        lead = math.tan(cutter.helix_angle) / (0.5 * cutter.diameter) * pull
         force = np.zeros((instants, 3))
         for bite in self.engaged(cutter, tip, feed, k):
             load = np.zeros_like(bite.e_r)
             for term in terms:
-                push = term.Kt * np.cross(k, bite.e_r) - term.Kr * bite.normal + term.Ka * bite.towards_tip
+                push = (
+                    hand * term.Kt * np.cross(k, bite.e_r) - term.Kr * bite.normal + pull * term.Ka * bite.towards_tip
+                )
                 load += bite.h[:, None] ** term.exponent * push
-            when = ((bite.turn + bite.z * lead) % pitch / pitch * instants).astype(int) % instants
+            when = ((hand * bite.turn + bite.z * lead) % pitch / pitch * instants).astype(int) % instants
             for n in range(3):
                 force[:, n] += np.bincount(when, load[:, n] * bite.share, instants) * instants / pitch
         return force

@@ -28,7 +28,7 @@ CUTTERS = [
 
 def force_over_pitch(terms, cutter, c, a_p, arc, instants=120):
     """The course of one arc over the whole depth, (instants, 3) N."""
-    course = Course(np.array([c]), np.array([arc]), np.array([[[0.0, a_p]]]))
+    course = Course(np.array([c]), np.array([[1.0, 0.0]]), np.array([arc]), np.array([[[a_p, 0.0, a_p, 0.0]]]))
     return over_pitch(terms, cutter, course, instants)[0]
 
 
