@@ -143,9 +143,9 @@ def nose_pieces(cutter: Cutter, top: float) -> NosePieces:
     if top <= 0.0:
         return NosePieces(*np.zeros((4, 0)))
     if cutter.conical:
-        low = np.arange(PIECES) * (top / PIECES)
+        edges = np.linspace(0.0, top, PIECES + 1, dtype=np.float64)
         kappa = np.full(PIECES, 0.5 * np.pi - cutter.half_angle)
-        return NosePieces(low, low + top / PIECES, kappa, (top / PIECES) / np.sin(kappa))
+        return NosePieces(edges[:-1], edges[1:], kappa, np.diff(edges) / np.sin(kappa))
     rho = cutter.corner_radius
     edges = np.linspace(0.0, math.acos(1.0 - top / rho), PIECES + 1, dtype=np.float64)
     height = np.asarray(rho * (1.0 - np.cos(edges)), dtype=np.float64)
