@@ -278,3 +278,14 @@ def test_a_drilled_hole_has_a_depth_and_a_place(cycle):
     assert bent.verdict.floor.value == pytest.approx(0.35e-3)
     assert abs(bent.verdict.wall.value) == pytest.approx(0.1e-3)
     assert bent.verdict.level == "out"
+
+
+def test_a_block_drawn_as_a_mesh_is_gauged_as_the_block():
+    trimesh = pytest.importorskip("trimesh")
+    solid = trimesh.creation.box(bounds=[BLOCK.lower, BLOCK.upper])
+    drawn = Stock(BLOCK.lower, BLOCK.upper, np.asarray(solid.triangles))
+    lines = ("G0 X-40 Y17 Z5", "G0 Z-3", "G1 X40 F1800", "G0 Z5")  # beside the edge, and out at both ends
+    for name in ("walls", "floors", "ends"):
+        one, two = (getattr(pushed(run(*lines, stock=stock), left=0.1e-3).gauge, name) for stock in (BLOCK, drawn))
+        np.testing.assert_allclose(two.error, one.error, atol=1e-9)
+        np.testing.assert_allclose(two.height, one.height, atol=1e-9)

@@ -7,7 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.samples import STILL, at_starts, moving
+from robomill.simulation.samples import STILL, at_starts, clock, moving
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 
@@ -85,3 +85,19 @@ def test_turning_on_the_spot_is_kept_and_takes_the_step_after_it():
     path = toolpath(p, k)
     assert len(moving(path)) == 5
     assert at_starts(path, np.arange(5.0)).tolist() == [0, 1, 4, 4, 4]
+
+
+def test_the_clock_starts_with_the_first_cut():
+    """By hand: what comes before it takes no time, feeds theirs, dwells theirs, a rapid its own or nobody knows."""
+    x = np.array([0, 3, 7, 10, 20, 40, 50]) * 1e-3
+    given = {"v_f": np.array([0, 0, 0, 0.01, 0.01, 0, 0.02]), "block": np.arange(7), "n_s": 200.0, "tool": 0}
+    waits = np.array([0, 5.0, 0, 2.0, 0.25, 0, 0.5])
+    path = Toolpath(
+        p=np.outer(x, [1, 0, 0]),
+        k=(0.0, 0, 1),
+        cutting=np.array([0, 0, 0, 1, 1, 0, 1], dtype=bool),
+        dwell=waits,
+        **given,
+    )
+    np.testing.assert_allclose(clock(path, 0.1), [0, 0, 0, 0.3, 1.55, 1.75, 2.75])
+    np.testing.assert_allclose(clock(path, None), [0, 0, 0, 0.3, 1.55, np.nan, np.nan])

@@ -13,7 +13,7 @@ from robomill.io.projects import setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.run import simulate
-from robomill.simulation.tools import cutting_numbers, farther, tooling
+from robomill.simulation.tools import cutting_numbers, farther, held, tooling
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=4e-3)
@@ -122,3 +122,20 @@ def test_each_wall_is_judged_at_the_radius_of_its_tool():
     d = np.abs(run.delta_in_cut[walls.sample, 1])
     straight = np.abs(run.path.p[walls.sample, 0] - 5e-3) > 12e-3
     np.testing.assert_allclose(np.abs(walls.error)[straight & ~second], d[straight & ~second], atol=2e-6)
+
+
+def test_every_step_is_made_by_one_tool():
+    """Cutters and lengths may be shared: each step is held once, by an arm as much longer as its tool is."""
+    text = "G21 G90 S12000 M3\n" + "".join(
+        f"T{n} M6\nG0 X-40 Y{4 * n} Z5\nG0 Z-1\nG1 X40 F1800\nG0 Z50\n" for n in (1, 2, 3, 4)
+    )
+    lengths = {1: 60e-3, 2: 95e-3, 3: 60e-3, 4: 80e-3}
+    table = ToolTable(tuple(TableTool(n, SMALL if n < 3 else LARGE, length) for n, length in lengths.items()))
+    setup = SETUP.replace(source=GCodeSource(text + "M2\n"), tools=table)
+    path = setup.toolpath
+    made = list(held(setup, path))
+    assert np.sum([each.steps for each in made], axis=0).tolist() == [1] * len(path)
+    for n, length in lengths.items():
+        (mine,) = (each for each in made if each.steps[path.cutting & (path.tool == n)].all())
+        shift = SETUP.robot.T_tool[:3, 3] - mine.robot.T_tool[:3, 3]
+        np.testing.assert_allclose(shift, (length - 60e-3) * SETUP.robot.T_tool[:3, 2], atol=1e-15)

@@ -1,0 +1,62 @@
+"""How sure a measured map says it is, against the noise and the bend that were put in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.identification.map_error import PART_BETWEEN, between_points, noise_by_asymmetry, noise_of_tests
+
+
+def symmetric(rng, k):
+    A = rng.normal(size=(k, 3, 3))
+    return A + np.swapaxes(A, 1, 2)
+
+
+def test_the_noise_of_an_entry_shows_in_what_is_not_symmetric():
+    rng = np.random.default_rng(1)
+    C = symmetric(rng, 4000)
+    assert np.isnan(noise_by_asymmetry(C))
+    assert noise_by_asymmetry(C + rng.normal(0.0, 0.03, C.shape)) == pytest.approx(0.03, rel=0.02)
+
+
+def test_the_noise_of_a_reading_is_shown_or_stated_whichever_is_more():
+    """An entry's error is its reading's times what the forces make of it (1/N)."""
+    rng = np.random.default_rng(2)
+    C, spread = symmetric(rng, 4000), rng.uniform(0.002, 0.02, (4000, 3))
+    noisy = C + 0.5 * rng.normal(size=C.shape) * spread[:, None, :]
+    silent = np.full(5, np.nan)
+    assert noise_of_tests(noisy, spread, silent) == pytest.approx(0.5, rel=0.03)
+    assert noise_of_tests(noisy, spread, np.array([0.1, np.nan])) == pytest.approx(0.5, rel=0.03)
+    assert noise_of_tests(noisy, spread, np.array([0.9, 0.7, np.nan, 0.8])) == pytest.approx(0.8)
+    assert np.isnan(noise_of_tests(C, spread, silent))
+    assert noise_of_tests(C, spread, np.array([0.2])) == pytest.approx(0.2)
+
+
+def test_a_bent_field_is_missed_between_points_by_a_quarter_of_its_gap():
+    """c x^2 on a line of points h apart: a straight line between two points misses c h^2 / 4 in the middle."""
+    h, c = 0.1, 7.0
+    x = h * np.arange(21)[:, None]
+    C = np.zeros((21, 3, 3))
+    C[:, 1, 2] = c * x[:, 0] ** 2
+    found = between_points(x, C, np.zeros_like(C))
+    middle = 0.5 * (x[1:] + x[:-1])[:, 0]
+    missed = np.interp(middle, x[:, 0], C[:, 1, 2]) - c * middle**2
+    assert found[1, 2] == pytest.approx(np.sqrt(np.mean(missed**2)))
+    assert found[1, 2] == pytest.approx(PART_BETWEEN * c * h**2)
+    assert np.count_nonzero(found) == 1
+
+
+def test_noise_is_not_taken_for_a_bend():
+    rng = np.random.default_rng(3)
+    p = np.stack(np.meshgrid(np.arange(30.0), np.arange(30.0), indexing="ij"), axis=-1).reshape(-1, 2)
+    flat = np.broadcast_to((p @ [2.0, -1.0])[:, None, None], (900, 3, 3))
+    noisy = flat + rng.normal(0.0, 0.4, flat.shape)
+    assert between_points(p, noisy, np.full(flat.shape, 0.4)).max() < 0.05
+    assert between_points(p, noisy, np.zeros(flat.shape)).min() > 0.08
+
+
+@pytest.mark.parametrize("p", [np.zeros((4, 0)), np.arange(2.0)[:, None]])
+def test_points_that_nothing_surrounds_say_nothing(p):
+    C = np.random.default_rng(0).normal(size=(len(p), 3, 3))
+    np.testing.assert_array_equal(between_points(p, C, np.zeros_like(C)), 0.0)
