@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from collections.abc import Container
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, get_type_hints
@@ -23,6 +24,7 @@ from robomill.io.samples import samples_dir
 from robomill.io.tables import parse_toml
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
+from robomill.workspace.quantities import COMPONENTS, quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
@@ -204,11 +206,11 @@ def project_from_toml(text: str, view: View | None = None, maps: MapView | None 
     known = None
     if tables["uncertainty"] is not None:
         known = Knowledge.from_table(tables["uncertainty"], setup.robot, setup.springs, f"{WHERE}: [uncertainty]")
-    seen = maps or MapView() if tables["maps"] is None else _looked(MapView, tables["maps"], "maps")
+    seen = maps or MapView() if tables["maps"] is None else _looked(MapView, tables["maps"], "maps", setup.robot)
     if tables["view"] is None:
         return Project(setup, dataclasses.replace(view or View(), theta=None), maps=seen, knowledge=known)
     preset = tables["view"].pop("preset", "")
-    looked = _looked(View, tables["view"], "view")
+    looked = _looked(View, tables["view"], "view", setup.robot)
     return Project(setup, looked, preset if isinstance(preset, str) else "", seen, known)
 
 
@@ -223,14 +225,15 @@ def _plain(value: Any) -> dict[str, Any]:
     return {k: v for k, v in dataclasses.asdict(value).items() if v is not None}
 
 
-def _looked(kind: type, table: dict[str, Any], where: str) -> Any:
+def _looked(kind: type, table: dict[str, Any], where: str, robot: Robot) -> Any:
     """A View or a MapView from its table; every value is checked against the type of its field."""
     hints = get_type_hints(kind)
+    choices = {**CHOICES, ("maps", "quantity"): quantities(robot, "geometry")}
     for name, value in table.items():
         if name not in hints:
             raise ProjectError(f"{WHERE}: [{where}] has a key {name!r} that this robomill does not know; remove it.")
         good, table[name] = _fits(hints[name], value)
-        if not good or table[name] not in CHOICES.get((where, name), (table[name],)):
+        if not good or table[name] not in choices.get((where, name), (table[name],)):
             raise ProjectError(f"{WHERE}: [{where}] {name} is {value!r:.40}; remove it or save the project again.")
     return kind(**table)
 
@@ -249,7 +252,7 @@ def _fits(hint: Any, value: Any) -> tuple[bool, Any]:
 
 
 # Words that a field of the view or the maps may hold, where they are few.
-CHOICES = {
+CHOICES: dict[tuple[str, str], Container[str]] = {
     ("view", "units"): ("mm", "in"),
     ("view", "joint_unit"): tuple(PRISMATIC_UNITS),
     ("view", "camera"): ("iso", "along", "top", "front"),
@@ -259,13 +262,5 @@ CHOICES = {
     ("maps", "picture"): ("plane", "pair", "solid"),
     ("maps", "sheet"): ("nine", "one", "shares", "dominant", "lines", "compare"),
     ("maps", "shares"): ("direct", "cross"),
-    ("maps", "component"): ("xx", "yy", "zz", "xy", "xz", "yz"),
-    ("maps", "quantity"): (
-        "reach",
-        "det_J",
-        "manipulability",
-        "inverse_condition",
-        "smallest_singular_value",
-        "limit_distance",
-    ),
+    ("maps", "component"): COMPONENTS,
 }

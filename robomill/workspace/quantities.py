@@ -21,6 +21,7 @@ from robomill.workspace.cells import Cells
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 Colours = Literal["sequential", "diverging", "joints", "reach"]
+Basis = Literal["geometry", "compliance"]
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Quantity:
     meaning: str
     law: Callable[[Cells], FloatArray]
     colours: Colours = "sequential"
-    rests_on: Literal["geometry", "compliance"] = "geometry"
+    rests_on: Basis = "geometry"
 
     @property
     def label(self) -> str:
@@ -54,9 +55,9 @@ class Quantity:
         return self.name if unit == "1" else f"{self.name}_{unit}"
 
 
-def quantities(robot: Robot) -> dict[str, Quantity]:
-    """Every quantity that has a meaning for ``robot``, by name, in the order in which they are listed."""
-    return {what.name: what for family in _families(robot) for what in family}
+def quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, Quantity]:
+    """Every quantity that has a meaning for ``robot`` (and rests on that), by name, in the order they are listed."""
+    return {what.name: what for family in _families(robot) for what in family if rests_on in (None, what.rests_on)}
 
 
 def quantity(robot: Robot, name: str) -> Quantity:

@@ -272,7 +272,7 @@ def _dominant(cut: Cut) -> None:
 def _one(cut: Cut) -> None:
     """Any quantity that rests on the joints' compliance, found by asking for them."""
     robot, view = cut.region.robot, cut.region.view
-    known = {name: what for name, what in quantities(robot).items() if what.rests_on == "compliance"}
+    known = quantities(robot, "compliance")
     titles = {name: what.title for name, what in known.items()}
     chosen = view.one if view.one in known else next(iter(known))
     inputs.choice("Quantity", "maps.one", titles, chosen, lambda name: session.see(one=name), inputs.LISTED)

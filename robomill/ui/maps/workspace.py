@@ -113,7 +113,7 @@ def _why(known: ComplianceField) -> str:
 
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
-    names = {what.name: what.title for what in quantities(robot).values() if what.rests_on == "geometry"}
+    names = {name: what.title for name, what in quantities(robot, "geometry").items()}
     inputs.choice("Quantity", "maps.quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
     what = quantity(robot, view.quantity)
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
