@@ -6,7 +6,6 @@ from random_arms import seven
 
 import robomill as rm
 from robomill.compliance.posture import over_posture
-from robomill.simulation.posture import posture_notes
 
 
 def walked(robot, theta, steps=4000):
@@ -47,13 +46,3 @@ def test_the_range_over_postures_covers_a_walk_through_them():
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500"])
 def test_arms_without_a_free_posture_have_no_range(name):
     assert over_posture(rm.load_robot(name), np.eye(4)).shape == (0, 3, 3)
-
-
-def test_a_run_says_that_one_posture_of_many_was_taken():
-    robot, F = seven(), np.array([20.0, 100.0, -30.0])
-    T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
-    (note,) = posture_notes(robot, T_MT, F)
-    size = np.linalg.norm(over_posture(robot, T_MT) @ F, axis=1) * 1e3
-    assert f"{size.min():.3f} to {size.max():.3f} mm" in note.message
-    assert "7 axes" in note.message
-    assert posture_notes(rm.load_robot("kuka_kr500"), T_MT, F) == ()

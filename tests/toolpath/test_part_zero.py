@@ -51,6 +51,11 @@ def test_the_stated_tilt_bounds_what_touching_errors_do():
         moved = points + e * step / np.linalg.norm(step, axis=1, keepdims=True)
         turned = np.arccos(np.clip(np.diag(exact.T_MW[:3, :3].T @ frame_from_points(*moved).T_MW[:3, :3]), -1, 1))
         assert turned.max() <= exact.tilt(e) * 1.2
+    # Nearly so much where the zero is touched too low and both others too high, on axes that stand square.
+    square = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.1, 0]])
+    moved = frame_from_points(*(square + e * np.array([[0, 0, -1.0], [0, 0, 1], [0, 0, 1]])))
+    turned = np.arccos(moved.T_MW[2, 2])
+    assert frame_from_points(*square).tilt(e) == pytest.approx(turned, rel=1e-3)
 
 
 @pytest.mark.parametrize(
