@@ -67,3 +67,27 @@ def test_written_and_read_again() -> None:
     again = read_gcode(write_gcode(path))
     assert again.ccw.tolist() == path.ccw.tolist()
     assert again.dwell == pytest.approx(path.dwell)
+
+
+def test_titles_hold_no_brackets_and_unknown_speeds_are_refused() -> None:
+    path = read_gcode("G21 S600 M3\nG0 Z5\nG1 Z-1 F300\nM2\n")
+    assert write_gcode(path, title="a (b) ; c\td").splitlines()[0] == "(a b  cd)"
+    assert write_gcode(path).splitlines()[0].startswith("N10 ")
+    turning = read_gcode("G21 G96 S100 D2000 M3\nG0 X5\nG1 Z-1 F300\nM2\n")
+    with pytest.raises(ToolpathError, match="the spindle speed of point"):
+        write_gcode(turning)
+
+
+def test_an_axis_along_x_keeps_the_turn_it_had() -> None:
+    """With B at a right angle A says nothing: it stays, and the axis comes back."""
+    b = np.radians([0, 30, 60, 90, 90, 60])
+    k = np.stack([np.sin(b), -np.sin(0.4) * np.cos(b), np.cos(0.4) * np.cos(b)], axis=1)
+    k[0] = [0, 0, 1]
+    m = len(b)
+    p = np.outer(np.arange(m), [0.01, 0, 0])
+    path = Toolpath(
+        p=p, k=k, v_f=np.full(m, 0.01), cutting=np.arange(m) > 0, block=np.arange(m), n_s=np.zeros(m), tool=0
+    )  # type: ignore[arg-type]
+    again = read_gcode(write_gcode(path))
+    index = np.searchsorted(again.p[:, 0], p[1:, 0] - 1e-9)
+    assert abs(again.k[index] - k[1:]).max() < 1e-6

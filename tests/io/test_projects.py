@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.io.programs import program_from_bytes
 from robomill.io.projects import load_setup, open_project, setup_from_toml, setup_to_toml
+from robomill.io.robot_writer import robot_to_toml
+from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
-from robomill.toolpath.source import GCodeSource, LinesSource
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.sketch_presets import preset
+from robomill.toolpath.source import GCodeSource, LinesSource, SketchSource
 from robomill.units import to_si
 
 SAMPLE = samples_dir() / "paper_flute" / "setup.toml"
@@ -161,3 +168,55 @@ def test_three_tolerances_are_read_by_name():
     for wrong in ((0.1, 0.2), (None, 1.0, 1.0), {"floor": 0.1}):
         with pytest.raises(RobomillError, match="one number, or three"):
             found.replace(tolerance=wrong)
+
+
+def test_what_is_no_set_up_is_told_from_one(tmp_path: Path) -> None:
+    assert load_setup(SAMPLE.parent).digest() == load_setup(SAMPLE).digest()
+    with pytest.raises(ProjectError, match="path.nc: this is a program, not a set-up"):
+        load_setup(SAMPLE.parent / "path.nc")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("tolerance_mm = 0.3", 'tolerance_mm = 0.3\nspin = "least_motion"\nspin_deg = 5', "given twice"),
+        ("tolerance_mm = 0.3", 'tolerance_mm = 0.3\nspin = "backwards"', "spin: expected one of"),
+        ('program = "path.nc"', "", "expected one of program, program_text, lines_mm or sketch, found none"),
+        ('program = "path.nc"', 'program = "path.nc"\nprogram_text = "M2"', "found ['program', 'program_text']"),
+    ],
+)
+def test_what_excludes_each_other_is_refused(old: str, new: str, sentence: str) -> None:
+    with pytest.raises(RobomillError, match=re.escape(sentence)):
+        setup_from_toml(TEXT.replace(old, new), "setup.toml", SAMPLE.parent)
+
+
+def test_a_robot_beside_the_set_up_is_meant_before_a_preset(tmp_path: Path) -> None:
+    other = load_robot("slavkovic_5r").replace(name="mine")
+    (tmp_path / "mine.toml").write_text(robot_to_toml(other))
+    text = TEXT.replace('name = "slavkovic_5r"', 'name = "mine.toml"').replace('compliance_set = "table_2"', "")
+    setup = setup_from_toml(
+        text.replace('program = "path.nc"', 'program_text = "G1 X1 F1\\nM2"'), "setup.toml", tmp_path
+    )
+    assert setup.robot.name == "mine"
+
+
+def test_lines_and_sketches_come_back() -> None:
+    base = load_setup(SAMPLE)
+    lines = LinesSource(
+        [[0, 0, 0], [0.01, 0.0123, 0]], [[0.01, 0, -1e-3], [0.02, 0.03, -0.0015]], [0.01, 0.0305], 123.0
+    )
+    drawn = SketchSource(preset("fig_8", Sketch(v_f=0.02, depth=1.5e-3), 8e-3))
+    for source in (lines, drawn):
+        setup = base.replace(source=source)
+        again = setup_from_toml(setup_to_toml(setup))
+        assert again.digest() == setup.digest()
+        np.testing.assert_allclose(again.toolpath.p, setup.toolpath.p, atol=1e-15)
+
+
+def test_the_first_tool_that_cuts_is_the_cutter_where_none_is_named() -> None:
+    setup = load_setup(SAMPLE)
+    table = ToolTable((TableTool(1), TableTool(2, Cutter("ball", 6e-3), 0.05), TableTool(3, Cutter("flat", 9e-3))))
+    text = setup_to_toml(setup.replace(tools=table))
+    without = text[: text.index("[cutter]")] + text[text.index("[force]") :]
+    assert setup_from_toml(without).cutter == Cutter("ball", 6e-3)
+    assert setup_from_toml(text).cutter == setup.cutter

@@ -103,3 +103,21 @@ def test_a_sign_without_strokes_and_an_empty_word_are_refused():
         preset("word", Sketch(), D, "  ")
     with pytest.raises(ToolpathError, match="no preset 'moon'"):
         preset("moon", Sketch(), D)
+
+
+@pytest.mark.parametrize("chord", [5e-6, 1e-4])
+def test_a_spiral_is_drawn_within_its_chord_and_ends_in_a_full_circle(chord):
+    """Points on r = pitch phi / 2 pi; between two of them the arc stands off by no more than the chord error."""
+    radius, pitch = 0.02, 3e-3
+    points = spiral(radius, pitch, chord)
+    z = points @ [1, 1j]
+    phi = np.concatenate([[0.0], np.cumsum(np.angle(z[2:] / z[1:-1]))])
+    phi += np.angle(z[1]) if np.angle(z[1]) >= 0 else np.angle(z[1]) + 2 * np.pi
+    np.testing.assert_allclose(np.abs(z[1:]), np.minimum(pitch * phi / (2 * np.pi), radius), atol=1e-9)
+    step = np.diff(phi).max()
+    assert radius * (1 - np.cos(step / 2)) <= chord * 1.0001
+    assert radius * (1 - np.cos(step / 2)) > 0.9 * chord
+    outside = phi[np.abs(z[1:]) > radius - 1e-9]
+    assert np.ptp(outside) == pytest.approx(2 * np.pi)
+    on_circle = np.diff(outside).max()
+    assert radius * (1 - np.cos(on_circle / 2)) <= chord * 1.0001
