@@ -120,6 +120,8 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     fit.add_argument("--leave-out", default="pose", help="cross-validation by pose (default) or by neighbours")
     fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
     fit.add_argument("--out", metavar="ROBOT.toml", help="write the robot with these compliances there")
+    fit.add_argument("--sheet", metavar="SHEET.csv", help="write the tests to do next there, to be filled in")
+    fit.add_argument("--next", type=int, default=3, metavar="TESTS", help="how many tests to do next (default 3)")
 
 
 def say(arguments: Any, record: dict[str, Any], lines: Sequence[str], code: int = 0) -> int:
@@ -242,8 +244,10 @@ def _axis(text: str, option: str) -> Any:
 
 def run_identify(arguments: Any) -> int:
     from robomill.identification.estimate import identify
+    from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
     from robomill.identification.treatment import Treatment
+    from robomill.io.load_test_sheets import measuring_sheet
     from robomill.io.load_tests import read_load_tests
     from robomill.io.robots import load_robot, robot_to_toml
     from robomill.report.plain import identification_lines
@@ -264,6 +268,10 @@ def run_identify(arguments: Any) -> int:
     record["findings"] = [finding.record() for finding in findings]
     if arguments.out:
         Path(arguments.out).write_text(robot_to_toml(result.applied_to(robot)), encoding="utf-8")
+    if arguments.sheet:
+        plan = next_best(robot, tests, result, count=arguments.next)
+        record["next"] = plan.rows()
+        Path(arguments.sheet).write_text(measuring_sheet(plan, Path(arguments.tests).name), encoding="utf-8")
     return say(arguments, record, identification_lines(record))
 
 

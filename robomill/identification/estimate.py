@@ -17,7 +17,7 @@ from robomill.identification import diagnostics
 from robomill.identification.crossvalidation import Folded, Missed, headline, leave_out, relative_by_pose
 from robomill.identification.fitting import Fitted, fit_system
 from robomill.identification.folds import folds_of
-from robomill.identification.found_points import found_points
+from robomill.identification.found_points import found_points, point_findings
 from robomill.identification.lines_of_pull import lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.model_error import Errors, held, model_error
@@ -66,12 +66,13 @@ def identify(
     missed = candidates.missed()
     result = _result(robot, tests, choice, fitted)
     offer = offer_of(robot, tests, choice, treatment)
+    points = found_points(robot, stated, treatment.freed, fitted.found, tests.force_point - stated.force_point)
     return replace(
         result,
-        findings=result.findings if offer is None else (*result.findings, offer.finding()),
+        findings=(*result.findings, *point_findings(points), *(() if offer is None else (offer.finding(),))),
         offer=offer,
         cv_relative_error=headline(relative_by_pose(fitted.system, missed.error, fitted.weights)),
-        points=found_points(robot, stated, treatment.freed, fitted.found, tests.force_point - stated.force_point),
+        points=points,
         band=_band(_errors(robot, tests, choice, fitted, missed), result.dof),
         votes=tuple(map(tuple, candidates.votes())) if treatment.bending == AUTO else (),
         treatment=treatment,
@@ -121,7 +122,7 @@ def _band(errors: Errors, dof: int) -> Band | None:
 def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: Fitted) -> IdentificationResult:
     system, fit, weights, lumped = fitted.system, fitted.fit, fitted.weights, fitted.lumped
     share = diagnostics.shares(system, fit.x)
-    residual = _residuals(system, fit.x, len(tests), 1 if tests.single else 3)
+    residual = _residuals(system, fit.x, len(tests), len(tests.components))
     negative = (fit.x == 0.0) & (fit.free * np.linalg.norm(system.A, axis=0) < -1e-9 * np.linalg.norm(system.b))
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
     found = diagnostics.fit_findings(system, fit, active, lumped)
@@ -143,6 +144,7 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
         dof=fit.dof,
         in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b, weights)),
         row=tests.row,
+        components=tests.components,
         share=frozen(share),
         outliers=diagnostics.outliers(system, tests.row),
         unseen_joints=diagnostics.unseen_joints(fit, system.parameters, share),

@@ -125,3 +125,9 @@ def found_points(
             )
         )
     return tuple(result)
+
+
+def point_findings(points: tuple[FoundPoint, ...]) -> tuple[Finding, ...]:
+    """Said of fitted points that the tests hold in no or not every direction."""
+    loose = [point for point in points if point.flat is not None]
+    return tuple(Finding("warning", 0, point.sentence(), code=f"{point.point}-point-not-held") for point in loose)

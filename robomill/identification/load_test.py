@@ -167,6 +167,11 @@ class LoadTests(_Rows):
         return found
 
     @property
+    def components(self) -> tuple[str, ...]:
+        """What the three readings of a test are called."""
+        return ("x", "y", "z") if self.gauges is None else ("gauge 1", "gauge 2", "gauge 3")
+
+    @property
     def directions(self) -> FloatArray:
         """(m, 3, 3) unit vectors in {M} along which displacement[:, :3] is read."""
         return np.broadcast_to(np.eye(3), (len(self), 3, 3)) if self.gauges is None else self.gauges
@@ -198,6 +203,7 @@ class JointTests(_Rows):
     """
 
     single: ClassVar[Literal[True]] = True
+    components: ClassVar[tuple[str, ...]] = ("",)
 
     joint: IntArray
     torque: FloatArray

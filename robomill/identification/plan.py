@@ -16,7 +16,7 @@ from scipy.stats import qmc
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification.confidence import quantile
-from robomill.identification.load_test import LoadTests
+from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.identification.synthesis import three_directions
@@ -28,6 +28,7 @@ from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
+MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 PRIOR = 1e-10  # information, scaled, that stands in where the tests have none
 
 
@@ -125,6 +126,12 @@ def box_candidates(
     return Candidates(*three_directions(theta, load))
 
 
+def candidates_around(robot: Robot, tests: LoadTests, *, tilt: float = np.pi / 6, load: float = 250.0) -> Candidates:
+    """Poses within ``MARGIN`` of those that were measured."""
+    tips = tests.with_joints(robot).tool_poses(robot)[:, :3, 3]
+    return box_candidates(robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=tilt, load=load)
+
+
 class _Aim(NamedTuple):
     """What a plan is for: in words, and the weight (p, p) of the covariance it makes small (None: the determinant)."""
 
@@ -135,20 +142,24 @@ class _Aim(NamedTuple):
 
 def next_best(
     robot: Robot,
-    tests: LoadTests,
+    tests: LoadTests | JointTests,
     result: IdentificationResult,
-    candidates: Candidates,
+    candidates: Candidates | None = None,
     *,
     count: int = 3,
     goal: str | int | PathLoad = "all",
 ) -> Plan:
     """The ``count`` candidates to measure next for a goal: "all", a joint number, or a PathLoad.
 
-    A reading is taken to be as noisy as the residuals say. Raises LoadTestError where there are none to judge by.
+    ``candidates`` are those around what was measured unless given. A reading is taken to be as noisy as the residuals
+    say. Raises LoadTestError where there are none to judge by.
     """
+    if tests.single:
+        raise LoadTestError("Plan: one joint at a time needs none; load the joint that is known least once more.")
     if not (np.isfinite(result.noise) and result.noise > 0):
         raise LoadTestError("Plan: the noise is not known (no residuals to judge by); state it in mm.")
     aim = _aim(robot, result, goal)
+    candidates = candidates or candidates_around(robot, tests)
     system = build_system(robot, tests.without(result.excluded), result.choice)
     D = result.choice.tip_regressor(robot, candidates.theta, candidates.F)
     scale = np.sqrt((system.A**2).sum(axis=0) + (D**2).mean(axis=(0, 1)))  # above zero wherever either sees anything

@@ -38,7 +38,6 @@ def identification_record(
 
 def identification_report(result: IdentificationResult) -> dict[str, Any]:
     """The result: SI but for names that end in a unit."""
-    single = result.residual.shape[1] == 1
     band = result.band
     return {
         "C_theta": plain(result.C_theta),
@@ -50,7 +49,7 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
         "parameter_ci95": plain(result.parameter_ci95),
         "condition": plain(result.condition.after),
         "condition_before_scaling": plain(result.condition.before),
-        "residual_rms_mm": None if single else plain(from_si(result.residual_rms, "mm")),
+        "residual_rms_mm": None if result.single else plain(from_si(result.residual_rms, "mm")),
         "cv_relative_error": plain(result.cv_relative_error),
         "cv_leaves_out": result.treatment.leave_out,
         "outliers": [outlier.row for outlier in result.outliers],

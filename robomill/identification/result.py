@@ -62,7 +62,8 @@ class IdentificationResult:
     C_theta (n,) rad/(N m) (m/N if prismatic), NaN where not seen; stderr (n,), infinite where not seen;
     ci95 (n, 2), cut at zero; correlation and covariance (p, p) of the parameters, NaN where not seen;
     parameters (p,) with which predictions are made; condition before and after column scaling;
-    residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints);
+    residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints), in
+    columns called ``components``;
     explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise:
     standard deviation of one measured number, m (rad), as the residuals say; cv_relative_error: mean over poses of
     |predicted - measured| / |measured|, each pose predicted without itself: the headline; in_sample_by_pose
@@ -92,6 +93,7 @@ class IdentificationResult:
     in_sample_by_pose: FloatArray
     row: IntArray
     share: FloatArray
+    components: tuple[str, ...]
     cv_relative_error: float = float("nan")
     outliers: tuple[Outlier, ...] = ()
     unseen_joints: tuple[UnseenJoint, ...] = ()
@@ -104,6 +106,11 @@ class IdentificationResult:
     band: Band | None = None
     votes: tuple[tuple[int, ...], ...] = ()
     offer: Offer | None = None
+
+    @property
+    def single(self) -> bool:
+        """Whether the tests were of one joint at a time."""
+        return len(self.components) == 1
 
     @property
     def excluded(self) -> tuple[int, ...]:
@@ -143,13 +150,25 @@ class IdentificationResult:
         return np.full((self.n, 2), np.nan) if not self.has_joints else self.parameter_ci95[: self.n]
 
     @property
-    def weakest_joint(self) -> int:
-        """The joint (1-based) with the widest interval for its size."""
+    def relative_half(self) -> FloatArray:
+        """(p,) half the 95 % interval as a share of the value; infinite where that is not known or zero."""
+        known = np.isfinite(self.parameter_stderr) & (self.parameters > 0)
+        half = np.ptp(np.where(known[:, None], self.parameter_ci95, 0.0), axis=1) / 2
+        return np.where(known, half / np.where(known, self.parameters, 1.0), np.inf)
+
+    @property
+    def weakest(self) -> int:
+        """Index of the joint that is known least."""
         if not self.has_joints:
             raise LoadTestError("The constant model has no joints.")
         with np.errstate(invalid="ignore", divide="ignore"):
             relative = np.where(self.parameters[: self.n] > 0, self.stderr / self.parameters[: self.n], np.inf)
-        return self.labels[int(np.argmax(relative))].joint or 0
+        return int(np.argmax(relative))
+
+    @property
+    def weakest_joint(self) -> int:
+        """The joint (1-based) with the widest interval for its size."""
+        return self.labels[self.weakest].joint or 0
 
     def springs(self, robot: Robot) -> tuple[Spring, ...]:
         """The bending and tool springs found, for ``extra_contributions``; empty for the joints alone."""

@@ -14,7 +14,6 @@ from robomill.robot.model import Robot
 
 PLAUSIBLE = (1e-10, 1e-4)  # m/N: from a rigid machine tool to a robot one can push about by hand
 PLAUSIBLE_JOINT = (1e-10, 1e-2)  # rad/(N m)
-_AXES = "xyz"
 
 
 def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
@@ -33,9 +32,9 @@ def _signs(tests: LoadTests) -> list[Finding]:
     F, read, moved = tests.wrench[:, :3], tests.displacement[:, :3], tests.vectors
     size = np.linalg.norm(F, axis=1)
     along = np.einsum("mgi,mi->mg", tests.directions, F)
-    names = [(f"d{axis}", f"F{axis}", axis) for axis in _AXES]
-    if tests.gauges is not None:
-        names = [(f"gauge {k}", "the force", "it") for k in (1, 2, 3)]
+    names = [(name, "the force", "it") for name in tests.components]
+    if tests.gauges is None:
+        names = [(f"d{axis}", f"F{axis}", axis) for axis in tests.components]
     found = []
     flipped = []
     for i, (name, force, main_axis) in enumerate(names):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -17,6 +18,9 @@ from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure
 
 MAX_TESTS = 3000
 REFERENCE_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open", "circle-open")
+AXES = ("x", "y", "z")
+MARGIN = {"l": 8, "r": 16, "t": 34, "b": 8}
+ROW = "Row of the file"
 _ROW = 46
 
 
@@ -55,15 +59,7 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
     fig.update_layout(
         xaxis=axis(shown.unit, dark=dark, **more),
-        yaxis=axis(
-            "",
-            dark=dark,
-            tickvals=y.tolist(),
-            ticktext=list(shown.labels),
-            range=[len(y) - 0.4, -0.62],
-            showgrid=False,
-            ticks="",
-        ),
+        yaxis=_names(shown.labels, dark),
     )
     return fig
 
@@ -138,35 +134,30 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
 
 
 def residuals_figure(
-    row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, *, dark: bool, height: int = 330
+    row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, names: Sequence[str] = AXES, *, dark: bool
 ) -> go.Figure:
     """Residuals (m, k) of each test against its row (m,); ``outlier`` (m,) are ringed and named.
 
-    k = 3 components x, y, z, or 1. At most ``MAX_TESTS`` tests are drawn, outliers among them.
+    k components of those ``names``, or one. At most ``MAX_TESTS`` tests are drawn, outliers among them.
     """
-    p = palette(dark)
     chosen = np.arange(len(row))
     if len(row) > MAX_TESTS:
         spread = np.linspace(0, len(row) - 1, MAX_TESTS).astype(int)
         chosen = np.unique(np.concatenate([spread, np.flatnonzero(outlier)[:MAX_TESTS]]))
-    fig = figure(dark=dark, height=height, revision=f"residuals-{unit}", margin={"l": 8, "r": 16, "t": 34, "b": 8})
-    colours = list(axis_colours(dark).items()) if residual.shape[1] == 3 else [("", p.accent)]
-    symbols = ("circle", "square", "diamond")
-    for k, (name, colour) in enumerate(colours):
-        fig.add_scatter(
-            x=row[chosen],
-            y=residual[chosen, k],
-            mode="markers",
-            name=name or "residual",
-            marker={"size": 6, "color": colour, "symbol": symbols[k], "opacity": 0.85},
-            hovertemplate="row %{x}<br>%{y:+.4f} " + unit + f"<extra>{name}</extra>",
-        )
-    fig.add_hline(y=0, line={"color": p.line, "width": 1})
+    several = residual.shape[1] > 1
+    colours = list(axis_colours(dark).values()) if several else [palette(dark).accent]
+    fig = figure(dark=dark, height=330, revision=f"residuals-{unit}", margin=MARGIN)
+    for k, (colour, symbol) in enumerate(zip(colours, ("circle", "square", "diamond"), strict=False)):
+        if several and not np.isfinite(residual[:, k]).any():
+            continue
+        marker = {"size": 6, "color": colour, "symbol": symbol, "opacity": 0.85}
+        _by_row(fig, row[chosen], residual[chosen, k], names[k] if several else "residual", f"+.4f}} {unit}", marker)
+    fig.add_hline(y=0, line={"color": palette(dark).line, "width": 1})
     marked = np.flatnonzero(outlier)
     if len(marked):
         worst = np.nanargmax(np.where(np.isnan(residual[marked]), -1, np.abs(residual[marked])), axis=1)
         _ring(fig, row[marked], residual[marked, worst], "does not fit", dark)
-    fig.update_layout(xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
+    fig.update_layout(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
     return fig
 
 
@@ -178,27 +169,22 @@ def gaps_figure(
     ``stated`` None: the stated load point is the one in use; ``suspect`` (m,) are ringed and named.
     """
     p = palette(dark)
-    fig = figure(dark=dark, height=250, revision=f"gaps-{unit}", margin={"l": 8, "r": 16, "t": 34, "b": 8})
-    drawn = [
-        ("with the load point that fits best" if stated is not None else "with the stated load point", gap, p.accent)
-    ]
+    fig = figure(dark=dark, height=250, revision=f"gaps-{unit}", margin=MARGIN)
     if stated is not None:
-        drawn.insert(0, ("with the stated load point", stated, p.muted))
-    for name, values, colour in drawn:
-        fig.add_scatter(
-            x=row,
-            y=values,
-            mode="markers",
-            name=name,
-            marker={"size": 7, "color": colour, "symbol": "circle" if values is gap else "circle-open"},
-            hovertemplate="row %{x}<br>%{y:.1f} " + unit + f"<extra>{name}</extra>",
-        )
+        marker = {"size": 7, "color": p.muted, "symbol": "circle-open"}
+        _by_row(fig, row, stated, "with the stated load point", f".1f}} {unit}", marker)
+    name = "with the load point that fits best" if stated is not None else "with the stated load point"
+    _by_row(fig, row, gap, name, f".1f}} {unit}", {"size": 7, "color": p.accent, "symbol": "circle"})
     if suspect.any():
         _ring(fig, row[suspect], gap[suspect], "cannot be", dark)
-    fig.update_layout(
-        xaxis=axis("Row of the file", dark=dark), yaxis=axis(f"Gap, {unit}", dark=dark, rangemode="tozero")
-    )
+    fig.update_layout(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Gap, {unit}", dark=dark, rangemode="tozero"))
     return fig
+
+
+def _by_row(fig: go.Figure, row: IntArray, y: FloatArray, name: str, shown: str, marker: dict[str, Any]) -> None:
+    """One value a row of the file; ``shown`` ends the template of what is read off it."""
+    hover = f"row %{{x}}<br>%{{y:{shown}<extra>{name}</extra>"
+    fig.add_scatter(x=row, y=y, mode="markers", name=name, marker=marker, hovertemplate=hover)
 
 
 def _ring(fig: go.Figure, row: IntArray, y: FloatArray, name: str, dark: bool) -> None:
@@ -256,17 +242,8 @@ def models_figure(
     ends = (values.min() / 1.6, values.max() * 1.6) if len(values) else (0.1, 100.0)
     labels = [f"<b>{name}</b>" if k == chosen else name for k, name in enumerate(names)]
     fig.update_layout(
-        xaxis=axis(
-            "Error, % of the measured displacement",
-            dark=dark,
-            type="log",
-            range=np.log10(ends).tolist(),
-            tickvals=_ticks(*ends),
-            ticktext=[f"{t:g}" for t in _ticks(*ends)],
-        ),
-        yaxis=axis(
-            "", dark=dark, tickvals=y.tolist(), ticktext=labels, range=[len(y) - 0.4, -0.6], showgrid=False, ticks=""
-        ),
+        xaxis=axis("Error, % of the measured displacement", dark=dark, **_logarithmic(*ends)),
+        yaxis=_names(labels, dark),
     )
     return fig
 
@@ -336,14 +313,19 @@ def _log_axis(shown: Intervals, low: FloatArray, high: FloatArray) -> dict[str, 
     ends = np.concatenate([low[known], high[known], shown.value[known & (shown.value > 0)], *more])
     ends = ends[np.isfinite(ends) & (ends > 0)]
     bottom, top = (float(ends.min()), float(ends.max())) if len(ends) else (1.0, 10.0)
-    bottom, top = bottom / 1.25, top * 1.25
-    ticks = _ticks(bottom, top)
-    return {
-        "type": "log",
-        "range": [float(np.log10(bottom)), float(np.log10(top))],
-        "tickvals": ticks,
-        "ticktext": [f"{t:g}" for t in ticks],
-    }
+    return _logarithmic(bottom / 1.25, top * 1.25)
+
+
+def _names(labels: Sequence[str], dark: bool) -> dict[str, Any]:
+    """The axis of figures that have a row for each name, first above."""
+    ticks = {"tickvals": list(range(len(labels))), "ticktext": list(labels), "ticks": ""}
+    return axis("", dark=dark, range=[len(labels) - 0.4, -0.62], showgrid=False, **ticks)
+
+
+def _logarithmic(low: float, high: float) -> dict[str, object]:
+    ticks = _ticks(low, high)
+    ends = [float(np.log10(low)), float(np.log10(high))]
+    return {"type": "log", "range": ends, "tickvals": ticks, "ticktext": [f"{t:g}" for t in ticks]}
 
 
 def _ticks(low: float, high: float) -> list[float]:

@@ -167,7 +167,7 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     setup = session.project().setup
     fitted = adopted(setup, robot, result, bench.name)
     known = session.known(setup)
-    in_force = known is not None and known.holds_for(fitted.robot, fitted.springs)
+    in_force = setup.measured_map is None and known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
         session.know(knowledge(bench, robot, result))  # force and lengths may have been stated since
     st.button(
@@ -193,7 +193,7 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
 
 
 def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, name: str) -> SimulationSetup:
-    """The set-up with the compliances and springs found; springs of an earlier identification give way."""
+    """The set-up with the compliances and springs found; springs of an earlier identification and a map give way."""
     source = f"identified from {len(result.row)} load tests ({name}), {result.choice.title.lower()}"
     applied = result.applied_to(robot)
     marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
@@ -203,7 +203,7 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
     old = tuple(
         s for s in setup.springs if s.name not in names and not (identified and s.provenance.kind == "measured")
     )
-    return setup.replace(robot=applied.replace(provenance=marked), springs=old + found)
+    return setup.replace(robot=applied.replace(provenance=marked), springs=old + found, measured_map=None)
 
 
 def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:
@@ -217,7 +217,7 @@ def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowl
 def _use(bench: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     def put() -> None:
         known = knowledge(bench, robot, result)
-        session.change(robot=fitted.robot, springs=fitted.springs)
+        session.change(robot=fitted.robot, springs=fitted.springs, measured_map=None)
         session.know(known)
         bench.robot_name = ""
 

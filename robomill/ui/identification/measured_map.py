@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
-from robomill.compliance.cartesian import cartesian_compliance
 from robomill.errors import RobomillError
+from robomill.identification.map_check import MapCheck
 from robomill.identification.measured_field import MeasuredField
-from robomill.identification.propagation import uncertain_by_map
-from robomill.kinematics.inverse import inverse_kinematics
-from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, session, uncertainty
+from robomill.ui import cached, inputs, pieces, session, uncertainty
 from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
-from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import OWN, robot_choice, upload
 from robomill.ui.project import View
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
@@ -31,27 +27,24 @@ from robomill.workspace.grid import Grid
 COMPONENTS = ("C_xx", "C_yy", "C_zz", "C_xy", "C_xz", "C_yz")
 CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
-TURNED = 1e-3  # rad between the tool of the path and that of the map, from which it is said
 
 
 def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
     robot = robot_of(bench)
-    field = cut = refusal = None
+    field = refusal = None
     sentence = "These measurements do not make a map yet."
     try:
         field = field_of(bench, robot)
     except RobomillError as exc:
         refusal = exc
     if field is not None:
-        model = model_at_points(field, robot)
-        sentence = title(field, model)
-        with contextlib.suppress(RobomillError):
-            cut = cut_of(robot)
+        check, cut = MapCheck.of(field, robot), Cut.of(field, robot)
+        sentence = title(check)
     with top:
         pieces.headline(f"Measured map · {bench.map_name}", sentence)
     if field is not None:
-        pieces.tiles(tiles(field, model, cut, view.length))
+        pieces.tiles(tiles(field, check, cut, view.length))
     chosen = _inputs(bench, field, view.length)
     if refusal is not None:
         pieces.error(refusal)
@@ -91,80 +84,73 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
     return component, z
 
 
-def title(field: MeasuredField, model: FloatArray) -> str:
-    """How far the joint ``model`` (k, 3, 3) m/N in force is from what was measured, at the measured points."""
-    gap = gap_at_points(field, model)
-    if not np.isfinite(gap).any():
+def title(check: MapCheck) -> str:
+    """How far the joint model in force is from what was measured, at the measured points."""
+    if not check.seen:
         return "The joint model does not reach any of the measured points."
-    mean = float(np.nanmean(gap))
-    bias = float(np.nanmean(_sizes(field.C) - _sizes(model)))
-    word = "higher" if bias > 0 else "lower"
-    far = format_percent(mean)
+    word, far = "higher" if check.softer else "lower", format_percent(check.mean)
     return f"Measured and calculated compliances differ by {far} on average; the measured ones are {word}."
 
 
-def model_at_points(field: MeasuredField, robot: Robot) -> FloatArray:
-    """C (k, 3, 3) m/N of the joint model at the measured poses, NaN where not reached."""
-    solved = inverse_kinematics(robot, pose_from_world(np.concatenate([field.p, field.AB], axis=1)))
-    return cartesian_compliance(robot, solved.theta)
-
-
-def gap_at_points(field: MeasuredField, model: FloatArray) -> FloatArray:
-    """(k,) |C measured - C model| / |C measured|, Frobenius."""
-    return _sizes(field.C - model) / _sizes(field.C)
-
-
-def _sizes(C: FloatArray) -> FloatArray:
-    return np.linalg.norm(C, axis=(-1, -2))
-
-
-def tiles(field: MeasuredField, model: FloatArray, cut: SimulationResult | None, unit: str) -> list[pieces.Tile]:
+def tiles(field: MeasuredField, check: MapCheck, cut: Cut, unit: str) -> list[pieces.Tile]:
     """Points, difference to the joint model, symmetry, and the cut by both methods."""
-    gap = gap_at_points(field, model)
     lines = field.lines
     shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
-    seen = bool(np.isfinite(gap).any())
-    worst = int(np.nanargmax(gap)) if seen else 0
     digits = 0 if unit == "mm" else 1
-    where = format_many(field.p[worst], unit, digits, with_unit=False)
-    text, note = cut_words(field, cut, unit)
+    where = format_many(field.p[check.worst], unit, digits, with_unit=False)
+    text, note = cut.words(unit)
     return [
         pieces.Tile("Measured points", f"{len(field.p)}", f"{shape}, three ways each", kind=field.provenance.kind),
         pieces.Tile(
             "Off the joint model",
-            format_percent(np.nanmean(gap), 1) if seen else NOT_REACHED,
-            f"most at ({where}) {unit_label(unit)}: {format_percent(gap[worst])}",
+            format_percent(check.mean, 1) if check.seen else NOT_REACHED,
+            f"most at ({where}) {unit_label(unit)}: {format_percent(check.gap[check.worst])}",
         ),
         pieces.Tile("Asymmetry", format_percent(field.asymmetry.mean(), 1), "of |C|, on average"),
         pieces.Tile("The cut by the map", text, note),
     ]
 
 
-def along_cut(field: MeasuredField, cut: SimulationResult) -> FloatArray:
-    """(m, 3) m: deflection along the path by the measured map; NaN where the map does not answer."""
-    p = cut.setup.in_base(cut.path.p)
-    return field.deflection(p, cut.F)
+@dataclass(frozen=True)
+class Cut:
+    """The project's cut by the map and by the joint model; None where that cannot be simulated."""
+
+    by_map: SimulationResult | None
+    by_joints: SimulationResult | None
+
+    @classmethod
+    def of(cls, field: MeasuredField, robot: Robot) -> Cut:
+        """Both, as the simulation would have them in force."""
+        return cls(_simulated(robot, field), _simulated(robot, None))
+
+    @property
+    def covered(self) -> bool:
+        """Whether the map says anything of the cut."""
+        return self.by_map is not None and self.by_map.worst >= 0
+
+    def words(self, unit: str) -> tuple[str, str]:
+        """Largest deviation at feed by the map, beside the joint model's; why not where there is none."""
+        if self.by_joints is None or self.by_joints.worst < 0:
+            return "not computed", "the cut is not reached"
+        if self.by_map is None or not self.covered:
+            return "not covered", "the cut lies outside the measured region"
+        digits = 3 if unit == "mm" else 4
+        beside = f"{format_si(self.by_joints.max_deviation, unit, digits)} by the joint model"
+        missing = int((self.by_joints.judged & ~np.isfinite(self.by_map.deviation)).sum())
+        if missing:
+            beside += f"; {missing} of {int(self.by_joints.judged.sum())} points not covered"
+        banded = uncertainty.tile_text(self.by_map, unit)
+        if banded:
+            return banded, f"95 % by the map's own errors; {beside}"
+        return format_si(self.by_map.max_deviation, unit, digits), beside
 
 
-def cut_words(field: MeasuredField, cut: SimulationResult | None, unit: str) -> tuple[str, str]:
-    """Largest deviation at feed by the map, beside the joint model's; why not where there is none."""
-    if cut is None or cut.worst < 0:
-        return "not computed", "the cut is not reached"
-    size = np.linalg.norm(along_cut(field, cut), axis=1)
-    size[~cut.judged] = np.nan
-    if not np.isfinite(size).any():
-        return "not covered", "the cut lies outside the measured region"
-    digits = 3 if unit == "mm" else 4
-    missing = int((cut.judged & ~np.isfinite(size)).sum())
-    beside = f"{format_si(cut.max_deviation, unit, digits)} by the joint model"
-    if missing:
-        beside += f"; {missing} of {int(cut.judged.sum())} points not covered"
-    worst = int(np.nanargmax(size))
-    sure = uncertain_by_map(field, cut.setup.in_base(cut.path.p[worst]), cut.F[worst])
-    half = float(sure.half_along(sure.delta / np.linalg.norm(sure.delta)))
-    if not np.isfinite(half):
-        return format_si(float(size[worst]), unit, digits), beside
-    return uncertainty.band_text(float(size[worst]), half, unit), f"95 % by the map's own errors; {beside}"
+def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | None:
+    setup = session.project().setup
+    try:
+        return cached.result(setup.replace(measured_map=field, **({} if setup.robot == robot else {"robot": robot})))
+    except RobomillError:
+        return None
 
 
 def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
@@ -229,46 +215,44 @@ def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, A
     }
 
 
-def _cut(field: MeasuredField, cut: SimulationResult | None, unit: str, dark: bool) -> None:
+def _cut(field: MeasuredField, cut: Cut, unit: str, dark: bool) -> None:
     """The project's cut by both methods: along the path, and its worst point."""
-    if cut is None or cut.worst < 0:
+    by_map, by_joints = cut.by_map, cut.by_joints
+    if by_joints is None or by_joints.worst < 0:
         return
-    mapped = along_cut(field, cut)
-    if not np.isfinite(mapped[cut.judged]).any():
+    if by_map is None or not cut.covered:
         pieces.note("The project's cut lies outside the measured region: the map does not answer there.")
         return
     left, right = pieces.split([1.5, 1], "map-cut")
-    blank = np.where(cut.judged, 1.0, np.nan)
-    s = from_si(cut.path.s, unit)
-    by_map = from_si(np.linalg.norm(mapped, axis=1) * blank, unit)
-    by_joints = from_si(cut.deviation * blank, unit)
+    blank = np.where(by_joints.judged, 1.0, np.nan)
+    s, one, other = (from_si(v, unit) for v in (by_map.path.s, by_map.deviation * blank, by_joints.deviation * blank))
     with left, st.container(border=True, height="stretch"):
         st.markdown("**The project's cut by both**")
         pieces.figure(
-            both_figure(s, by_map, by_joints, unit, dark=dark),
+            both_figure(s, one, other, unit, dark=dark),
             "ident-both",
             name="cut-by-map",
-            table=lambda: {f"station_{unit}": s, f"by_map_{unit}": by_map, f"by_joints_{unit}": by_joints},
+            table=lambda: {f"station_{unit}": s, f"by_map_{unit}": one, f"by_joints_{unit}": other},
             caption="Size of the deviation along the path.",
             alt="Deviation along the path by map and joint model.",
         )
     with right, st.container(border=True, height="stretch"):
-        st.markdown(f"**At its worst, line {cut.worst_block}**")
-        digits = 3 if unit == "mm" else 4
-        rows = [
-            (axis.upper(), format_si(float(a), unit, digits, sign=True), format_si(float(b), unit, digits, sign=True))
-            for axis, a, b in zip("xyz", mapped[cut.worst], cut.delta[cut.worst], strict=True)
-        ]
+        i, digits = by_joints.worst, 3 if unit == "mm" else 4
+        st.markdown(f"**At its worst, line {by_joints.worst_block}**")
         head = f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
-        body = "".join(f'<tr><td>{q}</td><td class="n">{a}</td><td class="n">{b}</td></tr>' for q, a, b in rows)
+        body = "".join(
+            f"<tr><td>{axis}</td>"
+            + "".join(f'<td class="n">{format_si(float(v), unit, digits, sign=True)}</td>' for v in values)
+            + "</tr>"
+            for axis, *values in zip("XYZ", by_map.delta[i], by_joints.delta[i], strict=True)
+        )
         st.html(
             f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
             f"{body}</table>"
         )
-        turned = field.turned(cut.setup.in_base(cut.path.p), cut.path.k @ cut.setup.T_MW[:3, :3].T)[cut.judged]
-        if turned.max() > TURNED:
-            far = format_si(float(turned.max()), "deg", 1)
-            pieces.note(f"The path's tool stands up to {far} off the one that was measured, which the map cannot know.")
+        for finding in by_map.notes:
+            if finding.code == "map-axis":
+                pieces.note(finding.sentence)
 
 
 def _use(field: MeasuredField) -> None:

@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.identification.plan import PathLoad, Plan, box_candidates, next_best
+from robomill.identification.plan import MARGIN, PathLoad, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
@@ -23,7 +23,6 @@ from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import gain_figure
 
 GOALS = {"joint": "One joint", "all": "All of them", "path": "The project's cut"}
-MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 
 
 def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
@@ -118,10 +117,7 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     key = ("plan", id(result), bench.goal, bench.goal_joint, setup, bench.count, bench.load, bench.tilt)
 
     def make() -> tuple[IdentificationResult, Plan]:
-        tips = tests.tool_poses(robot)[:, :3, 3]
-        found = box_candidates(
-            robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=bench.tilt, load=bench.load
-        )
+        found = candidates_around(robot, tests, tilt=bench.tilt, load=bench.load)
         # The fit is kept beside the plan so that its identity stays its own.
         return result, next_best(robot, tests, result, found, count=bench.count, goal=goal)
 

@@ -72,14 +72,14 @@ def unseen(result: IdentificationResult) -> None:
     if result.unseen_joints:
         for joint in result.unseen_joints:
             st.warning(joint.sentence, icon=":material/visibility_off:")
-    elif result.has_joints and not words.is_single(result):
+    elif result.has_joints and not result.single:
         st.info(result.explain(result.weakest_joint), icon=":material/lightbulb:")
 
 
 def _noise(result: IdentificationResult) -> str:
     if not np.isfinite(result.noise):
         return "an unknown spread"
-    return format_si(result.noise, "urad" if words.is_single(result) else "um", 1)
+    return format_si(result.noise, "urad" if result.single else "um", 1)
 
 
 def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
@@ -115,7 +115,7 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
 
 def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
     """Residual of each test, what does not fit, and the click that leaves it out."""
-    length = "mrad" if words.is_single(result) else "mm"
+    length = "mrad" if result.single else "mm"
     options = {length: f"in {length}", "%": "in % of the test"}
     with st.container(border=True):
         picked = inputs.pick("Residuals", "identification.residual", options, look=inputs.HIDDEN)
@@ -128,7 +128,7 @@ def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
         odd = np.isin(result.row, [o.row for o in result.outliers])
         note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
         pieces.figure(
-            residuals_figure(result.row, drawn, odd, picked, dark=dark),
+            residuals_figure(result.row, drawn, odd, picked, result.components, dark=dark),
             f"ident-residuals-{picked}",
             name="residuals",
             table=lambda: words.residual_columns(result),
@@ -144,7 +144,7 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
         st.info("Every test fits the others; nothing is left out.", icon=":material/check_circle:")
         return
     if rows:
-        unit = "urad" if words.is_single(result) else "um"
+        unit = "urad" if result.single else "um"
         named = "; ".join(
             f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {format_number(o.times, 0)} times the usual"
             for o in result.outliers[:6]

@@ -136,21 +136,15 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
 
 def residual_columns(result: IdentificationResult) -> dict[str, Any]:
     """One row a test: residual by component (mm; mrad for single joints), its size, its share, times off."""
-    single = is_single(result)
-    unit, names = ("mrad", [""]) if single else ("mm", ["x_", "y_", "z_"])
+    unit = "mrad" if result.single else "mm"
     flagged = {o.row: o.times for o in result.outliers}
     columns: dict[str, Any] = {"row": result.row}
-    for i, name in enumerate(names):
-        columns[f"residual_{name}{unit}"] = from_si(result.residual[:, i], unit)
+    for name, values in zip(result.components, result.residual.T, strict=True):
+        columns["_".join(filter(None, ("residual", name.replace(" ", ""), unit)))] = from_si(values, unit)
     columns[f"size_{unit}"] = from_si(sizes(result), unit)
     columns["share_of_measured_%"] = from_si(result.residual_share, "%")
     columns["times_the_usual"] = [flagged.get(int(r), np.nan) for r in result.row]
     return columns
-
-
-def is_single(result: IdentificationResult) -> bool:
-    """Whether the tests were of one joint at a time."""
-    return result.residual.shape[1] == 1
 
 
 def sizes(result: IdentificationResult) -> FloatArray:
@@ -171,11 +165,8 @@ def summary(tests: LoadTests | JointTests) -> str:
 
 def weakest(result: IdentificationResult) -> tuple[str, float]:
     """Label of the joint known least, and half its 95 % interval as a share of its value."""
-    joint = result.weakest_joint
-    k = next(i for i, p in enumerate(result.labels) if p.joint == joint)
-    value = result.parameters[k]
-    half = float(np.ptp(result.parameter_ci95[k])) / 2 if np.isfinite(result.parameter_stderr[k]) else np.inf
-    return result.labels[k].label, half / value if value > 0 else float("inf")
+    k = result.weakest
+    return result.labels[k].label, float(result.relative_half[k])
 
 
 def within(half: float) -> str:
@@ -186,7 +177,7 @@ def within(half: float) -> str:
 def title(result: IdentificationResult) -> str:
     """The page's one sentence."""
     cv = result.cv_relative_error
-    what = "readings" if is_single(result) else "poses"
+    what = "readings" if result.single else "poses"
     said = (
         f"These tests predict {what} left out to {format_si(cv, '%', 1)}"
         if np.isfinite(cv)
@@ -203,14 +194,13 @@ def title(result: IdentificationResult) -> str:
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
     """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
     cv, inside = result.cv_relative_error, in_sample(result)
-    single = is_single(result)
+    single = result.single
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
     least = Tile("Least known joint", "none", "this model has no joints")
     if result.has_joints:
         label, half = weakest(result)
-        k = next(i for i, p in enumerate(result.labels) if p.label == label)
-        unit = unit_of(result.labels[k], joint_unit)
-        low, high = interval(result.parameter_ci95[k], unit)
+        unit = unit_of(result.labels[result.weakest], joint_unit)
+        low, high = interval(result.parameter_ci95[result.weakest], unit)
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
         least = Tile(f"Least known: {label}", within(half), note if np.isfinite(half) else "these tests do not see it")
     odd = len(result.outliers)
