@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import ndtri, stdtrit
 
 from robomill.arrays import FloatArray
@@ -21,6 +22,12 @@ def quantile(dof: int | None, level: float = LEVEL) -> float:
     if dof is None:
         return float(ndtri(upper))
     return float(stdtrit(dof, upper)) if dof > 0 else float("inf")
+
+
+def half_width(std: ArrayLike, dof: int | None, level: float = LEVEL) -> FloatArray:
+    """(...) half a two-sided interval for standard deviations (...); infinite where nothing was left to judge by."""
+    t, std = quantile(dof, level), np.asarray(std, dtype=np.float64)
+    return np.asarray(t * std) if np.isfinite(t) else np.full_like(std, np.inf)
 
 
 def bisquare(u: FloatArray) -> FloatArray:

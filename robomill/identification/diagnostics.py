@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.identification.confidence import quantile
+from robomill.identification.confidence import half_width
 from robomill.identification.least_squares import Fit, robust_fit, triangle
 from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
@@ -16,6 +16,7 @@ from robomill.units import format_percent, format_si
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
+MISSES = 0.05  # share of the displacement, on poses left out, from which a model is said to miss it
 COLLINEAR = 1e-10  # 1 - |cosine| below which two columns are one
 
 
@@ -128,7 +129,7 @@ def half_share(fit: Fit, k: int) -> float:
     """Half the 95 % interval of parameter ``k`` as a share of its estimate."""
     if fit.dof <= 0 or not fit.x[k] > 0:
         return float("inf")
-    return float(quantile(fit.dof) * fit.stderr[k] / fit.x[k])
+    return float(half_width(fit.stderr[k], fit.dof) / fit.x[k])
 
 
 def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict[str, str]) -> list[Finding]:
@@ -162,6 +163,17 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
         )
         found.append(Finding("warning", 0, text, code="above-stated-noise"))
     return found
+
+
+def model_findings(error: float) -> tuple[Finding, ...]:
+    """Said where a model misses poses left out by much (a share): its intervals know what chance does, not that."""
+    if not error > MISSES:
+        return ()
+    text = (
+        f"Poses left out are missed by {format_si(error, '%', 0)}: springs or points may be missing from this model, "
+        "and then a compliance can be off by more than its interval says, which knows scatter only."
+    )
+    return (Finding("warning", 0, text, code="model-misses"),)
 
 
 def _listed(labels: tuple[str, ...]) -> str:

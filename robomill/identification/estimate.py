@@ -66,12 +66,18 @@ def identify(
     missed = candidates.missed()
     result = _result(robot, tests, choice, fitted)
     offer = offer_of(robot, tests, choice, treatment)
+    error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
     points = found_points(robot, stated, treatment.freed, fitted.found, tests.force_point - stated.force_point)
     return replace(
         result,
-        findings=(*result.findings, *point_findings(points), *(() if offer is None else (offer.finding(),))),
+        findings=(
+            *result.findings,
+            *diagnostics.model_findings(error),
+            *point_findings(points),
+            *(() if offer is None else (offer.finding(),)),
+        ),
         offer=offer,
-        cv_relative_error=headline(relative_by_pose(fitted.system, missed.error, fitted.weights)),
+        cv_relative_error=error,
         points=points,
         band=_band(_errors(robot, tests, choice, fitted, missed), result.dof),
         votes=tuple(map(tuple, candidates.votes())) if treatment.bending == AUTO else (),

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, frozen
-from robomill.identification.confidence import quantile
+from robomill.identification.confidence import half_width
 from robomill.identification.load_test import LoadTests
 from robomill.identification.points import Point, PointFit
 from robomill.provenance import Finding
@@ -47,7 +48,7 @@ class FoundPoint:
     def ci95(self) -> FloatArray:
         """(3, 2) m, the interval of each coordinate in the flange; infinite where it is not seen."""
         R = self.T_FT[:3, :3]
-        half = self._t * np.sqrt(np.nan_to_num(np.diag(R @ self.covariance @ R.T), nan=np.inf))
+        half = self._half(np.diag(R @ self.covariance @ R.T))
         return np.stack([self.in_flange - half, self.in_flange + half], axis=-1)
 
     @property
@@ -58,22 +59,20 @@ class FoundPoint:
     @property
     def off_half(self) -> float:
         """m, half the 95 % interval of the distance from the stated point, along it; infinite where it is not seen."""
-        if self.off == 0.0 or np.isnan(self.covariance).any():
-            return float("inf") if np.isnan(self.covariance).any() else 0.0
-        along = self.shift / self.off
-        return float(self._t * np.sqrt(along @ self.covariance @ along))
+        along = self.shift / self.off if self.off > 0.0 else np.zeros(3)
+        return float(self._half(along @ self.covariance @ along))
 
     @property
     def flat(self) -> FloatArray | None:
         """(3,) unit direction in {T} along which these tests hardly hold the point, None where all do."""
-        if np.isnan(self.covariance).any():
+        if not np.isfinite(self._half(np.diag(self.covariance))).all():
             return np.full(3, np.nan)
         values, vectors = np.linalg.eigh(self.covariance)
-        return np.asarray(vectors[:, -1]) if self._t * np.sqrt(values[-1]) > FLAT else None
+        return np.asarray(vectors[:, -1]) if self._half(values[-1]) > FLAT else None
 
-    @property
-    def _t(self) -> float:
-        return quantile(self.dof)
+    def _half(self, variance: ArrayLike) -> FloatArray:
+        """(...) m, half the interval for variances (...) m^2; infinite where they are not known."""
+        return half_width(np.sqrt(np.nan_to_num(variance, nan=np.inf)), self.dof)
 
     def sentence(self) -> str:
         """How far the point is from the stated one."""

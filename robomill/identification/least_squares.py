@@ -20,7 +20,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.identification.confidence import BISQUARE, LEVEL, MAD, bisquare, quantile
+from robomill.identification.confidence import BISQUARE, LEVEL, MAD, bisquare, half_width
 
 NULL = 1e-9  # singular values below this share of the largest (columns scaled) count as zero
 ROUNDS = 30
@@ -53,8 +53,7 @@ class Fit:
 
     def interval(self, signed: BoolArray, level: float = LEVEL) -> FloatArray:
         """(p, 2) intervals; cut at zero unless ``signed``; they always hold the estimate."""
-        t = quantile(self.dof, level)
-        half = np.where(self.stderr > 0, t * self.stderr, 0.0) if np.isfinite(t) else np.full(len(self.x), np.inf)
+        half = half_width(self.stderr, self.dof, level)
         low, high = np.minimum(self.free - half, self.x), np.maximum(self.free + half, self.x)
         return np.stack([np.where(signed, low, np.maximum(low, 0.0)), high], axis=-1)
 

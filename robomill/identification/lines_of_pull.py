@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.identification.confidence import BISQUARE, bisquare, quantile
+from robomill.identification.confidence import BISQUARE, bisquare
 from robomill.identification.load_test import LoadTests
 from robomill.robot.model import Robot
 
@@ -62,11 +62,6 @@ class LinesOfPull:
     suspects: tuple[int, ...] = ()
     pushes: tuple[int, ...] = ()
     dof: int = 0
-
-    @property
-    def t(self) -> float:
-        """Quantile of a 95 % interval."""
-        return quantile(self.dof)
 
 
 class _Lines:

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
-from robomill.identification.confidence import quantile
+from robomill.identification.confidence import half_width
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
@@ -179,7 +179,7 @@ def next_best(
     path = [float(np.sqrt(np.trace(weight @ Q))) if aim.path and weight is not None else np.nan for Q in (before, P)]
     errors = [np.sqrt(np.diag(Q)) / scale for Q in (before, P)]
     errors[0][~np.isfinite(result.parameter_stderr)] = np.inf
-    half = [quantile(result.dof + 3 * added) * error for added, error in zip((0, count), errors, strict=True)]
+    half = [half_width(error, result.dof + 3 * added) for added, error in zip((0, count), errors, strict=True)]
     theta = candidates.theta[picked]
     return Plan(
         theta=frozen(theta),

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.deflection import displacement
 from robomill.errors import RobomillError
-from robomill.identification.confidence import LEVEL, quantile
+from robomill.identification.confidence import LEVEL, half_width
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
@@ -51,13 +51,13 @@ class Uncertain:
 
     def half_width(self, level: float = LEVEL) -> FloatArray:
         """(..., 3) m: delta +- this holds the truth with that probability."""
-        return quantile(self.dof, level) * self.std
+        return half_width(self.std, self.dof, level)
 
     def half_along(self, direction: ArrayLike, level: float = LEVEL) -> FloatArray:
         """(...) m: the same of the component along unit vectors (..., 3)."""
         u = np.asarray(direction, dtype=np.float64)
         variance = np.einsum("...i,...ij,...j->...", u, self.covariance, u)
-        return quantile(self.dof, level) * np.sqrt(variance)
+        return half_width(np.sqrt(variance), self.dof, level)
 
 
 def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Knowledge) -> Uncertain:

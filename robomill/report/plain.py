@@ -144,7 +144,10 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         )
     if record["band"] is not None:
         band = record["band"]
-        lines.append(f"95 % bands: {band['made_of']}; they hold {100 * band['held']:.0f} % of what was left out")
+        held = "too little was left out to check them"
+        if band["held"] is not None:
+            held = f"they hold {100 * band['held']:.0f} % of what was left out"
+        lines.append(f"95 % bands: {band['made_of']}; {held}")
     if record["unseen_joints"]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
     if record["outliers"]:

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+import robomill as rm
+
 SAMPLES = Path(__file__).resolve().parents[2] / "samples" / "robots"
 
 
@@ -80,6 +82,55 @@ class Arm:
                 angle = c * float(u @ np.cross(p - o, F))
                 moved += about(u, angle) @ (g - o) + o - g
         return moved
+
+
+class StandardArm(Arm):
+    """The same with rows of the standard convention: a joint turns about the axis behind which its row stands."""
+
+    def frames(self, q):
+        T, out = np.eye(4), []
+        for (alpha, a, d, offset), sign, angle in zip(self.rows, self.sign, q, strict=True):
+            turned = T @ homogeneous(about([0, 0, 1], sign * angle + offset), [0, 0, 0])
+            out.append(turned)
+            T = turned @ homogeneous(about([1, 0, 0], 0.0), [a, 0, d]) @ homogeneous(about([1, 0, 0], alpha), [0, 0, 0])
+        return [*out, T]
+
+
+def ur_like():
+    """Six joints with an offset wrist, lengths of a UR10, modified D-H."""
+    a, d = [0, 0, -0.612, -0.5723, 0, 0], [0.1273, 0, 0, 0.163941, 0.1157, 0.0922]
+    alpha = np.radians([0, 90, 0, 0, 90, -90])
+    C_theta = np.array([1.2, 1.0, 1.5, 4.0, 4.0, 5.0]) * 1e-5
+    limits = np.radians(np.tile([-180.0, 180.0], (6, 1)))
+    return Arm(
+        np.stack([alpha, a, d, np.zeros(6)], axis=-1), np.ones(6), homogeneous(np.eye(3), [0, 0, 0.15]), C_theta, limits
+    )
+
+
+def random_six(seed):
+    """Six joints about axes that nobody would build."""
+    rng = np.random.default_rng(seed)
+    rows = np.stack(
+        [rng.uniform(-1.5, 1.8, 6), rng.uniform(0.1, 0.8, 6), rng.uniform(-0.4, 0.6, 6), rng.uniform(-1, 1, 6)], axis=-1
+    )
+    rows[0, :2] = 0.0
+    limits = np.radians(np.tile([-170.0, 170.0], (6, 1)))
+    return Arm(rows, np.ones(6), homogeneous(np.eye(3), [0, 0, 0.2]), 10 ** rng.uniform(-6.7, -5.5, 6), limits)
+
+
+def as_robot(arm, name):
+    """The product's robot with the simulator's numbers."""
+    return rm.Robot(
+        name=name,
+        convention="standard" if isinstance(arm, StandardArm) else "modified",
+        alpha=arm.rows[:, 0],
+        a=arm.rows[:, 1],
+        d=arm.rows[:, 2],
+        theta_offset=arm.rows[:, 3],
+        limits_all=arm.limits,
+        C_theta_all=arm.C_theta,
+        T_tool=arm.T_FT,
+    )
 
 
 @dataclass(frozen=True, eq=False)
