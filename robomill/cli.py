@@ -324,7 +324,7 @@ def _theta(robot: Any, text: str) -> Any:
 
     what = f"the {robot.n} joint coordinates of {robot.name}"
     values = np.array(_numbers(text, "--theta-deg", robot.n, what))
-    return np.where(robot.chain.prismatic, to_si(values, "mm"), to_si(values, "deg"))
+    return np.array([to_si(value, unit) for value, unit in zip(values, robot.joint_units, strict=True)])
 
 
 def _wholes(text: str, option: str) -> tuple[int, ...]:

@@ -42,6 +42,7 @@ class Quantity:
     shape, axes   of an array (None: any length) and the names of its entries in boxes
     options   of a choice: code -> title
     boxed     whether the page offers a box for it
+    sliding   the unit of what belongs to a joint that slides, where it is another than that of one that turns
     name, key   of the field, and in files (with the unit in it)
     default     where nothing is given, unless it is ``needed``
     """
@@ -62,10 +63,15 @@ class Quantity:
     axes: Sequence[str] = ()
     options: Mapping[str, str] = field(default_factory=dict)
     boxed: bool = True
+    sliding: str | None = None
     name: str = ""
     key: str = ""
     default: Any = None
     needed: bool = True
+
+    def of_joint(self, slides: bool) -> Quantity:
+        """Of a joint that turns or slides, in its unit."""
+        return replace(self, unit=self.sliding) if slides and self.sliding else self
 
     def digits_in(self, unit: str) -> int:
         """Decimals that show in ``unit`` what ``digits`` show in the unit of the edge."""
@@ -102,7 +108,7 @@ class Quantity:
         if value is None and self.optional:
             return None
         found = _CONVERTERS[self.kind](self, value, error, who)
-        if self.kind in ("number", "array", "whole") and not np.all(self._allowed(found)):
+        if self.kind in ("number", "array", "whole") and not np.all(self.allows(found)):
             raise self._refusal(self._offending(found), error, who)
         return found
 
@@ -114,7 +120,7 @@ class Quantity:
     def _highest(self) -> float | None:
         return self.below if self.below is not None else self.most
 
-    def _allowed(self, value: Any) -> Any:
+    def allows(self, value: Any) -> Any:
         """Where ``value`` lies within the bounds; NaN and infinity never do."""
         good = np.isfinite(value)
         if self.above is not None:
@@ -129,7 +135,7 @@ class Quantity:
 
     def _offending(self, value: Any) -> str:
         """The first number out of bounds, as people read it."""
-        worst = float(np.ravel(value)[np.flatnonzero(~np.ravel(self._allowed(value)))[0]])
+        worst = float(np.ravel(value)[np.flatnonzero(~np.ravel(self.allows(value)))[0]])
         return self.short(worst) if math.isfinite(worst) else str(worst)
 
     def short(self, value: Any) -> str:

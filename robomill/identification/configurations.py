@@ -106,8 +106,7 @@ def checked(robot: Robot, theta: FloatArray, row: IntArray) -> None:
     if not outside.any():
         return
     k, i = (int(v) for v in np.argwhere(outside)[0])
-    unit = "mm" if robot.chain.prismatic[i] else "deg"
-    low, high, found = (format_si(float(v), unit) for v in (lower[i], upper[i], theta[k, i]))
+    low, high, found = (format_si(float(v), robot.joint_units[i]) for v in (lower[i], upper[i], theta[k, i]))
     raise LoadTestError(
         f"Row {row[k]}, theta{i + 1}: {found} is outside joint {i + 1}'s limits of {low} to {high}; "
         "check the angle, its sign, or the robot's limits.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +11,15 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.io.tables import MISSING, Table, parse_toml
+from robomill.quantities import quantities
 from robomill.robot.model import USER_SET, Robot
 
 FORMAT, VERSION = "robomill robot", 1
 # Accepted suffixes of a key and the unit each names. The writer takes the first that gives the number back exactly.
 LENGTH = {"mm": "mm", "m": "m"}
 ANGLE = {"deg": "deg", "rad": "rad"}
+SPELLED = {"mm": LENGTH, "deg": ANGLE}
+STEMS = {"limits_all": "limits", "blocked": "blocked_at"}  # of keys that are not called as their field
 SI_COMPLIANCE, STIFFNESS = "C_theta_SI", "k_theta_Nm_per_rad"
 COMPLIANCE = {"C_theta_1e-7_rad_per_Nm": "1e-7 rad/(N m)", SI_COMPLIANCE: "1", STIFFNESS: "1"}
 TURNS, SLIDES = "revolute", "prismatic"
@@ -58,21 +61,22 @@ def _columns(joints: Sequence[Table]) -> dict[str, list[Any]]:
 
 
 def _joint(table: Table) -> dict[str, Any]:
-    prismatic = table.choice("type", (TURNS, SLIDES), TURNS) == SLIDES
-    units = LENGTH if prismatic else ANGLE
+    slides = table.choice("type", (TURNS, SLIDES), TURNS) == SLIDES
     table.asked.add("name")  # for whoever reads the file
-    row = {
-        "prismatic": prismatic,
-        "alpha": table.measure("alpha", ANGLE),
-        "a": table.measure("a", LENGTH),
-        "d": table.measure("d", LENGTH),
-        "theta_offset": table.measure("theta_offset", ANGLE),
-        "sign": table.number("sign", "1", 1.0),
-        "limits_all": table.measures("limits", units, 2, MISSING, "[lower, upper]"),
-        "blocked": table.measure("blocked_at", units, np.nan),
-    }
+    row: dict[str, Any] = {"prismatic": slides, "sign": table.number("sign", "1", 1.0)}
+    for name, stem, spelled in written(slides):
+        if name == "limits_all":
+            row[name] = table.measures(stem, spelled, 2, MISSING, "[lower, upper]")
+        else:
+            row[name] = table.measure(stem, spelled, np.nan if name == "blocked" else MISSING)
     table.finish()
     return row
+
+
+def written(slides: bool) -> list[tuple[str, str, Mapping[str, str]]]:
+    """(field, stem of its key, how the key may end and the unit of each) of what a joint's table says in units."""
+    found = [declared.of_joint(slides) for declared in quantities(Robot).values()]
+    return [(each.name, STEMS.get(each.name, each.name), SPELLED[each.unit]) for each in found if each.unit in SPELLED]
 
 
 def _compliance(table: Table, rows: int) -> dict[str, Any]:

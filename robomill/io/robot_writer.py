@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.io.robot_reader import ANGLE, FORMAT, LENGTH, VERSION
+from robomill.io.robot_reader import FORMAT, LENGTH, SLIDES, TURNS, VERSION, written
 from robomill.io.tables import exactly, toml_value
 from robomill.robot.model import Robot
 
@@ -22,21 +23,11 @@ def robot_to_toml(robot: Robot) -> str:
         f'convention = "{robot.convention}"',
     ]
     for i in range(robot.rows):
-        prismatic = bool(robot.prismatic[i])
-        units = LENGTH if prismatic else ANGLE
-        lines += [
-            "",
-            "[[joint]]",
-            f'type = "{"prismatic" if prismatic else "revolute"}"',
-            _entry("alpha", robot.alpha[i], ANGLE),
-            _entry("a", robot.a[i], LENGTH),
-            _entry("d", robot.d[i], LENGTH),
-            _entry("theta_offset", robot.theta_offset[i], ANGLE),
-            f"sign = {int(robot.sign[i])}",
-            _entry("limits", robot.limits_all[i], units),
-        ]
-        if not robot.free[i]:
-            lines.append(_entry("blocked_at", robot.blocked[i], units))
+        slides = bool(robot.prismatic[i])
+        lines += ["", "[[joint]]", f'type = "{SLIDES if slides else TURNS}"', f"sign = {int(robot.sign[i])}"]
+        for name, stem, spelled in written(slides):
+            value = getattr(robot, name)[i]
+            lines += [] if name == "blocked" and robot.free[i] else [_entry(stem, value, spelled)]
     for name, T in (("base", robot.T_base), ("tool", robot.T_tool)):
         lines += ["", f"[{name}]", _entry("xyz", T[:3, 3], LENGTH), f"rotation = {toml_value(T[:3, :3].tolist())}"]
     lines += ["", "[compliance]", f"use = {toml_value(robot.compliance_set)}"]
@@ -59,7 +50,7 @@ def _key(text: str) -> str:
     return text if text and all(c.isascii() and (c.isalnum() or c in "_-") for c in text) else toml_value(text)
 
 
-def _entry(stem: str, value: Any, units: dict[str, str]) -> str:
+def _entry(stem: str, value: Any, units: Mapping[str, str]) -> str:
     """``stem_<suffix> = value``, in the first unit that gives every number back to the last bit."""
     array = np.asarray(value, dtype=np.float64)
     for suffix, unit in units.items():

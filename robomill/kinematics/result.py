@@ -79,7 +79,7 @@ def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
 def _past_limit(robot: Robot, theta: FloatArray, over: FloatArray) -> str:
     joint = int(np.argmax(np.abs(over)))
     limit = robot.limits[joint, 0 if over[joint] < 0 else 1]
-    unit = "mm" if robot.chain.prismatic[joint] else "deg"
+    unit = robot.joint_units[joint]
     return (
         f"joint {robot.joint_numbers[joint]} would need {format_si(theta[joint], unit, 1)}, "
         f"{format_si(abs(over[joint]), unit, 1)} past its limit of {format_si(limit, unit, 1)}"

@@ -48,8 +48,8 @@ def shown(value: ArrayLike, unit: str) -> Any:
 
 def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:
     """(..., n) joint coordinates in degrees, millimetres for prismatic joints."""
-    prismatic = robot.chain.prismatic
-    return np.where(prismatic, from_si(theta, "mm"), from_si(theta, "deg"))
+    shown = [from_si(theta[..., i], unit) for i, unit in enumerate(robot.joint_units)]
+    return np.stack(shown, axis=-1)
 
 
 def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:

@@ -8,13 +8,14 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError
-from robomill.units import format_si, from_si
+from robomill.quantities import Quantity
 
 MIN_JOINTS, MAX_JOINTS = 2, 7
 
 
-def column(value: Any, name: str, rows: int | None, where: str) -> FloatArray:
-    """A table column (rows,) of finite numbers."""
+def column(value: Any, declared: Quantity, rows: int | None, where: str, slides: BoolArray | None = None) -> FloatArray:
+    """A table column (rows,) of finite numbers within its bounds; ``slides`` (rows,) says in which unit to refuse."""
+    name = declared.label
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -22,10 +23,12 @@ def column(value: Any, name: str, rows: int | None, where: str) -> FloatArray:
     if array.ndim != 1 or (rows is not None and len(array) != rows):
         want = "one number a joint" if rows is None else f"{rows} numbers, one a joint"
         raise RobotError(f"{where}: {name}: expected {want}, found shape {array.shape}.")
-    bad = np.flatnonzero(~np.isfinite(array))
-    if bad.size:
-        found = "NaN (a missing value)" if np.isnan(array[bad[0]]) else "infinity"
-        raise RobotError(f"{where}: joint {bad[0] + 1}: {name} is {found}; give a finite number.")
+    for i in np.flatnonzero(~declared.allows(array))[:1]:
+        if not np.isfinite(array[i]):
+            found = "NaN (a missing value)" if np.isnan(array[i]) else "infinity"
+            raise RobotError(f"{where}: joint {i + 1}: {name} is {found}; give a finite number.")
+        one = declared.of_joint(slides is not None and bool(slides[i]))
+        raise RobotError(f"{where}: joint {i + 1}: {name} is {one.short(array[i])}; expected {one.expected}.")
     return array
 
 
@@ -50,23 +53,14 @@ def signs(sign: FloatArray, where: str) -> None:
         raise RobotError(f"{where}: joint {bad[0] + 1}: sign is {sign[bad[0]]:g}; it must be 1 or -1.")
 
 
-def limits(value: FloatArray, prismatic: Any, where: str) -> None:
+def limits(value: FloatArray, declared: Quantity, slides: BoolArray, where: str) -> None:
     for i, (low, high) in enumerate(value):
         if not low < high:
-            unit, label = ("mm", " mm") if prismatic[i] else ("deg", "°")
-            lo, hi = from_si(float(low), unit), from_si(float(high), unit)
+            short = declared.of_joint(bool(slides[i])).short
             raise RobotError(
-                f"{where}: joint {i + 1}: the lower limit {lo:g}{label} is not below the upper limit {hi:g}{label}; "
+                f"{where}: joint {i + 1}: the lower limit {short(low)} is not below the upper limit {short(high)}; "
                 "give them as [lower, upper]."
             )
-
-
-def compliance(value: FloatArray, name: str, where: str, prismatic: BoolArray) -> None:
-    bad = np.flatnonzero(value < 0.0)
-    if bad.size:
-        i = int(bad[0])
-        found = format_si(float(value[i]), "1e-9 m/N" if prismatic[i] else "1e-7 rad/(N m)")
-        raise RobotError(f"{where}: joint {i + 1}: {name} is {found}; a compliance cannot be negative (0 is rigid).")
 
 
 def frame(value: Any, name: str, where: str) -> FloatArray:

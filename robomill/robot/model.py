@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal
@@ -13,6 +13,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
 from robomill.provenance import UNSTATED, Provenance
+from robomill.quantities import quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
 
@@ -35,18 +36,20 @@ class Robot:
 
     name: str
     convention: Literal["standard", "modified"]
-    alpha: FloatArray
-    a: FloatArray
-    d: FloatArray
-    theta_offset: FloatArray
-    limits_all: FloatArray
-    C_theta_all: FloatArray
+    alpha: FloatArray = quantity("α", "deg", shape=(None,))
+    a: FloatArray = quantity("a", "mm", shape=(None,))
+    d: FloatArray = quantity("d", "mm", shape=(None,))
+    theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,))
+    limits_all: FloatArray = quantity("limit", "deg", shape=(None, 2), axes=("lower", "upper"), sliding="mm")
+    C_theta_all: FloatArray = quantity(
+        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N"
+    )
     title: str = ""
-    sign: FloatArray = None  # type: ignore[assignment]
+    sign: FloatArray = quantity("sign", shape=(None,), default=None)
     prismatic: BoolArray = None  # type: ignore[assignment]
     T_base: FloatArray = None  # type: ignore[assignment]
     T_tool: FloatArray = None  # type: ignore[assignment]
-    blocked: FloatArray = None  # type: ignore[assignment]
+    blocked: FloatArray = quantity("held at", "deg", shape=(None,), sliding="mm", default=None)
     compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
     compliance_set: str = USER_SET
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
@@ -58,13 +61,12 @@ class Robot:
             raise RobotError("Robot: the name is empty; give it a short name.")
         if self.convention not in ("standard", "modified"):
             raise RobotError(f"{where}: convention is {self.convention!r}; expected 'standard' or 'modified'.")
-        alpha = checks.column(self.alpha, "alpha", None, where)
-        rows = len(alpha)
+        declared = quantities(Robot)
+        rows = len(checks.column(self.alpha, declared["alpha"], None, where))
         checks.joint_count(rows, where)
-        put("alpha", frozen(alpha))
-        for key in ("a", "d", "theta_offset"):
-            put(key, frozen(checks.column(getattr(self, key), key, rows, where)))
-        put("sign", frozen(np.ones(rows) if self.sign is None else checks.column(self.sign, "sign", rows, where)))
+        put("sign", np.ones(rows) if self.sign is None else self.sign)
+        for key in ("alpha", "a", "d", "theta_offset", "sign"):
+            put(key, frozen(checks.column(getattr(self, key), declared[key], rows, where)))
         checks.signs(self.sign, where)
         prismatic = np.zeros(rows, bool) if self.prismatic is None else np.asarray(self.prismatic, dtype=bool)
         if prismatic.shape != (rows,):
@@ -85,9 +87,10 @@ class Robot:
             raise RobotError(f"{where}: limits: expected [lower, upper] for each joint, found text.") from None
         if value.shape != (rows, 2):
             raise RobotError(f"{where}: limits: expected [lower, upper] for {rows} joints, found shape {value.shape}.")
-        for side, name in enumerate(("lower limit", "upper limit")):
-            checks.column(value[:, side], name, rows, where)
-        checks.limits(value, self.prismatic, where)
+        declared = quantities(Robot)["limits_all"]
+        for side, name in enumerate(declared.axes):
+            checks.column(value[:, side], replace(declared, label=f"{name} {declared.label}"), rows, where)
+        checks.limits(value, declared, self.prismatic, where)
         object.__setattr__(self, "limits_all", frozen(value))
 
     def _check_blocked(self, rows: int, where: str) -> None:
@@ -101,14 +104,13 @@ class Robot:
         object.__setattr__(self, "blocked", frozen(value))
 
     def _check_compliance(self, rows: int, where: str) -> None:
-        C_theta = checks.column(self.C_theta_all, "compliance", rows, where)
-        checks.compliance(C_theta, "compliance", where, self.prismatic)
+        declared = quantities(Robot)["C_theta_all"]
+        C_theta = checks.column(self.C_theta_all, declared, rows, where, self.prismatic)
         object.__setattr__(self, "C_theta_all", frozen(C_theta))
         sets = {}
         for key, value in self.compliance_sets.items():
-            column = checks.column(value, f"compliance set {key!r}", rows, where)
-            checks.compliance(column, f"compliance set {key!r}", where, self.prismatic)
-            sets[key] = frozen(column)
+            named = replace(declared, label=f"{declared.label} set {key!r}")
+            sets[key] = frozen(checks.column(value, named, rows, where, self.prismatic))
         object.__setattr__(self, "compliance_sets", MappingProxyType(sets))
         if self.compliance_set != USER_SET and self.compliance_set not in sets:
             known = ", ".join(sets) or "none"
@@ -139,6 +141,12 @@ class Robot:
     def C_theta(self) -> FloatArray:
         """(n,) compliances of the free joints, rad/(N m) (m/N where prismatic)."""
         return frozen(self.C_theta_all[self.free])
+
+    @cached_property
+    def joint_units(self) -> tuple[str, ...]:
+        """The unit in which people give the coordinate of each free joint: deg, mm where it slides."""
+        limit = quantities(Robot)["limits_all"]
+        return tuple(limit.of_joint(bool(slides)).unit for slides in self.prismatic[self.free])
 
     @cached_property
     def joint_numbers(self) -> tuple[int, ...]:

@@ -22,15 +22,18 @@ from robomill.identification.knowledge import Knowledge
 from robomill.io.projects import load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.tables import parse_toml
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
-from robomill.workspace.quantities import COMPONENTS, quantities
+from robomill.workspace.quantities import COMPONENTS
+from robomill.workspace.quantities import quantities as map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
-PRISMATIC_UNITS = {"1e-7 rad/(N m)": "1e-9 m/N", "kN m/rad": "N/um"}
+COMPLIANCE = quantities(Robot)["C_theta_all"]
+PRISMATIC_UNITS = {COMPLIANCE.unit: str(COMPLIANCE.sliding), "kN m/rad": "N/um"}  # as shown for joints that turn, slide
 Point = tuple[float, float, float]
 
 
@@ -39,7 +42,7 @@ class View:
     """How the project is looked at; saved with it, but not part of the history."""
 
     units: str = "mm"
-    joint_unit: str = "1e-7 rad/(N m)"
+    joint_unit: str = COMPLIANCE.unit
     exaggeration: float = 10.0
     station: float = 0.5
     camera: str = "iso"
@@ -228,7 +231,7 @@ def _plain(value: Any) -> dict[str, Any]:
 def _looked(kind: type, table: dict[str, Any], where: str, robot: Robot) -> Any:
     """A View or a MapView from its table; every value is checked against the type of its field."""
     hints = get_type_hints(kind)
-    choices = {**CHOICES, ("maps", "quantity"): quantities(robot, "geometry")}
+    choices = {**CHOICES, ("maps", "quantity"): map_quantities(robot, "geometry")}
     for name, value in table.items():
         if name not in hints:
             raise ProjectError(f"{WHERE}: [{where}] has a key {name!r} that this robomill does not know; remove it.")

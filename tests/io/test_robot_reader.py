@@ -63,11 +63,11 @@ BAD = [
     (
         "limits_deg = [-120, 120]\n\n[[joint]]\nalpha_deg = 0",
         "limits_deg = [120, -120]\n\n[[joint]]\nalpha_deg = 0",
-        "joint 1.*lower limit 120° is not below the upper limit -120°",
+        "joint 1.*lower limit 120° is not below the upper limit −120°",
     ),
     ("limits_deg = [-110, 70]", "limits_deg = [-110]", "joint 2.*expected .lower, upper."),
     ("limits_deg = [-110, 70]", "limits_deg = [-110, nan]", "joint 2.*nan"),
-    ("7.14, 10.12", "-7.14, 10.12", "joint 1.*cannot be negative"),
+    ("7.14, 10.12", "-7.14, 10.12", "joint 1: compliance.*expected 0 .*or more"),
     ("7.14, 10.12", "10.12", "expected 5 numbers.*found 4"),
     ('use = "table_2"', 'use = "table_9"', "table_9.*table_2, table_3"),
     ("sign = -1", "sign = 0", "joint 4: sign is 0"),

@@ -131,9 +131,8 @@ def share_columns(pose: PoseReport) -> dict[str, object]:
 def _joints(pose: PoseReport) -> None:
     robot = pose.robot
     st.markdown("**Joints**")
-    prismatic = robot.prismatic[robot.free]
     rows = [
-        (f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", format_si(float(pose.theta[i]), "mm" if prismatic[i] else "deg", 2), "")
+        (f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", format_si(float(pose.theta[i]), robot.joint_units[i], 2), "")
         for i, number in enumerate(robot.joint_numbers)
     ]
     rows += [

@@ -37,8 +37,8 @@ def editors(project: Project) -> None:
                 columns={
                     "joint": st.column_config.TextColumn("#", width=34),
                     **{
-                        label: st.column_config.NumberColumn(label, format="%.6g", width=64 if "mm" in label else 54)
-                        for label in tables.GEOMETRY.values()
+                        title: st.column_config.NumberColumn(title, format="%.6g", width=64 if unit == "mm" else 54)
+                        for title, unit in ((tables.heading(each), each.unit) for each in tables.GEOMETRY.values())
                     },
                 },
                 locked=("joint",),
@@ -48,8 +48,8 @@ def editors(project: Project) -> None:
         _said(robot, "geometry")
         _said(robot, "lengths")
     with limits:
-        prismatic = bool(tables.slides(robot).any())
-        unit = "° (mm where it slides)" if prismatic else "°"
+        slides = f" ({tables.LIMIT.sliding} where it slides)" if robot.prismatic.any() else ""
+        unit = unit_label(tables.LIMIT.unit) + slides
         inputs.table(
             "limits",
             lambda: tables.limits_frame(session.project().setup.robot),
@@ -57,8 +57,10 @@ def editors(project: Project) -> None:
             inputs.Sheet(
                 columns={
                     "joint": st.column_config.TextColumn("Joint", width="small"),
-                    "lower": st.column_config.NumberColumn(f"Lower, {unit}", format="%.6g"),
-                    "upper": st.column_config.NumberColumn(f"Upper, {unit}", format="%.6g"),
+                    **{
+                        side: st.column_config.NumberColumn(f"{side.capitalize()}, {unit}", format="%.6g")
+                        for side in tables.LIMIT.axes
+                    },
                 },
                 locked=("joint",),
             ),

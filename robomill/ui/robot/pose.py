@@ -12,7 +12,6 @@ from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import Box
 from robomill.ui.project import Project
-from robomill.ui.robot.tables import slides
 from robomill.units import format_many, format_number, format_percent, format_si, from_si, to_si, unit_label
 from robomill.viz.theme import joint_colours
 
@@ -66,9 +65,8 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
             key="pose.home",
             icon=":material/home:",
         )
-    prismatic = slides(robot)[robot.free]
     for i, number in enumerate(robot.joint_numbers):
-        _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, "mm" if prismatic[i] else "deg", robot)
+        _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.provenance import Provenance
+from robomill.quantities import Quantity, quantities
 from robomill.robot.model import Robot
 from robomill.ui.inputs import empty
 from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import from_si, parse_number, to_si, unit_label
 
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
-GEOMETRY = {"alpha": "α, °", "a": "a, mm", "d": "d, mm", "theta_offset": "θ₀, °", "sign": "sign"}
+DECLARED = quantities(Robot)
+GEOMETRY = {name: DECLARED[name] for name in ("alpha", "a", "d", "theta_offset", "sign")}
+LIMIT = DECLARED["limits_all"]
 RIGID = "∞"
 SI_BELOW = 1e-3
 _NUMBER = re.compile(r"[+\-−]?(\d+[.,]?\d*|[.,]\d+)([eE][+\-−]?\d+)?")
@@ -43,9 +48,9 @@ def with_tool_axis(robot: Robot, axis: str) -> Robot:
     return robot.replace(T_tool=T_tool, provenance={**robot.provenance, "tool": said})
 
 
-def slides(robot: Robot) -> BoolArray:
-    """(rows,) True for prismatic joints."""
-    return np.asarray(robot.prismatic, dtype=bool)
+def heading(declared: Quantity) -> str:
+    """What a column is called, with its unit."""
+    return ", ".join(filter(None, (declared.label, unit_label(declared.unit))))
 
 
 def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
@@ -106,51 +111,47 @@ def is_si_text(typed: Any) -> bool:
 def geometry_frame(robot: Robot) -> pd.DataFrame:
     """The D-H table in mm and degrees, one row a joint."""
     columns: dict[str, Any] = {"joint": _names(robot)}
-    for name, label in GEOMETRY.items():
-        columns[label] = _clean(getattr(robot, name), _geometry_unit(name))
+    for name, declared in GEOMETRY.items():
+        columns[heading(declared)] = _clean(getattr(robot, name), declared.unit)
     return pd.DataFrame(columns)
 
 
 def with_geometry(robot: Robot, frame: pd.DataFrame) -> Robot:
     """``robot`` with the table's D-H constants. Raises RobotError naming joint and column."""
-    changes: dict[str, FloatArray] = {}
-    for name, label in GEOMETRY.items():
-        changes[name] = _column(frame, label, _geometry_unit(name))
-    return robot.replace(**changes)
+    columns = {name: _column(frame[heading(declared)], [declared] * robot.rows) for name, declared in GEOMETRY.items()}
+    return robot.replace(**columns)
 
 
 def limits_frame(robot: Robot) -> pd.DataFrame:
     """Joint limits in degrees (mm where prismatic)."""
-    low, high = (_limit_values(robot, robot.limits_all[:, side]) for side in (0, 1))
-    return pd.DataFrame({"joint": _names(robot), "lower": low, "upper": high})
+    units = [declared.unit for declared in _of_joints(robot, LIMIT)]
+    columns = {
+        side: [float(_clean(v, u)) for v, u in zip(robot.limits_all[:, i], units, strict=True)]
+        for i, side in enumerate(LIMIT.axes)
+    }
+    return pd.DataFrame({"joint": _names(robot), **columns})
 
 
 def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
     """``robot`` with the table's limits. Raises RobotError naming the joint."""
-    limits = np.empty((robot.rows, 2))
-    for side, label in enumerate(("lower", "upper")):
-        for i in range(robot.rows):
-            typed = frame[label].iloc[i]
-            if empty(typed):
-                raise RobotError(f"Joint {i + 1}: the {label} limit is missing; type a number.")
-            limits[i, side] = to_si(float(typed), "mm" if slides(robot)[i] else "deg")
-    return robot.replace(limits_all=limits)
+    limits = [
+        _column(frame[side], _of_joints(robot, replace(LIMIT, label=f"the {side} {LIMIT.label}")))
+        for side in LIMIT.axes
+    ]
+    return robot.replace(limits_all=np.transpose(limits))
 
 
 def _names(robot: Robot) -> list[str]:
-    return [f"{i + 1}" + (" (slides)" if slides(robot)[i] else "") for i in range(robot.rows)]
+    return [f"{i + 1}" + (" (slides)" if robot.prismatic[i] else "") for i in range(robot.rows)]
 
 
 def _joint_units(robot: Robot, unit: str) -> list[str]:
-    return [PRISMATIC_UNITS[unit] if p else unit for p in slides(robot)]
+    return [PRISMATIC_UNITS[unit] if p else unit for p in robot.prismatic]
 
 
-def _geometry_unit(name: str) -> str:
-    return {"alpha": "deg", "theta_offset": "deg", "a": "mm", "d": "mm", "sign": "1"}[name]
-
-
-def _limit_values(robot: Robot, values: FloatArray) -> list[float]:
-    return [float(_clean(v, "mm" if p else "deg")) for v, p in zip(values, slides(robot), strict=True)]
+def _of_joints(robot: Robot, declared: Quantity) -> list[Quantity]:
+    """As declared for each joint, in its unit."""
+    return [declared.of_joint(bool(slides)) for slides in robot.prismatic]
 
 
 def _clean(values: Any, unit: str) -> Any:
@@ -158,10 +159,10 @@ def _clean(values: Any, unit: str) -> Any:
     return np.round(from_si(np.asarray(values, dtype=float), unit), 9)
 
 
-def _column(frame: pd.DataFrame, label: str, unit: str) -> FloatArray:
-    numbers = np.empty(len(frame))
-    for i, typed in enumerate(frame[label]):
-        if empty(typed):
-            raise RobotError(f"Joint {i + 1}: {label.partition(',')[0]} is missing; type a number.")
-        numbers[i] = to_si(float(typed), unit)
+def _column(typed: pd.Series[Any], declared: Sequence[Quantity]) -> FloatArray:
+    numbers = np.empty(len(declared))
+    for i, (value, each) in enumerate(zip(typed, declared, strict=True)):
+        if empty(value):
+            raise RobotError(f"Joint {i + 1}: {each.label} is missing; type a number.")
+        numbers[i] = to_si(float(value), each.unit)
     return numbers
