@@ -83,7 +83,6 @@ Out2 = Annotated[FloatArray, Axes("float64", 2, written=True)]
 Out3 = Annotated[FloatArray, Axes("float64", 3, written=True)]
 Out4 = Annotated[FloatArray, Axes("float64", 4, written=True)]
 OutInt1 = Annotated[IntArray, Axes("int64", 1, written=True)]
-OutBool1 = Annotated[BoolArray, Axes("bool_", 1, written=True)]
 OutBool2 = Annotated[BoolArray, Axes("bool_", 2, written=True)]
 
 

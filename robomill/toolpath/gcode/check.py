@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from robomill.toolpath.gcode import words as modal
+from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc
-from robomill.toolpath.gcode.words import Block, g_name
+from robomill.toolpath.gcode.words import Block
 
 _AXES = "xyzabcuvw"
 _SPECIAL = frozenset("dehijklpqr")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.mode_rules import dwell
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.moves import polar, polar_step
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
@@ -157,7 +158,7 @@ def _one(
     else:
         hole.go(FEED, a, b, bottom)
     if motion in _NEEDS_P:
-        machine.dwell(kept.get("p", 0.0))
+        dwell(machine, kept.get("p", 0.0))
     if motion == 850:
         hole.go(FEED, a, b, clearance)
     if motion == 890:
@@ -179,7 +180,7 @@ def _tap(machine: Machine, block: Block, hole: _Hole, a: float, b: float, clear:
             f"G{block.motion // 10} outside of G17 taps along the wrong axes, as LinuxCNC does",
         )
     hole.tap(a, b, bottom)
-    machine.dwell(machine.cycle.get("p", 0.0))
+    dwell(machine, machine.cycle.get("p", 0.0))
     hole.tap(a, b, clear)
 
 

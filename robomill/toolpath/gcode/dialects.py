@@ -6,9 +6,10 @@ import re
 from dataclasses import dataclass
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.words import Block, g_name
+from robomill.toolpath.gcode.words import Block
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
 

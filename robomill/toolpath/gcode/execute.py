@@ -5,31 +5,25 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
-from robomill.toolpath.gcode import words as modal
+from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import MOST, set_rates
-from robomill.toolpath.gcode.words import Block, g_name
+from robomill.toolpath.gcode.mode_rules import dwell, set_modes, set_plane, set_rates, switch
+from robomill.toolpath.gcode.motion_rules import MOST
+from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
-
-_DIRECTIONS = {3: 1, 4: -1, 5: 0, 19: 0}
 
 
 def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     """Execute a checked line; True if the program ends here. ``saved`` is where M70 keeps the modes."""
     words, g = block.words, block.g
-    if modal.SPINDLE_MODE in g:
-        machine.spindle_mode = g[modal.SPINDLE_MODE]
-        if g[modal.SPINDLE_MODE] == 960:
-            machine.findings.add(
-                "surface-speed", "warning", block.line, "G96: the spindle speed follows the diameter and is not known"
-            )
-    if modal.FEED_MODE in g:
-        machine.feed_mode = g[modal.FEED_MODE]
-        if machine.feed_mode != 930:
-            machine.feed = 0.0
-    if "f" in words or "s" in words:
-        set_rates(machine, moves.plain_words(block))
+    plain = moves.plain_words(block)
+    set_rates(machine, plain)
+    if g.get(modal.SPINDLE_MODE) == 960:
+        machine.findings.add(
+            "surface-speed", "warning", block.line, "G96: the spindle speed follows the diameter and is not known"
+        )
     if "f" in words and machine.feed_mode != 930 and g.get(modal.UNITS, machine.unit_code) != machine.unit_code:
         machine.findings.add(
             "feed-units",
@@ -41,7 +35,8 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
         offsets.known_tool(machine, block, round(words["t"]))
         machine.selected = round(words["t"])
     _execute_m(machine, block, saved)
-    _execute_g(machine, block)
+    switch(machine, plain)
+    _execute_g(machine, block, plain)
     if modal.TOOL in block.m or block.m.get(modal.IO) == 66:
         if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
             machine.findings.add(
@@ -62,9 +57,7 @@ def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     if modal.TOOL in m:
         _change_tool(machine, block)
     spindle = m.get(modal.SPINDLE, -1)
-    if spindle in _DIRECTIONS:
-        machine.spindle = _DIRECTIONS[spindle]
-    elif spindle in (70, 73):
+    if spindle in (70, 73):
         saved.clear()
         saved.update(machine.save_modes(), automatic=spindle == 73)
     elif spindle == 71:
@@ -73,11 +66,6 @@ def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
         if not saved:
             raise block.refuse("M72 has nothing to restore; M70 or M73 comes first.")
         restore_modes(machine, block, saved)
-    coolant = m.get(modal.COOLANT, -1)
-    if coolant == 9:
-        machine.mist = machine.flood = False
-    elif coolant >= 0:
-        machine.mist, machine.flood = machine.mist or coolant == 7, machine.flood or coolant == 8
     if modal.OVERRIDE in m:
         machine.need_compensation_off(block, f"M{m[modal.OVERRIDE]}")
     if modal.USER in m:
@@ -116,12 +104,13 @@ def _change_tool(machine: Machine, block: Block) -> None:
     machine.note_length(machine.length_of)
 
 
-def _execute_g(machine: Machine, block: Block) -> None:
+def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
     g = block.g
     if g.get(modal.NON_MODAL) == 40:
-        machine.dwell(block.words["p"])
+        dwell(machine, block.words["p"])
     if modal.PLANE in g:
-        _set_plane(machine, block, g[modal.PLANE])
+        _check_plane(machine, block, g[modal.PLANE])
+        set_plane(machine, plain)
     if modal.UNITS in g:
         machine.set_units(g[modal.UNITS])
     if modal.DIAMETER in g:
@@ -142,24 +131,18 @@ def _execute_g(machine: Machine, block: Block) -> None:
     for group in (modal.CONTROL, modal.RETRACT):
         if group in g:
             machine.need_compensation_off(block, g_name(g[group]))
-    if modal.DISTANCE in g:
-        machine.absolute = g[modal.DISTANCE] == 900
-    if modal.ARC_DISTANCE in g:
-        machine.arc_absolute = g[modal.ARC_DISTANCE] == 901
-    if modal.RETRACT in g:
-        machine.retract_r = g[modal.RETRACT] == 990
+    set_modes(machine, plain)
     if modal.NON_MODAL in g:
         _non_modal(machine, block, g[modal.NON_MODAL])
     if block.motion >= 0:
         _move(machine, block)
 
 
-def _set_plane(machine: Machine, block: Block, code: int) -> None:
+def _check_plane(machine: Machine, block: Block, code: int) -> None:
     if code % 10:
         raise block.refuse(f"{g_name(code)}: this machine has no U, V, W axes; use G17, G18 or G19.")
     if machine.compensation is not None and code != 10 * machine.plane:
         raise block.refuse(f"{g_name(code)} cannot change the plane with cutter compensation on; use G40 first.")
-    machine.plane = code // 10
 
 
 def _non_modal(machine: Machine, block: Block, code: int) -> None:
@@ -208,7 +191,7 @@ def _probe(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
     machine.probe_to(block.line, end)
     machine.findings.add("probing", "warning", block.line, "probing: the probe is taken to travel its whole way")
-    machine.store.numbered[5061:5067] = end
+    machine.store.put(5061, end)
     machine.store.numbered[5070] = 0.0
     machine.p = end
     machine.motion = block.motion

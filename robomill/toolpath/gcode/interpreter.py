@@ -12,7 +12,7 @@ from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File, OWords
-from robomill.toolpath.gcode.stretches import run_plain
+from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
@@ -36,6 +36,7 @@ class Interpreter(OWords):
         self.steps = 0
         self.budget = len(file.lines) + MAX_STEPS
         self.percent = False
+        self.stretches = Stretches(machine)
 
     def run(self) -> None:
         """Execute until the program ends, plain lines in stretches."""
@@ -95,14 +96,13 @@ class Interpreter(OWords):
             self._left_over_lines()
 
     def _run_plain(self) -> bool:
-        """Make plain lines into moves; False if the next line is not one, or wants the reader's word."""
-        words = self.file.lines.plain(self.pc)
-        done = run_plain(self.machine, words, self.pc + 1) if len(words) else 0
+        """Execute plain lines; False if the next line is not one, or wants the reader's word."""
+        done, more = self.stretches.run(self.file.lines, self.pc, self.steps)
         before = self.steps
         self.pc, self.steps = self.pc + done, self.steps + done
         if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
             self._tick(self.pc - 1)
-        return done > 0
+        return more
 
     # --- budgets, ends, comments
     def _tick(self, index: int) -> None:

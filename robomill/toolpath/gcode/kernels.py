@@ -1,32 +1,32 @@
-"""The rules of ``line_rules`` and ``motion_rules``, compiled for long programs: the same functions, on arrays."""
+"""The rules of lines, values, modes and motion, compiled for long programs: the same functions, on arrays."""
 
 from __future__ import annotations
 
 import inspect
+import math
 from typing import Annotated, Any
 
-from numba.extending import register_jitable
+from numba.extending import overload
 
-from robomill.compiled import Axes, In2, InInt1, Out2, OutBool1, kernel
-from robomill.toolpath.gcode import line_rules, motion_rules, records
+from robomill.compiled import Axes, called, kernel
+from robomill.toolpath.gcode import line_rules, mode_rules, motion_rules, operator_rules, records, value_rules
+from robomill.toolpath.gcode.parameters import Store
+from robomill.toolpath.gcode.records import Text
 
-InBytes1 = Annotated[Any, Axes("uint8", 1)]
 State = Annotated[Any, Axes(records.STATE, 1, written=True)]
 Moves = Annotated[Any, Axes(records.MOVE, 1, written=True)]
 
-for _module in (line_rules, motion_rules):
+
+overload(value_rules.nearest)(lambda text, first, end: lambda text, first, end: math.inf)
+
+for _module in (operator_rules, value_rules, line_rules, motion_rules, mode_rules):
     for _name, _rule in inspect.getmembers(_module, inspect.isfunction):
-        if _rule.__module__ == _module.__name__:
-            register_jitable(_rule)
+        if _rule.__module__ == _module.__name__ and _rule is not value_rules.nearest:
+            called(_rule)
 
 
 @kernel
-def scan(text: InBytes1, starts: InInt1, words: Out2, plain: OutBool1) -> None:
-    """``line_rules.scan``."""
-    line_rules.scan(text, starts, words, plain)
-
-
-@kernel
-def run(state: State, words: In2, first_line: int, rows: Moves) -> tuple[int, int]:
-    """``motion_rules.run`` on ``state`` (1,)."""
-    return motion_rules.run(state[0], words, first_line, rows)  # type: ignore[no-any-return]
+def run(state: State, store: Store, text: Text, first: int, count: int, rows: Moves) -> int:
+    """``mode_rules.run`` on ``state`` (1,)."""
+    done: int = mode_rules.run(state[0], store, text, first, count, rows)
+    return done

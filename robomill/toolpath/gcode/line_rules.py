@@ -1,8 +1,8 @@
-"""The rules of plain lines: which ones are plain, and what their words and numbers are.
+"""The rules of plain lines: which ones are plain, and what their words are.
 
-A line is plain if it holds only N, G0 to G3, X Y Z A B C I J K R F S, each once with a plain number, and comments
-that say nothing to the machine. All others are left to the reader of ``words``. Like the rules of ``motion_rules``
-this is plain Python that numba can compile: for bytes and lists, or for arrays.
+A line is plain if it holds only words that ``mode_rules.run`` knows, each once, and comments that say nothing to the
+machine; or if it only sets parameters. All others are left to the reader of ``words``. Like the other rules this is
+plain Python that numba can compile.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -11,77 +11,144 @@ from __future__ import annotations
 
 import math
 
-from robomill.toolpath.gcode.motion_rules import LETTERS, F, G, S
+import numpy as np
+
+from robomill.toolpath.gcode import codes
+from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH, F, P, S
+from robomill.toolpath.gcode.operator_rules import whole
+from robomill.toolpath.gcode.parameters import MAX_SETTINGS
+from robomill.toolpath.gcode.value_rules import (
+    BLANKS,
+    column_of,
+    is_digit,
+    keyword,
+    lower,
+    name_end,
+    packed,
+    past_blanks,
+    place_of,
+    value,
+)
 
 MAX_LINE = 100_000
 """Characters of a line that can be read."""
+NOT_PLAIN = -1
 
-_MAX_DIGITS = 15
-_TENS = tuple(10.0**n for n in range(_MAX_DIGITS + 1))
-_BLANKS = (9, 11, 12, 13, 32)
-_COLUMNS = tuple(
-    next((i for i, letter in enumerate(LETTERS[:-1]) if code in (ord(letter), ord(letter.upper()))), -1)
-    for code in range(256)
+PLAIN_G = (
+    *(0, 10, 20, 30, 800),
+    *(170, 180, 190, 200, 210, 400, 610, 611, 640, 900, 901, 910, 911, 930, 940, 950, 970, 980, 990),
+    *(code for code, group in codes.G_GROUPS.items() if group == codes.COORDINATES),
 )
+PLAIN_M = (0, 1, 60, 3, 4, 5, 7, 8, 9, 48, 49)
+_G_GROUPS = np.array([codes.G_GROUPS[code] if code in PLAIN_G else -1 for code in range(1000)])
+_M_GROUPS = np.array([codes.M_GROUPS[code] if code in PLAIN_M else -1 for code in range(100)])
+_COLUMNS = np.array([LETTERS.find(chr(code)) for code in range(128)])
+_SAYING = tuple(packed(word) for word in ("msg", "debug", "print", "log", "abort"))
+"""Comments that begin with one of these and a comma are said, or end the program."""
 
 
-def scan(text, starts, words, plain) -> None:
-    """Read the lines of ``text`` (bytes) that begin at ``starts`` (n + 1) into rows of ``words`` (n, 14)."""
-    for i in range(len(starts) - 1):
-        plain[i] = scan_line(text, starts[i], starts[i + 1] - 1, words[i])
-
-
-def scan_line(text, at, end, w) -> bool:
-    """The words of a line by the indices of ``motion_rules``; False if it is not plain."""
+def read_line(s, text, at, end) -> int:
+    """0 and the words of a line in ``s.words``, or how many parameters it sets; ``NOT_PLAIN`` if it is no such line."""
     if end - at > MAX_LINE:
-        return False
-    fresh = True
-    while at < end:
-        code = text[at]
-        at += 1
-        if code in _BLANKS:
-            continue
-        if code == 59:  # ; and the rest is a comment
-            break
-        if code == 40:  # ( ... ), where a comma may make it a message
-            while at < end and text[at] not in (40, 41, 44):
+        return NOT_PLAIN
+    for column in range(WIDTH):
+        s.words[column] = math.nan
+    fresh, given, settings = True, False, 0
+    while True:
+        at = past_blanks(text, at, end)
+        if at >= end or text[at] == 59:  # ; and the rest is a comment
+            return NOT_PLAIN if settings > 0 and given else settings
+        code, at = lower(text[at]), at + 1
+        if code == 40:
+            at = comment_end(text, at, end)
+            if at < 0:
+                return NOT_PLAIN
+        elif code == 110 and fresh:  # N comes first
+            at = past_blanks(text, at, end)
+            if at >= end or not is_digit(text[at]):
+                return NOT_PLAIN
+            while at < end and (is_digit(text[at]) or text[at] == 46 or text[at] in BLANKS):
                 at += 1
-            if at == end or text[at] != 41:
-                return False
-            at += 1
-            fresh = False
-            continue
-        column = _COLUMNS[code]
-        if column < 0 and not (fresh and code in (78, 110)):  # N comes first
-            return False
+        elif code == 35:
+            at = _setting(s, text, at, end, settings)
+            if at < 0:
+                return NOT_PLAIN
+            settings += 1
+        elif code > 127 or (_COLUMNS[code] < 0 and code not in (103, 109)):
+            return NOT_PLAIN
+        else:
+            given = True
+            problem, number, at = value(s, text, at, end)
+            column, number = _column(code, number)
+            if problem != 0 or column < 0 or not math.isnan(s.words[column]):
+                return NOT_PLAIN
+            s.words[column] = number
         fresh = False
-        negative, value = False, 0
-        digits, decimals, signs = 0, -1, 0
-        while at < end:
-            code = text[at]
-            if 48 <= code <= 57:
-                value = value * 10 + (code - 48)
-                digits += 1
-                decimals += 1 if decimals >= 0 else 0
-            elif code == 46 and decimals < 0:
-                decimals = 0
-            elif code in (43, 45) and digits == 0 and decimals < 0 and signs == 0:
-                negative, signs = code == 45, 1
-            elif code not in _BLANKS:
-                break
-            at += 1
-            if digits > _MAX_DIGITS:
-                return False
-        if digits == 0 or (column < 0 and signs > 0):
-            return False
-        if column >= 0:
-            if not math.isnan(w[column]):
-                return False
-            number = value / _TENS[max(decimals, 0)]  # an exact integer by an exact power: the nearest double
-            w[column] = -number if negative else number
-    if w[F] < 0.0 or w[S] < 0.0:
-        return False
-    if not math.isnan(w[G]):
-        w[G] = 10.0 * w[G]
-        return w[G] in (0.0, 10.0, 20.0, 30.0)
-    return True
+
+
+def _column(code, number: float):
+    """Where a word stands among the words of a line, and its value or code; -1 if the line is not plain with it."""
+    if code == 103:
+        near = round(10.0 * number) if -1.0 < number < 100.0 else -1
+        group = _G_GROUPS[near] if near >= 0 and abs(10.0 * number - near) <= 0.01 else -1
+        return (G_GROUP + group if group >= 0 else -1), float(near)
+    if code == 109:
+        near = int(whole(number)) if 0.0 <= whole(number) < 100.0 else -1
+        group = _M_GROUPS[near] if near >= 0 else -1
+        return (M_GROUP + group if group >= 0 else -1), float(near)
+    column = _COLUMNS[code]
+    if column == P:  # of dwells, which dialects count in their ways, and of arcs of several turns
+        return -1, number
+    return (-1 if number < 0.0 and column in (F, S) else column), number
+
+
+def comment_end(text, at, end):
+    """Where a comment ends that has opened before ``at``; -1 if it does not, or says something."""
+    first, comma = at, False
+    while at < end and text[at] not in (40, 41):
+        comma = comma or text[at] == 44
+        at += 1
+    if at >= end or text[at] == 40:
+        return -1
+    if comma:
+        said, after = keyword(text, first, at, _SAYING)
+        if said >= 0 and text[past_blanks(text, after, end)] == 44:
+            return -1
+    return at + 1
+
+
+def _setting(s, text, at, end, count: int):
+    """Where a setting ends that has begun with a # before ``at``, kept in ``s``; -1 if it is left to the reader."""
+    at = past_blanks(text, at, end)
+    if at >= end or count >= MAX_SETTINGS:
+        return -1
+    if text[at] == 60:
+        close = name_end(text, at, end)
+        column = -1 if close < 0 else column_of(s, text, at + 1, close)
+        if column < s.provided:  # or unknown
+            return -1
+        key = -1 - place_of(s, text, at + 1, close, column)
+        at = close + 1
+    else:
+        problem, index, at = value(s, text, at, end)
+        near = whole(index)
+        if problem != 0 or not 1.0 <= near < len(s.numbered) or math.isnan(s.numbered[int(near)]):
+            return -1
+        key = int(near)
+    at = past_blanks(text, at, end)
+    if at >= end or text[at] != 61:
+        return -1
+    problem, number, at = value(s, text, at + 1, end)
+    if problem != 0:
+        return -1
+    s.keys[count], s.settings[count] = key, number
+    return at
+
+
+def apply_settings(s, count: int) -> None:
+    """Set the parameters that a line sets, all with values from before the line."""
+    for i in range(count):
+        if s.keys[i] < 0:
+            s.named[-1 - s.keys[i]] = s.settings[i]
+        else:
+            s.numbered[s.keys[i]] = s.settings[i]

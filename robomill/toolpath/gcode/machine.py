@@ -11,6 +11,7 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
@@ -43,18 +44,19 @@ class Machine:
     ``p`` is the current point (x, y, z, a, b, c) in the current coordinate system; ``at`` and ``turned`` are the tip
     (m) and the rotary axes (rad) in the machine frame. ``in_spindle`` is the number of the tool there, ``figures`` are
     those of the last refusal, ``initial_level`` is where a row of cycles began (NaN outside of one), ``waited`` are the
-    seconds of dwells since the last move. ``sent`` is the end of the last straight move that was recorded: after a tool
-    change or an input the machine is asked where it stands and answers with that, as LinuxCNC's preview does.
-    ``length_of`` is the tool whose length is in force (None: none, or one that the program itself says); ``lifts``
-    holds how far the tip stands from the point that is told (m), each with the first move for which it holds.
+    seconds of dwells since the last move, ``moves`` those of a stretch of plain lines. ``sent`` is the end of the last
+    straight move that was recorded: after a tool change or an input the machine is asked where it stands and answers
+    with that, as LinuxCNC's preview does. ``length_of`` is the tool whose length is in force (None: none, or one that
+    the program itself says); ``lifts`` holds how far the tip stands from the point that is told (m), each with the
+    first move for which it holds.
     """
 
     def __init__(self, tools: Tools | None) -> None:
-        self.store = Parameters(self.provided)
+        self.store = Parameters(self.provided, (*_AXES, *_PROVIDED))
         self.findings = Findings()
         self.recorder = Recorder()
         self.tools = None if tools is None else own_copy(tools)
-        self.unit_code, self.units_said = 210, ""
+        self.unit_code, self.units_said = 210, 0
         self.factor = to_si(1.0, "mm")
         self.p, self.sent = [0.0] * 6, [0.0] * 6
         self.at, self.turned = [0.0] * 3, [0.0] * 3
@@ -79,6 +81,7 @@ class Machine:
         self.line = 0
         self.return_value, self.value_returned = 0.0, 0.0
         self.dwells, self.dwell_time, self.waited = 0, 0.0, 0.0
+        self.moves = 0
         self.messages: list[tuple[int, str]] = []
 
     # --- units
@@ -88,15 +91,21 @@ class Machine:
         return UNITS[self.unit_code]
 
     @property
+    def unit_said(self) -> str:
+        """The unit that the program has said, "" if it says none."""
+        return UNITS.get(self.units_said, "")
+
+    @property
     def is_plain(self) -> bool:
-        """True while the rules of ``motion_rules`` alone say what G0 to G3 do."""
-        return self.compensation is None and not self.diameter_mode and self.motion in (-1, 0, 10, 20, 30, 800)
+        """True while the rules of ``mode_rules`` alone say what plain lines do."""
+        return self.compensation is None and not self.diameter_mode
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
-        unit = self.units_said = UNITS[code]
+        self.units_said = code
         if code == self.unit_code:
             return
+        unit = UNITS[code]
         ratio = to_si(1.0, self.unit) / to_si(1.0, unit)
         for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset):
             values[:3] = [v * ratio for v in values[:3]]
@@ -146,12 +155,6 @@ class Machine:
         """Record a probing move to its programmed end."""
         self.go(PROBE, line, end)
 
-    def dwell(self, seconds: float) -> None:
-        """Count a dwell."""
-        self.dwells += 1
-        self.dwell_time += max(seconds, 0.0)
-        self.waited += max(seconds, 0.0)
-
     # --- tools
     def find_tool(self, number: int) -> Tool | None:
         """The tool of the table; None if there is no table. Tool 0 is no tool. KeyError if it is missing."""
@@ -184,14 +187,13 @@ class Machine:
         return {name: getattr(self, name) for name in _SAVED}
 
     # --- values that programs can read
-    def provided(self, name: str | int) -> float | None:
-        """Value of a read-only parameter, None if the machine provides no such name."""
+    def provided(self, name: str | int) -> float:
+        """Value of a read-only parameter. Raises GCodeError (without a line) where there is none for now."""
         if isinstance(name, int):
             return self._provided_number(name)
-        if name in ("_x", "_y", "_z", "_a", "_b", "_c"):
-            return self.p["_x_y_z_a_b_c".index(name) // 2]
-        entry = _PROVIDED.get(name)
-        return None if entry is None else float(entry(self))
+        if name in _AXES:
+            return self.p[_AXES.index(name)]
+        return float(_PROVIDED[name](self))
 
     def _provided_number(self, index: int) -> float:
         if index >= 5420:
@@ -206,10 +208,7 @@ class Machine:
         return from_si(tool.diameter, "mm") if index == 5410 else float(tool.orientation if index == 5413 else 0)
 
 
-def _system_code(machine: Machine) -> int:
-    return 530 + 10 * machine.system if machine.system < 7 else 584 + machine.system
-
-
+_AXES = tuple(f"_{letter}" for letter in XYZABC)
 _PROVIDED: dict[str, Any] = {
     "_vmajor": lambda m: 2.9,
     "_vminor": lambda m: 0.0,
@@ -224,7 +223,7 @@ _PROVIDED: dict[str, Any] = {
     "_inverse_time": lambda m: m.feed_mode == 930,
     "_units_per_minute": lambda m: m.feed_mode == 940,
     "_units_per_rev": lambda m: m.feed_mode == 950,
-    "_coord_system": _system_code,
+    "_coord_system": lambda m: system_code(m.system),
     "_tool_offset": lambda m: any(m.length_offset),
     "_retract_r_plane": lambda m: m.retract_r,
     "_retract_old_z": lambda m: not m.retract_r,
@@ -252,7 +251,7 @@ _PROVIDED: dict[str, Any] = {
     "_w": lambda m: 0,
     "_value": lambda m: m.return_value,
     "_value_returned": lambda m: m.value_returned,
-    "_call_level": lambda m: len(m.store.frames) - 1,
+    "_call_level": lambda m: m.store.level,
     "_remap_level": lambda m: 0,
     "_task": lambda m: 0,
 }

@@ -1,13 +1,13 @@
 """The rules of motion: feeds, end points, arcs and frames of G0, G1, G2 and G3, each stated here and nowhere else.
 
 Every function is plain Python on an object with attributes. The interpreter hands in the ``Machine`` and lists; for
-long stretches of plain lines ``run`` is compiled (see ``stretches``) and gets a record of ``records.STATE``, rows of
-words and rows of ``records.MOVE`` instead. So nothing here may use more of Python than numba knows.
+long stretches of plain lines they are compiled (see ``stretches``) and get a record of ``records.STATE`` and rows of
+``records.MOVE`` instead. So nothing here may use more of Python than numba knows.
 
-``m`` is the machine: lengths in program units (mm or inch), angles in degrees. ``w`` are the words of a line by the
-indices G to P, NaN where a word is not given. G codes are ten times their number (G1 -> 10). ``row`` is the move
-that is written: m, rad, m/s in the machine frame. Functions that can refuse return a code, 0 for "can be done";
-``moves.SENTENCES`` says what each code means, with the figures that are left in ``m.figures``.
+``m`` is the machine: lengths in program units (mm or inch), angles in degrees. ``w`` are the words of a line in the
+columns that ``codes`` names, NaN where a word is not given. G codes are ten times their number (G1 -> 10). ``row`` is
+the move that is written: m, rad, m/s in the machine frame. Functions that can refuse return a code, 0 for "can be
+done"; ``moves.SENTENCES`` says what each code means, with the figures that are left in ``m.figures``.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -17,11 +17,8 @@ from __future__ import annotations
 
 import math
 
-from robomill.units import from_si
-
-LETTERS = "gxyzabcijkrfsp"
-"""The words of a plain line, in the order of their indices."""
-G, X, I, J, K, R, F, S, P = (LETTERS.index(letter) for letter in "gxijkrfsp")  # noqa: E741
+from robomill.toolpath.gcode.codes import F, I, J, K, P, R, X
+from robomill.units import from_si, to_si
 
 RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE = 0, 10, 20, 30
 INCH, INVERSE_TIME, PER_TURN, CONSTANT_SPEED = 200, 930, 950, 970
@@ -33,7 +30,7 @@ SPIRAL_MM, SPIRAL_INCH = 0.02 * math.sqrt(2.0), 0.002 * math.sqrt(2.0)
 SPIRAL_SHARE = 1e-3
 """this share of the larger radius, whichever is more, but never by more than 100 times the first figure."""
 RADIUS_INCH = 0.00005
-RADIUS_MM = RADIUS_INCH * 25.4
+RADIUS_MM = from_si(to_si(RADIUS_INCH, "in"), "mm")
 """A radius below this is none; half a chord may exceed a given radius by this much."""
 MOST = 2**31 - 1
 """No column of whole numbers holds more; nobody turns so often, or has so many tools."""
@@ -73,14 +70,6 @@ def implied_motion(m, axes: bool, centre: bool) -> int:
 def is_arc(motion: int) -> bool:
     """True for G2 and G3."""
     return motion in (CLOCKWISE, COUNTERCLOCKWISE)
-
-
-def set_rates(m, w) -> None:
-    """F and S take effect before anything moves. In inverse time F belongs to its line alone."""
-    if m.feed_mode != INVERSE_TIME and not math.isnan(w[F]):
-        m.feed = w[F]
-    if not math.isnan(w[S]):
-        m.speed = w[S]
 
 
 def spindle_speed(m) -> float:
@@ -124,6 +113,13 @@ def axes(plane):
     """
     third = 19 - plane
     return (third + 1) % 3, (third + 2) % 3, third
+
+
+def from_plane(plane: int, u: float, v: float, w: float):
+    """(x, y, z) of a point at ``u``, ``v`` along the first two axes of a plane and ``w`` along the third."""
+    if plane == 17:
+        return u, v, w
+    return (v, w, u) if plane == 18 else (w, u, v)
 
 
 def end_point(m, w, base, end) -> None:
@@ -177,6 +173,9 @@ def write_move(m, kind: int, end, v_f: float, row) -> None:
 def write_straight(m, kind: int, end, v_f: float, row) -> None:
     """Write a straight move; its end is what the machine was last sent to."""
     write_move(m, kind, end, v_f, row)
+    row.plane, row.turns, row.clockwise, row.sweep = 0, 0, False, 0.0
+    for axis in range(3):
+        row.centre[axis] = 0.0
     for axis in range(6):
         m.sent[axis] = end[axis]
 
@@ -306,10 +305,8 @@ def make_move(m, w, motion: int, end, row) -> int:
             return refusal
         turn = turns_of(w, motion)
         inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
-        middle = [0.0, 0.0, 0.0]
-        middle[first], middle[second], middle[third] = u, v, m.p[third]
         row.plane = m.plane
-        write_arc(m, end, middle, turn, feed_speed(m), row)
+        write_arc(m, end, from_plane(m.plane, u, v, m.p[third]), turn, feed_speed(m), row)
     elif motion == LINE:
         inverse_time(m, w, straight_length(m.p, end))
         write_straight(m, FEED, end, feed_speed(m), row)
@@ -321,32 +318,3 @@ def make_move(m, w, motion: int, end, row) -> int:
     for axis in range(6):
         m.p[axis] = end[axis]
     return 0
-
-
-def run(m, words, first_line: int, rows):
-    """(lines, moves): plain lines made into moves, up to the first that is refused or means more than these rules.
-
-    That line has changed nothing that doing it again would not; the interpreter reads it and says what is wrong.
-    """
-    end = [0.0] * 6
-    moves = 0
-    for i in range(len(words)):
-        w = words[i]
-        has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
-        has_axes = False
-        for axis in range(6):
-            has_axes = has_axes or not math.isnan(w[X + axis])
-        motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[G]) else int(w[G])
-        arc = is_arc(motion)
-        if not arc and (has_centre or not math.isnan(w[R]) or motion not in (-1, RAPID, LINE)):
-            return i, moves
-        set_rates(m, w)
-        if motion >= 0:
-            if check_move(m, w, motion, False) != 0:
-                return i, moves
-            end_point(m, w, m.p, end)
-            if make_move(m, w, motion, end, rows[moves]) != 0:
-                return i, moves
-            rows[moves].line = first_line + i
-            moves += 1
-    return len(words), moves

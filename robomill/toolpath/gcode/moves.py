@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from robomill.toolpath.gcode import motion_rules as rules
+from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.motion_rules import LETTERS
 from robomill.toolpath.gcode.program import FEED, TAP, Move
-from robomill.toolpath.gcode.words import NON_MODAL, Block, g_name
+from robomill.toolpath.gcode.words import Block
 from robomill.units import format_si
 
 SENTENCES = {
@@ -49,8 +49,16 @@ def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
 
 
 def plain_words(block: Block) -> list[float]:
-    """The words of a line as the rules of ``motion_rules`` take them: by the indices G to P, NaN where not given."""
-    return [block.words.get(letter, math.nan) for letter in LETTERS]
+    """The words and codes of a line as the rules take them: in the columns of ``codes``, NaN where not given."""
+    words = [math.nan] * WIDTH
+    for letter, value in block.words.items():
+        if letter in LETTERS:
+            words[LETTERS.index(letter)] = value
+    for group, code in block.g.items():
+        words[G_GROUP + group] = code
+    for group, code in block.m.items():
+        words[M_GROUP + group] = code
+    return words
 
 
 def need_feed(machine: Machine, block: Block, name: str) -> None:
@@ -164,7 +172,7 @@ def home(machine: Machine, block: Block, code: int) -> None:
     end = find_end(machine, block)
     machine.traverse(block.line, end)
     stored = 5161 if code == 280 else 5181
-    values = machine.store.numbered[stored : stored + 6]
+    values = machine.store.values(stored, 6)
     target = [machine.from_user(v) for v in values[:3]] + values[3:]
     target = _machine_end(machine, dict(zip(XYZABC, target)))
     chosen = [letter in block.words for letter in XYZABC]
@@ -180,4 +188,4 @@ def save_home(machine: Machine, block: Block, code: int) -> None:
     stored = 5161 if code == 281 else 5181
     total = [machine.p[i] + machine.g5x[i] + machine.g92[i] for i in range(6)]
     lengths = [machine.to_user(total[i] + machine.length_offset[i]) for i in range(3)]
-    machine.store.numbered[stored : stored + 6] = [*lengths, *total[3:]]
+    machine.store.put(stored, [*lengths, *total[3:]])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.motion_rules import rotate
-from robomill.toolpath.gcode.words import COMPENSATION, Block, g_name
+from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 from robomill.units import from_si, to_si
 
@@ -16,7 +17,7 @@ _CORNER_OFF = "with cutter compensation on; use G40 first."
 def stored_system(machine: Machine, system: int) -> tuple[list[float], float]:
     """Origin (x, y, z, a, b, c) in program units and degrees, and rotation (deg) of a coordinate system 1..9."""
     at = 5201 + 20 * system
-    values = machine.store.numbered[at : at + 6]
+    values = machine.store.values(at, 6)
     return [machine.from_user(v) for v in values[:3]] + values[3:], machine.store.numbered[at + 9]
 
 
@@ -35,7 +36,7 @@ def _in_system(machine: Machine, absolute: list[float], origin: list[float], rot
     point = [p - o for p, o in zip(absolute, origin)]
     point[0], point[1] = rotate(point[0], point[1], -rotation)
     if machine.store.numbered[5210]:
-        g92 = machine.store.numbered[5211:5217]
+        g92 = machine.store.values(5211, 6)
         point = [p - (machine.from_user(g) if i < 3 else g) for i, (p, g) in enumerate(zip(point, g92))]
     return point
 
@@ -75,11 +76,11 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     numbered[5210] = 1.0 if code == 923 else 0.0
     new = [0.0] * 6
     if code == 923:
-        new = [machine.from_user(v) if i < 3 else v for i, v in enumerate(numbered[5211:5217])]
+        new = [machine.from_user(v) if i < 3 else v for i, v in enumerate(machine.store.values(5211, 6))]
     machine.p = [p + old - n for p, old, n in zip(machine.p, machine.g92, new)]
     machine.g92 = new
     if code == 921:
-        numbered[5211:5217] = [0.0] * 6
+        machine.store.put(5211, [0.0] * 6)
 
 
 def set_data(machine: Machine, block: Block) -> None:
@@ -161,7 +162,7 @@ def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
         absolute = [a + (machine.length_offset[i] if i < 3 else 0.0) for i, a in enumerate(_absolute(machine))]
         here = _in_system(machine, absolute, *stored_system(machine, system))[:3]
         if kind == 11 and machine.store.numbered[5210]:
-            here = [h + machine.from_user(v) for h, v in zip(here, machine.store.numbered[5211:5214])]
+            here = [h + machine.from_user(v) for h, v in zip(here, machine.store.values(5211, 3))]
         sign = -1.0
     for axis, letter in enumerate("xyz"):
         if letter in words:

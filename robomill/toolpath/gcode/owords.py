@@ -11,12 +11,9 @@ from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import restore_modes
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.parameters import ARGUMENTS
+from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
 from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.gcode.words import Block
-
-MAX_CALLS = 10
-"""Levels of subroutines, the main program included."""
 
 MAX_FILE = 10_000_000
 """Bytes of a subroutine file beside the program."""
@@ -91,7 +88,7 @@ class OWords:
     def _condition(self, entry: flow.OLine, argument: Reader) -> float:
         if argument.text[:1] != "[":
             raise argument.refuse(f"O{entry.label} {entry.keyword} needs [ and a condition.")
-        value = argument.expression()
+        value = argument.value()
         self._nothing_after(entry, argument)
         return value
 
@@ -125,7 +122,7 @@ class OWords:
         machine = self.machine
         if len(self.frames) == 1:
             raise argument.refuse(f"O{entry.label} {entry.keyword} is outside of a subroutine.")
-        value = argument.expression() if argument.text[:1] == "[" else None
+        value = argument.value() if argument.text[:1] == "[" else None
         self._nothing_after(entry, argument)
         machine.return_value, machine.value_returned = value or 0.0, float(value is not None)
         self._leave()
@@ -229,30 +226,30 @@ class OWords:
             if argument.text[argument.at] == "(":
                 argument.at = argument.text.index(")", argument.at) + 1
             else:
-                values.append(argument.expression())
+                values.append(argument.value())
         self._nothing_after(flow.OLine("call", label, ""), argument)
         if len(values) > ARGUMENTS:
             raise argument.refuse(f"O{label} is called with {len(values)} arguments; at most {ARGUMENTS} are passed.")
         file, node = self._find_sub(label, argument)
         store = self.machine.store
-        frame = Frame(node, label, self.pc, self.file, store.numbered[1 : 1 + ARGUMENTS])
+        frame = Frame(node, label, self.pc, self.file, store.values(1, ARGUMENTS))
         self._enter(frame, argument)
-        store.numbered[1 : 1 + ARGUMENTS] = values + [0.0] * (ARGUMENTS - len(values))
-        store.frames[-1]["n_args"] = float(len(values))
+        store.put(1, values + [0.0] * (ARGUMENTS - len(values)))
+        store.set("n_args", float(len(values)))
         self.file, self.pc = file, node.start + 1
 
     def _enter(self, frame: Frame, reader: Reader) -> None:
-        if len(self.frames) >= MAX_CALLS:
-            raise reader.refuse(f"subroutines call one another more than {MAX_CALLS - 1} levels deep.")
+        if len(self.frames) >= LEVELS:
+            raise reader.refuse(f"subroutines call one another more than {LEVELS - 1} levels deep.")
         self.frames.append(frame)
-        self.machine.store.frames.append({})
+        self.machine.store.enter()
 
     def _leave(self) -> None:
         frame = self.frames.pop()
         store = self.machine.store
-        store.frames.pop()
+        store.leave()
         if frame.arguments is not None:
-            store.numbered[1 : 1 + ARGUMENTS] = frame.arguments
+            store.put(1, frame.arguments)
         self.file, self.pc = frame.back_file, frame.back_to
         if frame.saved.get("automatic"):
             restore_modes(self.machine, Block(self.machine.line), frame.saved)

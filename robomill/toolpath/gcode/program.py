@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -131,37 +131,39 @@ class Move:
         self.rotary0, self.rotary = [0.0] * 3, [0.0] * 3
 
 
+_row_of = attrgetter(*_COLUMNS)
+
+
 class Recorder:
-    """Collects moves, one by one or as rows of ``MOVE``."""
+    """Collects moves: the last ones as rows of ``MOVE``, those before as columns."""
 
     def __init__(self) -> None:
         self.count = 0
-        self._moves: list[Move] = []
+        self._rows = np.zeros(FLUSH, MOVE)
+        self._taken = 0
         self._columns: dict[str, np.ndarray] = {}
 
     def __len__(self) -> int:
-        return self.count + len(self._moves)
+        return self.count + self._taken
 
     def add(self, move: Move) -> None:
         """A move. Raises GCodeError if there are too many."""
-        self._moves.append(move)
-        if len(self._moves) >= FLUSH:
-            self._flush()
+        self._rows[self._taken] = _row_of(move)
+        self.take(self._taken + 1)
 
-    def extend(self, moves: Sequence[Move] | np.ndarray) -> None:
-        """Many moves. Raises GCodeError if there are too many."""
-        if not isinstance(moves, np.ndarray):
-            for move in moves:
-                self.add(move)
-        elif len(moves):
+    def free(self) -> tuple[np.ndarray, int]:
+        """Rows to be written, and how many of them are taken already: not all."""
+        return self._rows, self._taken
+
+    def take(self, taken: int) -> None:
+        """So many rows are written. Raises GCodeError if there are too many moves."""
+        self._taken = taken
+        if taken == FLUSH:
             self._flush()
-            self._keep(moves)
 
     def _flush(self) -> None:
-        if self._moves:
-            rows = [tuple(getattr(move, name) for name in _COLUMNS) for move in self._moves]
-            self._moves = []
-            self._keep(np.array(rows, MOVE))
+        self._keep(self._rows[: self._taken])
+        self._taken = 0
 
     def _keep(self, rows: np.ndarray) -> None:
         """Copy ``rows`` into the columns; one that is 0 throughout takes no room."""

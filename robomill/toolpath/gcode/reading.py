@@ -86,14 +86,14 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     if not np.isfinite(columns["end"]).all() or not np.isfinite(columns["centre"]).all():
         bad = int(columns["line"][np.flatnonzero(~np.isfinite(columns["end"]).all(axis=1))[:1]].sum())
         raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
-    if not machine.units_said and len(columns["line"]):
+    if not machine.unit_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     columns["lift"] = _lift(machine, columns)
     _doubt_spindle(machine, columns)
     _doubt_size(machine, columns)
     return Program(
         **columns,
-        units=machine.units_said,
+        units=machine.unit_said,
         dialect=dialect,
         lines=lines,
         dwells=machine.dwells,
@@ -148,7 +148,7 @@ def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
     size = float((upper - lower).max())
     inch = to_si(1.0, "in") / to_si(1.0, "mm")
     shown = format_si(size, "mm", 1)
-    if machine.units_said != "in" and 0.0 < size < LIKELY[0]:
+    if machine.unit_said != "in" and 0.0 < size < LIKELY[0]:
         other = format_si(size * inch, "mm", 1)
         machine.findings.add(
             "size-doubt", "suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}"

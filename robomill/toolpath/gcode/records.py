@@ -1,8 +1,12 @@
-"""What the rules of ``motion_rules`` read and write, as records: the state of a machine, and a move."""
+"""What the rules read and write, as records: the state of a machine, a move, and the text of a program."""
 
 from __future__ import annotations
 
+from typing import Annotated, Any, NamedTuple
+
 import numpy as np
+
+from robomill.compiled import Axes, InInt1
 
 STATE = np.dtype(
     [
@@ -18,15 +22,23 @@ STATE = np.dtype(
         ("feed", "f8"),
         ("speed", "f8"),
         ("waited", "f8"),
+        ("dwell_time", "f8"),
         ("initial_level", "f8"),
         ("unit_code", "i8"),
+        ("units_said", "i8"),
+        ("system", "i8"),
+        ("dwells", "i8"),
         ("motion", "i8"),
         ("plane", "i8"),
         ("feed_mode", "i8"),
         ("spindle", "i8"),
         ("spindle_mode", "i8"),
         ("in_spindle", "i8"),
+        ("moves", "i8"),
         ("absolute", "?"),
+        ("retract_r", "?"),
+        ("mist", "?"),
+        ("flood", "?"),
         ("arc_absolute", "?"),
         ("arc_not_allowed", "?"),
     ]
@@ -54,3 +66,12 @@ MOVE = np.dtype(
     ]
 )
 """A move; the columns are explained in ``Program``."""
+
+
+class Text(NamedTuple):
+    """The lines of a program, for the rules."""
+
+    codes: Annotated[Any, Axes("uint8", 1)]
+    """Its characters,"""
+    starts: InInt1
+    """and where each line starts; the last number is where one more would."""

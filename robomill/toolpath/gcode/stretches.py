@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Sequence
+from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import IntArray
-from robomill.toolpath.gcode import line_rules, motion_rules
-from robomill.toolpath.gcode.motion_rules import LETTERS
+from robomill.toolpath.gcode import mode_rules
 from robomill.toolpath.gcode.program import Move
-from robomill.toolpath.gcode.records import MOVE, STATE
+from robomill.toolpath.gcode.records import STATE, Text
 
 LONG = 20_000
-"""Lines of a program that is worth loading the compiled rules for."""
+"""Lines to execute that are worth loading the compiled rules for."""
 LOADED_LONG = 300
-"""Lines of a program that is worth calling them once they are loaded."""
-WORTHWHILE = 16
-"""Plain lines in a row that are worth handing over to them."""
-CHUNK = 1 << 15
+"""Lines to execute that are worth calling them once they are loaded."""
+CHUNK = 64
+"""Lines that are done together in plain Python."""
 _KERNELS = "robomill.toolpath.gcode.kernels"
+_FIELDS = STATE.names or ()
+_state_of = attrgetter(*_FIELDS)
 
 
 class Lines(Sequence[str]):
@@ -30,11 +31,10 @@ class Lines(Sequence[str]):
 
     def __init__(self, data: bytes) -> None:
         self.data = data
-        ends = np.flatnonzero(np.frombuffer(data, np.uint8) == 10)
-        self.starts: IntArray = np.concatenate([[0], ends + 1, [len(data) + 1]])
-        self._first = -1
-        self._words: Any = []
-        self._run_end: Any = []
+        codes = np.frombuffer(data, np.uint8)
+        self.starts: IntArray = np.concatenate([[0], np.flatnonzero(codes == 10) + 1, [len(data) + 1]])
+        self.starts.flags.writeable = False
+        self.text = Text(codes, self.starts)
 
     def __len__(self) -> int:
         return len(self.starts) - 1
@@ -45,51 +45,43 @@ class Lines(Sequence[str]):
         index = range(len(self))[index]
         return self.data[int(self.starts[index]) : int(self.starts[index + 1]) - 1].decode("utf-8", "replace")
 
-    def is_long(self) -> bool:
-        """True if the compiled rules are worth loading, or are loaded already and worth calling."""
-        return len(self) >= (LOADED_LONG if _KERNELS in sys.modules else LONG)
+    @cached_property
+    def plain_text(self) -> Text:
+        """``text`` in plain Python."""
+        starts: Any = self.starts.tolist()
+        return Text(self.data, starts)
 
-    def plain(self, index: int) -> Any:
-        """(n, 14) words of the plain lines from ``index`` on, as far as they are known; empty if it is not plain."""
-        first = index - index % CHUNK
-        if first != self._first:
-            self._scan(first)
-        at = index - first
-        return self._words[at : self._run_end[at]]
 
-    def _scan(self, first: int) -> None:
-        starts = self.starts[first : first + CHUNK + 1]
-        count = len(starts) - 1
-        if self.is_long():
+class Stretches:
+    """Runs plain lines on a machine: in plain Python, or compiled where so many are executed that it pays."""
+
+    def __init__(self, machine: Any) -> None:
+        self._machine = machine
+        self._state = np.zeros(1, STATE)
+        self._rows = [Move() for _ in range(CHUNK)]
+        self._kernels: Any = None
+
+    def run(self, lines: Lines, first: int, executed: int) -> tuple[int, bool]:
+        """Execute plain lines from index ``first`` on: how many, and whether the next one may be plain too.
+
+        ``executed`` lines came before.
+        """
+        machine, recorder = self._machine, self._machine.recorder
+        if self._kernels is None and max(len(lines), executed) >= (LOADED_LONG if _KERNELS in sys.modules else LONG):
             from robomill.toolpath.gcode import kernels
 
-            words, plain = np.full((count, len(LETTERS)), math.nan), np.zeros(count, bool)
-            kernels.scan(np.frombuffer(self.data, np.uint8), starts, words, plain)
-            self._words = words
-        else:
-            self._words, plain = [[math.nan] * len(LETTERS) for _ in range(count)], np.zeros(count, bool)
-            line_rules.scan(self.data, starts.tolist(), self._words, plain)
-        stops = np.where(plain, count, np.arange(count))
-        self._run_end = np.minimum.accumulate(stops[::-1])[::-1].tolist()
-        self._first = first
-
-
-def run_plain(machine: Any, words: Any, line: int) -> int:
-    """Make plain lines into moves, ``line`` the number of the first; how many of them are done."""
-    if len(words) < WORTHWHILE or not isinstance(words, np.ndarray):
-        rows = [Move() for _ in words]
-        listed = words.tolist() if isinstance(words, np.ndarray) else words
-        done, moves = motion_rules.run(machine, listed, line, rows)
-        machine.recorder.extend(rows[:moves])
-        return int(done)
-    from robomill.toolpath.gcode import kernels
-
-    state = np.zeros(1, STATE)
-    for name in STATE.names or ():
-        state[name] = getattr(machine, name)
-    table = np.zeros(len(words), MOVE)
-    done, moves = kernels.run(state, words, line, table)
-    for name in STATE.names or ():
-        setattr(machine, name, state[0][name].tolist())
-    machine.recorder.extend(table[:moves])
-    return int(done)
+            self._kernels = kernels
+        if self._kernels is None:
+            machine.moves, count = 0, min(len(lines) - first, CHUNK)
+            done = mode_rules.run(machine, machine.store.arrays, lines.plain_text, first, count, self._rows)
+            for row in self._rows[: machine.moves]:
+                recorder.add(row)
+            return done, done == count
+        rows, machine.moves = recorder.free()
+        self._state[0] = _state_of(machine)
+        count = min(len(lines) - first, len(rows) - machine.moves)
+        done = self._kernels.run(self._state, machine.store.views(), lines.text, first, count, rows)
+        for name, value in zip(_FIELDS, self._state[0].item()):
+            setattr(machine, name, value.tolist() if STATE[name].shape else value)
+        recorder.take(machine.moves)
+        return done, done == count

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robomill.toolpath.gcode import words as modal
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.check import check_words
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.parameters import Parameters
@@ -69,7 +69,7 @@ LINES = {
 def test_letters_that_a_line_uses(line):
     for letter in "dehijklpqr":
         text = line if letter in line else f"{line}{letter}1"
-        block = read_words(Reader(text, 1, Parameters(lambda key: None)))
+        block = read_words(Reader(text, 1, Parameters()))
         block.motion = block.g.get(modal.MOTION, -1)
         unused = [name for name, _ in check_words(block)]
         assert unused == ([] if letter in LINES[line] else [letter]), letter

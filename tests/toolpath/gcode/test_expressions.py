@@ -9,8 +9,9 @@ import random
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.expressions import MAX_DEPTH, Reader
+from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.parameters import Parameters
+from robomill.toolpath.gcode.value_rules import MAX_DEPTH
 
 ARITHMETIC = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "**": operator.pow}
 LOGIC = {
@@ -28,7 +29,7 @@ LEVELS = [("and", "or", "xor"), ("eq", "ne", "ge", "le", "gt", "lt"), ("+", "-")
 
 
 def value(text):
-    reader = Reader(text, 1, Parameters(lambda key: None))
+    reader = Reader(text, 1, Parameters())
     found = reader.value()
     assert reader.at == len(text)
     return found
@@ -131,6 +132,6 @@ def test_what_has_no_value_is_refused(text):
 
 @pytest.mark.parametrize(("text", "found"), [("5.00009", 5), ("4.99991", 5), ("-2.00009", -2), ("[1/3*3]", 1)])
 def test_a_whole_number_is_one_within_a_ten_thousandth(text, found):
-    assert Reader(text, 1, Parameters(lambda key: None)).integer("N") == found
+    assert Reader(text, 1, Parameters()).integer("N") == found
     with pytest.raises(GCodeError, match="expected a whole number"):
-        Reader("5.0002", 1, Parameters(lambda key: None)).integer("N")
+        Reader("5.0002", 1, Parameters()).integer("N")

@@ -8,15 +8,22 @@ import random
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import line_rules
-from robomill.toolpath.gcode.motion_rules import LETTERS
+from robomill.toolpath.gcode import kernels, line_rules, mode_rules
+from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.program import Move
+from robomill.toolpath.gcode.records import MOVE, STATE
+from robomill.toolpath.gcode.stretches import Lines
+
+NAMES = [*LETTERS.upper(), *(f"G{n}" for n in range(M_GROUP - G_GROUP)), *(f"M{n}" for n in range(WIDTH - M_GROUP))]
+"""Of the columns: letters, then codes by modal group."""
 
 
 def scanned(line: str) -> dict[str, float] | None:
-    words = [math.nan] * len(LETTERS)
-    data = line.encode()
-    plain = line_rules.scan_line(data, 0, len(data), words)
-    return {letter.upper(): value for letter, value in zip(LETTERS, words) if not math.isnan(value)} if plain else None
+    store, data = Machine(None).store, line.encode()
+    if line_rules.read_line(store.arrays, data, 0, len(data)) != 0:
+        return None
+    return {name: value for name, value in zip(NAMES, store.arrays.words, strict=True) if not math.isnan(value)}
 
 
 @pytest.mark.parametrize(
@@ -26,14 +33,18 @@ def scanned(line: str) -> dict[str, float] | None:
         (" \t\v\f\r", {}),
         ("X1", {"X": 1.0}),
         ("x-1.5y+.25 Z 1 2 . 5", {"X": -1.5, "Y": 0.25, "Z": 12.5}),
-        ("N10 G1 X1.", {"G": 10.0, "X": 1.0}),
-        ("n007g03 i-.0j2K3", {"G": 30.0, "I": -0.0, "J": 2.0, "K": 3.0}),
-        ("G0", {"G": 0.0}),
-        ("G02 X0 R-5", {"G": 20.0, "X": 0.0, "R": -5.0}),
+        ("N10 G1 X1.", {"G1": 10.0, "X": 1.0}),
+        ("n007g03 i-.0j2K3", {"G1": 30.0, "I": -0.0, "J": 2.0, "K": 3.0}),
+        ("G0", {"G1": 0.0}),
+        ("G02 X0 R-5", {"G1": 20.0, "X": 0.0, "R": -5.0}),
         ("A1B2C3F4S5", {"A": 1.0, "B": 2.0, "C": 3.0, "F": 4.0, "S": 5.0}),
         ("X1 (a comment) Y2 (x) ; Y3, (", {"X": 1.0, "Y": 2.0}),
         ("F0 S0", {"F": 0.0, "S": 0.0}),
         ("X123456789.012345", {"X": 123456789.012345}),
+        ("X1234567890.1234567", {"X": 1234567890.1234567}),
+        ("G90 G1 G17 M8 M3", {"G3": 900.0, "G1": 10.0, "G2": 170.0, "M8": 8.0, "M7": 3.0}),
+        ("X[1 + 2 * 3] Y-#1 Z SIN [30]", {"X": 7.0, "Y": -0.0, "Z": math.sin(math.radians(30.0))}),
+        ("(pass 3, depth 2) X1", {"X": 1.0}),
     ],
 )
 def test_plain_lines(line: str, words: dict[str, float]) -> None:
@@ -53,14 +64,22 @@ def test_plain_lines(line: str, words: dict[str, float]) -> None:
         "X.-1",
         "X1,5",
         "X1e3",
-        "X[1]",
-        "X#1",
         "G4",
         "G1.5",
         "G-1",
         "G1G2",
-        "M3",
         "T1",
+        "M6",
+        "G43",
+        "G80 G0",
+        "X[1",
+        "X[1/0]",
+        "X#5420",
+        "X#<a>",
+        "#<a>=1",
+        "#5420=1",
+        "#1=2 X1",
+        "G4 P1",
         "P1",
         "F-1",
         "S-1",
@@ -79,7 +98,6 @@ def test_plain_lines(line: str, words: dict[str, float]) -> None:
         "/X1",
         "%",
         "O1",
-        "X1234567890123456",
         "X\u00e9",
         "X1" + " " * line_rules.MAX_LINE,
     ],
@@ -100,16 +118,19 @@ def test_numbers_are_pythons_own() -> None:
 
 
 def test_compiled_code_reads_the_same() -> None:
-    from robomill.toolpath.gcode import kernels
-
     r = random.Random(5)
-    lines = ["".join(r.choice("XYGN(F;) -.0123456789,") for _ in range(r.randint(0, 14))) for _ in range(4000)]
-    data = "\n".join(lines).encode()
-    starts = np.cumsum([0] + [len(line) + 1 for line in lines])
-    tables = []
-    for scan, text in ((line_rules.scan, data), (kernels.scan, np.frombuffer(data, np.uint8))):
-        words, plain = np.full((len(lines), len(LETTERS)), math.nan), np.zeros(len(lines), bool)
-        scan(text, starts, words, plain)
-        tables.append((plain, np.where(plain[:, None], words, 0.0)))
-    assert 500 < tables[0][0].sum() < 3900
-    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*tables))
+    alphabet = "XYGMN(F;) -.0123456789,[]+*/#<>=asincot"
+    starts = ("", "X[", "G1 X", "#1=", "M", "G2 I", "(", "Y#1")
+    written = [r.choice(starts) + "".join(r.choices(alphabet, k=r.randint(0, 9))) for _ in range(6000)]
+    lines, plain, compiled = Lines("\n".join(written).encode()), Machine(None), Machine(None)
+    state, rows, table, read = np.zeros(1, STATE), [Move()], np.zeros(1, MOVE), 0
+    state[0] = tuple(getattr(compiled, name) for name in STATE.names)
+    for i in range(len(lines)):
+        plain.moves = state["moves"][0] = 0
+        done = mode_rules.run(plain, plain.store.arrays, lines.plain_text, i, 1, rows)
+        assert kernels.run(state, compiled.store.views(), lines.text, i, 1, table) == done, written[i]
+        if done:
+            assert plain.store.values(1, 30) == compiled.store.values(1, 30), written[i]
+            np.testing.assert_allclose(compiled.store.arrays.words, plain.store.arrays.words, rtol=1e-15)
+        read += done
+    assert 1000 < read < 5000

@@ -1,0 +1,130 @@
+"""Rules of modes, feeds, speeds and dwells, and of stretches of plain lines; ``motion_rules`` says what rules are."""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+
+from __future__ import annotations
+
+import math
+
+from robomill.toolpath.gcode import codes
+from robomill.toolpath.gcode.codes import G_GROUP, M_GROUP, F, I, J, K, R, S, X
+from robomill.toolpath.gcode.line_rules import apply_settings, read_line
+from robomill.toolpath.gcode.motion_rules import (
+    INVERSE_TIME,
+    LINE,
+    RAPID,
+    check_move,
+    end_point,
+    implied_motion,
+    is_arc,
+    make_move,
+)
+
+MOTION, PLANE, DISTANCE = G_GROUP + codes.MOTION, G_GROUP + codes.PLANE, G_GROUP + codes.DISTANCE
+ARC_DISTANCE, FEED_MODE = G_GROUP + codes.ARC_DISTANCE, G_GROUP + codes.FEED_MODE
+UNITS, COORDINATES = G_GROUP + codes.UNITS, G_GROUP + codes.COORDINATES
+RETRACT, SPINDLE_MODE = G_GROUP + codes.RETRACT, G_GROUP + codes.SPINDLE_MODE
+SPINDLE, COOLANT = M_GROUP + codes.SPINDLE, M_GROUP + codes.COOLANT
+NO_MOTION = 800
+
+
+def set_rates(m, w) -> None:
+    """G93 to G97, F and S take effect before anything else. In inverse time F belongs to its line alone."""
+    if not math.isnan(w[SPINDLE_MODE]):
+        m.spindle_mode = int(w[SPINDLE_MODE])
+    if not math.isnan(w[FEED_MODE]):
+        m.feed_mode = int(w[FEED_MODE])
+        if m.feed_mode != INVERSE_TIME:
+            m.feed = 0.0
+    if m.feed_mode != INVERSE_TIME and not math.isnan(w[F]):
+        m.feed = w[F]
+    if not math.isnan(w[S]):
+        m.speed = w[S]
+
+
+def switch(m, w) -> None:
+    """M3, M4, M5, M19 and coolants M7, M8, M9."""
+    spindle, coolant = w[SPINDLE], w[COOLANT]
+    if spindle in (3.0, 4.0, 5.0, 19.0):
+        m.spindle = 1 if spindle == 3.0 else (-1 if spindle == 4.0 else 0)
+    if coolant == 9.0:
+        m.mist, m.flood = False, False
+    elif not math.isnan(coolant):
+        m.mist, m.flood = m.mist or coolant == 7.0, m.flood or coolant == 8.0
+
+
+def set_modes(m, w) -> None:
+    """G90, G91, G90.1, G91.1, G98 and G99."""
+    if not math.isnan(w[DISTANCE]):
+        m.absolute = w[DISTANCE] == 900.0
+    if not math.isnan(w[ARC_DISTANCE]):
+        m.arc_absolute = w[ARC_DISTANCE] == 901.0
+    if not math.isnan(w[RETRACT]):
+        m.retract_r = w[RETRACT] == 990.0
+
+
+def set_plane(m, w) -> None:
+    """G17, G18 and G19."""
+    if not math.isnan(w[PLANE]):
+        m.plane = int(w[PLANE]) // 10
+
+
+def dwell(m, seconds: float) -> None:
+    """G4 and the dwells of cycles."""
+    m.dwells += 1
+    m.dwell_time += max(seconds, 0.0)
+    m.waited += max(seconds, 0.0)
+
+
+def system_code(system: int) -> int:
+    """The G code of a coordinate system 1 to 9: G54 to G59.3."""
+    return 530 + 10 * system if system < 7 else 584 + system
+
+
+def run(m, s, text, first: int, count: int, rows) -> int:
+    """How many of ``count`` lines from ``first`` on are made into ``rows``, of which ``m.moves`` are written.
+
+    Up to the first line that is not plain, that is refused or that means more than these rules. That one has changed
+    nothing that doing it again would not; the interpreter reads it and says what is wrong. A line makes one move.
+    """
+    for i in range(first, first + count):
+        settings = read_line(s, text.codes, text.starts[i], text.starts[i + 1] - 1)
+        if settings > 0:
+            apply_settings(s, settings)
+        elif settings < 0 or not _line(m, s.words, s.end, rows[m.moves], i + 1):
+            return i - first
+    return count
+
+
+def _line(m, w, end, row, line: int) -> bool:
+    """Do a plain line; False if it is left to the interpreter."""
+    has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
+    has_axes = False
+    for axis in range(6):
+        has_axes = has_axes or not math.isnan(w[X + axis])
+    motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[MOTION]) else int(w[MOTION])
+    arc, ends = is_arc(motion), motion == NO_MOTION and not has_axes
+    if not arc and (has_centre or not math.isnan(w[R]) or not (ends or motion in (-1, RAPID, LINE))):
+        return False
+    if not (math.isnan(w[UNITS]) or w[UNITS] == m.unit_code):
+        return False
+    if not (math.isnan(w[COORDINATES]) or w[COORDINATES] == system_code(m.system)):
+        return False
+    if not math.isnan(w[UNITS]):
+        m.units_said = m.unit_code
+    set_rates(m, w)
+    switch(m, w)
+    set_plane(m, w)
+    set_modes(m, w)
+    if ends:
+        m.motion, m.initial_level = NO_MOTION, math.nan
+    if motion == -1 or ends:
+        return True
+    if check_move(m, w, motion, False) != 0:
+        return False
+    end_point(m, w, m.p, end)
+    if make_move(m, w, motion, end, row) != 0:
+        return False
+    row.line = line
+    m.moves += 1
+    return True
