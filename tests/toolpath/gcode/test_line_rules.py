@@ -119,9 +119,24 @@ def test_numbers_are_pythons_own() -> None:
 
 def test_compiled_code_reads_the_same() -> None:
     r = random.Random(5)
-    alphabet = "XYGMN(F;) -.0123456789,[]+*/#<>=asincot"
-    starts = ("", "X[", "G1 X", "#1=", "M", "G2 I", "(", "Y#1")
-    written = [r.choice(starts) + "".join(r.choices(alphabet, k=r.randint(0, 9))) for _ in range(6000)]
+    words = ["X1", "y-2.5", "G1", "g 0", "Z[1+2*3]", "#1=3", "#2=[#1/3]", "(a)", "(a, b)", "N5", "M8", "F100", "S 1 0"]
+    words += [
+        "X[SIN[30]**2]",
+        "A#2",
+        "B[#1 GT 2]",
+        "C-[2 MOD 3]",
+        "X[",
+        "I1",
+        "G91",
+        "M3",
+        ";",
+        ".",
+        "-",
+        "]",
+        "#3",
+        " ",
+    ]
+    written = ["".join(r.choices(words, k=r.randint(0, 4))) for _ in range(6000)]
     lines, plain, compiled = Lines("\n".join(written).encode()), Machine(None), Machine(None)
     state, rows, table, read = np.zeros(1, STATE), [Move()], np.zeros(1, MOVE), 0
     state[0] = tuple(getattr(compiled, name) for name in STATE.names)
