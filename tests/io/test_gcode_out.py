@@ -91,3 +91,11 @@ def test_an_axis_along_x_keeps_the_turn_it_had() -> None:
     again = read_gcode(write_gcode(path))
     index = np.searchsorted(again.p[:, 0], p[1:, 0] - 1e-9)
     assert abs(again.k[index] - k[1:]).max() < 1e-6
+
+
+def test_the_first_point_has_its_own_tool_and_speed() -> None:
+    p = np.outer([0.0, 0.01, 0.02], [1, 0, 0])
+    cutting = np.array([False, True, True])
+    made = {"k": [0.0, 0, 1], "v_f": np.array([0, 0.01, 0.01]), "block": np.arange(3)}
+    path = Toolpath(p=p, cutting=cutting, n_s=np.array([10.0, 20, 20]), tool=np.array([1, 2, 2]), **made)  # type: ignore[arg-type]
+    assert write_gcode(path, numbers=0).splitlines()[1:6] == ["T1 M6", "S600 M3", "T2 M6", "S1200 M3", "G1 X10 F600"]

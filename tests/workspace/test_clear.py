@@ -108,3 +108,14 @@ def test_what_only_a_finer_grid_shows_is_left_out(monkeypatch, cell):
     ]
     assert np.prod(box.size) == pytest.approx(max(volumes))
     assert not ((box.lower < place) & (place < box.upper)).all()
+
+
+@pytest.mark.parametrize("points", [(1, 3, 2), (2, 2, 2), (2, 1, 4), (1, 1, 1)])
+def test_cells_lie_between_points(points):
+    """One less than points along an axis, one layer of a single one; each tells of its own corners alone."""
+    robot = rm.load_robot("slavkovic_5r")
+    axes = [c + 0.02 * np.arange(n) for c, n in zip((0.0, -1.3, 0.0), points, strict=True)]
+    assert clear_cells(robot, Grid(*axes)).shape == tuple(max(n - 1, 1) for n in points)
+    assert clear_cells(robot, Grid(*axes)).all()
+    axes[2] = axes[2] + 5.0  # out of reach
+    assert not clear_cells(robot, Grid(*axes)).any()

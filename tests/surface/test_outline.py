@@ -1,0 +1,125 @@
+"""Walls and floors at single places: against outlines of polygons, and against stamps of the cutter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from robomill.cutting.tool import Cutter
+from robomill.surface.outline import Outline
+
+FLAT, SMALL, BALL = Cutter("flat", 8e-3), Cutter("flat", 5e-3), Cutter("ball", 8e-3)
+UP = np.array([0.0, 0, 1])
+
+
+def random_walk(rng, n=12, depth=-2e-3):
+    """Moves one after the other in plan, (n, 6) m."""
+    p = np.column_stack([np.cumsum(rng.normal(0, 4e-3, (n + 1, 2)), axis=0), np.full(n + 1, depth)])
+    return np.hstack([p[:-1], p[1:]])
+
+
+def covered(ends, radii):
+    """Polygon of what round tools cover in plan."""
+    return shapely.union_all(
+        [
+            (shapely.LineString([e[:2], e[3:5]]) if np.any(e[:2] != e[3:5]) else shapely.Point(e[:2])).buffer(
+                r, quad_segs=500
+            )
+            for e, r in zip(ends, radii, strict=True)
+        ]
+    )
+
+
+def ray_end(polygon, c, u, start):
+    """How far from c along u the polygon goes on without a gap, from ``start`` on."""
+    ray = shapely.LineString([c + start * u, c + 0.2 * u])
+    inside = shapely.intersection(polygon, ray)
+    for piece in getattr(inside, "geoms", [inside]):
+        along = sorted((np.array(q) - c) @ u for q in piece.coords)
+        if along and along[0] <= start + 1e-7:
+            return along[-1]
+    return np.nan
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_walls_are_where_the_polygon_ends(seed):
+    rng = np.random.default_rng(seed)
+    ends = random_walk(rng)
+    cutters = (FLAT, SMALL)
+    which = rng.integers(0, 2, len(ends))
+    reach = 2e-3
+    outline = Outline(ends, cutters, which, reach)
+    radii = np.array([c.radius for c in cutters])[which]
+    polygon = covered(ends, radii)
+    checked = 0
+    for n in rng.integers(0, len(ends), 60):
+        share, angle = rng.uniform(0, 1), rng.uniform(0, 2 * np.pi)
+        c, u = ends[n, :3] + share * (ends[n, 3:] - ends[n, :3]), np.array([np.cos(angle), np.sin(angle), 0])
+        R = radii[n]
+        found = outline.walls(np.concatenate([c, UP, u])[None], np.array([1e-3]), np.array([R]))[0]
+        truth = ray_end(polygon, c[:2], u[:2], R - min(reach, 0.9 * R)) - R
+        if np.isfinite(truth) and truth < reach:
+            assert found == pytest.approx(truth, abs=2e-7)
+            checked += 1
+    assert checked > 3
+
+
+def test_below_every_tip_there_is_no_wall():
+    ends = random_walk(np.random.default_rng(0))
+    outline = Outline(ends, (FLAT,), np.zeros(len(ends), dtype=int), 1e-3)
+    place = np.concatenate([ends[0, :3], UP, [1.0, 0, 0]])[None]
+    assert np.isnan(outline.walls(place, np.array([-1e-4]), np.array([4e-3])))[0]
+
+
+@pytest.mark.parametrize("cutter", [FLAT, BALL, Cutter("bull", 8e-3, corner_radius=1e-3)], ids=lambda c: c.kind)
+@pytest.mark.parametrize("seed", range(3))
+def test_floors_are_the_lowest_stamp_and_lean_as_it_does(cutter, seed):
+    rng = np.random.default_rng(seed)
+    ends = random_walk(rng, 6)
+    ends[:, [2, 5]] = rng.uniform(-3e-3, -1e-3, (6, 2))
+    outline = Outline(ends, (cutter,), np.zeros(6, dtype=int), 1e-3)
+    t = np.linspace(0, 1, 3001)[:, None]
+    for n in range(6):
+        c, angle = 0.5 * (ends[n, :3] + ends[n, 3:]), rng.uniform(0, 2 * np.pi)
+        u, offset = np.array([np.cos(angle), np.sin(angle), 0]), rng.uniform(-3.5e-3, 3.5e-3)
+        at = c + offset * u
+        stamps = []
+        for e in ends:
+            tips = e[:3] + t * (e[3:] - e[:3])
+            r = np.hypot(*(at[:2] - tips[:, :2]).T)
+            stamps.append((tips[:, 2] + cutter.profile(np.minimum(r, cutter.radius)))[r < cutter.radius])
+        truth = np.concatenate(stamps).min() - c[2]
+        height, upright = (v[0] for v in outline.floors(np.concatenate([c, UP, u])[None], np.array([offset])))
+        assert height == pytest.approx(truth, abs=2e-6)
+        assert 0.0 <= upright <= 1.0 + 1e-12
+        if cutter.kind == "flat":
+            assert upright == 1.0
+    far = np.concatenate([[1.0, 1, 0], UP, [1.0, 0, 0]])[None]
+    assert np.isposinf(outline.floors(far, np.zeros(1))[0][0])
+
+
+def test_a_leaning_tool_is_asked_in_its_own_axes():
+    """A slot along the tilted level of the tool: everything turned about X is the upright slot."""
+    ends = np.array([[-0.02, 0, 0, 0.02, 0, 0.0]])
+    a = 0.3
+    turn = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
+    for u in ([0, 1.0, 0], [0, -1.0, 0], [1.0, 0, 0]):
+        place = np.concatenate([[5e-3, 0, 0], UP, u])[None]
+        leaning = np.concatenate([turn @ place[0, i : i + 3] for i in (0, 3, 6)])[None]
+        one = Outline(ends, (FLAT,), np.zeros(1, dtype=int), 1e-3)
+        two = Outline(np.hstack([ends[:, :3] @ turn.T, ends[:, 3:] @ turn.T]), (FLAT,), np.zeros(1, dtype=int), 1e-3)
+        for q in (
+            one.walls(place, np.array([1e-3]), np.array([4e-3])),
+            two.walls(leaning, np.array([1e-3]), np.array([4e-3])),
+        ):
+            assert q[0] == pytest.approx(15e-3 if u[0] else 0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("r", "part"), [(0.0, 1.0), (2e-3, np.sqrt(1 - 0.25)), (3.9e-3, np.sqrt(1 - (3.9 / 4) ** 2))])
+def test_the_floor_of_a_ball_leans_as_the_ball(r, part):
+    ends = np.array([[-0.02, 0, 0, 0.02, 0, 0.0]])
+    place = np.concatenate([[0, 0, 0], UP, [0, 1.0, 0]])[None]
+    height, upright = Outline(ends, (BALL,), np.zeros(1, dtype=int), 1e-3).floors(place, np.array([r]))
+    assert height[0] == pytest.approx(4e-3 - np.sqrt(16e-6 - r * r))
+    assert upright[0] == pytest.approx(part)
