@@ -92,7 +92,7 @@ class Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Candidates:
+class PossibleTests:
     """Tests one could do: theta (k, n), F (k, 3) N."""
 
     theta: FloatArray
@@ -108,7 +108,7 @@ def box_candidates(
     load: float = 250.0,
     poses: int = 300,
     seed: int = 1,
-) -> Candidates:
+) -> PossibleTests:
     """Poses spread over a box in {M} (corners in m) with the tool tilted by up to ``tilt`` rad, within the limits.
 
     Each is loaded by ``load`` N along +X, +Y and +Z. Raises LoadTestError where nothing in the box is reached.
@@ -123,10 +123,10 @@ def box_candidates(
     theta = solved.theta[solved.reached]
     if len(theta) == 0:
         raise LoadTestError("Plan: no pose in the box is reached within the joint limits; move the box or tilt less.")
-    return Candidates(*three_directions(theta, load))
+    return PossibleTests(*three_directions(theta, load))
 
 
-def candidates_around(robot: Robot, tests: LoadTests, *, tilt: float = np.pi / 6, load: float = 250.0) -> Candidates:
+def candidates_around(robot: Robot, tests: LoadTests, *, tilt: float = np.pi / 6, load: float = 250.0) -> PossibleTests:
     """Poses within ``MARGIN`` of those that were measured."""
     tips = tests.with_joints(robot).tool_poses(robot)[:, :3, 3]
     return box_candidates(robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=tilt, load=load)
@@ -144,7 +144,7 @@ def next_best(
     robot: Robot,
     tests: LoadTests | JointTests,
     result: IdentificationResult,
-    candidates: Candidates | None = None,
+    candidates: PossibleTests | None = None,
     *,
     count: int = 3,
     goal: str | int | PathLoad = "all",

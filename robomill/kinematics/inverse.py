@@ -41,7 +41,7 @@ class Wish:
     given_spin: float | None
 
 
-class Found(NamedTuple):
+class Chosen(NamedTuple):
     """theta (m, n), branch (m,), -1 where none is within limits, how far from the poses (m,) m and rad, and the turn
     (m,) about the tool axis that was chosen."""
 
@@ -101,7 +101,7 @@ def inverse_kinematics(
     )
 
 
-def _spins(wish: Wish, found: Found, lead: tuple[int, ...]) -> FloatArray | None:
+def _spins(wish: Wish, found: Chosen, lead: tuple[int, ...]) -> FloatArray | None:
     """The turn about the tool axis (...,), as given or found."""
     if wish.given_spin is not None:
         return np.full(lead, wish.given_spin)
@@ -147,17 +147,17 @@ def _reference(robot: Robot, near: object, lead: tuple[int, ...]) -> FloatArray:
     return np.broadcast_to(value, (*lead, robot.n)).reshape(-1, robot.n)
 
 
-def _closed(robot: Robot, arm: Decoupled, wish: Wish) -> Found:
+def _closed(robot: Robot, arm: Decoupled, wish: Wish) -> Chosen:
     """By closed form: pose by pose nearest to the goal, or run by run joined."""
     wanted = branch_mask(wish.branch)
     if wish.goal is None:
         return _along_path(robot, arm, wish, wanted)
     choice = rules(robot, arm, wanted, wish.at_home, wish.free_spin)
     theta, index, fit = nearest(robot, arm, wish.T_MT, wish.goal, choice)
-    return Found(theta, index, fit[:, 1], fit[:, 2], fit[:, 0] if wish.free_spin else None)
+    return Chosen(theta, index, fit[:, 1], fit[:, 2], fit[:, 0] if wish.free_spin else None)
 
 
-def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> Found:
+def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> Chosen:
     """Each run of poses joined; with a free spin, one spin a run: most poses reached, then the least cost."""
     theta, index = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=np.int64)
     turn = np.zeros(len(wish.T_MT)) if wish.free_spin else None
@@ -181,10 +181,10 @@ def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> 
         theta[run], index[run] = way.theta, way.branch
         if turn is not None:
             turn[run] = best
-    return Found(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), turn)
+    return Chosen(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), turn)
 
 
-def _numerical(robot: Robot, wish: Wish) -> Found:
+def _numerical(robot: Robot, wish: Wish) -> Chosen:
     """Pose by pose from the goal, or along each run from the pose before."""
     if wish.goal is not None:
         start = bent_home(robot)[None] if wish.at_home else wish.goal
@@ -197,4 +197,4 @@ def _numerical(robot: Robot, wish: Wish) -> Found:
             theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, wish.T_MT[i : i + 1], near, wish.mode)
             near = theta[i : i + 1] if found[i] else near
     index = np.where(found, 0, -1)
-    return Found(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), None)
+    return Chosen(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), None)

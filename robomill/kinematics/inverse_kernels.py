@@ -154,7 +154,7 @@ def turned(theta, low, high, near):
 
 
 @part
-def settle(theta, limits, goal):
+def put_within(theta, limits, goal):
     """theta (n,) turned towards goal and put inside limits it is past by rounding; its squared motion from there.
 
     Infinite where it is outside the limits.
@@ -182,7 +182,7 @@ def take_nearest(target, arm, rules, goal, least, room, best):
         theta = room[ANGLE, k : 8 * len(best) : 8]
         if rules.held:
             theta[5] = goal[5]
-        cost = order + settle(theta, rules.limits, goal)
+        cost = order + put_within(theta, rules.limits, goal)
         if cost < least:
             least, branch = cost, k
             for j in range(len(best)):

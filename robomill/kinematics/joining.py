@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.kinematics.course import FROM_HOME, Course
+from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions
 from robomill.kinematics.transforms import turn_between
 from robomill.robot.model import Robot
 
@@ -50,7 +50,7 @@ def join(robot: Robot, theta: FloatArray, possible: BoolArray, T_MT: FloatArray,
     m, _, n = theta.shape
     for array in (theta, possible):
         array.setflags(write=False)
-    course = Course(
+    course = PathSolutions(
         theta,
         possible,
         frozen(easy_turn(T_MT, whole)),

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.compiled import Out2, OutInt1, kernel, part
-from robomill.kinematics.course import FROM_HOME, Course
 from robomill.kinematics.decoupled import LIMIT_SLACK
 from robomill.kinematics.inverse_kernels import TURN
+from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions
 
 STANDS_OUT = 1e3  # rad: what is turned beyond the easy turn counts before all other motion
 
@@ -67,7 +67,7 @@ def first_cost(theta, start, extra):
 
 
 @kernel
-def most_nodes(course: Course) -> int:
+def most_nodes(course: PathSolutions) -> int:
     """The largest number of nodes of any pose, at least 1."""
     n, most = len(course.start), 1
     lowest, count = np.empty(n, np.int64), np.empty(n, np.int64)
@@ -81,7 +81,7 @@ def most_nodes(course: Course) -> int:
 
 
 @kernel
-def shortest(course: Course, most: int, theta: Out2, index: OutInt1) -> float:
+def shortest(course: PathSolutions, most: int, theta: Out2, index: OutInt1) -> float:
     """theta (m, n) and branch index (m,) of the way that costs least, and its cost; -1 where a pose has no node.
 
     Such poses are bridged: the way goes on from the last pose that has one. ``most`` nodes a pose at most.

@@ -12,7 +12,7 @@ from robomill.units import UNITS, from_si, to_si, unit_label
 
 
 @dataclass(frozen=True)
-class Box:
+class NumberBox:
     """What stands on a number box, in the unit that is shown; an empty one means None where ``optional``.
 
     ``low`` and ``high`` are refused beyond in a sentence; ``digits`` default to those of the unit.
@@ -79,18 +79,18 @@ def entry(said: Quantity, i: int) -> Quantity:
     return replace(said, kind="number", label=f"{said.label} {said.axes[i]}", shape=(), axes=())
 
 
-def declared(owner: Any, path: str, **shown: Any) -> Box:
+def declared(owner: Any, path: str, **shown: Any) -> NumberBox:
     """The box of the number at ``path`` of ``owner`` as its class declares it; ``shown`` as for ``box_of``."""
     return box_of(declaration(owner, path), **shown)
 
 
-def box_of(said: Quantity | None, **shown: Any) -> Box:
-    """The box of a declared number; ``shown`` are fields of ``Box`` to be otherwise (in another ``unit`` steps follow).
+def box_of(said: Quantity | None, **shown: Any) -> NumberBox:
+    """The box of a declared number; ``shown`` are fields to be otherwise (in another ``unit`` steps follow).
 
     A number that nobody declared needs its ``label``.
     """
     if said is None:
-        return Box(**shown)
+        return NumberBox(**shown)
     unit = shown.get("unit", said.unit)
     given: dict[str, Any] = {
         "label": said.label,
@@ -101,4 +101,4 @@ def box_of(said: Quantity | None, **shown: Any) -> Box:
         "whole": said.kind == "whole",
         "optional": said.optional,
     }
-    return Box(**{**given, **shown})
+    return NumberBox(**{**given, **shown})

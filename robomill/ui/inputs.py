@@ -15,7 +15,7 @@ import streamlit as st
 
 from robomill.errors import ProjectError, RobomillError
 from robomill.ui import session
-from robomill.ui.box import Box, declared
+from robomill.ui.box import NumberBox, declared
 from robomill.ui.project import read_field, with_field
 
 
@@ -66,7 +66,7 @@ class Sheet:
 def number(path: str, **shown: Any) -> None:
     """The number box of the set-up's field at ``path``, shown otherwise than declared, or not declared at all.
 
-    ``shown`` are fields of ``Box``; a field that is not declared needs a ``label``.
+    ``shown`` are fields of ``NumberBox``; a field that is not declared needs a ``label``.
     """
     setup = session.project().setup
     box = declared(setup, path, **shown)
@@ -84,7 +84,7 @@ def into_setup(path: str, label: str) -> Callable[[Any], None]:
     return write
 
 
-def value(name: str, box: Box, current: float | None, write: Callable[[Any], None]) -> None:
+def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
     """A number box for any value in SI; ``write`` gets what was typed, in SI."""
     key = _key(name, box)
     seed(key, box.shown(current))
@@ -106,7 +106,7 @@ def value(name: str, box: Box, current: float | None, write: Callable[[Any], Non
     sentence(key)
 
 
-def _key(name: str, box: Box) -> str:
+def _key(name: str, box: NumberBox) -> str:
     return name if box.unit == "1" else f"{name}:{box.unit}"
 
 

@@ -25,8 +25,7 @@ from robomill.io.tables import parse_toml
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
-from robomill.workspace.quantities import COMPONENTS
-from robomill.workspace.quantities import quantities as map_quantities
+from robomill.workspace.quantities import COMPONENTS, map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"

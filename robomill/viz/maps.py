@@ -14,7 +14,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.units import UNITS, format_number
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
 from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
-from robomill.workspace.quantities import Colours, Quantity
+from robomill.workspace.quantities import Colours, MapQuantity
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
 LEFT, RIGHT = 62, 84  # px for tick labels and colour bar, fixed: measuring them would draw everything twice
@@ -38,7 +38,7 @@ class Scale:
     digits: int = 3
 
     @classmethod
-    def of(cls, what: Quantity, values: FloatArray, joints: tuple[int, ...]) -> Scale:
+    def of(cls, what: MapQuantity, values: FloatArray, joints: tuple[int, ...]) -> Scale:
         """The scale of a quantity from its values in display units: centred on zero where both signs occur."""
         seen = values[np.isfinite(values)]
         low, high = (float(seen.min()), float(seen.max())) if len(seen) else (0.0, 1.0)

@@ -11,7 +11,7 @@ from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
 from robomill.workspace.cells import Cells
 from robomill.workspace.grid import Grid
-from robomill.workspace.quantities import Quantity, quantity
+from robomill.workspace.quantities import MapQuantity, map_quantity
 from robomill.workspace.solve import solve_grid
 
 
@@ -23,7 +23,7 @@ class Field:
     grid: Grid
     A: float
     B: float
-    quantity: Quantity
+    quantity: MapQuantity
     values: FloatArray
     reached: int
 
@@ -34,11 +34,11 @@ class ComplianceField(Cells):
 
     def values(self, name: str) -> FloatArray:
         """The quantity called ``name`` (see ``quantities``), (nx, ny, nz) in SI, NaN where not reached."""
-        return quantity(self.robot, name).law(self)
+        return map_quantity(self.robot, name).law(self)
 
     def field(self, name: str) -> Field:
         """The quantity as a ``Field``."""
-        what = quantity(self.robot, name)
+        what = map_quantity(self.robot, name)
         return Field(self.robot, self.grid, self.A, self.B, what, what.law(self), int(self.reached.sum()))
 
 

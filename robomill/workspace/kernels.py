@@ -15,7 +15,7 @@ ROW, COLUMN = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)  # of C_xx, C_yy, C_zz, C_x
 
 
 @part
-def joint_shares(J, C_theta, shares):
+def parts_of_compliance(J, C_theta, shares):
     """shares (n, 6): each joint's part C_theta,i J_i J_i^T of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz. Eqs. (13), (14)."""
     for i in range(len(C_theta)):
         for e in range(6):
@@ -35,7 +35,7 @@ def evaluate(theta: In2, chain: Chain, C_theta: In1, task: In2, laws: Laws) -> N
         J = laws.J[i]
         forward(theta[i], chain, turns, frames)
         jacobian(frames, chain, J)
-        joint_shares(J, C_theta, laws.shares[i])
+        parts_of_compliance(J, C_theta, laws.shares[i])
         for r in range(k):
             for j in range(n):
                 A[r, j] = 0.0

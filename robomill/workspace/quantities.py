@@ -1,7 +1,7 @@
 """The quantities of a map: each declared once, with name, title, unit, colours, formula, meaning and its law.
 
 Fields, files, command line, pages, colour scales and hover texts find what they show by asking here: a new quantity is
-one more ``Quantity`` in one of the lists below.
+one more ``MapQuantity`` in one of the lists below.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Basis = Literal["geometry", "compliance"]
 
 
 @dataclass(frozen=True)
-class Quantity:
+class MapQuantity:
     """What a map shows, where to read it and how to find it.
 
     ``unit`` is a key of ``UNITS``; ``law`` gives the values (nx, ny, nz) of a solved grid in SI, NaN where not reached.
@@ -55,21 +55,21 @@ class Quantity:
         return self.name if unit == "1" else f"{self.name}_{unit}"
 
 
-def quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, Quantity]:
+def map_quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, MapQuantity]:
     """Every quantity that has a meaning for ``robot`` (and rests on that), by name, in the order they are listed."""
     return {what.name: what for family in _families(robot) for what in family if rests_on in (None, what.rests_on)}
 
 
-def quantity(robot: Robot, name: str) -> Quantity:
+def map_quantity(robot: Robot, name: str) -> MapQuantity:
     """The quantity called ``name`` (C_zy is C_yz); joints count from 1 over the free joints. Raises WorkspaceError."""
-    known = quantities(robot).get(name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy"))
+    known = map_quantities(robot).get(name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy"))
     if known is None:
         names = [f[0].name if len(f) == 1 else f"{f[0].name} ... {f[-1].name}" for f in _families(robot)]
         raise WorkspaceError(f"Quantity {name!r}: expected {', '.join(names[:-1])} or {names[-1]}.")
     return known
 
 
-def _families(robot: Robot) -> list[list[Quantity]]:
+def _families(robot: Robot) -> list[list[MapQuantity]]:
     """Quantities that differ by component or joint only go together: a refusal names the first and the last."""
     return [
         *([what] for what in _of_the_geometry(robot)),
@@ -81,10 +81,10 @@ def _families(robot: Robot) -> list[list[Quantity]]:
     ]
 
 
-def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
+def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
     """Quantities that no compliance enters."""
     named, unit = ", ".join(dexterity.square_rows(robot)), dexterity.determinant_unit(robot)
-    yield Quantity(
+    yield MapQuantity(
         "reach",
         "reach WS",
         "1",
@@ -93,7 +93,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
         lambda field: field.reached.astype(np.float64),
         colours="reach",
     )
-    yield Quantity(
+    yield MapQuantity(
         "det_J",
         "det(J)",
         unit,
@@ -102,7 +102,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
         lambda field: field.det_J,
         colours="diverging",
     )
-    yield Quantity(
+    yield MapQuantity(
         "manipulability",
         "manipulability",
         unit,
@@ -110,7 +110,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
         "Yoshikawa's measure: the size of what unit joint speeds can do.",
         lambda field: np.abs(field.det_J),
     )
-    yield Quantity(
+    yield MapQuantity(
         "inverse_condition",
         "inverse condition",
         "1",
@@ -118,7 +118,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
         "1 is equally able in every direction, 0 is singular.",
         lambda field: field.where_reached(field.singular_values[:, -1] / field.singular_values[:, 0]),
     )
-    yield Quantity(
+    yield MapQuantity(
         "smallest_singular_value",
         "smallest singular value",
         "1",
@@ -126,7 +126,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
         "How fast the tool moves in its worst direction at unit joint speed.",
         lambda field: field.where_reached(field.singular_values[:, -1]),
     )
-    yield Quantity(
+    yield MapQuantity(
         "limit_distance",
         "distance to joint limits",
         "%",
@@ -139,7 +139,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[Quantity]:
 CANCEL = "Parts of different signs cancel: without this joint the cross-compliance may be larger."
 
 _DIRECTIONS = (
-    Quantity(
+    MapQuantity(
         "C_soft",
         "softest direction",
         "um/N",
@@ -148,7 +148,7 @@ _DIRECTIONS = (
         lambda field: field.where_reached(field.principal[:, -1]),
         rests_on="compliance",
     ),
-    Quantity(
+    MapQuantity(
         "C_stiff",
         "stiffest direction",
         "um/N",
@@ -157,7 +157,7 @@ _DIRECTIONS = (
         lambda field: field.where_reached(field.principal[:, 0]),
         rests_on="compliance",
     ),
-    Quantity(
+    MapQuantity(
         "dominant",
         "joint that gives most",
         "1",
@@ -170,9 +170,9 @@ _DIRECTIONS = (
 )
 
 
-def _component(c: str) -> Quantity:
+def _component(c: str) -> MapQuantity:
     k = COMPONENTS.index(c)
-    return Quantity(
+    return MapQuantity(
         f"C_{c}",
         f"{'direct' if c[0] == c[1] else 'cross'}-compliance C_{c}",
         "um/N",
@@ -184,9 +184,9 @@ def _component(c: str) -> Quantity:
     )
 
 
-def _dominant(c: str) -> Quantity:
+def _dominant(c: str) -> MapQuantity:
     k = COMPONENTS.index(c)
-    return Quantity(
+    return MapQuantity(
         f"dominant_C_{c}",
         f"joint that gives most in C_{c}",
         "1",
@@ -200,9 +200,9 @@ def _dominant(c: str) -> Quantity:
     )
 
 
-def _joint(robot: Robot, c: str, joint: int) -> Quantity:
+def _joint(robot: Robot, c: str, joint: int) -> MapQuantity:
     k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
-    return Quantity(
+    return MapQuantity(
         f"C_{c}_{joint + 1}",
         f"joint {number} in C_{c}",
         "um/N",
@@ -214,7 +214,7 @@ def _joint(robot: Robot, c: str, joint: int) -> Quantity:
     )
 
 
-def _share(robot: Robot, c: str, joint: int) -> Quantity:
+def _share(robot: Robot, c: str, joint: int) -> MapQuantity:
     k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
 
     def law(field: Cells) -> FloatArray:
@@ -222,7 +222,7 @@ def _share(robot: Robot, c: str, joint: int) -> Quantity:
         nothing = np.where(field.reached, 0.0, np.nan)
         return np.divide(field.shares[..., joint, k], whole, out=nothing, where=whole > 0)
 
-    return Quantity(
+    return MapQuantity(
         f"share_C_{c}_{joint + 1}",
         f"share of joint {number} in C_{c}",
         "%",

@@ -15,7 +15,7 @@ from robomill.io.robots import load_robot
 from robomill.robot.model import Robot
 from robomill.ui.maps.sheets import SHEETS
 from robomill.ui.project import MapView
-from robomill.workspace.quantities import quantities
+from robomill.workspace.quantities import map_quantities
 
 WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
 
@@ -51,7 +51,7 @@ def test_workspace_pictures(app: AppTest, picture: str) -> None:
     assert "reaches all of this region and meets no singularity" in words(app)
 
 
-@pytest.mark.parametrize("quantity", quantities(load_robot("slavkovic_5r"), "geometry"))
+@pytest.mark.parametrize("quantity", map_quantities(load_robot("slavkovic_5r"), "geometry"))
 def test_every_quantity_says_its_formula_and_meaning(app: AppTest, quantity: str) -> None:
     go(app, WORKSPACE)
     look(app, quantity=quantity)

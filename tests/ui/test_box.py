@@ -10,7 +10,7 @@ import pytest
 from robomill.arrays import FloatArray
 from robomill.errors import ProjectError
 from robomill.quantities import quantity, whole
-from robomill.ui.box import Box, box_of, declaration, declared
+from robomill.ui.box import NumberBox, box_of, declaration, declared
 
 
 @dataclass(frozen=True)
@@ -63,16 +63,16 @@ def test_a_whole_number_has_no_decimals() -> None:
 
 
 def test_an_empty_box_is_none_only_where_it_may_be() -> None:
-    assert Box("Radius", optional=True).typed(None) is None
+    assert NumberBox("Radius", optional=True).typed(None) is None
     with pytest.raises(ProjectError, match="empty"):
-        Box("Radius").typed(None)
+        NumberBox("Radius").typed(None)
 
 
 @pytest.mark.parametrize(
     ("low", "high", "expected"), [(1.0, None, "1 or more"), (None, 5.0, "5 or less"), (1.0, 5.0, "1 to 5")]
 )
 def test_bounds_are_said_in_the_unit_that_is_shown(low: float | None, high: float | None, expected: str) -> None:
-    box = Box("Depth", "mm", low=low, high=high)
+    box = NumberBox("Depth", "mm", low=low, high=high)
     outside = 0.5 if low is not None else 5.5
     with pytest.raises(ProjectError, match=f"Depth: found {outside:g}, expected {expected} mm"):
         box.typed(outside)

@@ -13,9 +13,9 @@ from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.ui.maps.sheets import SHEETS
 from robomill.ui.project import MapView, Project, View, project_from_toml, project_to_toml, read_field, with_field
-from robomill.workspace.quantities import quantities
+from robomill.workspace.quantities import map_quantities
 
-ASKED = quantities(load_robot("slavkovic_5r")).values()
+ASKED = map_quantities(load_robot("slavkovic_5r")).values()
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from robomill.viz.lesson import ray_figure
 from robomill.viz.maps import Map, MapSheet, Scale, hover_text, picked_point, sheet_figure, symmetric_limit
 from robomill.viz.shares import LinePanel, gain_bars, line_panels, share_bars
 from robomill.viz.voxels import outer_faces, voxel_trace, widen, wire_box
-from robomill.workspace.quantities import quantity
+from robomill.workspace.quantities import map_quantity
 
 U, V = np.linspace(-600, 600, 13), np.linspace(-1600, -1000, 7)
 
@@ -97,7 +97,7 @@ def test_hover_words() -> None:
 
 @pytest.mark.parametrize("name", ["det_J", "C_yy", "C_xy", "reach", "dominant", "limit_distance"])
 def test_the_scale_of_a_quantity_holds_its_values(name: str) -> None:
-    what = quantity(rm.load_robot("slavkovic_5r"), name)
+    what = map_quantity(rm.load_robot("slavkovic_5r"), name)
     for shown in (np.array([[-2.0, 5.0], [np.nan, 1.0]]), np.array([[2.0, 5.0], [np.nan, 1.0]])):
         scale = Scale.of(what, shown, (1, 3))
         assert (scale.low, scale.high) == (np.nanmin(shown), np.nanmax(shown))

@@ -10,7 +10,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, axis_points, box_grid, plane_grid
-from robomill.workspace.quantities import quantities, quantity
+from robomill.workspace.quantities import map_quantities, map_quantity
 
 MEASURES = {
     "det_J": dexterity.determinant,
@@ -53,14 +53,14 @@ def test_unreachable_is_nan_and_counted_for_every_name():
     robot = rm.load_robot("slavkovic_5r")
     grid = plane_grid("z", 0.0, [-1, -3, 0], [1, -1, 0], 0.25)
     field = compliance_field(robot, grid)
-    for name in quantities(robot):
+    for name in map_quantities(robot):
         values = field.values(name)
         assert values.shape == grid.shape
         if name == "reach":
             assert set(np.unique(values)) == {0.0, 1.0}
         else:
             np.testing.assert_array_equal(np.isnan(values), ~field.reached, err_msg=name)
-        assert quantity(robot, name).formula
+        assert map_quantity(robot, name).formula
         assert field.field(name).reached == field.reached.sum()
 
 

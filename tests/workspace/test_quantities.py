@@ -8,7 +8,7 @@ from robomill.errors import WorkspaceError
 from robomill.units import UNITS
 from robomill.workspace.fields import ComplianceField, compliance_field
 from robomill.workspace.grid import box_grid
-from robomill.workspace.quantities import COMPONENTS, quantities, quantity
+from robomill.workspace.quantities import COMPONENTS, map_quantities, map_quantity
 
 AXES = "xyz"
 
@@ -75,7 +75,7 @@ def test_joints_keep_their_numbers_where_one_is_blocked():
     robot = rm.load_robot("slavkovic_5r")
     whole = compliance_field(robot, box_grid([0.0, -1.4, 0.0], [0.2, -1.2, 0.0], 0.2))
     names = [f"C_yy_{j}" for j in (1, 2, 3, 4, 5)]
-    assert [quantity(robot, n).title for n in names] == [f"joint {j} in C_yy" for j in (1, 2, 3, 4, 5)]
+    assert [map_quantity(robot, n).title for n in names] == [f"joint {j} in C_yy" for j in (1, 2, 3, 4, 5)]
     largest = np.argmax([whole.values(n) for n in names], axis=0) + 1
     np.testing.assert_array_equal(whole.values("dominant_C_yy"), largest)
 
@@ -122,9 +122,9 @@ def test_determinant_and_its_kin(field):
 
 def test_every_quantity_says_what_it_is(field):
     robot = field.robot
-    known = quantities(robot)
+    known = map_quantities(robot)
     for name, what in known.items():
-        assert quantity(robot, name).name == what.name == name
+        assert map_quantity(robot, name).name == what.name == name
         assert what.unit in UNITS
         assert what.formula
         assert what.meaning.endswith(".")
@@ -144,7 +144,7 @@ def test_every_quantity_says_what_it_is(field):
 def test_what_rests_on_compliance_changes_with_it_and_the_rest_does_not(field):
     stiff = field.robot.replace(C_theta=field.robot.C_theta * np.linspace(0.2, 3.0, field.robot.n))
     other = compliance_field(stiff, field.grid, field.A, field.B)
-    for name, what in quantities(field.robot).items():
+    for name, what in map_quantities(field.robot).items():
         same = np.array_equal(field.values(name), other.values(name), equal_nan=True)
         if what.rests_on == "geometry":
             assert same, name
@@ -154,26 +154,30 @@ def test_what_rests_on_compliance_changes_with_it_and_the_rest_does_not(field):
 
 def test_units_and_headers():
     robot, planar = rm.load_robot("slavkovic_5r"), rm.load_robot("planar_3r")
-    assert [quantity(r, "det_J").unit for r in (robot, planar, rm.load_robot("fanuc_r2000ic"))] == ["m3", "m2", "m3"]
-    assert [quantity(robot, n).column for n in ("C_yy", "reach", "limit_distance", "det_J", "share_C_xx_1")] == [
+    assert [map_quantity(r, "det_J").unit for r in (robot, planar, rm.load_robot("fanuc_r2000ic"))] == [
+        "m3",
+        "m2",
+        "m3",
+    ]
+    assert [map_quantity(robot, n).column for n in ("C_yy", "reach", "limit_distance", "det_J", "share_C_xx_1")] == [
         "C_yy_um/N",
         "reach",
         "limit_distance_percent",
         "det_J_m3",
         "share_C_xx_1_percent",
     ]
-    assert quantity(robot, "det_J").label == "det(J), m³"
-    assert quantity(robot, "reach").label == "reach WS"
-    assert quantity(robot, "C_xy").title == "cross-compliance C_xy"
-    assert quantity(robot, "C_xx").title == "direct-compliance C_xx"
-    assert quantity(robot, "C_xy").meaning == "How far the tip moves in X under 1 N in Y."
+    assert map_quantity(robot, "det_J").label == "det(J), m³"
+    assert map_quantity(robot, "reach").label == "reach WS"
+    assert map_quantity(robot, "C_xy").title == "cross-compliance C_xy"
+    assert map_quantity(robot, "C_xx").title == "direct-compliance C_xx"
+    assert map_quantity(robot, "C_xy").meaning == "How far the tip moves in X under 1 N in Y."
 
 
 @pytest.mark.parametrize(
     ("written", "meant"), [("C_zy", "C_yz"), ("C_zx_2", "C_xz_2"), ("dominant_C_yx", "dominant_C_xy")]
 )
 def test_components_may_be_written_either_way(written, meant):
-    assert quantity(rm.load_robot("slavkovic_5r"), written).name == meant
+    assert map_quantity(rm.load_robot("slavkovic_5r"), written).name == meant
 
 
 @pytest.mark.parametrize(
@@ -181,10 +185,10 @@ def test_components_may_be_written_either_way(written, meant):
 )
 def test_unknown_quantities_are_refused(name):
     with pytest.raises(WorkspaceError) as refusal:
-        quantity(rm.load_robot("slavkovic_5r"), name)
+        map_quantity(rm.load_robot("slavkovic_5r"), name)
     offered = str(refusal.value).removeprefix(f"Quantity {name!r}: expected ").removesuffix(".")
     listed = offered.replace(" or ", ", ").split(", ")
-    names = list(quantities(rm.load_robot("slavkovic_5r")))
+    names = list(map_quantities(rm.load_robot("slavkovic_5r")))
     # Alone, or first and last of those that differ by component or joint; together they are all there is.
     ends = [words.split(" ... ") for words in listed]
     spans = [names[names.index(end[0]) : names.index(end[-1]) + 1] for end in ends]

@@ -16,7 +16,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.identification.bench import Bench
 from robomill.ui.identification.inputs import BANDS, adopted, field, knowledge
 from robomill.units import format_si, from_si
@@ -68,9 +68,9 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
     with made:
         inputs.choice("Band", "identification.band", BANDS, bench.band, bench.writer("band"), inputs.LISTED)
     with second:
-        field(bench, "force_unsure", Box("Force known to ±", "N", 5.0, 0, low=0, high=1000))
+        field(bench, "force_unsure", NumberBox("Force known to ±", "N", 5.0, 0, low=0, high=1000))
     with third:
-        field(bench, "length_unsure", Box("Link lengths to ±", "mm", 0.5, 2, low=0, high=50))
+        field(bench, "length_unsure", NumberBox("Link lengths to ±", "mm", 0.5, 2, low=0, high=50))
     try:
         found, known = predicted(bench, robot, result)
         now = cut_of(robot)

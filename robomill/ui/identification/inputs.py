@@ -19,7 +19,7 @@ from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.identification.bench import SAMPLES, Bench, decoded, take_sample
 from robomill.ui.identification.words import summary
 
@@ -224,6 +224,6 @@ def _use(bench: Bench, fitted: SimulationSetup, robot: Robot, result: Identifica
     inputs.submit("identification.use", None, put)
 
 
-def field(bench: Bench, name: str, box: Box) -> None:
+def field(bench: Bench, name: str, box: NumberBox) -> None:
     """The box of a number of the bench."""
     inputs.value(f"identification.{name}", box, getattr(bench, name), bench.writer(name))

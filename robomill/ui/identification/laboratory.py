@@ -19,7 +19,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import SAMPLE_ROBOT, Bench, Trial, robot_of
 from robomill.ui.project import View
@@ -27,7 +27,7 @@ from robomill.units import format_number, format_percent, format_si, from_si
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
 
-POSE = (*(Box(name, "mm", 50.0, 1) for name in "XYZ"), *(Box(name, "deg", 5.0, 1) for name in "AB"))
+POSE = (*(NumberBox(name, "mm", 50.0, 1) for name in "XYZ"), *(NumberBox(name, "deg", 5.0, 1) for name in "AB"))
 SEED = 1
 
 
@@ -130,9 +130,9 @@ def _begin(bench: Bench, lab: Laboratory) -> None:
 def _rules(bench: Bench, robot: Robot, lab: Laboratory) -> None:
     """Number of the hidden robot, noise and budget; a new exercise begins with the button."""
     boxes = {
-        "seed": (Box("Number", whole=True, low=0, high=9999), lab.seed),
-        "noise": (Box("Noise", "um", 1.0, 1, low=0, high=500), lab.noise),
-        "budget": (Box("Budget", whole=True, low=1, high=500), lab.budget + _taken(lab)),
+        "seed": (NumberBox("Number", whole=True, low=0, high=9999), lab.seed),
+        "noise": (NumberBox("Noise", "um", 1.0, 1, low=0, high=500), lab.noise),
+        "budget": (NumberBox("Budget", whole=True, low=1, high=500), lab.budget + _taken(lab)),
     }
 
     def asked(name: str) -> Any:
@@ -171,7 +171,7 @@ def _measure(bench: Bench, lab: Laboratory) -> None:
     st.markdown("**Hang on it**")
     left, right = st.columns([1, 1.6])
     with left:
-        load = Box("Load", "N", 50.0, 0)
+        load = NumberBox("Load", "N", 50.0, 0)
         inputs.value("identification.lab.load", load, trial.load, lambda v: write(load=v))
     with right:
         axes = {axis: f"+{axis}" for axis in "XYZ"}

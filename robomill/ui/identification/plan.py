@@ -15,7 +15,7 @@ from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.identification.bench import Bench, appended, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import field, upload
@@ -81,11 +81,11 @@ def _goal_inputs(bench: Bench, robot: Robot, result: IdentificationResult) -> No
         with second:
             inputs.choice("Joint", "identification.goal_joint", joints, now, bench.writer("goal_joint"), inputs.LISTED)
     with third:
-        field(bench, "count", Box("More tests", whole=True, low=1, high=30))
+        field(bench, "count", NumberBox("More tests", whole=True, low=1, high=30))
     with fourth:
-        field(bench, "load", Box("Load", "N", 50.0, 0, low=1, high=5000))
+        field(bench, "load", NumberBox("Load", "N", 50.0, 0, low=1, high=5000))
     with fifth:
-        field(bench, "tilt", Box("Tilt up to", "deg", 5.0, 0, low=0, high=90))
+        field(bench, "tilt", NumberBox("Tilt up to", "deg", 5.0, 0, low=0, high=90))
     pieces.note(
         "Chosen among 300 poses within the joint limits and "
         f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."

@@ -28,7 +28,7 @@ from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
 from robomill.viz.voxels import widen
-from robomill.workspace.quantities import quantity
+from robomill.workspace.quantities import map_quantity
 
 RADII = 121
 HALVINGS = 24
@@ -147,7 +147,7 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
 
 
 def _measure(pose: PoseReport, way: Ray, i: int) -> None:
-    what = quantity(pose.robot, "det_J")
+    what = map_quantity(pose.robot, "det_J")
     det = float(way.det[i])
     softest_here = pose.principal[0][-1]
     number, label = split_unit(format_si(det, what.unit, 3))

@@ -14,7 +14,7 @@ from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, de
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, shell
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
 from robomill.ui.point import InHand
@@ -87,7 +87,7 @@ def controls(robot: Robot, view: MapView, found: InHand, unit: str) -> None:
     st.markdown("**The point in hand**")
     for i, column in enumerate(st.columns(3)):
         with column:
-            box = Box("XYZ"[i], unit, 50.0 if unit == "mm" else 1.0, plane.digits(unit))
+            box = NumberBox("XYZ"[i], unit, 50.0 if unit == "mm" else 1.0, plane.digits(unit))
             inputs.value(f"maps.point.{i}", box, found.point[i], partial(_put, found, i))
     inputs.choice(
         "Colours of the 3 × 3 maps",

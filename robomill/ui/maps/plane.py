@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.project import MapView
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
@@ -139,8 +139,8 @@ def _corners(view: MapView, unit: str) -> None:
     inputs.value("maps.step", _box("Step (0 lets robomill choose)", unit, 5.0), view.step or 0.0, _put_step)
 
 
-def _box(label: str, unit: str, step: float) -> Box:
-    return Box(label, unit, step, digits(unit))
+def _box(label: str, unit: str, step: float) -> NumberBox:
+    return NumberBox(label, unit, step, digits(unit))
 
 
 def _put_corner(side: str, i: int, value_SI: float) -> None:

@@ -18,7 +18,7 @@ from robomill.ui.point import default_point
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.quantities import COMPONENTS, quantities
+from robomill.workspace.quantities import COMPONENTS, map_quantities
 
 SHEETS = {
     "nine": "3 × 3 maps",
@@ -272,7 +272,7 @@ def _dominant(cut: Cut) -> None:
 def _one(cut: Cut) -> None:
     """Any quantity that rests on the joints' compliance, found by asking for them."""
     robot, view = cut.region.robot, cut.region.view
-    known = quantities(robot, "compliance")
+    known = map_quantities(robot, "compliance")
     titles = {name: what.title for name, what in known.items()}
     chosen = view.one if view.one in known else next(iter(known))
     inputs.choice("Quantity", "maps.one", titles, chosen, lambda name: session.see(one=name), inputs.LISTED)

@@ -37,7 +37,7 @@ from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
-from robomill.workspace.quantities import Quantity, quantities, quantity
+from robomill.workspace.quantities import MapQuantity, map_quantities, map_quantity
 from robomill.workspace.reach import Box, against_paper
 
 PICTURES = {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}
@@ -47,7 +47,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     """Share in reach, least determinant, nearest limit, largest box."""
     share = float(known.reached.mean())
     det = np.abs(known.det_J[known.reached])
-    what = quantity(robot, "det_J")
+    what = map_quantity(robot, "det_J")
     least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
     limit = known.values("limit_distance")
     nearest = format_percent(np.nanmin(limit)) if np.isfinite(limit).any() else NOT_REACHED
@@ -113,9 +113,9 @@ def _why(known: ComplianceField) -> str:
 
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
-    names = {name: what.title for name, what in quantities(robot, "geometry").items()}
+    names = {name: what.title for name, what in map_quantities(robot, "geometry").items()}
     inputs.choice("Quantity", "maps.quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
-    what = quantity(robot, view.quantity)
+    what = map_quantity(robot, view.quantity)
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
     plane.controls(robot, view, unit)
     pieces.note(plane.tilt_note(robot))
@@ -209,7 +209,7 @@ def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None
 
 def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
     """One or two planes of the quantity on a scale that stays while they move."""
-    unit, what = region.unit, quantity(region.robot, region.view.quantity)
+    unit, what = region.unit, map_quantity(region.robot, region.view.quantity)
     maps_row, grid = [], None
     for at in ats:
         grid = region.grid(normal, at)
@@ -236,21 +236,21 @@ def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
     )
 
 
-def _columns(region: Region, grid: Grid, what: Quantity) -> dict[str, FloatArray]:
+def _columns(region: Region, grid: Grid, what: MapQuantity) -> dict[str, FloatArray]:
     """The table twin of a plane."""
     from robomill.io.maps import map_columns
 
     return map_columns([region.field(grid).field(what.name)])
 
 
-def _scale(region: Region, what: Quantity) -> Scale:
+def _scale(region: Region, what: MapQuantity) -> Scale:
     """The scale of a quantity over the whole region."""
     return Scale.of(what, from_si(region.overview().values(what.name), what.unit), region.robot.joint_numbers)
 
 
 def _solid(region: Region) -> None:
     robot = region.robot
-    what = quantity(robot, region.view.quantity)
+    what = map_quantity(robot, region.view.quantity)
     grid = fields.solid(robot, region.box)
     known = region.field(grid)
     if not known.reached.any():

@@ -19,7 +19,7 @@ from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.units import to_si, unit_label
 
 OWN, NEW = "milling.materials", "milling.material"
@@ -141,7 +141,7 @@ def coefficient_frame(material: Material) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "coefficient": [q.name for q in said],
-            "value": [Box(q.label, q.unit).shown(getattr(material, q.name)) for q in said],
+            "value": [NumberBox(q.label, q.unit).shown(getattr(material, q.name)) for q in said],
             "unit": [unit_label(q.unit) for q in said],
         }
     )

@@ -21,7 +21,7 @@ from robomill.io.tool_tables import UNITS, read_tool_table, tools_from_table, to
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.tools import cutting_numbers
 from robomill.ui import declared, inputs, pieces, session
-from robomill.ui.box import Box, box_of
+from robomill.ui.box import NumberBox, box_of
 from robomill.units import from_si, to_si, unit_label
 
 FILE, UNIT, TABLE, ODD = "milling.tools.file", "milling.tools.unit", "milling.tools.table", "milling.tools.odd"
@@ -179,7 +179,7 @@ def _cell(tool: TableTool, said: Quantity, unit: str) -> Any:
     needless = said.name in OF_SHAPE and cutter is not None and said.name not in cutter.shape.needs
     if value is None or needless:
         return None
-    return Box(said.label, _shown(said, unit)).shown(value) if said.kind == "number" else value
+    return NumberBox(said.label, _shown(said, unit)).shown(value) if said.kind == "number" else value
 
 
 def tools_of(frame: pd.DataFrame, unit: str, before: ToolTable) -> ToolTable:

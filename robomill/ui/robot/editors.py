@@ -11,7 +11,7 @@ from robomill.robot.model import USER_SET, Robot
 from robomill.simulation.run import deviation_over_spin
 from robomill.simulation.samples import sampled
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.project import Project, is_stiffness
 from robomill.ui.robot import tables
 from robomill.units import format_si, unit_label
@@ -176,7 +176,7 @@ def _spin(project: Project) -> None:
     if given:
         inputs.value(
             "robot.spin",
-            Box("Turn about z_T", "deg", 5.0, 1),
+            NumberBox("Turn about z_T", "deg", 5.0, 1),
             float(setup.spin),
             lambda angle: session.change(spin=angle),
         )

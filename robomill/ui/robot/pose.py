@@ -10,7 +10,7 @@ from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.project import Project
 from robomill.units import format_many, format_number, format_percent, format_si, from_si, to_si, unit_label
 from robomill.viz.theme import joint_colours
@@ -86,7 +86,7 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
     with box:
         inputs.value(
-            f"pose.box.{i}", Box(label, unit, 1.0, 2, low=low, high=high, hidden=True), to_si(shown, unit), turn
+            f"pose.box.{i}", NumberBox(label, unit, 1.0, 2, low=low, high=high, hidden=True), to_si(shown, unit), turn
         )
 
 

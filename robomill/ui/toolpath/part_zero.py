@@ -11,7 +11,7 @@ from robomill.errors import ToolpathError
 from robomill.io.workpiece import part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.units import format_si, from_si, to_si, unit_label
 from robomill.vectors import angle_between
 
@@ -39,7 +39,7 @@ def _by_numbers() -> None:
             inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=digits)
     with right:
         turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
-        inputs.value("toolpath.turn", Box("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)
+        inputs.value("toolpath.turn", NumberBox("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
         pieces.note(

@@ -15,7 +15,7 @@ from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import Box
+from robomill.ui.box import NumberBox
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
@@ -83,7 +83,7 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
         with st.container(width=114):
             mode = inputs.pick("Program", MODE, MODES, look=inputs.HIDDEN)
         if mode == "code":
-            box = Box("Line", hint="Go to a line; 0 points at none.", low=0, high=count, whole=True, hidden=True)
+            box = NumberBox("Line", hint="Go to a line; 0 points at none.", low=0, high=count, whole=True, hidden=True)
             with st.container(width=130):
                 inputs.value("toolpath.go-to", box, min(selected_line(), count), select_line)
             st.caption(f"of {count:,} lines")

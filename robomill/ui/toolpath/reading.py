@@ -19,7 +19,7 @@ EVERY_S = 0.3
 
 
 @dataclass(eq=False)
-class Reading:
+class ProgramReading:
     """One program being read in a thread of its own; the thread touches nothing of the page."""
 
     source: GCodeSource
@@ -57,20 +57,20 @@ class Reading:
 def read_beside(source: GCodeSource) -> None:
     """Begin to read ``source`` while the page stays alive; an earlier reading is given up."""
     give_up()
-    reading = Reading(source)
+    reading = ProgramReading(source)
     session.keep(KEY, reading)
     reading.start()
 
 
-def current() -> Reading | None:
+def current() -> ProgramReading | None:
     """The reading that goes on, if any."""
-    reading: Reading | None = session.kept(KEY)
+    reading: ProgramReading | None = session.kept(KEY)
     return reading
 
 
 def give_up() -> None:
     """Stop the reading that goes on."""
-    reading: Reading | None = session.drop(KEY)
+    reading: ProgramReading | None = session.drop(KEY)
     if reading is not None:
         reading.stop.set()
 
@@ -103,7 +103,7 @@ def _progress() -> None:
 
 
 def _finish(
-    reading: Reading, take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]
+    reading: ProgramReading, take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]
 ) -> None:
     session.drop(KEY)
     if reading.bug is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robomill.errors import GCodeError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.reading import Reading
+from robomill.ui.toolpath.reading import ProgramReading
 
 
 def program(lines: int) -> str:
@@ -12,7 +12,7 @@ def program(lines: int) -> str:
     return f"G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\n{body}\nG0 Z5\nM2\n"
 
 
-def finished(reading: Reading) -> Reading:
+def finished(reading: ProgramReading) -> ProgramReading:
     reading.start()
     assert reading.done.wait(60)
     return reading
@@ -20,7 +20,7 @@ def finished(reading: Reading) -> Reading:
 
 def test_a_program_is_read_and_kept_for_the_page() -> None:
     source = GCodeSource(program(30_000), "long.nc")
-    reading = finished(Reading(source))
+    reading = finished(ProgramReading(source))
     assert reading.error is None
     assert reading.bug is None
     assert reading.share > 0.9
@@ -28,13 +28,13 @@ def test_a_program_is_read_and_kept_for_the_page() -> None:
 
 
 def test_a_refusal_is_handed_over_with_its_line() -> None:
-    reading = finished(Reading(GCodeSource(program(2_000).replace("M2", "G2 X55.5"))))
+    reading = finished(ProgramReading(GCodeSource(program(2_000).replace("M2", "G2 X55.5"))))
     assert isinstance(reading.error, GCodeError)
     assert reading.error.line == 2006
 
 
 def test_a_reading_that_is_given_up_stops() -> None:
-    reading = Reading(GCodeSource(program(60_000).replace("G21", "G21 "), "stopped.nc"))
+    reading = ProgramReading(GCodeSource(program(60_000).replace("G21", "G21 "), "stopped.nc"))
     reading.stop.set()
     finished(reading)
     assert isinstance(reading.error, GCodeError)

@@ -9,7 +9,7 @@ from robomill.compiled import In1, In2, In3, InBool2
 FROM_HOME = 1e-3  # of the first configuration's squared distance from home, and of its posture's order
 
 
-class Course(NamedTuple):
+class PathSolutions(NamedTuple):
     """All that may be stood in along a path: solutions theta (m, 8, n) in (-pi, pi], whether they are possible (m, 8),
     the turn (m,) a joint may easily make in the step to each pose, limits (n, 2), and what the first pose is near to:
     start (n,), at the extra cost of its branch (8,)."""
