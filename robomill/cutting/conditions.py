@@ -156,9 +156,9 @@ THRUSTS = {
 """Where the thrust of a tool that goes down comes from."""
 
 
-def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool = True) -> tuple[Finding, ...]:
-    """What deserves a word though it can be computed: depth beyond the flutes and, where the force is ``computed`` from
-    the material, what the thrust of a plunge or of a drill is."""
+def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | BoolArray = True) -> tuple[Finding, ...]:
+    """What deserves a word though it can be computed: depth beyond the flutes and, where the force is ``computed`` (for
+    all, or (m,)) from the material, what the thrust of a plunge or of a drill is."""
     found = []
     engaged = conditions.engaged
     tooling = Tooling.of(conditions.tooling or cutter, len(conditions))

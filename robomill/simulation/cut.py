@@ -107,8 +107,8 @@ def moved_points(T_MW: FloatArray, path: Toolpath, reached: BoolArray, delta: Fl
     return np.asarray(path.p + moved @ T_MW[:3, :3])
 
 
-def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[Finding, ...]:
-    """What a reader of the numbers must know about cutter, stock and force."""
+def cut_notes(setup: SimulationSetup, conditions: CutConditions, known: BoolArray) -> tuple[Finding, ...]:
+    """What a reader of the numbers must know about cutter, stock and force, where that is ``known`` (m,)."""
     notes = [*setup.stock_block.warnings(setup.cutter), *setup.force.findings(conditions)]
     if setup.stock is not None:
         notes += unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)
@@ -116,5 +116,5 @@ def cut_notes(setup: SimulationSetup, conditions: CutConditions) -> tuple[Findin
         text = "The force is that of a full slot everywhere: the engagement with the part is switched off."
         notes.append(Finding("warning", 0, text, code="full-slot"))
     if conditions.engaged.any():
-        notes += cut_warnings(setup.cutter, conditions, setup.force.follows_cut)
+        notes += cut_warnings(setup.cutter, conditions, setup.force.follows_cut & known)
     return tuple(notes)

@@ -20,7 +20,7 @@ from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.posture import posture_notes
-from robomill.simulation.rapids import rapids_through_material
+from robomill.simulation.rapids import rapid_notes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import tool_notes, tooling
@@ -159,7 +159,7 @@ class SimulationResult:
     @cached_property
     def notes(self) -> tuple[Finding, ...]:
         """What a reader of the numbers must know."""
-        found = [*cut_notes(self.setup, self.conditions), *tool_notes(self.setup, self.path)]
+        found = [*cut_notes(self.setup, self.conditions, ~self.not_judged), *tool_notes(self.setup, self.path)]
         found += map_notes(self.setup, self.path)
         found += suspicions(self.setup, self.force_components[self.judged & self.conditions.engaged])
         if self.coupling is not None:
@@ -197,7 +197,7 @@ class SimulationResult:
     @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:
         """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material."""
-        return self.machined.notes() + rapids_through_material(self.setup, self.setup.toolpath)
+        return self.machined.notes() + rapid_notes(self.setup, self.setup.toolpath)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
@@ -212,7 +212,7 @@ class SimulationResult:
         """The groove's sections at ``stations`` (q,) m."""
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
-        run = CutPath(path.p, moved, path.cutting, path.k, path.block)
+        run = CutPath(path.p, moved, path.cutting, path.k, path.block, self.not_judged)
         return groove_sections(self.setup.stock_block, self.tooling, run, stations)
 
     @cached_property

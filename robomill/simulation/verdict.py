@@ -59,6 +59,13 @@ class Verdict:
         return self.level in ("out", "unjudged", "unreached", "missed")
 
 
+WORDS: dict[Level, str] = {
+    "ok": "within tolerance",
+    "tight": "within tolerance, tight",
+    "out": "out of tolerance",
+}
+
+
 def judge(result: Run, gauge: Gauge) -> Verdict:
     """The verdict of a run. What has no model or no answer is counted and never green."""
     readings = _readings(result, gauge)
@@ -69,26 +76,20 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
-    said = _said(result, readings, share)
-    missed, unjudged = result.path.cutting & ~result.answered & ~result.not_judged, result.not_judged
-    missed |= ~result.reached
+    said = f"{_said(result, readings, share)}: {WORDS[level]}"
+    missed = _missed(result)
     if result.worst < 0:
         level, said = _nothing(result)
-    elif missed.any():
-        why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
-        where = f"line {named(result.path.block[missed].tolist())}"
-        level, said = (
-            "unreached",
-            f"{int(missed.sum())} of {len(result.path)} points {why} ({where}); of the rest: {said}.",
-        )
-    elif unjudged.any() and not deciding:
-        level, said = "unjudged", f"{_count(result)}."
-    elif unjudged.any() and level != "out":
-        level, said = "unjudged", f"{_count(result)}; of the rest: {said}."
-    elif unjudged.any():
-        said = f"{said}: out of tolerance. {_count(result)}."
+    elif missed:
+        level, said = "unreached", f"{missed}; of the rest: {said}."
+    elif result.not_judged.any() and not deciding:
+        level, said = "unjudged", ""
+    elif result.not_judged.any() and level != "out":
+        level, said = "unjudged", f"{said}, where it is judged."
     else:
-        said += {"out": ": out of tolerance.", "tight": ": within tolerance, tight."}.get(level, ": within tolerance.")
+        said += "."
+    if result.not_judged.any() and level != "missed":
+        said = f"{said} {_count(result)}.".strip()
     return Verdict(level, share, said, *readings)
 
 
@@ -159,10 +160,20 @@ def _count(result: Run) -> str:
     return f"{int(lost.sum())} of {total} points of the cut are not judged (line {lines}): {why.rstrip('.')}{more}"
 
 
+def _missed(result: Run) -> str:
+    """How many points have no answer though a model holds there, and why; "" where every one has."""
+    missed = result.path.cutting & ~result.answered & ~result.not_judged | ~result.reached
+    if not missed.any():
+        return ""
+    why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
+    where = named(result.path.block[missed].tolist())
+    return f"{int(missed.sum())} of {len(result.path)} points {why} (line {where})"
+
+
 def _nothing(result: Run) -> tuple[Level, str]:
     """Level and sentence where not one sample counts."""
     if result.not_judged.any():
-        return "unjudged", f"{_count(result)}."
+        return "unjudged", ""
     if result.answered[result.path.cutting].any():
         return "missed", "The path never touches the stock: move the stock or the path."
     if result.reached.any():

@@ -77,30 +77,45 @@ def groove_sections(
     moved = as_floats(path.p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
     used = np.asarray(path.cutting, dtype=bool)
     lines = np.zeros(len(ideal), dtype=int) if path.block is None else np.asarray(path.block)
+    unjudged = np.zeros(len(ideal), dtype=bool) if path.not_judged is None else np.asarray(path.not_judged)
     tooling = Tooling.of(cutter, len(ideal))
-    paths = swept_path(stock, tooling, ideal, path.k, used), swept_path(stock, tooling, moved, path.k, used)
+    known = np.where(np.isfinite(moved).all(axis=1, keepdims=True), ideal, np.nan)
+    told, left, sure = (swept_path(stock, tooling, p, path.k, used) for p in (ideal, moved, known))
+    paths = told, left, sure
     found = []
     for station in np.atleast_1d(np.asarray(stations, dtype=float)):
         place = station_at(ideal, used, float(station))
         i, f = place.entry, place.fraction
         tip = moved[i - 1] + f * (moved[i] - moved[i - 1])
         made = tooling.cutters[tooling.of_step[i]]
-        found.append(_section(paths, place, (tip, made), int(lines[i]), samples))
+        at = _Tool(place, int(lines[i]), tip, made, bool(unjudged[[i - 1, i]].any()))
+        found.append(_section(paths, at, bool(unjudged.any()), samples))
     return tuple(found)
 
 
 MANY_PASSES = 1.2  # cutter diameters: a cut wider than this was made by several passes
 WIDE = "wider than the cutter: several passes made it, so look at the walls; the middle and the tilt say little"
+ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 
 
-def _section(
-    paths: tuple[SweptPath, SweptPath], place: Station, tool: tuple[FloatArray, Cutter], block: int, samples: int
-) -> GrooveSection:
-    stock, (tip, cutter) = paths[0].stock, tool
+@dataclass(frozen=True)
+class _Tool:
+    """The tool at a station: where it was told to be, in which source line, where its ``tip`` is, its ``cutter``."""
+
+    place: Station
+    block: int
+    tip: FloatArray
+    cutter: Cutter
+    not_judged: bool
+
+
+def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_not: bool, samples: int) -> GrooveSection:
+    """``paths``: as told, as left, and as told where it is known what is left."""
+    stock, place, tip, cutter, block = paths[0].stock, at.place, at.tip, at.cutter, at.block
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():
-        return _empty(place, block, "where the deflected tool is here is not known: out of reach, or not judged")
+        return _empty(place, block, "not judged here" if at.not_judged else "the tool does not reach this point")
     shift = float((tip - place.centre) @ place.normal)
     low, high = stock_span(stock, place.centre, place.normal)
     window = 2.5 * cutter.radius + abs(shift)
@@ -108,14 +123,18 @@ def _section(
         return _empty(place, block, "the tool's axis is beside the stock here, so there is no groove to measure")
     w = np.linspace(max(low, -window), min(high, window), samples)
     skin = skin_on_line(stock, place.centre, place.normal)
-    traces = []
-    for path, middle in zip(paths, (0.0, shift), strict=True):
-        height = path.heights(place.centre, place.normal, float(high - low))
-        traces.append(trace_groove(height, middle, low, high, cutter.radius, skin))
-    ideal, machined = traces
-    if machined is None or ideal is None:
-        which = "deflected" if machined is None else "commanded"
-        return _empty(place, block, f"the {which} tool cuts nothing here")
+    told, left, sure = (path.heights(place.centre, place.normal, float(high - low)) for path in paths)
+    ideal = trace_groove(told, 0.0, low, high, cutter.radius, skin)
+    machined = trace_groove(left, shift, low, high, cutter.radius, skin)
+    if ideal is None:
+        above = place.centre[2] >= stock.upper[2]
+        return _empty(place, block, "the tool passes above the stock here" if above else "nothing is to be cut here")
+    inside = w[~(w < ideal.right) & ~(w > ideal.left)]
+    if (np.abs(told(inside) - sure(inside)) > ONE_HEIGHT).any():
+        what = "not judged" if judged_not else "not reached"
+        return _empty(place, block, f"a pass that is {what} goes through here, so what it leaves is not known")
+    if machined is None:
+        return _empty(place, block, "the deflected tool cuts nothing here")
     return GrooveSection(
         station=place.station,
         block=block,

@@ -7,50 +7,72 @@ from functools import cached_property
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
 from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000
+SAME = 2e-6  # m: tracks whose heights differ by less are one floor
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """What straight moves ends (n, 6) m leave, each made by one of ``cutters`` (its index (n,)).
+    """What straight moves were told to leave and do leave: ``told`` and ``left`` (n, 6) m are their ends, each made by
+    one of ``cutters`` (its index (n,)).
 
     Places (q, 9) are given by tip c, tool axis k and a direction u across it; walls are looked for within ``reach`` (m)
     of the rim.
     """
 
-    ends: FloatArray
+    told: FloatArray
+    left: FloatArray
     cutters: tuple[Cutter, ...]
     cutter: IntArray
     reach: float
 
-    def walls(self, places: FloatArray, height: FloatArray, radius: FloatArray) -> FloatArray:
-        """(q,) m: how far beyond the tool's own rim, of ``radius`` (q,) at ``height`` (q,) above its tip, the wall
-        stands along u; NaN where nothing is cut."""
+    def walls(
+        self, places: FloatArray, height: FloatArray, radius: FloatArray
+    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """How far beyond the tool's own rim, of ``radius`` (q,) at ``height`` (q,) above its tip, the wall stands along
+        u: (q,) m as told and (q,) m as left, NaN where nothing is cut; and whether it is one wall (q,).
+
+        Where a floor beside it sinks or rises through the height, the wall that was told there is none any more.
+        """
         start = radius - np.minimum(self.reach, 0.9 * radius)
         asked = np.ascontiguousarray(np.column_stack([places, height, start]))
-        result = np.empty((len(asked), 1))
-        walls_left(self._tracks, asked, result)
-        return result[:, 0] - radius
+        result = np.empty((len(asked), 3))
+        walls_left(*self._tracks, asked, result)
+        told, told_both, left = result.T
+        with np.errstate(invalid="ignore"):
+            return told - radius, left - radius, np.asarray(np.abs(told_both - told) <= SAME)
 
-    def floors(self, places: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(q,) m: height of the floor above the tip along k at c + offset u, inf where nothing is cut; and (q,) the
-        part of its normal along k."""
+    def floors(
+        self, places: FloatArray, offset: FloatArray, slack: FloatArray
+    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """At c + offset u: the height (q,) m of the floor above the tip along k as told (inf where nothing is cut), how
+        far normal to it the floor that is left stands above it (q,) m, and whether one floor is left there (q,).
+
+        Beside a step between two depths that has moved sideways there is none: there the lowest pass, of those told or
+        of those left, comes by in one of the two only. What that changes by no more than ``slack`` (q,) m (a slope that
+        has moved along itself) is one floor.
+        """
         asked = np.ascontiguousarray(np.column_stack([places, offset]))
-        result = np.empty((len(asked), 2))
-        floors_left(self._tracks, asked, result)
-        return result[:, 0], result[:, 1]
+        result = np.empty((len(asked), 5))
+        floors_left(*self._tracks, asked, result)
+        told, left, told_both, left_both, upright = result.T
+        with np.errstate(invalid="ignore"):
+            one = (told_both - told <= SAME + slack) & (left_both - left <= SAME + slack)
+            return told, (left - told) * upright, np.asarray(np.isfinite(told_both) & one)
 
     @cached_property
-    def _tracks(self) -> Tracks:
+    def _tracks(self) -> tuple[Tracks, Tracks]:
+        """Told and left, in one order: by the squares in which the moves were told to be."""
         from robomill.surface.envelope_kernels import cutter_shape
 
-        middle = 0.5 * (self.ends[:, :2] + self.ends[:, 3:5])
-        half = 0.5 * float(np.linalg.norm(self.ends[:, 3:] - self.ends[:, :3], axis=1).max())
-        size = 2.0 * max(cutter.radius for cutter in self.cutters) + 2.0 * self.reach + half
+        middle = 0.5 * (self.told[:, :2] + self.told[:, 3:5])
+        half = 0.5 * float(np.linalg.norm(self.told[:, 3:] - self.told[:, :3], axis=1).max())
+        moved = float(np.abs(self.left - self.told).max())
+        size = 2.0 * max(cutter.radius for cutter in self.cutters) + 2.0 * self.reach + half + moved
         low, span = middle.min(axis=0), np.ptp(middle, axis=0)
         size = max(size, float(np.sqrt(max(span[0] * span[1], 0.0) / MOST_SQUARES)), float(span.max()) / MOST_SQUARES)
         corner = low - 0.5 * size
@@ -60,12 +82,9 @@ class Outline:
         order = np.argsort(number, kind="stable")
         first = np.searchsorted(number[order], np.arange(count[0] * count[1] + 1)).astype(np.int64)
         shapes = np.array([cutter_shape(cutter) for cutter in self.cutters], dtype=float)
-        return Tracks(
-            np.ascontiguousarray(self.ends[order]),
-            shapes,
-            np.ascontiguousarray(self.cutter[order], dtype=np.int64),
-            first,
-            corner,
-            size,
-            count,
+        cutter = np.ascontiguousarray(self.cutter[order], dtype=np.int64)
+        told, left = (
+            Tracks(np.ascontiguousarray(ends[order]), shapes, cutter, first, corner, size, count)
+            for ends in (self.told, self.left)
         )
+        return told, left

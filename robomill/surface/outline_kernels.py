@@ -30,8 +30,9 @@ LEVEL = 1e-15  # m: less is no motion
 
 
 class Tracks(NamedTuple):
-    """Moves sorted by the square of the plan they lie in: ends (n, 6) m, shapes (t, 5) of the cutters and which of them
-    each move has (n,), the first move of each square (nx ny + 1,), and the squares: corner, size m, how many each way.
+    """Moves sorted by the square of the plan they were told to lie in: ends (n, 6) m, shapes (t, 5) of the cutters and
+    which of them each move has (n,), the first move of each square (nx ny + 1,), and the squares: corner, size m, how
+    many each way.
     """
 
     ends: Out2
@@ -113,20 +114,28 @@ def squares_near(tracks: Tracks, x: float, y: float) -> tuple[int, int, int, int
 
 
 @part
-def wall_at(tracks: Tracks, place: In1, height: float, start: float) -> float:
-    """How far out along u the tracks around the tool reach at a height above its tip, m; ``start`` lies within."""
+def below(tracks: Tracks, n: int, place: In1, height: float) -> bool:
+    """Whether the middle of a move runs lower than ``height`` above the tip."""
+    move = seen_from(place, tracks.ends[n])
+    return move.z + 0.5 * move.dz < height
+
+
+@part
+def wall_at(tracks: Tracks, other: Tracks, place: In1) -> float:
+    """How far out along u the tracks around the tool reach at a height above its tip, m, of the moves that run below
+    that height in ``other`` too; NaN where none is. ``place`` (11,) is c, k, u, the height, and a point within the
+    tool's own track."""
+    height, out, found = place[9], place[10], False
     i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
-    out, found = start, False
     for _ in range(ROUNDS):
         grown = False
         for i in range(i0, i1):
             row = i * tracks.squares[1]
             for n in range(tracks.first[row + j0], tracks.first[row + j1]):
-                move = seen_from(place, tracks.ends[n])
-                rise = height - (move.z + 0.5 * move.dz)
-                if rise <= 0.0:
+                if not (below(tracks, n, place, height) and below(other, n, place, height)):
                     continue
-                rho = radius_at(shape_of(tracks.shapes[tracks.cutter[n]]), rise)
+                move = seen_from(place, tracks.ends[n])
+                rho = radius_at(shape_of(tracks.shapes[tracks.cutter[n]]), height - (move.z + 0.5 * move.dz))
                 end = furthest(move, rho, 1.0)
                 if end > out and furthest(move, rho, -1.0) <= out + TOUCH:
                     out, grown, found = end, True, True
@@ -146,36 +155,60 @@ def upright_part(shape: Shape, r: float) -> float:
     return math.sqrt(max(shape.rc * shape.rc - e * e, 0.0)) / shape.rc
 
 
+class Floor(NamedTuple):
+    """Heights of the lowest track over a point, m (inf: none): as told, as left, and both again of the moves alone that
+    pass over the point in both; and the upward part of the normal of the surface that was told."""
+
+    told: float
+    left: float
+    told_both: float
+    left_both: float
+    upright: float
+
+
 @part
-def floor_at(tracks: Tracks, place: In1, offset: float) -> tuple[float, float]:
-    """(height of the lowest track above the tip, part of the surface's normal along k there) at c + offset u."""
-    i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
-    lowest, upright = math.inf, 1.0
+def track_over(tracks: Tracks, n: int, place: In1, offset: float) -> tuple[float, float]:
+    """(height above the tip at c + offset u, distance from the middle of the tool there) of a move; (inf, 0) if it does
+    not pass over the point."""
+    seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks.shapes[tracks.cutter[n]])
+    move = move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
+    ex, ey = nearest(move, offset, 0.0)
+    r = math.hypot(ex, ey)
+    return (swept_height(shape, move, offset, 0.0), r) if r <= shape.R else (math.inf, 0.0)
+
+
+@part
+def floor_at(told: Tracks, left: Tracks, place: In1, offset: float) -> Floor:
+    """The floor at c + offset u; both tracks hold the same moves in the same order."""
+    i0, i1, j0, j1 = squares_near(told, place[0], place[1])
+    told_low, left_low, told_both, left_both, upright = math.inf, math.inf, math.inf, math.inf, 1.0
     for i in range(i0, i1):
-        row = i * tracks.squares[1]
-        for n in range(tracks.first[row + j0], tracks.first[row + j1]):
-            seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks.shapes[tracks.cutter[n]])
-            move = move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
-            ex, ey = nearest(move, offset, 0.0)
-            if math.hypot(ex, ey) > shape.R:
-                continue
-            height = swept_height(shape, move, offset, 0.0)
-            if height < lowest:
-                lowest, upright = height, upright_part(shape, math.hypot(ex, ey))
-    return lowest, upright
+        row = i * told.squares[1]
+        for n in range(told.first[row + j0], told.first[row + j1]):
+            high, r = track_over(told, n, place, offset)
+            moved, _ = track_over(left, n, place, offset)
+            left_low = min(left_low, moved)
+            if high < told_low:
+                told_low, upright = high, upright_part(shape_of(told.shapes[told.cutter[n]]), r)
+            if high < math.inf and moved < math.inf:
+                told_both, left_both = min(told_both, high), min(left_both, moved)
+    return Floor(told_low, left_low, told_both, left_both, upright)
 
 
 @kernel
-def walls_left(tracks: Tracks, places: In2, result: Out2) -> None:
-    """Column 0 of result: how far out along u (m) the wall stands from the tip, at places (q, 11): c, k, u, the height
-    above the tip, and a point of the line within the tool's own track; NaN where no track is."""
+def walls_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
+    """result (q, 3): how far out along u (m) the wall stands from the tip, at places (q, 11), see ``wall_at``: as told,
+    and as told and as left by the moves alone that run below the height in both."""
     for q in range(len(places)):
-        result[q, 0] = wall_at(tracks, places[q], places[q, 9], places[q, 10])
+        result[q, 0] = wall_at(told, told, places[q])
+        result[q, 1] = wall_at(told, left, places[q])
+        result[q, 2] = wall_at(left, told, places[q])
 
 
 @kernel
-def floors_left(tracks: Tracks, places: In2, result: Out2) -> None:
-    """result (q, 2): height of the floor above the tip (m, inf where no track is) and the upward part of its normal,
-    at places (q, 10): c, k, u and the offset along u."""
+def floors_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
+    """result (q, 5): the ``Floor`` at places (q, 10): c, k, u and the offset along u."""
     for q in range(len(places)):
-        result[q, 0], result[q, 1] = floor_at(tracks, places[q], places[q, 9])
+        floor = floor_at(told, left, places[q], places[q, 9])
+        result[q, 0], result[q, 1], result[q, 2] = floor.told, floor.left, floor.told_both
+        result[q, 3], result[q, 4] = floor.left_both, floor.upright

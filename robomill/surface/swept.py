@@ -23,7 +23,8 @@ Heights = Callable[[FloatArray], FloatArray]
 @dataclass(frozen=True, eq=False)
 class CutPath:
     """A path as commanded and as it was really run: tool tips p, p_machined (m, 3) m in {W} (not finite where not
-    reached), cutting (m,) bool, unit tool axes k (3,) or (m, 3) (None: upright), source lines block (m,).
+    reached, not judged), cutting (m,) bool, unit tool axes k (3,) or (m, 3) (None: upright), source lines block (m,);
+    ``not_judged`` (m,) bool says which of those that are not finite are reached.
     """
 
     p: FloatArray
@@ -31,6 +32,7 @@ class CutPath:
     cutting: BoolArray
     k: FloatArray | None = None
     block: IntArray | None = None
+    not_judged: BoolArray | None = None
 
 
 @dataclass(frozen=True)

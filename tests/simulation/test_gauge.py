@@ -289,3 +289,51 @@ def test_a_block_drawn_as_a_mesh_is_gauged_as_the_block():
         one, two = (getattr(pushed(run(*lines, stock=stock), left=0.1e-3).gauge, name) for stock in (BLOCK, drawn))
         np.testing.assert_allclose(two.error, one.error, atol=1e-9)
         np.testing.assert_allclose(two.height, one.height, atol=1e-9)
+
+
+def some_program(seed: int) -> list[str]:
+    """Slots, ramps, helices and plunges at several depths that cross each other."""
+    rng = np.random.default_rng(seed)
+    lines = ["G17", "G0 X-30 Y-25 Z5"]
+    for _ in range(int(rng.integers(2, 5))):
+        x, y = rng.uniform(-15, 15, 2)
+        z, kind = -rng.choice([1, 1.5, 2, 3]), rng.integers(0, 4)
+        lines += ["G0 Z5", f"G0 X{x:.2f} Y{y:.2f}"]
+        to_x, to_y = np.array([x, y]) + np.clip(rng.uniform(-20, 20, 2), [-17 - x, -17 - y], [17 - x, 17 - y])
+        lines += [
+            [f"G1 Z{z} F300", f"G1 X{to_x:.2f} Y{to_y:.2f} F900"],
+            ["G1 Z0.5 F900", f"G1 X{to_x:.2f} Y{to_y:.2f} Z{z}", f"G1 X{x:.2f} Y{y:.2f}"],
+            ["G1 Z0 F900", f"G2 X{x:.2f} Y{y:.2f} Z{z} I2 J0", f"G2 X{x:.2f} Y{y:.2f} I2 J0"],
+            [f"G1 Z{z} F300", "G1 Z5"],
+        ][kind]
+    return [*lines, "G0 Z20"]
+
+
+@pytest.mark.parametrize("seed", [1, 5, 10, 14, 29])
+def test_a_part_that_is_moved_as_a_whole_is_off_by_what_it_was_moved(seed):
+    """Where every step is off by the same vector the part is the commanded one, moved: floors stand as high as it went
+    up, and no wall is further off than it went sideways, whatever steps and lips lie between the depths."""
+    shift = np.random.default_rng(seed).uniform(-1.0, 1.0, 3) * [0.25e-3, 0.25e-3, 0.2e-3]
+    made = run(*some_program(seed), stock=Stock([-22e-3, -22e-3, -10e-3], [22e-3, 22e-3, 0.0]))
+    cuts = made.path.cutting[:, None]
+    made = dataclasses.replace(made, delta=np.where(cuts, SETUP.T_MW[:3, :3] @ shift, 0.0), unjudged=())
+    np.testing.assert_allclose(made.gauge.floors.error, shift[2], atol=1e-8)
+    walls, aside = made.gauge.walls.error, float(np.hypot(*shift[:2]))
+    assert np.abs(walls).max() <= aside + 1e-9
+    assert np.abs(walls).max() > 0.8 * aside
+
+
+def test_a_step_between_two_depths_that_has_moved_aside_is_no_floor():
+    """A slot 3 mm deep ends in one 2 mm deep; pulled back 0.2 mm, its last 0.2 mm stay 1 mm too high: the wall of the
+    step, not a floor."""
+    made = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F900", "G0 Z5", "G0 X-40", "G0 Z-3", "G1 X0", "G0 Z5")
+    found = pushed(made, along=np.where(made.path.p[:, 2] < -2.5e-3, -0.2e-3, 0.0), up=10e-6).gauge
+    np.testing.assert_allclose(found.floors.error, 10e-6, atol=1e-8)
+
+
+def test_a_thin_wall_that_two_passes_cut_away_is_off_by_no_more_than_they_are():
+    """Two slots 8.1 mm apart leave 0.1 mm between them; each 0.2 mm towards the other takes it away."""
+    made = run("G0 X-40 Y4.05 Z5", "G0 Z-2", "G1 X40 F900", "G0 Z5", "G0 X-40 Y-4.05", "G0 Z-2", "G1 X40")
+    to_each_other = np.where(made.path.p[:, 1] > 0.0, -0.2e-3, 0.2e-3)
+    walls = pushed(made, left=to_each_other).gauge.walls
+    assert np.abs(walls.error).max() == pytest.approx(0.2e-3, abs=1e-9)

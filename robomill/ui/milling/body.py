@@ -7,7 +7,6 @@ import dataclasses
 import numpy as np
 import streamlit as st
 
-from robomill.cutting.conditions import cut_warnings
 from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
@@ -88,13 +87,9 @@ def inputs_column(result: SimulationResult | None) -> None:
             cut_panel.cutter_inputs()
         tools_panel.panel()
         if result is not None:
-            for finding in dict.fromkeys(
-                [
-                    *setup.stock_block.warnings(setup.cutter),
-                    *cut_warnings(setup.cutter, result.conditions, setup.force.follows_cut),
-                ]
-            ):
-                st.warning(finding.sentence, icon=":material/warning:")
+            for finding in result.notes:
+                if finding.code in force_view.OF_CUTTER:
+                    st.warning(finding.sentence, icon=":material/warning:")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
         cut_panel.stock_inputs()
     with st.expander("**Beside the joints**", expanded=False, key="milling.open.springs"):

@@ -19,6 +19,7 @@ from robomill.units import format_si, from_si
 from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
 
 NAMES = ("feed", "feed-normal", "axial")
+OF_CUTTER = ("stock-unit", "wide-cutter", "beyond-flutes")  # codes of findings that stand beside cutter and stock
 
 
 def force_plot(
@@ -170,5 +171,5 @@ def coupling_facts(result: SimulationResult) -> None:
 def worth_knowing(result: SimulationResult) -> None:
     """Notes on force, stock and cutter."""
     for finding in result.notes:
-        if finding.code != COUPLING:  # stands among the facts
+        if finding.code not in (COUPLING, *OF_CUTTER):  # these stand among the facts and beside the cutter
             pieces.note(f"• {html.escape(finding.sentence)}")
