@@ -50,7 +50,7 @@ FEW = 8  # configurations or poses: some milliseconds of plain Python
 PLACE = "ROBOMILL_CACHE"
 KEPT_FOLDERS = 4  # of older sources: so many stay beside the one in use
 # No reciprocals or reassociation: only a * b + c in one rounding.
-OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 
 F = TypeVar("F", bound=Callable[..., Any])
 _parts: list[Callable[..., Any]] = []  # marked, and not yet known to the compiler

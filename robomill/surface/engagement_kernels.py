@@ -21,15 +21,16 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import Shape
-from robomill.surface.material_kernels import World, is_solid, top_over
-from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, stretch_ends
+from robomill.surface.envelope_kernels import CHAMFER, Shape
+from robomill.surface.material_kernels import FAR, World, standing, top_over
+from robomill.surface.step_kernels import END, FLANK, GAUSS, NOSE, Piece, Step, edge_sums, on_profile, stretch_ends
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 HALVINGS = 8  # of the angle across which the engaged length jumps
 JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
-ENDS = 7  # halvings of a piece of the profile in which material begins or ends
-END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 12, 96  # of each stretch of the profile, at most
+ENDS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
+EXACT = 1e-7  # m: so near to where it ends is there
+END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
@@ -70,13 +71,14 @@ class Room(NamedTuple):
 
 
 @part
-def cuts_at(world: World, step: Step, ray: Ray, at: tuple[float, float, float, float]) -> bool:
-    """Whether the cutter cuts at a place of its profile (radius, height, sine, cosine) at the angle of a ray."""
+def engaged_at(world: World, step: Step, ray: Ray, at: tuple[float, float, float, float]) -> float:
+    """How deep in the material the cutter cuts at a place of its profile (radius, height, sine, cosine) at the angle of
+    a ray, m: > 0 where it does (see ``standing``)."""
     r, t, sine, cosine = at
     if step.across * ray.sine * sine - step.along * cosine <= FACING:
-        return False
+        return -FAR
     x, y, z = step.x + r * ray.x + t * step.kx, step.y + r * ray.y + t * step.ky, step.z + r * ray.z + t * step.kz
-    return is_solid(world, (x, y, z), step.run)
+    return standing(world, (x, y, z), step.run)
 
 
 @part
@@ -85,14 +87,16 @@ def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int
     length = ends[1] - ends[0]
     if length <= 0.0:
         return
-    faces = (step.across * row[SINE], step.along)
+    _, low, sine, cosine = on_profile(shape, stretch, ends[0])
+    r, high, sine_end, cosine_end = on_profile(shape, stretch, ends[1])
+    arc = stretch == NOSE and shape.kind != CHAMFER
+    piece = Piece(arc, ends[0], ends[1], sine, cosine, sine_end, cosine_end)
     for n in range(len(room.exponents)):
-        plain, up, lying = edge_sums(shape, stretch, ends, faces, room.exponents[n])
+        faces = (step.across * row[SINE], step.along)
+        plain, up, lying = edge_sums(shape, piece, faces, room.exponents[n])
         row[SUMS + 3 * n] += plain
         row[SUMS + 3 * n + 1] += up
         row[SUMS + 3 * n + 2] += lying
-    _, low, _, _ = on_profile(shape, stretch, ends[0])
-    r, high, _, _ = on_profile(shape, stretch, ends[1])
     row[LENGTH] += length
     row[WIDEST] = max(row[WIDEST], r)
     if stretch == END:
@@ -167,23 +171,28 @@ def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape
     whole = room.stretches[stretch]
     pieces, first = int(whole[PIECES]), int(whole[FIRST])
     width = (whole[STOP] - whole[BEGIN]) / pieces
-    begin, since = whole[BEGIN], False
+    begin, since, before = whole[BEGIN], False, -1.0
     for n in range(pieces + 2):  # the last one to end what is still engaged
         place = room.places[first + min(n, pieces)]
         at = (place[0], place[1], place[2], place[3])
-        low, high, cuts = whole[BEGIN] + (n - 1) * width, whole[BEGIN] + n * width, since
-        for halving in range(ENDS + 1):  # first the end of the piece, then, where material begins or ends, that place
-            if halving > 0:
-                at = on_profile(shape, stretch, 0.5 * (low + high))
-            here = n <= pieces and cuts_at(world, step, ray, at)
-            if halving == 0:
-                cuts = here
+        low, high, s = whole[BEGIN] + (n - 1) * width, whole[BEGIN] + n * width, 0.0
+        cuts, deep_low, deep_high, after = since, before, before, before
+        for search in range(ENDS + 1):  # first the end of the piece, then, where material begins or ends, that place
+            deep = engaged_at(world, step, ray, at) if n <= pieces else -1.0
+            if search == 0:
+                cuts, deep_high, after = deep > 0.0, deep, deep
                 if n == 0 or n > pieces or cuts == since:
                     break
-            elif here == since:
-                low = 0.5 * (low + high)
+            elif (deep > 0.0) == since:
+                low, deep_low, deep_high = s, deep, 0.5 * deep_high
             else:
-                high = 0.5 * (low + high)
+                high, deep_high, deep_low = s, deep, 0.5 * deep_low
+            if search > 0 and abs(deep) < EXACT:
+                low = high = s
+                break
+            s = low + (high - low) * deep_low / (deep_low - deep_high)
+            at = on_profile(shape, stretch, s)
+        before = after
         if since and not cuts:
             add_edge(room, row, shape, step, stretch, (begin, low))
         elif cuts and not since:

@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Axes, Out2, OutInt1, kernel, part
+from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import Room, add_part
 from robomill.surface.envelope_kernels import (
-    BALL,
     FLAT,
     Move,
     Shape,
     nearest,
     profile,
+    radius_at,
     row_interval,
     shape_of,
     swept_height,
@@ -64,14 +64,12 @@ def go_on(run: FloatArray, ends: FloatArray, begins: bool) -> None:
 @part
 def cut_run(world: World, r: int) -> None:
     """Cut a run into the columns, as far as it goes."""
-    run, columns = world.runs[r], world.columns
+    run = world.runs[r]
     shape, move = shape_of(run), see_move(run)
     if not is_upright(run):
         cut_leaning(world, shape, move, r)
-    elif columns.heights.shape[2] == 1:
-        cut_tops(columns, shape, move, r, run[ENDS:AXIS], follows(world.runs, r))
     else:
-        cut_from_above(columns, shape, move, r)
+        cut_upright(world, shape, move, r, follows(world.runs, r))
     note_sides(world, shape, r)
 
 
@@ -87,16 +85,19 @@ def follows(runs: FloatArray, r: int) -> bool:
 
 
 @part
-def cut_tops(columns: Columns, shape: Shape, move: Move, r: int, ends: FloatArray, goes_on: bool) -> None:
-    """Lower columns of one layer to what a step of an upright cutter leaves. ``goes_on``: the step before it left off
+def cut_upright(world: World, shape: Shape, move: Move, r: int, goes_on: bool) -> None:
+    """Cut a step of an upright cutter, down to which columns are open then. ``goes_on``: the step before it left off
     at its start under it, so that nothing behind that is left to cut."""
+    columns, ends, height = world.columns, world.runs[r, ENDS:AXIS], world.block.z_high - move.az
+    if height <= 0.0:
+        return
     level = shape.kind == FLAT and move.m == 0.0
-    span = move.length * move.ux
-    low, high = move.ax + min(0.0, span) - shape.R, move.ax + max(0.0, span) + shape.R
+    radius, span = radius_at(shape, height), move.length * move.ux
+    low, high = move.ax + min(0.0, span) - radius, move.ax + max(0.0, span) + radius
     first, end = cells_between(low, high, columns.x0, columns.dx, columns.heights.shape[0])
     for i in range(first, end):
         x = columns.x0 + i * columns.dx
-        y_low, y_high = row_interval(move, shape.R, x)
+        y_low, y_high = row_interval(move, radius, x)
         if y_low > y_high:
             continue
         if goes_on:  # only what lies ahead of the start
@@ -112,52 +113,31 @@ def cut_tops(columns: Columns, shape: Shape, move: Move, r: int, ends: FloatArra
         if known > 0.0:
             w = math.sqrt(known)
             skip, skip_end = cells_between(ends[1] - w, ends[1] + w, columns.y0, columns.dy, columns.heights.shape[1])
-        while j < j_end:
-            if skip <= j < skip_end:
-                j = skip_end
-                continue
-            lower_top(columns, shape, move, i, j, r)
-            j += 1
+        open_row(columns, shape, move, r, (i, j, min(skip, j_end)))
+        open_row(columns, shape, move, r, (i, max(j, skip_end), j_end))
 
 
-@part
-def lower_top(columns: Columns, shape: Shape, move: Move, i: int, j: int, r: int) -> None:
-    """Lower a column of one layer, within the track, to what a move of run ``r`` leaves."""
-    top = columns.heights[i, j, 0]
-    if top <= move.az + SKIN:
-        return
-    height = move.az
-    if shape.kind != FLAT or move.m != 0.0:
-        x, y = columns.x0 + i * columns.dx, columns.y0 + j * columns.dy
-        if shape.kind == BALL and move.m == 0.0:
-            ex, ey = nearest(move, x, y)
-            deep = max(shape.R - (top - move.az), 0.0)
-            if ex * ex + ey * ey >= shape.R**2 - deep * deep:
-                return
-            height += shape.R - math.sqrt(max(shape.R**2 - ex * ex - ey * ey, 0.0))
-        else:
-            height = swept_height(shape, move, x, y)
-    if height < top - SKIN:
-        columns.heights[i, j, 0] = height
-        columns.names[i, j, 1] = r
-
-
-@part
-def cut_from_above(columns: Columns, shape: Shape, move: Move, r: int) -> None:
-    """Cut a step of an upright cutter into columns of several layers."""
-    span = move.length * move.ux
-    low, high = move.ax + min(0.0, span) - shape.R, move.ax + max(0.0, span) + shape.R
-    first, end = cells_between(low, high, columns.x0, columns.dx, columns.heights.shape[0])
-    for i in range(first, end):
-        x = columns.x0 + i * columns.dx
-        y_low, y_high = row_interval(move, shape.R, x)
-        if y_low > y_high:
+@called
+def open_row(columns: Columns, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
+    """Open columns within the track from above down to what a move of run ``r`` leaves; ``row``: i, first j, end."""
+    i, first, end = row
+    x, single = columns.x0 + i * columns.dx, columns.heights.shape[2] == 1
+    for j in range(first, end):
+        height, top = move.az, columns.heights[i, j, 0]
+        if top <= height + SKIN:
             continue
-        j_first, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.heights.shape[1])
-        for j in range(j_first, j_end):
-            if columns.heights[i, j, 0] > move.az:
-                height = swept_height(shape, move, x, columns.y0 + j * columns.dy)
-                take_out(columns, (i, j, r), height, math.inf)
+        if shape.kind != FLAT or move.m != 0.0:
+            y = columns.y0 + j * columns.dy
+            if move.m == 0.0:
+                ex, ey = nearest(move, x, y)
+                height += profile(shape, math.sqrt(ex * ex + ey * ey))
+            else:
+                height = swept_height(shape, move, x, y)
+        if not single:
+            take_out(columns, (i, j, r), height, math.inf)
+        elif height < top - SKIN:
+            columns.heights[i, j, 0] = height
+            columns.names[i, j, 1] = r
 
 
 @part
@@ -191,7 +171,7 @@ def cut_leaning(world: World, shape: Shape, move: Move, r: int) -> None:
                 take_out(columns, (i, j, r), low, high)
 
 
-@part
+@called
 def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: float) -> None:
     """Take the heights from ``low`` to ``high`` m out of a column (i, j) for a run: place is (i, j, run)."""
     i, j, r = place

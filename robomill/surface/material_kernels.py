@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Axes, Out2, Out3, OutInt1, part
+from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
 from robomill.surface.envelope_kernels import Move, move_between, nearest, profile, shape_of, swept_height
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
 
-AIR, SOLID, UNSURE = range(3)
+FAR = 1e-3  # m: how deep in material or air is counted, at most
 SKIN = 1e-10  # m: thinner layers are rounding
 NOBODY = -1  # made by no run: the stock's own surface
 
@@ -103,7 +103,7 @@ def see_move(run: FloatArray) -> Move:
     return move
 
 
-@part
+@called
 def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> float:
     """Height of a point of {W} above what a run leaves there, along its tool's axis, m; -inf beside its track."""
     run = runs[r]
@@ -140,28 +140,31 @@ def cells_around(columns: Columns, x: float, y: float) -> tuple[int, int, int, i
 
 
 @part
-def in_column(columns: Columns, i: int, j: int, z: float) -> int:
-    """Whether a height lies in material of a column, in air, or within the slack of an end of a layer."""
-    slack, said = columns.slack, AIR
-    for n in range(columns.heights.shape[2]):
+def in_column(columns: Columns, i: int, j: int, z: float) -> float:
+    """How deep in the material of a column a height is, m: the way to the nearest end of its layer, < 0 in air."""
+    before, count = math.inf, columns.heights.shape[2]
+    for n in range(count):
         end = columns.heights[i, j, n]
-        if z > end + slack:
-            return said
-        if z > end - slack:
-            return UNSURE
-        said = AIR if said == SOLID else SOLID
-    return said
+        if z > end:
+            deep = min(z - end, before - z)
+            return deep if n % 2 == 1 else -deep
+        before = end
+    return before - z if count % 2 == 1 else z - before
 
 
 @part
-def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> int:
-    """What the cells around a point say of a height: ``SOLID`` or ``AIR`` where all agree, else ``UNSURE``."""
+def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> float:
+    """How deep in the material the cells around a point have a height, m (``FAR`` at most), < 0 in air; 0 where they do
+    not agree by more than their slack."""
     i, a, j, b = cells
-    said = in_column(columns, i, j, z)
+    deep = in_column(columns, i, j, z)
+    sign = 1.0 if deep > 0.0 else -1.0
+    deep = min(sign * deep, FAR)
     for n in range(1, 4):
-        if said == UNSURE or in_column(columns, a if n > 1 else i, b if n % 2 else j, z) != said:
-            return UNSURE
-    return said
+        if deep <= columns.slack:
+            return 0.0
+        deep = min(deep, sign * in_column(columns, a if n > 1 else i, b if n % 2 else j, z))
+    return sign * deep if deep > columns.slack else 0.0
 
 
 @part
@@ -216,19 +219,22 @@ def under_triangle(t: FloatArray, x: float, y: float, z: float) -> bool:
 
 
 @part
-def is_solid(world: World, point: tuple[float, float, float], run: int) -> bool:
-    """Whether a point (x, y, z) m is still material; it is known to be outside what ``run`` has swept."""
+def standing(world: World, point: tuple[float, float, float], run: int) -> float:
+    """How deep in the material a point (x, y, z) is, m: > 0 in it, < 0 in air; exact near where it ends, elsewhere
+    about. The point is known to be outside what ``run`` has swept."""
     x, y, z = point
     block, columns = world.block, world.columns
-    if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
-        return False
-    if z < block.z_low or z > block.z_high:
-        return False
+    within = min(min(x - block.x_low, block.x_high - x), min(y - block.y_low, block.y_high - y))
+    within = min(min(within, FAR), min(z - block.z_low, block.z_high - z))
+    if within < 0.0:
+        return max(within, -FAR)
     cells = cells_around(columns, x, y)
-    said = looked_up(columns, cells, z)
-    if said != UNSURE:
-        return said == SOLID
-    return in_stock(block, world.mesh, point) and above_runs(world, cells, point, run) <= SKIN
+    deep = looked_up(columns, cells, z)
+    if deep == 0.0:
+        deep = -columns.slack
+        if in_stock(block, world.mesh, point):
+            deep = min(2.0 * SKIN - above_runs(world, cells, point, run), columns.slack)
+    return min(deep, within + SKIN)
 
 
 @part

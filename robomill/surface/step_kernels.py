@@ -36,6 +36,19 @@ class Step(NamedTuple):
     run: int
 
 
+class Piece(NamedTuple):
+    """A piece of the profile, from a place on one of its stretches to another: whether it is of a round nose, how far
+    along it the two are (m), and the sine and cosine of their normals' angle from the axis."""
+
+    arc: bool
+    start: float
+    end: float
+    sine: float
+    cosine: float
+    sine_end: float
+    cosine_end: float
+
+
 @part
 def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
     """The middle of a step ``ends`` (6,) m of a tool along k (3,) that is fed along the unit vector v (3,)."""
@@ -109,34 +122,30 @@ def power(facing: float, exponent: float) -> float:
 
 
 @part
-def edge_sums(
-    shape: Shape, stretch: int, ends: tuple[float, float], faces: tuple[float, float], exponent: float
-) -> tuple[float, float, float]:
-    """Integrals of facing^exponent times 1, sin(kappa) and cos(kappa) over a stretch of the profile between two places.
+def edge_sums(shape: Shape, piece: Piece, faces: tuple[float, float], exponent: float) -> tuple[float, float, float]:
+    """Integrals of facing^exponent times 1, sin(kappa) and cos(kappa) over a piece of the profile.
 
     facing = a sin(kappa) - b cos(kappa) with ``faces`` (a, b). Straight stretches and the exponents 0 and 1 in closed
     form; other exponents over a round nose by Gauss' rule of two points.
     """
-    start, end = ends
     a, b = faces
-    _, _, s, c = on_profile(shape, stretch, start)
-    if stretch != NOSE or shape.kind == CHAMFER:
-        load = (end - start) * power(a * s - b * c, exponent)
+    length, s, c, s_end, c_end = piece.end - piece.start, piece.sine, piece.cosine, piece.sine_end, piece.cosine_end
+    if not piece.arc:
+        load = length * power(a * s - b * c, exponent)
         return load, load * s, load * c
-    _, _, s_end, c_end = on_profile(shape, NOSE, end)
     if exponent == 0.0:
-        return end - start, shape.rc * (c - c_end), shape.rc * (s_end - s)
+        return length, shape.rc * (c - c_end), shape.rc * (s_end - s)
     if exponent == 1.0:
-        turned, twice = end - start, shape.rc * (s_end * c_end - s * c)
-        upright, lying = 0.5 * (turned - twice), 0.5 * (turned + twice)
-        mixed = 0.5 * shape.rc * (s_end * s_end - s * s)
+        twice, mixed = shape.rc * (s_end * c_end - s * c), 0.5 * shape.rc * (s_end * s_end - s * s)
+        upright, lying = 0.5 * (length - twice), 0.5 * (length + twice)
         plain = shape.rc * (a * (c - c_end) - b * (s_end - s))
         return plain, a * upright - b * mixed, a * mixed - b * lying
-    pieces = int((end - start) / (NOSE_PIECE * shape.rc)) + 1
+    pieces = int(length / (NOSE_PIECE * shape.rc)) + 1
     plain = up = lying = 0.0
     for n in range(2 * pieces):
         within = n // 2 + (GAUSS if n % 2 == 0 else 1.0 - GAUSS)
-        _, _, s, c = on_profile(shape, NOSE, start + within / pieces * (end - start))
-        load = 0.5 * (end - start) / pieces * power(a * s - b * c, exponent)
+        kappa = (piece.start + within / pieces * length) / shape.rc
+        s, c = math.sin(kappa), math.cos(kappa)
+        load = 0.5 * length / pieces * power(a * s - b * c, exponent)
         plain, up, lying = plain + load, up + load * s, lying + load * c
     return plain, up, lying

@@ -88,13 +88,13 @@ def plan_boxes(R: float, ends: In2, axes: In2, top: float, boxes: Out2) -> None:
             boxes[n, 2 * xy + 1] = max(a, b) + max(0.0, lean) + R
 
 
-@part
+@called
 def hull_gap(shape: Shape, move: Move, frame: Frame, line: Line, z: float) -> float:
     """Height of the swept surface over a point of a vertical line, along the tool axis; <= 0 inside the body."""
     return swept_height(shape, move, line.X, line.Y + z * frame.sine) - (line.h + z * frame.cosine)
 
 
-@called
+@part
 def tilted_interval(shape: Shape, move: Move, frame: Frame, line: Line, ceiling: float) -> tuple[float, float]:
     """Heights (low, high) m of a vertical line inside the body swept by a tilted cutter, not above ``ceiling``.
 
