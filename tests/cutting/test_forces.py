@@ -1,6 +1,7 @@
 """What force models say of themselves, and what a cutter of another shape or another kind of model starts from."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import SHAPES, Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material
 from robomill.provenance import Provenance
@@ -119,3 +121,21 @@ def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
     np.testing.assert_allclose(
         KienzleForce(MILL, kienzle).components(SLOT), MechanisticForce(MILL, mechanistic).components(SLOT), rtol=1e-12
     )
+
+
+def test_each_step_has_the_range_of_its_own_cutter():
+    cutters = (MILL, Cutter("ball", 6e-3, flutes=2), Cutter("flat", 12e-3, flutes=4, helix_angle=math.radians(20)))
+    of_step = np.array([0, 1, 2, 1, 0, 2])
+    depths = 1e-3 * (1 + np.arange(6))
+    together = replace(CutConditions.steady(0.03, 200.0, depths), tooling=Tooling(cutters, of_step))
+    force = MechanisticForce(MILL, ROW)
+    spread = force.peak(together)
+    for i, n in enumerate(of_step):
+        alone = MechanisticForce(cutters[n], ROW)
+        one = CutConditions.steady(0.03, 200.0, depths[i : i + 1])
+        np.testing.assert_allclose(force.components(together)[i], alone.components(one)[0], rtol=1e-12)
+        own = alone.peak(one)
+        size = 0.02 * np.linalg.norm(own.at_peak)  # a nose is divided up to the deepest step of a call
+        for name in ("low", "high"):
+            np.testing.assert_allclose(getattr(spread, name)[i], getattr(own, name)[0], atol=size)
+        assert np.linalg.norm(spread.at_peak[i]) == pytest.approx(np.linalg.norm(own.at_peak), rel=0.02)

@@ -44,3 +44,4 @@ def test_the_diameter_of_compensation() -> None:
     assert TableTool(1, SIX, compensates=-6e-3).diameter == -6e-3
     assert TableTool(1, length=0.05, offset_x=1e-3).offset == (1e-3, 0.0, 0.05)
     assert TableTool(1).diameter == 0.0
+    assert TableTool(1, SIX).offset == (0.0, 0.0, 0.0)
