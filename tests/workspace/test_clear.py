@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 
 import robomill as rm
-from robomill.workspace.clear import clear_cells, largest_clear_box
+from robomill.workspace.clear import _wrapped, clear_cells, largest_clear_box
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 from robomill.workspace.region import largest_region
 from tests.kinematics.oracles import numeric_jacobian, pose
@@ -119,3 +119,8 @@ def test_cells_lie_between_points(points):
     assert clear_cells(robot, Grid(*axes)).all()
     axes[2] = axes[2] + 5.0  # out of reach
     assert not clear_cells(robot, Grid(*axes)).any()
+
+
+def test_a_turn_is_the_shortest_of_those_that_end_alike():
+    turn = np.random.default_rng(0).uniform(-9, 9, (4, 50))
+    np.testing.assert_allclose(_wrapped(turn), np.angle(np.exp(1j * turn)), atol=1e-12)

@@ -37,7 +37,8 @@ def choose_motion(machine: Machine, block: Block) -> None:
             raise block.refuse(
                 f"{g_name(non_modal)} and {g_name(motion)} both want the axis words; put them on two lines."
             )
-        if not axes and not polar and motion not in (0, 10, 20, 30):
+        weighs_start = motion == 52 and "p" in words  # the first line of a NURBS may say the weight of its start alone
+        if not axes and not polar and motion not in (0, 10, 20, 30) and not weighs_start:
             raise block.refuse(f"{g_name(motion)} needs axis words such as X0.")
     if motion >= 0:
         block.motion = motion

@@ -180,6 +180,9 @@ class _Assumed(dict[int, Tool]):
     def __missing__(self, number: int) -> Tool:
         return Tool(number)
 
+    def __contains__(self, number: object) -> bool:
+        return True
+
 
 def tool_length(machine: Machine, block: Block, code: int) -> None:
     """G43, G43.1, G43.2 and G49."""

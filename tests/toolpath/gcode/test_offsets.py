@@ -92,3 +92,10 @@ def test_a_second_length_is_added_to_the_one_in_force():
         ("G43 H1\nG49", [0, 0, 200]),
     ):
         np.testing.assert_allclose(read(f"{start}{words}\n", *HERE, tools=tools), here, atol=1e-9)
+
+
+def test_any_number_of_tools_may_be_measured_without_a_table():
+    start = "G21 G90\nG10 L1 P1 Z50\nG10 L1 P2 X3 Z7\nT2 M6\nG0 X0 Y0 Z200\n"
+    np.testing.assert_allclose(read(f"{start}G43\n", *HERE), [-3, 0, 193], atol=1e-9)
+    np.testing.assert_allclose(read(f"{start}G43 H1\nG43.2 H2\n", *HERE), [-3, 0, 143], atol=1e-9)
+    np.testing.assert_allclose(read(f"{start}T9 M6\nG43\n", *HERE), [0, 0, 200], atol=1e-9)

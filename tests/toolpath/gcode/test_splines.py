@@ -52,7 +52,7 @@ def test_quadratic():
 
 
 @pytest.mark.parametrize("order", [3, 4, 5])
-@pytest.mark.parametrize("first_weight", [None])
+@pytest.mark.parametrize("first_weight", [None, 2.5])
 def test_nurbs_is_a_rational_b_spline(order, first_weight):
     """A first line with P alone weighs the start; L is the order."""
     weights = np.array([first_weight or 1.0, 1.0, 3.0, 0.5, 2.0, 1.0])
