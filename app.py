@@ -6,11 +6,10 @@ import streamlit as st
 
 from robomill import ui
 from robomill.simulation.stations import nearest_judged
+from robomill.ui.arm import arm_at
 from robomill.ui.start import story
 from robomill.ui.verdict import NOT_COUNTED
-from robomill.units import format_si, format_times
-from robomill.viz.arm import arm_figure, displacement_scale
-from robomill.viz.views import arm_scene
+from robomill.units import format_si
 
 HEIGHT = 430
 
@@ -29,28 +28,16 @@ left, right = ui.split([1, 1.18], "pictures")
 with left, st.container(border=True, height="stretch"):
     index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
     if index >= 0:
-        scene = arm_scene(result, index)
-        drawn = displacement_scale(result.delta[index], scene.frames)
-        arm = ui.kept_figure(
-            "start-arm",
-            (setup.digest(), index, dark),
-            lambda: arm_figure(scene, dark=dark, height=HEIGHT, revision="start-arm"),
-        )
-        ui.figure(
-            arm,
-            "start-arm",
-            alt="The arm at the cut with the cutting force and the displacement of the tool tip.",
-            caption=f"Blue: force on the tool. Orange: displacement, shown {format_times(drawn)}.",
-        )
+        arm_at(result, index, "start-arm", HEIGHT)
 with right, st.container(border=True, height="stretch"):
     story.groove_picture(result, project.view, HEIGHT, dark)
 
 st.subheader("What this rests on")
-left, right = ui.split([1.75, 1], "rests", gap="large")
+left, right = ui.split([1.55, 1], "rests", gap="large")
 with left:
     story.where_from(setup)
 with right:
-    story.evidence(project)
+    story.beside_the_paper(project)
 
 st.subheader("Where to go from here")
 story.doors()

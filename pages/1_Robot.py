@@ -7,9 +7,10 @@ import dataclasses
 import streamlit as st
 
 from robomill import ui
+from robomill.ui.arm import arm
 from robomill.ui.robot import editors, pose
 from robomill.units import format_si
-from robomill.viz.arm import ArmScene, arm_figure
+from robomill.viz.arm import ArmScene
 
 project = ui.begin("Robot")
 robot, view, dark = project.setup.robot, project.view, ui.dark()
@@ -55,19 +56,9 @@ with left:
 with right:
     picture, numbers = ui.split([2.3, 1], "pose")
     with picture, st.container(border=True):
-        before = pose.ghost(now, old)
-        scene = ArmScene(frames=now.frames, ghost=before)
-        arm = ui.kept_figure(
-            "robot-arm",
-            (now.frames.tobytes(), b"" if before is None else before.tobytes(), dark),
-            lambda: arm_figure(scene, dark=dark, height=500, revision="robot-arm", zoom=0.8),
-        )
-        ui.figure(
-            arm,
-            "robot-arm",
-            alt="The arm at the chosen joint angles.",
-            caption=f"{pose.tip_words(now, view.length)}. Foot and tube sizes are for the eye only.",
-        )
+        caption = f"{pose.tip_words(now, view.length)}. Foot and tube sizes are for the eye only."
+        scene = ArmScene(frames=now.frames, ghost=pose.ghost(now, old))
+        arm(scene, "robot-arm", (caption, "The arm at the chosen joint angles."), 500, zoom=0.8)
     with numbers:
         pose.compliance_matrix(now, old)
         pose.share_bars(now, dark)

@@ -10,6 +10,7 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.provenance import Finding
 from robomill.quantities import quantities, quantity, settle, whole
+from robomill.units import format_si
 
 ASKED = ("kind", "flutes", "helix_angle")
 """Fields of a cutter that a force needs and a table of a machine does not say; without a word they are assumed."""
@@ -84,6 +85,14 @@ class ToolTable(Mapping[int, TableTool]):
 
     def __len__(self) -> int:
         return len(self.tools)
+
+    def called(self, number: int) -> str:
+        """A tool in a few words: ``"T2 · 20.00 mm flat end mill, 4 flutes"``, ``"T1 · drill, 6.00 mm"``."""
+        tool = self.get(number, TableTool(number))
+        said = [tool.name] if tool.name else []
+        if tool.cutter is not None:
+            said.append(format_si(tool.cutter.diameter, "mm", 2) if said else tool.cutter.title)
+        return " · ".join([f"T{number}", *([", ".join(said)] if said else [])])
 
     def cutter(self, number: int) -> Cutter:
         """What tool ``number`` cuts with. Raises CuttingError where the table does not hold it or does not know it."""

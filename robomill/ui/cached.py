@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import streamlit as st
 
 from robomill.errors import RenderError
+from robomill.kinematics.spin import OverSpin
 from robomill.simulation.enlarged import Enlarged, enlarged
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import simulate
+from robomill.simulation.run import deviation_over_spin, simulate
+from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
 from robomill.ui import session
@@ -19,6 +21,8 @@ from robomill.viz.worker import RenderWorker
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
+
+SPIN_SAMPLES = 400
 
 
 def result(setup: SimulationSetup) -> SimulationResult:
@@ -31,6 +35,17 @@ def _result(digest: str, _setup: SimulationSetup) -> SimulationResult:
     found = simulate(_setup)
     _ = found.verdict  # so that what cannot be judged is refused here, where a page expects it
     return found
+
+
+def over_spin(setup: SimulationSetup) -> OverSpin:
+    """What the free spin about the tool does to the largest deviation, at ``SPIN_SAMPLES`` points of the path."""
+    return _over_spin(setup.digest(), setup)
+
+
+@st.cache_resource(max_entries=16, show_spinner=False)
+def _over_spin(digest: str, _setup: SimulationSetup) -> OverSpin:
+    path = _setup.toolpath
+    return deviation_over_spin(_setup, sampled(path, max(_setup.step, float(path.s[-1]) / SPIN_SAMPLES)))
 
 
 def groove(setup: SimulationSetup, station: float) -> GrooveSection:

@@ -33,22 +33,27 @@ def is_papers_path(project: Project) -> bool:
     return source == paper
 
 
-def claims(project: Project) -> list[Claim]:
-    """Every number of the paper's slot in m, the paper's first; computed ones with the band of the alloy's rows."""
-    plain, process = preset_setup(DEFAULT_PRESET), _process_setup()
+def claims(project: Project, process: bool = False) -> list[Claim]:
+    """Numbers of the paper's slot in m: its own beside those computed here, and the project's where it was edited.
+
+    With ``process`` also the two that come out of process data, with the band of the alloy's rows: these take longer.
+    """
+    plain, force = preset_setup(DEFAULT_PRESET), f"{SLOT.force:.0f} N"
     third = plain.robot.with_compliance_set("table_3")
-    about = f"about {from_si(SLOT.measured, 'mm'):g} mm"
     rows = [
-        Claim("paper, predicted from Table 2", "paper", SLOT.from_table_2, note=f"{SLOT.force:.0f} N measured force"),
-        _computed(f"{SLOT.force:.0f} N and Table 3", plain.replace(robot=third)),
+        Claim("paper, predicted from Table 2", "paper", SLOT.from_table_2, note=f"{force} measured force"),
+        _computed(f"robomill, {force} and Table 2", plain),
+        _computed(f"robomill, {force} and Table 3", plain.replace(robot=third)),
         Claim("paper, predicted from its measured map", "paper", SLOT.from_map, note="raw data not printed"),
-        Claim("paper, measured on the part", "measured", SLOT.measured, note=about),
-        _computed("process data and Table 2", process),
-        _computed("process data and Table 3", process.replace(robot=third)),
+        Claim("paper, measured on the part", "measured", SLOT.measured, note="in the paper's words", rough=True),
     ]
-    known = {plain.digest(), process.digest()}
-    if project.setup.source == plain.source and project.setup.digest() not in known:
-        rows.append(dataclasses.replace(_computed("your set-up", project.setup), kind="user"))
+    known = [plain]
+    if process:
+        known.append(_process_setup())
+        rows.append(_computed("robomill, process data and Table 2", known[-1]))
+        rows.append(_computed("robomill, process data and Table 3", known[-1].replace(robot=third)))
+    if project.setup.digest() not in {setup.digest() for setup in known}:
+        rows.append(dataclasses.replace(_computed("robomill, your set-up", project.setup), kind="user"))
     return rows
 
 
@@ -72,13 +77,14 @@ def sideways(result: SimulationResult) -> tuple[float, float, float]:
 def panel(project: Project, dark: bool) -> None:
     """The chart with its caption and its table."""
     unit = project.view.length
-    found = pieces.attempt(claims, project)
+    found = pieces.attempt(claims, project, True)
     if found is None:
         return
     lengths = ("value", "low", "high")
-    shown = [
-        Claim(c.label, c.kind, _shown(c.value, unit), _shown(c.low, unit), _shown(c.high, unit), c.note) for c in found
-    ]
+    shown = []
+    for claim in found:
+        value, low, high = (float(from_si(getattr(claim, k), unit)) for k in lengths)
+        shown.append(dataclasses.replace(claim, value=value, low=low, high=high))
     pieces.figure(
         evidence_figure(shown, unit, dark=dark),
         "evidence",
@@ -92,7 +98,3 @@ def panel(project: Project, dark: bool) -> None:
         "7075-T6 and a right-hand helix are assumed, and nothing is tuned.",
         alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
     )
-
-
-def _shown(value: float, unit: str) -> float:
-    return float(from_si(value, unit))

@@ -8,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
+from robomill.compliance.posture import over_posture
 from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
@@ -127,6 +128,11 @@ def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
     return dataclasses.replace(known, robot=robot, shares=scaled_shares(known.shares, factors, axis=-2))
 
 
+def postures(robot: Robot, T_MT: FloatArray) -> FloatArray:
+    """C (k, 3, 3) m/N of the postures found that hold the tool at T_MT (4, 4); none for arms that have no choice."""
+    return _postures(f"{robot.digest()}/{digest(T_MT)}", robot, T_MT)
+
+
 def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     """The six lines of Fig. 8 over the region's plane, from the cache."""
     key = f"{robot.digest()}/{digest((box.lower, box.upper, z))}"
@@ -152,6 +158,11 @@ def _proposed(key: str, _robot: Robot, kind: str, A: float, B: float) -> Box | N
 @st.cache_resource(max_entries=64, show_spinner=False)
 def _flat(key: str, _robot: Robot) -> int | None:
     return flat_axis(_robot)
+
+
+@st.cache_resource(max_entries=48, show_spinner=False)
+def _postures(key: str, _robot: Robot, _T_MT: FloatArray) -> FloatArray:
+    return over_posture(_robot, _T_MT)
 
 
 @st.cache_resource(max_entries=24, show_spinner=False)

@@ -1,4 +1,4 @@
-"""Inputs: one number box, one choice, one switch, one slider, one upload, one table.
+"""Inputs: one number box, one choice, one switch, one slider, one button, one upload, one table.
 
 Each is seeded from what is in force and hands what was typed to the project. Input that is refused stays where it was
 typed with the sentence beneath it; the project keeps the last good value. Keys read "page.thing".
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 import pandas as pd
@@ -158,6 +159,19 @@ def pick(label: str, key: str, options: Mapping[Any, str], otherwise: Any = None
     return current if current in options else first
 
 
+def seen(label: str, path: str, options: Mapping[Any, str], look: Look = PLAIN, **more: Any) -> Any:
+    """A choice that is a field of what is looked at, "view.camera" or "maps.sheet": returns what is chosen.
+
+    What is no option (on another arm) is shown as the first one; ``more`` are fields that change with it.
+    """
+    owner, _, name = path.partition(".")
+    held, write = (session.project().view, session.look) if owner == "view" else (session.maps(), session.see)
+    current = getattr(held, name)
+    shown = current if current in options else next(iter(options))
+    choice(label, path, options, shown, lambda new: write(**{name: new, **more}), look)
+    return shown
+
+
 def several(
     label: str,
     key: str,
@@ -242,6 +256,13 @@ def text(label: str, key: str, current: str, write: Callable[[str], None], *, li
     sentence(key)
 
 
+def button(label: str, key: str, icon: str, do: Callable[..., Any], *args: Any, **more: Any) -> None:
+    """A button for ``do(*args)``; a refusal is said beneath. ``icon`` names a symbol, ``more`` goes to Streamlit."""
+    act = partial(submit, key, None, partial(do, *args))
+    st.button(label, key=key, icon=f":material/{icon}:" if icon else None, on_click=act, **more)
+    sentence(key)
+
+
 def upload(
     label: str,
     key: str,
@@ -266,6 +287,13 @@ def upload(
 
     st.file_uploader(label, key=box, max_upload_size=most_MB, on_change=taken, help=look.hint)
     sentence(key)
+
+
+def reread(key: str, take: Callable[[bytes, str], None], option: str, chosen: Any) -> None:
+    """Keep how files are to be read, and read the one that is kept under ``key`` again."""
+    session.keep(option, chosen)
+    if given := session.kept(key):
+        submit(key, None, lambda: take(*given))
 
 
 def decoded(data: bytes, name: str, expected: str) -> str:

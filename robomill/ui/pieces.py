@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.provenance import Provenance
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def tiles(items: Sequence[Tile]) -> None:
 def _tile(tile: Tile) -> str:
     number, unit = split_unit(tile.value)
     value = html.escape(number) + (f"<small>{html.escape(unit)}</small>" if unit else "")
-    note = html.escape(tile.note)
+    note = subscripts(tile.note)
     if tile.was and tile.was != tile.value:
         moved = f" · {html.escape(tile.change)}" if tile.change else ""
         note = f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}'
@@ -71,6 +72,11 @@ def badge(kind: str, text: str = "") -> str:
     return f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(text or kind)}</span>'
 
 
+def sourced(said: Provenance) -> str:
+    """Where a number comes from, as HTML: the badge and the words."""
+    return f"{badge(said.kind)} {subscripts(said.source)}"
+
+
 def headline(kicker: str, title: str, lead: str = "") -> None:
     """The page's one sentence. ``lead`` may hold HTML (badges)."""
     lead_html = f'<p class="rm-lead">{lead}</p>' if lead else ""
@@ -84,11 +90,31 @@ def note(text: str) -> None:
 
 def facts(rows: Sequence[tuple[str, str, str]]) -> None:
     """A small table without lines of its own: what, value, HTML of the remark (badges)."""
-    body = "".join(
-        f'<tr><td class="q">{html.escape(a)}</td><td class="n">{html.escape(b)}</td><td>{c}</td></tr>'
-        for a, b, c in rows
-    )
-    st.html(f'<table class="rm-facts">{body}</table>')
+    table([(html.escape(a), html.escape(b), c) for a, b, c in rows], "qn ")
+
+
+def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), strong: int = -1) -> None:
+    """A table of cells in HTML with a row of titles; ``strong`` is the row in force.
+
+    ``kinds`` has a letter a column: q what is asked (s where that is short), n a number, v a value in words, w text,
+    b a bar, a blank for a remark, which stands under its q in a narrow window.
+    """
+
+    def row(tag: str, cells: Sequence[str], style: str = "") -> str:
+        inner = "".join(f'<{tag} class="{kind}">{cell}</{tag}>' for kind, cell in zip(kinds, cells, strict=True))
+        return f"<tr{style}>{inner}</tr>"
+
+    bold = ' style="font-weight:600"'
+    body = "".join(row("td", cells, bold if i == strong else "") for i, cells in enumerate(rows))
+    top = row("th", head) if head else ""
+    remarks = " rm-remarks" if kinds[0] == "q" and kinds[-1] == " " else ""
+    st.html(f'<div style="overflow-x:auto"><table class="rm-facts{remarks}">{top}{body}</table></div>')
+
+
+def bar(share: float, look: str) -> str:
+    """A bar of ``share`` (of 1) of its cell's width; ``look`` is a colour or the name of a provenance."""
+    kind, colour = ("", f";background:{look}") if look.startswith("#") else (f" rm-{html.escape(look)}", "")
+    return f'<span class="rm-bar{kind}" style="width:{100 * share:.1f}%{colour}"></span>'
 
 
 def matrix(rows: Sequence[Sequence[str]], names: Sequence[str], columns: Sequence[str] | None = None) -> None:

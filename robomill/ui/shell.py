@@ -73,23 +73,11 @@ def dark() -> bool:
 def _sidebar() -> None:
     held = session.store()
     with st.container(horizontal=True, gap="small"):
-        st.button(
-            "Undo", icon=":material/undo:", disabled=not held.past, on_click=session.undo, width="stretch", key="undo"
-        )
-        st.button(
-            "Redo", icon=":material/redo:", disabled=not held.future, on_click=session.redo, width="stretch", key="redo"
-        )
+        inputs.button("Undo", "undo", "undo", session.undo, disabled=not held.past, width="stretch")
+        inputs.button("Redo", "redo", "redo", session.redo, disabled=not held.future, width="stretch")
     _preset(held.project)
-    view = held.project.view
-    inputs.choice("Lengths", "view.units", UNIT_CHOICES, view.units, lambda v: session.look(units=v))
-    inputs.choice(
-        "Joint compliance",
-        "view.joint_unit",
-        JOINT_UNITS,
-        view.joint_unit,
-        lambda v: session.look(joint_unit=v),
-        inputs.LISTED,
-    )
+    inputs.seen("Lengths", "view.units", UNIT_CHOICES)
+    inputs.seen("Joint compliance", "view.joint_unit", JOINT_UNITS, inputs.LISTED)
     _files(held)
 
 
@@ -100,15 +88,8 @@ def _preset(project: Project) -> None:
         titles = {current: "Your file", **titles}
     inputs.choice("Preset", "project.preset", titles, current, session.open_preset, inputs.LISTED)
     if current in names and project.setup.digest() != preset_setup(current).digest():
-        st.button(
-            "Back to preset",
-            icon=":material/restart_alt:",
-            key="back",
-            width="stretch",
-            type="tertiary",
-            on_click=session.open_preset,
-            args=(current,),
-        )
+        again = (session.open_preset, current)
+        inputs.button("Back to preset", "back", "restart_alt", *again, width="stretch", type="tertiary")
 
 
 def _files(held: session.Store) -> None:

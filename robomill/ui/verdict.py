@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import streamlit as st
@@ -17,7 +18,7 @@ from robomill.simulation.tooth import LEFT_OUT
 from robomill.simulation.verdict import Reading, Verdict
 from robomill.ui import cached, session, uncertainty
 from robomill.ui.pieces import Tile
-from robomill.units import format_count, format_percent, format_si
+from robomill.units import format_count, format_many, format_percent, format_si
 
 WORDS = {
     "ok": "In tolerance",
@@ -68,13 +69,12 @@ def _ranges(key: str, _result: SimulationResult, _known: Knowledge | None) -> tu
 def range_words(found: Range, name: str, unit: str) -> str:
     """The ends of ``name`` ("wall", "floor", "tip" or "share") in words; "" where there are none."""
     low, high = getattr(found, name)
-    if not np.isfinite([low, high]).all() or (format_si(low, unit, 3), low) == (format_si(high, unit, 3), high):
+    if not np.isfinite([low, high]).all() or (format_si(low, unit), low) == (format_si(high, unit), high):
         return ""
     if name == "share":
         return f"{format_percent(low)} to {format_percent(high)}: {found.over}"
-    digits = 3 if unit == "mm" else 4
-    ends = [format_si(v, unit, digits, sign=name != "tip", with_unit=False) for v in (low, high)]
-    return f"{ends[0]} to {ends[1]}: {found.over}"
+    ends = format_many((low, high), unit, between=" to ", sign=name != "tip", with_unit=False)
+    return f"{ends}: {found.over}"
 
 
 def tone(verdict: Verdict) -> str:
@@ -85,37 +85,30 @@ def tone(verdict: Verdict) -> str:
 def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None, unit: str) -> Tile:
     """One quantity of the verdict against its tolerance; ``name`` is "wall" or "floor"."""
     reading: Reading = getattr(verdict, name)
-    digits = 4 if unit == "in" else 3
     if reading.worst < 0:
         return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
     allowed = format_si(reading.tolerance, unit, 2 if unit == "mm" else 4)
     way = WAYS[name][0 if reading.value > 0 else 1]
     was = change = ""
     if before is not None and getattr(before, name).worst >= 0:
-        was = format_si(getattr(before, name).value, unit, digits, sign=True)
-        change = format_si(reading.value - getattr(before, name).value, unit, digits, sign=True)
-    value = format_si(reading.value, unit, digits, sign=True)
+        was = format_si(getattr(before, name).value, unit, sign=True)
+        change = format_si(reading.value - getattr(before, name).value, unit, sign=True)
+    value = format_si(reading.value, unit, sign=True)
     return Tile(label, value, f"{way} · {format_percent(reading.share)} of {allowed}", was, change, kind="computed")
 
 
 def tip_tile(result: SimulationResult, unit: str) -> Tile:
     """How far the tip is off its path where that is most: the vector behind what is judged."""
     old = previous(result)
-    digits = 4 if unit == "in" else 3
     i = result.worst
     if i < 0:
         return Tile("Tip off its path", "–", NOTHING.get(result.verdict.level, "nothing cut"))
-
-    def shown(value: float) -> str:
-        return format_si(value, unit, digits)
-
+    shown = partial(format_si, unit=unit)
     was = change = ""
     if old is not None:
         was = shown(old.max_deviation)
-        change = format_si(result.max_deviation - old.max_deviation, unit, digits, sign=True)
-    parts = " · ".join(
-        f"{a} {format_si(v, unit, digits, sign=True).rpartition(' ')[0]}" for a, v in zip("XYZ", result.delta[i])
-    )
+        change = format_si(result.max_deviation - old.max_deviation, unit, sign=True)
+    parts = " · ".join(f"{a} {format_si(v, unit, sign=True, with_unit=False)}" for a, v in zip("XYZ", result.delta[i]))
     note = f"{parts} · line {result.worst_block} · RMS {shown(result.rms_deviation)}"
     value = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
     return Tile("Tip off its path", value, note, was, change)

@@ -56,9 +56,9 @@ class Along:
         i = self.chosen
         shade(self.fig, self.s[i], (band[0][i], band[1][i]), name, fill, legend)
 
-    def level(self, y: float, colour: str) -> None:
-        """A dashed line at a limit."""
-        self.fig.add_hline(y=y, line={"color": colour, "width": 1.2, "dash": "dash"})
+    def level(self, y: float, colour: str, dash: str = "dash") -> None:
+        """A thin line at a limit."""
+        self.fig.add_hline(y=y, line={"color": colour, "width": 1.2, "dash": dash})
 
     def zero(self) -> None:
         """A quiet line at zero."""

@@ -130,8 +130,7 @@ def _without_the_small(shares: FloatArray, names: Sequence[str]) -> tuple[FloatA
     if large.all() or not large.any():
         return shares, list(names), list(range(len(names)))
     rest = shares[:, ~large].sum(axis=1, keepdims=True)
-    small = [name.removeprefix("joint ") for name, big in zip(names, large, strict=True) if not big]
-    label = f"joints {', '.join(small)} (under 1 %)"
+    label = f"{', '.join(name for name, big in zip(names, large, strict=True) if not big)} (under 1 %)"
     return np.hstack([shares[:, large], rest]), [*(names[int(j)] for j in kept), label], [*kept.tolist(), -1]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.units import format_value
-from robomill.viz.theme import axis, figure, palette, rgba, say
+from robomill.viz.theme import axis, figure, palette, say
 
 COLOURS = {
     "paper": "#2F7FD0",
@@ -22,7 +22,10 @@ COLOURS = {
 
 @dataclass(frozen=True)
 class Claim:
-    """One number: where it comes from (``kind`` is a provenance), its value and perhaps its range, in one unit."""
+    """One number: where it comes from (``kind`` is a provenance), its value and perhaps its range, in one unit.
+
+    A ``rough`` one is said to be "about" its value.
+    """
 
     label: str
     kind: str
@@ -30,12 +33,13 @@ class Claim:
     low: float = float("nan")
     high: float = float("nan")
     note: str = ""
+    rough: bool = False
 
 
 def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: int = 0) -> go.Figure:
     """Each claim a row: a dot with its number, a bar for its range."""
-    p, rows = palette(dark), len(claims)
-    margin = {"l": 8, "r": 24, "t": 8, "b": 8}
+    rows = len(claims)
+    margin = {"l": 12, "r": 24, "t": 8, "b": 8}
     fig = figure(dark=dark, height=height or 70 + 46 * rows, revision="evidence", margin=margin)
     measured = [c.value for c in claims if c.kind == "measured" and np.isfinite(c.value)]
     for value in measured[:1]:
@@ -43,19 +47,10 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
     for i, claim in enumerate(claims):
         _row(fig, claim, rows - 1 - i, unit, dark)
     top = max([*(v for c in claims for v in (c.value, c.low, c.high) if np.isfinite(v)), 1e-9])
-    kinds = [f"<span style='color:{COLOURS.get(c.kind, p.muted)}'>{c.kind}</span>" for c in claims]
     fig.update_layout(
         showlegend=False,
         xaxis=axis(f"Sideways error of the groove, {unit}", dark=dark, range=[0.0, 1.12 * top], rangemode="tozero"),
-        yaxis={
-            "tickvals": list(range(rows)),
-            "range": [-0.6, rows - 0.25],
-            "showgrid": False,
-            "zeroline": False,
-            "ticktext": [f"{c.label}  {kind}" for c, kind in zip(claims, kinds, strict=True)][::-1],
-            "tickfont": {"size": 13, "color": p.text},
-            "automargin": True,
-        },
+        yaxis={"range": [-0.45, rows - 0.25], "visible": False},
     )
     return fig
 
@@ -63,16 +58,18 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
 def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
     p = palette(dark)
     colour = COLOURS.get(claim.kind, p.muted)
-    digits, short = (3, 2) if unit == "mm" else (4, 4)
-    value = format_value(claim.value, unit, digits)
-    about = "about " if claim.note.startswith("about") else ""
-    text = f"<b>{about}{value if claim.kind == 'computed' else format_value(claim.value, unit, short)}</b>"
+    short = 2 if unit == "mm" else 4
+    value = format_value(claim.value, unit)
+    said = value if claim.kind == "computed" else format_value(claim.value, unit, short)
+    text = f"<b>{'about ' * claim.rough}{said}</b>"
     if np.isfinite(claim.low) and np.isfinite(claim.high):
         ends = [format_value(v, unit, short, with_unit=False) for v in (claim.low, claim.high)]
         text += f"  ({ends[0]} to {ends[1]})"
-        hover = f"{format_value(claim.low, unit, digits)} to {format_value(claim.high, unit, digits)}<extra></extra>"
+        hover = f"{format_value(claim.low, unit)} to {format_value(claim.high, unit)}<extra></extra>"
         bar = {"mode": "lines", "line": {"color": colour, "width": 9}, "opacity": 0.35, "hovertemplate": hover}
         fig.add_scatter(x=[claim.low, claim.high], y=[y, y], **bar)
+    lead = {"mode": "lines", "line": {"color": colour, "width": 1.5}, "opacity": 0.5, "hoverinfo": "skip"}
+    fig.add_scatter(x=[0.0, claim.value], y=[y, y], **lead)
     symbol = "diamond" if claim.kind == "measured" else "circle"
     fig.add_scatter(
         x=[claim.value],
@@ -82,4 +79,5 @@ def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
         marker={"size": 13, "color": colour, "line": {"width": 1.5, "color": p.background}, "symbol": symbol},
         hovertemplate=f"{claim.label}: {value}<br>{claim.kind}. {claim.note}<extra></extra>",
     )
-    say(fig, text, claim.value, y, p.text, size=12.5, yshift=17, bgcolor=rgba(p.background, 0.8), borderpad=1)
+    # Above its mark, not beside it: a telephone has no room for both.
+    say(fig, f"{text}  {claim.label}", 0, y, p.text, size=13, xref="paper", xanchor="left", yshift=14)

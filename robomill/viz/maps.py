@@ -45,6 +45,12 @@ class Scale:
         one_sign = what.colours == "diverging" and not low < 0 < high
         return cls(what.label, low, high, "sequential" if one_sign else what.colours, joints, UNITS[what.unit].digits)
 
+    @classmethod
+    def signed(cls, title: str, values: Sequence[FloatArray]) -> Scale:
+        """A scale centred on zero, as wide as the largest size in ``values``."""
+        top = symmetric_limit(values)
+        return cls(title, -top, top, "diverging")
+
     def shade(self, values: FloatArray) -> FloatArray:
         """What is coloured: the values; of joints the place of each number among ``joints``, since numbers may skip."""
         if self.kind != "joints":
@@ -209,7 +215,7 @@ def _pick_layer(sheet: MapSheet, panel: Map, scale: Scale, dark: bool) -> dict[s
     iu, iv = _thin(len(sheet.u), every), _thin(len(sheet.v), every)
     U, V = np.meshgrid(sheet.u[iu], sheet.v[iv], indexing="ij")
     values = np.asarray(panel.values)[np.ix_(iu, iv)].ravel()
-    across, up = (title.partition(",")[0] for title in (sheet.u_title, sheet.v_title))
+    place = f"{sheet.u_title}: %{{x:.4g}}<br>{sheet.v_title}: %{{y:.4g}}"
     return {
         "type": "scatter",
         "x": U.ravel().astype(np.float32),
@@ -218,7 +224,7 @@ def _pick_layer(sheet: MapSheet, panel: Map, scale: Scale, dark: bool) -> dict[s
         "text": [hover_text(value, panel.unit, scale) for value in values.tolist()],
         "name": panel.title,
         "marker": {"size": 7, "opacity": 0, "color": palette(dark).text},
-        "hovertemplate": f"<b>{panel.title}</b><br>%{{text}}<br>{across} %{{x:.4g}}, {up} %{{y:.4g}}<extra></extra>",
+        "hovertemplate": f"<b>{panel.title}</b><br>%{{text}}<br>{place}<extra></extra>",
     }
 
 

@@ -53,8 +53,9 @@ def profile_figure(
             marker={"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}},
             hovertemplate="measured %{y:+.4f} " + unit,
         )
-    for side in (1, -1):
-        plot.level(side * curves.tolerance, p.bad)
+    for side, words in ((1, "+ tolerance"), (-1, "− tolerance")):
+        plot.level(side * curves.tolerance, p.bad, "solid")
+        say(plot.fig, words, 1, side * curves.tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
     plot.zero()
     drawn = [curves.offset, curves.floor, *([] if curves.band is None else [curves.band])]
     reach = 1.15 * max(curves.tolerance, *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +19,7 @@ class PathPicture:
     """A path in {W} and display units: points (m, 3), move i ends at point i; cutting, reached (m,) bool; block (m,).
 
     value (m,) colours the cuts (None: reached or not), on 0 to ``limit`` where one is given; above it is marked.
+    ``tools`` (m,) colours them by their tool instead, whose words are in ``tool_names``.
     ``selected`` is the source line (``noun``) that is pointed at (0: none), ``worst`` the index of the largest value
     (-1: none).
     """
@@ -38,6 +40,8 @@ class PathPicture:
     worst: int = -1
     total: int = 0
     indices: IntArray | None = None
+    tools: IntArray | None = None
+    tool_names: Mapping[int, str] = field(default_factory=dict)
 
     @cached_property
     def kept(self) -> IntArray:

@@ -97,7 +97,7 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     arrow(fig, (centre + side * reach, under), (centre, under), p.warm, **HEAD)
     arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm, **HEAD)
     _text(fig, (centre + side * reach, under), _off(d), p.warm, dark, "right" if side > 0 else "left")
-    _text(fig, (0.5 * (walls[1] + seen[1]), d.floor), _floor(d), p.warm, dark)
+    _text(fig, (centre, d.floor + 0.42 * step), _floor(d), p.warm, dark)
 
 
 def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:

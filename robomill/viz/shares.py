@@ -87,7 +87,7 @@ def gain_bars(
     """What a stiffer joint buys: one group of bars a place (title, gain (n,), unit), one bar a joint."""
     p = palette(dark)
     colours = joint_colours(7, dark)
-    margin = {"l": 8, "r": 8, "t": 34, "b": 8}
+    margin = {"l": 8, "r": 24, "t": 34 + 16 * ("<br>" in groups[0][0]), "b": 8}
     layout = house_layout(dark=dark, height=height, revision="gains", bargap=0.3, showlegend=False, margin=margin)
     count, gap = len(groups), 0.07
     width = (1 - gap * (count - 1)) / count
@@ -121,7 +121,7 @@ def gain_bars(
             "title": None,
             "showticklabels": g == 0,
         }
-        layout["annotations"].append(words(f"<b>{title}</b>", start, 1.0, 13, p.text, yshift=8, **ABOVE))
+        layout["annotations"].append(words(f"<b>{title}</b>", start, 1.0, 13, p.text, yshift=8, align="left", **ABOVE))
     return unchecked(data, layout)
 
 

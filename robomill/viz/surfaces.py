@@ -8,9 +8,16 @@ import plotly.graph_objects as go
 from robomill.arrays import FloatArray
 from robomill.simulation.enlarged import Enlarged
 from robomill.units import from_si
+from robomill.viz.picture import Camera
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
 MAX_CELLS = 60_000
+EYES: dict[Camera, tuple[tuple[float, float, float], tuple[float, float, float]]] = {  # from where, and what is up
+    "iso": ((-0.8, -1.15, 0.95), (0.0, 0.0, 1.0)),
+    "along": ((-1.6, 0.0, 0.55), (0.0, 0.0, 1.0)),
+    "top": ((0.0, 0.0, 1.8), (0.0, 1.0, 0.0)),
+    "front": ((0.0, -1.8, 0.05), (0.0, 0.0, 1.0)),
+}
 
 
 def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArray, ...]:
@@ -20,13 +27,18 @@ def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArr
 
 
 def surface_figure(
-    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, revision: str = "surface"
+    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, camera: Camera = "iso"
 ) -> go.Figure:
-    """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse."""
+    """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse.
+
+    It is seen as the ``camera`` has it until it is turned.
+    """
     drawn = [from_si(v, unit) for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
     x, y, z, error_um = thinned(*drawn, from_si(shown.error, "um"))
     limit_um = float(from_si(limit, "um"))
     p = palette(dark)
+    revision = f"surface-{camera}"
+    eye, up = EYES[camera]
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     colour = np.nan_to_num(error_um.T).astype(np.float32)
     fig.add_surface(
@@ -57,11 +69,15 @@ def surface_figure(
             "dragmode": "turntable",
             "aspectmode": "manual",
             "aspectratio": {
-                "x": 1.7 * np.ptp(x) / span,
-                "y": 1.7 * np.ptp(y) / span,
-                "z": 1.7 * stretch * height_span / span,
+                "x": 2.4 * np.ptp(x) / span,
+                "y": 2.4 * np.ptp(y) / span,
+                "z": 2.4 * stretch * height_span / span,
             },
-            "camera": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "projection": {"type": "orthographic"}},
+            "camera": {
+                "eye": dict(zip("xyz", eye, strict=True)),
+                "up": dict(zip("xyz", up, strict=True)),
+                "projection": {"type": "orthographic"},
+            },
         },
         font={"color": p.text},
     )

@@ -7,7 +7,9 @@ readable with any colour vision, and words stand beside the colours.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any
 
 import plotly.graph_objects as go
@@ -92,6 +94,11 @@ def palette(dark: bool) -> Palette:
 def joint_colours(n: int, dark: bool) -> tuple[str, ...]:
     """One colour per joint, the same in every figure; n <= 7."""
     return (JOINT_COLOURS_DARK if dark else JOINT_COLOURS)[:n]
+
+
+def tool_colours(numbers: Iterable[int], dark: bool) -> dict[int, str]:
+    """One colour per tool, in the order of ``numbers``; they come again where there are many."""
+    return dict(zip(numbers, cycle(joint_colours(7, dark)), strict=False))
 
 
 def axis_colours(dark: bool) -> dict[str, str]:

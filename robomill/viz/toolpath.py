@@ -10,7 +10,7 @@ from plotly.colors import sample_colorscale
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.viz.path_picture import PathPicture
-from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, rgba
+from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, rgba, tool_colours
 
 VECTOR_LINES = 5_000
 MAX_PICKS = 3_000
@@ -34,8 +34,11 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     draw(~cut & (np.arange(len(kept)) > 0), {"color": p.muted, "width": 1, "dash": "dot"}, name="rapid")
     draw(cut, {"color": rgba(p.text, 0.18), "width": 2 * width}, showlegend=False)
     _halo(fig, picture, dark)
+    upright = cut & (np.abs(ends[1] - ends[0])[:, :2].max(axis=1) < 1e-9)  # from above a drilled hole is a point
     for name, colour, chosen, legend in _classes(picture, dark):
         draw(chosen, {"color": colour, "width": width}, name=name, showlegend=legend)
+        if (chosen & upright).any():
+            _dots(fig, ends[1][chosen & upright], {"size": 8, "color": colour})
     if lost.any():
         at = picture.points[kept][lost]
         cross = {"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}}
@@ -77,13 +80,14 @@ def turnable_picture(
         fig.add_scatter3d(x=[None], y=[None], z=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
     times = float(np.clip(round(0.22 * float(size.max()) / max(float(size[2]), 1e-9)), 1, 50))
-    ratio = [1.9 * max(float(v), 0.1) for v in size * [1.0, 1.0, times] / float(size.max())]
+    ratio = 1.9 * np.maximum(size * [1.0, 1.0, times] / float(size.max()), 0.1)
+    ratio *= min(1.0, 2.3 / float(np.linalg.norm(ratio)))
     camera = {"eye": {"x": -0.75, "y": -1.25, "z": 0.95}, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}
     fig.update_layout(
         scene={
-            **{f"{a}axis": axis3d(f"{a}_W, {picture.length_unit}", dark=dark) for a in "xyz"},
+            **{f"{a}axis": axis3d(f"{a}<sub>W</sub>, {picture.length_unit}", dark=dark) for a in "xyz"},
             "aspectmode": "manual",
-            "aspectratio": dict(zip("xyz", ratio, strict=True)),
+            "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
             "camera": {"projection": {"type": "orthographic"}, **camera},
             "uirevision": revision,
         }
@@ -139,6 +143,11 @@ def _classes(picture: PathPicture, dark: bool) -> list[tuple[str, str, BoolArray
     lost = cut & ~reached
     missed = int((picture.cutting & ~picture.reached).sum())
     found = [(f"out of reach ({missed} points)", p.bad, lost, True)] if missed else []
+    if picture.tools is not None:
+        tool = picture.tools[kept]
+        colours = tool_colours(picture.tool_names, dark)
+        made = [(name, colours[n], cut & reached & (tool == n), True) for n, name in picture.tool_names.items()]
+        return [*made, *found]
     if picture.value is None:
         return [("in reach", p.good, cut & reached, True), *found]
     # The value of a segment is the largest since the segment before: thinning must not hide a peak.
@@ -219,6 +228,8 @@ def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     ]
     hover = "%{text}<br>x %{x:.2f}, y %{y:.2f}, z %{customdata[1]:.2f} " + picture.length_unit
     data: list[FloatArray] = [block.astype(float), q[:, 2]]
+    if picture.tools is not None:
+        words = [f"{w}<br>{picture.tool_names.get(n, '')}" for w, n in zip(words, picture.tools[kept].tolist())]
     if picture.value is not None:
         value = picture.value[kept]
         data.append(value)

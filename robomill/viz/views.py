@@ -17,8 +17,6 @@ from robomill.viz.arm import ArmScene
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
-PICTURE_CELLS = 160_000
-
 
 def surface_picture(
     result: SimulationResult,
@@ -102,17 +100,13 @@ def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
     keep = w == section.w
     w_machined = _upright(section.w, section.z_machined, (section.wall_left, section.wall_right), section.depth)
     w_ideal = _upright(section.w, section.z_ideal, (section.wall_left_ideal, section.wall_right_ideal), section.depth)
+    same = ("wall_left", "wall_right", "width", "depth", "centre_offset", "floor_error")
     return SectionDrawing(
         u=shown(w_machined[keep]),
         machined=shown(section.z_machined[keep]),
         u_ideal=shown(w_ideal[keep]),
         ideal=shown(section.z_ideal[keep]),
-        wall_left=shown(section.wall_left),
-        wall_right=shown(section.wall_right),
-        width=shown(section.width),
-        depth=shown(section.depth),
-        centre_offset=shown(section.centre_offset),
-        floor_error=shown(section.floor_error),
+        **{name: shown(getattr(section, name)) for name in same},
         top=shown(section.floor + section.depth),
         floor=shown(section.floor),
         unit=unit,

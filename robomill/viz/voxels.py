@@ -110,7 +110,7 @@ def widen(fig: go.Figure, lower: FloatArray, upper: FloatArray, room: float = 2.
     ratio = room * span / np.linalg.norm(span)
     for i, name in enumerate("xyz"):
         scene[f"{name}axis"].range = [float(low[i]), float(high[i])]
-    scene.aspectratio = dict(zip("xyz", ratio.tolist(), strict=True))
+    scene.update(aspectratio=dict(zip("xyz", ratio.tolist(), strict=True)))
 
 
 def _place(axis: FloatArray, index: FloatArray) -> FloatArray:

@@ -45,3 +45,9 @@ def test_the_diameter_of_compensation() -> None:
     assert TableTool(1, length=0.05, offset_x=1e-3).offset == (1e-3, 0.0, 0.05)
     assert TableTool(1).diameter == 0.0
     assert TableTool(1, SIX).offset == (0.0, 0.0, 0.0)
+
+
+def test_a_tool_is_called_by_what_the_table_says() -> None:
+    table = ToolTable((TableTool(1, SIX), TableTool(2, EIGHT, name="finisher"), TableTool(3)))
+    assert [table.called(n) for n in (2, 3, 9)] == ["T2 · finisher, 8.00 mm", "T3", "T9"]
+    assert table.called(1).startswith("T1 · 6.00 mm flat")

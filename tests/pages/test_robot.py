@@ -126,8 +126,8 @@ def test_the_spin_of_a_six_axis_arm_is_chosen_and_its_influence_said(app: AppTes
     assert app.selectbox(key="robot.spin_rule").value == "least_motion"
     app.button(key="robot.spin_range").click().run()
     over = deviation_over_spin(setup, sampled(setup.toolpath, 5e-3))
-    low, high = (f"{1e3 * value:.3f} mm" for value in over.range)
-    assert f"between {low} and {high}" in words(app)
+    low, high = (f"{1e3 * value:.3f}" for value in over.range)
+    assert f"between {low} and {high} mm" in words(app)
     app.selectbox(key="robot.spin_rule").set_value("given").run()
     app.number_input(key="robot.spin:deg").set_value(30.0).run()
     assert store(app).project.setup.spin == pytest.approx(np.pi / 6)

@@ -8,17 +8,12 @@ import streamlit as st
 
 from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
 AUTO_SAMPLES = 30_000
 ASKED = "improve.asked"
-
-
-def digits(unit: str) -> int:
-    """Decimals of a deviation."""
-    return 4 if unit == "in" else 3
 
 
 def found(setup: SimulationSetup) -> Stiffening | None:
@@ -33,14 +28,8 @@ def found(setup: SimulationSetup) -> Stiffening | None:
 
 def ask(setup: SimulationSetup) -> None:
     """The button that ranks the joints of a long path."""
-    st.button(
-        "Rank the joints",
-        icon=":material/play_arrow:",
-        type="primary",
-        key="improve.rank",
-        on_click=session.keep,
-        args=(ASKED, setup.digest()),
-    )
+    rank = (session.keep, ASKED, setup.digest())
+    inputs.button("Rank the joints", "improve.rank", "play_arrow", *rank, type="primary")
     pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
 
 
@@ -49,7 +38,7 @@ def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
     best = int(ranked.ranking[0])
     if not ranked.saved[best] > 0:
         return "No joint twice as stiff would make the largest deviation of this cut smaller."
-    before, after = (format_si(float(v), unit, digits(unit)) for v in (ranked.before, ranked.after[best]))
+    before, after = (format_si(float(v), unit) for v in (ranked.before, ranked.after[best]))
     return f"Joint {joints[best]} twice as stiff would bring the largest deviation from {before} to {after}."
 
 
@@ -59,12 +48,12 @@ def tiles(ranked: Stiffening, joints: tuple[int, ...], setup: SimulationSetup, u
     after, saved = float(ranked.after[best]), float(ranked.saved[best])
     fits = after <= setup.tolerance
     return [
-        pieces.Tile("Max deviation", format_si(ranked.before, unit, digits(unit)), "as the robot is", kind="computed"),
-        pieces.Tile("Stiffen first", f"joint {joints[best]}", f"saves {format_si(saved, unit, digits(unit))}"),
-        pieces.Tile("Then", format_si(after, unit, digits(unit)), "with that joint twice as stiff", kind="computed"),
+        pieces.Tile("Max deviation", format_si(ranked.before, unit), "as the robot is", kind="computed"),
+        pieces.Tile("Stiffen first", f"joint {joints[best]}", f"saves {format_si(saved, unit)}"),
+        pieces.Tile("Then", format_si(after, unit), "with that joint twice as stiff", kind="computed"),
         pieces.Tile(
             "Tolerance",
-            format_si(setup.tolerance, unit, digits(unit)),
+            format_si(setup.tolerance, unit),
             "met with that joint" if fits else "not met by any one joint",
             tone="ok" if fits else "out",
         ),
@@ -103,17 +92,11 @@ def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
     """The joints from best to least, each with its numbers and its button."""
     for i in map(int, ranked.ranking):
         words, button = st.columns([2.2, 1], vertical_alignment="center")
-        after, saved = (format_si(float(v), unit, digits(unit)) for v in (ranked.after[i], ranked.saved[i]))
+        after, saved = (format_si(float(v), unit) for v in (ranked.after[i], ranked.saved[i]))
         words.markdown(f"**Joint {joints[i]}**: {after} left, {saved} saved")
-        button.button(
-            "Use it",
-            key=f"improve.use.{joints[i]}",
-            icon=":material/check:",
-            width="stretch",
-            on_click=_use,
-            args=(i,),
-            help="Halves this joint's compliance in the project; undo leads back.",
-        )
+        with button:
+            hint = "Halves this joint's compliance in the project; undo leads back."
+            inputs.button("Use it", f"improve.use.{joints[i]}", "check", _use, i, width="stretch", help=hint)
 
 
 def _use(joint: int) -> None:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray, digest
+from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
 from robomill.robot.model import Robot
-from robomill.ui import cached, fields, inputs, pieces, session, shell
+from robomill.ui import fields, inputs, pieces, session
+from robomill.ui.arm import arm
 from robomill.ui.point import FORCE, InHand, default_point, in_hand
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
-from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
+from robomill.viz.arm import ArmScene, displacement_scale
 
 KEPT = "learn.lesson"
 ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
@@ -84,14 +86,9 @@ def question(found: InHand) -> None:
         with st.container(key="learn-answers"):
             look = inputs.Look(stacked=True, hidden=True)
             inputs.choice("Your answer", "learn.answer", ANSWERS, now.answer, lambda a: go(answer=a), look)
-        st.button(
-            "Hide it again" if now.revealed else "Show where it goes",
-            key="learn.reveal",
-            width="stretch",
-            type="secondary" if now.revealed else "primary",
-            icon=":material/visibility:",
-            on_click=lambda: go(revealed=not progress().revealed),
-        )
+        words, tone = ("Hide it again", "secondary") if now.revealed else ("Show where it goes", "primary")
+        turn = partial(go, revealed=not now.revealed)
+        inputs.button(words, "learn.reveal", "visibility", turn, width="stretch", type=tone)
         _answer(found.pose.C, now)
     with left, st.container(border=True):
         _push(found.pose, now.revealed)
@@ -129,10 +126,9 @@ def went(delta: FloatArray) -> str:
 
 
 def _moves(delta: FloatArray, unit: str) -> str:
-    digits = 3 if unit == "mm" else 4
     words = ("along X", "along Y", "down" if delta[2] < 0 else "up")
     told = [
-        f"<b>{format_si(abs(float(delta[i])), unit, digits)}</b> {words[i]}"
+        f"<b>{format_si(abs(float(delta[i])), unit)}</b> {words[i]}"
         for i in (1, 0, 2)
         if abs(delta[i]) > 0.02 * np.linalg.norm(delta)
     ]
@@ -154,27 +150,15 @@ def compliance_table(C: FloatArray) -> str:
 
 def _push(pose: PoseReport, revealed: bool) -> None:
     delta = pose.delta([0.0, FORCE, 0.0])
-    unit, dark = session.project().view.length, shell.dark()
+    unit = session.project().view.length
     scene = ArmScene(
         frames=pose.frames,
         force=np.array([0.0, FORCE, 0.0]),
         force_label="100 N",
         displacement=delta if revealed else None,
-        displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
-    )
-    key = (pose.robot.digest(), digest(pose.theta), revealed, unit, dark)
-    more = {"dark": dark, "height": 520, "revision": "learn-push", "zoom": 1.1}
-    fig = cached.kept_figure(
-        "learn-push",
-        key,
-        lambda: arm_figure(scene, **more).update_layout(scene_camera=SIDE),  # type: ignore[arg-type]
+        displacement_label=format_si(float(np.linalg.norm(delta)), unit),
     )
     drawn = format_times(displacement_scale(delta, pose.frames))
-    pieces.figure(
-        fig,
-        "learn-push",
-        alt="The arm seen from the side with a force of 100 N along Y on the tool.",
-        caption=f"Seen from the side. Displacement shown {drawn}."
-        if revealed
-        else "Seen from the side: 100 N along Y.",
-    )
+    caption = f"Seen from the side. Displacement shown {drawn}." if revealed else "Seen from the side: 100 N along Y."
+    alt = "The arm seen from the side with a force of 100 N along Y on the tool."
+    arm(scene, "learn-push", (caption, alt), 520, 1.1, (None, lambda fig, _: fig.update_layout(scene_camera=SIDE)))

@@ -104,25 +104,24 @@ def reproduced() -> None:
     st.subheader("The paper, reproduced")
     found = rows()
     pieces.note(html.escape(summary(found)))
-    head = "".join(
-        f"<th>{name}</th>" for name in ("Of the paper", "What it gives", "What robomill finds", "", "Reason")
-    )
-    body = "".join(
-        f"<tr><td><b>{html.escape(r.statement.where)}</b></td><td>{_given(r.statement)}</td>"
-        f"<td>{html.escape(r.found)}</td>"
-        f"<td>{pieces.badge(TONE[r.statement.status], SHORT[r.statement.status])}</td>"
-        f"<td>{html.escape(r.reason)}</td></tr>"
+    shown = [
+        (
+            f"<b>{html.escape(r.statement.where)}</b>",
+            _given(r.statement),
+            pieces.subscripts(r.found),
+            pieces.badge(TONE[r.statement.status], SHORT[r.statement.status]),
+            pieces.subscripts(r.reason),
+        )
         for r in found
-    )
-    table = f'<table class="rm-facts" style="min-width:56rem"><tr>{head}</tr>{body}</table>'
-    st.html(f'<div style="overflow-x:auto">{table}</div>')
+    ]
+    pieces.table(shown, "wwwww", ("Of the paper", "What it gives", "What robomill finds", "", "Reason"))
     pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
 
 
 def _given(statement: Statement) -> str:
     """What the paper gives, and its own words."""
     quoted = " ".join(f"“{html.escape(q)}”" for q in statement.quotations)
-    return f"{html.escape(statement.gives)}<details><summary>in its words</summary>{quoted}</details>"
+    return f"{pieces.subscripts(statement.gives)}<details><summary>in its words</summary>{quoted}</details>"
 
 
 def _csv(found: list[Row]) -> str:

@@ -67,15 +67,13 @@ def panels(
         raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
     cross = view.component[0] != view.component[1]
     every = [v for v in values.values() if np.isfinite(v).any()]
-    top = symmetric_limit(every)
     low = min((float(np.nanmin(v)) for v in every), default=0.0)
     label = f"C<sub>{view.component}</sub>, {unit_label(UM)}"
     first = values[keys[0]]
     differences = {key: values[key] - first for key in keys[1:]}
-    most = symmetric_limit(list(differences.values()))
     scales = {
-        "main": Scale(label, -top, top, "diverging") if cross else Scale(label, low, top),
-        "difference": Scale(f"difference, {unit_label(UM)}", -most, most, "diverging"),
+        "main": Scale.signed(label, every) if cross else Scale(label, low, symmetric_limit(every)),
+        "difference": Scale.signed(f"difference, {unit_label(UM)}", list(differences.values())),
     }
     rows: list[list[Map | None]] = [
         [Map(f"<b>{names[key]}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]

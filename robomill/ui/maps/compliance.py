@@ -14,7 +14,6 @@ from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, de
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, shell
-from robomill.ui.box import NumberBox
 from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
 from robomill.ui.point import InHand
@@ -76,32 +75,10 @@ def _um(value: float) -> str:
 def controls(robot: Robot, view: MapView, found: InHand, unit: str) -> None:
     """Region, tilt, plane; component; point; scale."""
     plane.controls(robot, view, unit)
-    inputs.choice(
-        "Component for comparing and ranking",
-        "maps.component",
-        WORDS,
-        view.component,
-        lambda c: session.see(component=c),
-        inputs.LISTED,
-    )
+    inputs.seen("Component for comparing and ranking", "maps.component", WORDS, inputs.LISTED)
     st.markdown("**The point in hand**")
-    for i, column in enumerate(st.columns(3)):
-        with column:
-            box = NumberBox("XYZ"[i], unit, 50.0 if unit == "mm" else 1.0, plane.digits(unit))
-            inputs.value(f"maps.point.{i}", box, found.point[i], partial(_put, found, i))
-    inputs.choice(
-        "Colours of the 3 × 3 maps",
-        "maps.common",
-        {True: "One scale", False: "Direct and cross apart"},
-        view.common,
-        lambda c: session.see(common=c),
-    )
-
-
-def _put(found: InHand, i: int, value: float) -> None:
-    point = list(found.point)
-    point[i] = value
-    session.see(point=tuple(point))
+    plane.place_boxes("point", "XYZ", found.point, unit)
+    inputs.seen("Colours of the 3 × 3 maps", "maps.common", {True: "One scale", False: "Direct and cross apart"})
 
 
 def what_if(robot: Robot, view: MapView) -> None:
@@ -110,15 +87,8 @@ def what_if(robot: Robot, view: MapView) -> None:
     changed = bool((scale != 1.0).any())
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         st.markdown("**What if a joint were stiffer?**")
-        st.button(
-            "All × 1",
-            on_click=session.see,
-            kwargs={"factors": None},
-            type="tertiary",
-            disabled=not changed,
-            key="maps.reset",
-            icon=":material/restart_alt:",
-        )
+        reset = partial(session.see, factors=None)
+        inputs.button("All × 1", "maps.reset", "restart_alt", reset, type="tertiary", disabled=not changed)
     for i, number in enumerate(robot.joint_numbers):
         name, slider = st.columns([0.52, 1], vertical_alignment="center")
         name.markdown(f"Joint {number} **× {scale[i]:.2f}**")
@@ -131,16 +101,8 @@ def what_if(robot: Robot, view: MapView) -> None:
                 partial(_factor, robot, i),
                 inputs.HIDDEN,
             )
-    st.button(
-        "Put these joints into the robot",
-        on_click=_adopt,
-        args=(robot,),
-        disabled=not changed,
-        key="maps.adopt",
-        icon=":material/check:",
-        width="stretch",
-        help="The milling result follows; undo leads back.",
-    )
+    how = {"disabled": not changed, "width": "stretch", "help": "The milling result follows; undo leads back."}
+    inputs.button("Put these joints into the robot", "maps.adopt", "check", _adopt, robot, **how)
 
 
 def _factor(robot: Robot, i: int, value: float) -> None:
@@ -163,22 +125,22 @@ def where_it_pays(
     groups: list[tuple[str, FloatArray, str]] = []
     if found.pose.reached:
         at_point = compliance_sensitivity(found.pose.C_joint, view.component, joint_numbers=joints)
-        groups.append((f"|C<sub>{view.component}</sub>| at the point", from_si(at_point.gain, UM), unit_label(UM)))
+        groups.append((f"|C<sub>{view.component}</sub>|<br>at the point", from_si(at_point.gain, UM), unit_label(UM)))
     along = _along_path(result, view, robot)
     micro = "um"
     if along is not None:
-        groups.append(("deviation along the path", from_si(_mean(along), micro), f"{unit_label(micro)}, mean"))
+        groups.append(("deviation<br>on the path", from_si(_mean(along), micro), f"{unit_label(micro)}, mean"))
     if now.reached.any():
         over = compliance_sensitivity(now.C_joint(), view.component, joint_numbers=joints)
         groups.append(
-            (f"|C<sub>{view.component}</sub>| over the region", from_si(_mean(over), UM), f"{unit_label(UM)}, mean")
+            (f"|C<sub>{view.component}</sub>|<br>in region", from_si(_mean(over), UM), f"{unit_label(UM)}, mean")
         )
     if not groups:
         pieces.note("Nothing is reached here, so nothing can be ranked.")
         return
     with st.container(border=True):
         pieces.figure(
-            gain_bars(groups, joints, dark=shell.dark(), height=88 + 34 * len(joints)),
+            gain_bars(groups, joints, dark=shell.dark(), height=104 + 34 * len(joints)),
             "gains",
             table=lambda: {"joint": list(map(str, joints)), **{f"{_plain(t)}, {u}": g for t, g, u in groups}},
             alt="How much smaller compliance and deviation become with each joint 10 % stiffer.",
@@ -188,7 +150,7 @@ def where_it_pays(
 
 
 def _plain(title: str) -> str:
-    return title.replace("<sub>", "_").replace("</sub>", "")
+    return title.replace("<sub>", "_").replace("</sub>", "").replace("<br>", " ")
 
 
 def _mean(gain: Sensitivity) -> FloatArray:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import streamlit as st
 
@@ -12,7 +14,7 @@ from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.ui.project import MapView
+from robomill.ui.project import MapView, Point
 from robomill.units import UNITS, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
 from robomill.workspace.fields import ComplianceField
@@ -57,9 +59,12 @@ class Region:
         return fields.overview(self.robot, self.view, self.box)
 
 
-def digits(unit: str) -> int:
-    """Decimals of a box for a place or an angle."""
-    return min(UNITS[unit].digits, 2)
+def picture(name: str, pictures: Mapping[str, str], show: Callable[[Region], None]) -> None:
+    """The choice ``name`` between the ``pictures`` of a page, and what ``show`` makes of the region in force."""
+    project = session.project()
+    inputs.seen("Picture", f"maps.{name}", pictures, inputs.HIDDEN)
+    robot, view = project.setup.robot, session.maps()
+    pieces.attempt(lambda: show(Region(robot, view, fields.region(robot, view), project.view.length)))
 
 
 def controls(robot: Robot, view: MapView, unit: str) -> None:
@@ -78,8 +83,12 @@ def controls(robot: Robot, view: MapView, unit: str) -> None:
     if len(known) == 1:
         pieces.note(f"This arm moves in one plane: only {next(iter(known.values()))} can be shown.")
     else:
-        normal = view.normal if view.normal in known else "z"
-        inputs.choice("Plane", "maps.normal", known, normal, lambda n: session.see(normal=n, at=None))
+        inputs.seen("Plane", "maps.normal", known, at=None)
+    if robot.n > 6:
+        pieces.note(
+            f"This arm has {robot.n} axes and holds a place in many postures: a map shows one of them. How far the "
+            "compliance ranges over the others is said at the point in hand of the page Compliance."
+        )
 
 
 def tilt_note(robot: Robot) -> str:
@@ -132,21 +141,24 @@ def _take_region(kind: str, robot: Robot, view: MapView) -> None:
 
 def _corners(view: MapView, unit: str) -> None:
     for name, side in (("from", "lower"), ("to", "upper")):
-        for i, column in enumerate(st.columns(3)):
-            with column:
-                box = _box(f"{'XYZ'[i]} {name}", unit, 50.0)
-                inputs.value(f"maps.{side}.{i}", box, getattr(view, side)[i], partial(_put_corner, side, i))
+        place_boxes(side, [f"{axis} {name}" for axis in "XYZ"], getattr(view, side), unit, at=None)
     inputs.value("maps.step", _box("Step (0 lets robomill choose)", unit, 5.0), view.step or 0.0, _put_step)
 
 
 def _box(label: str, unit: str, step: float) -> NumberBox:
-    return NumberBox(label, unit, step, digits(unit))
+    return NumberBox(label, unit, step, min(UNITS[unit].digits, 2))
 
 
-def _put_corner(side: str, i: int, value_SI: float) -> None:
-    current = list(getattr(session.maps(), side))
-    current[i] = value_SI
-    session.see(**{side: tuple(current)}, at=None)
+def place_boxes(name: str, labels: Sequence[str], current: Point, unit: str, **more: Any) -> None:
+    """Three boxes for the place ``name`` of the map view, m; fields ``more`` change with it."""
+
+    def put(i: int, value_SI: float) -> None:
+        session.see(**{name: (*current[:i], value_SI, *current[i + 1 :]), **more})
+
+    for i, (label, column) in enumerate(zip(labels, st.columns(3), strict=True)):
+        with column:
+            box = _box(label, unit, 50.0 if unit == "mm" else 1.0)
+            inputs.value(f"maps.{name}.{i}", box, current[i], partial(put, i))
 
 
 def _put_step(step: float) -> None:

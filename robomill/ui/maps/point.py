@@ -8,14 +8,24 @@ import numpy as np
 import plotly.graph_objects as go
 import streamlit as st
 
-from robomill.arrays import FloatArray, digest
+from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
-from robomill.ui import cached, pieces, shell
+from robomill.ui import fields, pieces, shell
+from robomill.ui.arm import arm
 from robomill.ui.point import FORCE, InHand
 from robomill.ui.project import Point
-from robomill.units import format_number, format_percent, format_si, format_times, format_value, from_si, unit_label
+from robomill.units import (
+    format_many,
+    format_number,
+    format_percent,
+    format_si,
+    format_times,
+    format_value,
+    from_si,
+    unit_label,
+)
 from robomill.viz import solids
-from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
+from robomill.viz.arm import ArmScene, displacement_scale
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
 from robomill.workspace.quantities import COMPONENTS
@@ -36,9 +46,8 @@ def headline(found: InHand, unit: str) -> str:
     if not pose.reached:
         return f"The tool does not get to {where}: {found.reason}."
     delta = pose.delta([0.0, FORCE, 0.0])
-    digits = 3 if unit == "mm" else 4
     ways = [
-        f"{format_si(abs(float(v)), unit, digits)} {w}"
+        f"{format_si(abs(float(v)), unit)} {w}"
         for v, w in zip(delta, ("in X", "in Y", "down" if delta[2] < 0 else "up"), strict=True)
         if abs(v) > 0.02 * np.linalg.norm(delta)
     ]
@@ -52,6 +61,7 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
     if not found.pose.reached:
         pieces.note(f"Not reached: {html.escape(found.reason)}. Click a coloured cell of a map.")
         return
+    _posture_note(found.pose, component)
     left, right = pieces.split([1, 1.05], "point")
     with left, st.container(border=True, height="stretch"):
         _arm(found.pose, component, unit)
@@ -66,37 +76,40 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
         _six(found.pose)
 
 
+def _posture_note(pose: PoseReport, component: str) -> None:
+    """Over what the component ranges where the arm can hold the tool there in many postures."""
+    C = fields.postures(pose.robot, pose.T_MT)
+    if len(C):
+        values = C[:, "xyz".index(component[0]), "xyz".index(component[1])]
+        pieces.note(
+            f"What stands here holds for one posture. Over {len(C)} postures that hold the tool here, C<sub>{component}"
+            f"</sub> ranges from {format_many((values.min(), values.max()), 'um/N', between=' to ')}."
+        )
+
+
 def _arm(pose: PoseReport, component: str, unit: str) -> None:
     F = np.zeros(3)
     F["xyz".index(component[1])] = FORCE
     delta = pose.delta(F)
-    frames = pose.frames
     scene = ArmScene(
-        frames=frames,
+        frames=pose.frames,
         force=F,
         displacement=delta,
         force_label=format_si(FORCE, "N", 0),
-        displacement_label=format_si(float(np.linalg.norm(delta)), unit, 3),
+        displacement_label=format_si(float(np.linalg.norm(delta)), unit),
     )
-    dark = shell.dark()
+    size = solids.yardstick(pose.frames)
 
-    def draw() -> go.Figure:
-        fig = arm_figure(scene, dark=dark, height=430, revision="point-arm", zoom=0.95)
-        size = solids.yardstick(frames)
+    def finish(fig: go.Figure, dark: bool) -> None:
         times = ellipsoid_scale(pose.C, 0.16 * size)
-        return fig.add_traces(
-            ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.0065 * size, away=delta)
-        )
+        fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.0065 * size, away=delta))
 
-    fig = cached.kept_figure("point-arm", (pose.robot.digest(), digest(pose.theta), component, unit, dark), draw)
-    drawn = format_times(displacement_scale(delta, frames))
-    pieces.figure(
-        fig,
-        "point-arm",
-        alt="The arm at this pose with the compliance ellipsoid at the tool tip.",
-        caption=f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} "
-        f"push and displacement, shown {drawn}.",
+    caption = (
+        f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} push and "
+        f"displacement, shown {format_times(displacement_scale(delta, pose.frames))}."
     )
+    alt = "The arm at this pose with the compliance ellipsoid at the tip."
+    arm(scene, "point-arm", (caption, alt), 430, 0.95, (pose.C, finish))
 
 
 def _shares(pose: PoseReport, old: PoseReport) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import RobomillError
 from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.maps import compare, lines, plane
 from robomill.ui.maps.plane import Region
@@ -37,25 +36,21 @@ UM = "um/N"
 @st.fragment
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone, a click opens the point's report."""
-    project = session.project()
-    robot, unit = project.setup.robot, project.view.length
-    view = session.maps()
-    inputs.choice("Picture", "maps.sheet", SHEETS, view.sheet, lambda s: session.see(sheet=s), inputs.HIDDEN)
-    view = session.maps()
-    try:
-        region = Region(robot, view, fields.region(robot, view), unit)
-        if view.sheet == "lines":
-            lines.show(region)
-            return
-        plane.slider(region, *region.at())
-        normal, at = region.at()
-        known = region.field(region.grid(normal, at))
-        if view.sheet != "compare" and not known.reached.any():
-            st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
-            return
-        _SHEETS[view.sheet](Cut(region, normal, at, known))
-    except RobomillError as exc:
-        pieces.error(exc)
+    plane.picture("sheet", SHEETS, _show)
+
+
+def _show(region: Region) -> None:
+    sheet = region.view.sheet
+    if sheet == "lines":
+        lines.show(region)
+        return
+    plane.slider(region, *region.at())
+    normal, at = region.at()
+    known = region.field(region.grid(normal, at))
+    if sheet != "compare" and not known.reached.any():
+        st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
+        return
+    _SHEETS[sheet](Cut(region, normal, at, known))
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,16 +144,13 @@ def _nine(cut: Cut) -> None:
     view, known, now = cut.region.view, cut.known, cut.stiffer()
     whole = from_si(cut.region.overview().total, UM)
     direct, cross = whole[..., :3], whole[..., 3:]
-    label = f"C, {unit_label(UM)}"
     if view.common:
-        top = symmetric_limit([whole])
-        scales = {"main": Scale(label, -top, top, "diverging"), "cross": Scale(label, -top, top, "diverging")}
+        scales = dict.fromkeys(("main", "cross"), Scale.signed(f"C, {unit_label(UM)}", [whole]))
     else:
-        high, low = symmetric_limit([direct]), float(np.nanmin(direct)) if np.isfinite(direct).any() else 0.0
-        side = symmetric_limit([cross])
+        low = float(np.nanmin(direct)) if np.isfinite(direct).any() else 0.0
         scales = {
-            "main": Scale(f"direct, {unit_label(UM)}", low, high),
-            "cross": Scale(f"cross, {unit_label(UM)}", -side, side, "diverging"),
+            "main": Scale(f"direct, {unit_label(UM)}", low, symmetric_limit([direct])),
+            "cross": Scale.signed(f"cross, {unit_label(UM)}", [cross]),
         }
     rows: list[list[Map | None]] = []
     for i, names in enumerate(MATRIX):
@@ -202,15 +194,14 @@ def _moved(change: FloatArray) -> str:
 
 
 def _shares(cut: Cut) -> None:
-    kind, robot = cut.region.view.shares, cut.region.robot
-    inputs.choice("Components", "maps.shares", SHARES, kind, lambda s: session.see(shares=s), inputs.HIDDEN)
-    kind = session.maps().shares
+    robot = cut.region.robot
+    kind = inputs.seen("Components", "maps.shares", SHARES, inputs.HIDDEN)
     now = cut.stiffer()
     index = [COMPONENTS.index(c) for c in ROWS[kind]]
     whole = from_si(cut.region.overview().shares[..., index], UM)
-    top = symmetric_limit([whole])
-    label = f"share, {unit_label(UM)}"
-    scale = Scale(label, 0.0, top) if kind == "direct" else Scale(label, -top, top, "diverging")
+    scale = Scale.signed(f"share, {unit_label(UM)}", [whole])
+    if kind == "direct":
+        scale = Scale(scale.title, 0.0, scale.high)
     rows: list[list[Map | None]] = []
     for c, k in zip(ROWS[kind], index, strict=True):
         values = from_si(now.shares[..., k], UM)
@@ -271,12 +262,10 @@ def _dominant(cut: Cut) -> None:
 
 def _one(cut: Cut) -> None:
     """Any quantity that rests on the joints' compliance, found by asking for them."""
-    robot, view = cut.region.robot, cut.region.view
+    robot = cut.region.robot
     known = map_quantities(robot, "compliance")
     titles = {name: what.title for name, what in known.items()}
-    chosen = view.one if view.one in known else next(iter(known))
-    inputs.choice("Quantity", "maps.one", titles, chosen, lambda name: session.see(one=name), inputs.LISTED)
-    chosen = session.maps().one if session.maps().one in known else chosen
+    chosen = inputs.seen("Quantity", "maps.one", titles, inputs.LISTED)
     what, now = known[chosen], cut.stiffer()
     whole = from_si(cut.region.overview().values(chosen), what.unit)
     title = f"{what.title}, {plane.title(cut.normal, cut.at, cut.region.unit)}"

@@ -12,7 +12,6 @@ import streamlit as st
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
-from robomill.errors import RobomillError
 from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session, shell
@@ -114,11 +113,10 @@ def _why(known: ComplianceField) -> str:
 def controls(robot: Robot, view: MapView, unit: str) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
     names = {name: what.title for name, what in map_quantities(robot, "geometry").items()}
-    inputs.choice("Quantity", "maps.quantity", names, view.quantity, lambda q: session.see(quantity=q), inputs.LISTED)
-    what = map_quantity(robot, view.quantity)
+    what = map_quantity(robot, inputs.seen("Quantity", "maps.quantity", names, inputs.LISTED))
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
     plane.controls(robot, view, unit)
-    pieces.note(plane.tilt_note(robot))
+    pieces.note(pieces.subscripts(plane.tilt_note(robot)))
 
 
 def formula_html(formula: str) -> str:
@@ -145,29 +143,16 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
     pieces.facts(rows)
     if largest is not None and view.region != "largest":
-        st.button(
-            "Show the largest box",
-            on_click=session.see,
-            kwargs={"region": "largest", "at": None, "point": None},
-            icon=":material/crop_free:",
-            key="maps.largest",
-        )
+        largest_box = partial(session.see, region="largest", at=None, point=None)
+        inputs.button("Show the largest box", "maps.largest", "crop_free", largest_box)
     pieces.note("Sides along the axes of {M}, true to about one cell; reached in one posture, without a singularity.")
 
 
 @st.fragment
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone."""
-    project = session.project()
-    robot, unit = project.setup.robot, project.view.length
-    view = session.maps()
-    inputs.choice("Picture", "maps.picture", PICTURES, view.picture, lambda p: session.see(picture=p), inputs.HIDDEN)
-    view = session.maps()
-    try:
-        region = Region(robot, view, fields.region(robot, view), unit)
-        {"plane": _plane, "pair": _pair, "solid": _solid}[view.picture](region)
-    except RobomillError as exc:
-        pieces.error(exc)
+    shown = {"plane": _plane, "pair": _pair, "solid": _solid}
+    plane.picture("picture", PICTURES, lambda region: shown[region.view.picture](region))
 
 
 def _plane(region: Region) -> None:

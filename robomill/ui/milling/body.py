@@ -12,6 +12,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui import evidence as evidence_panel
+from robomill.ui.arm import arm_at
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view
 from robomill.ui.milling import force as force_panel
@@ -23,7 +24,7 @@ from robomill.ui.milling import station as station_views
 from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
 from robomill.ui.verdict import NOT_COUNTED
-from robomill.units import format_si
+from robomill.units import format_many, format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
 QUESTION = "milling.question"
@@ -40,24 +41,30 @@ def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread
 
 
 def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:
-    """The page's tiles with the band of the alloy beside the verdict."""
+    """The page's tiles with the band of the alloy beside the verdict and the influence of the spin at the tip."""
     unit = session.project().view.length
-    band = linked.band_words(spread_of(result)[0], result, unit)
-    return [*made[:-1], dataclasses.replace(made[-1], note=f"{made[-1].note} · {band}")] if band else made
+    *first, tip, verdict = made
+    if words := _spin_words(result, unit):
+        tip = dataclasses.replace(tip, ranges=[*tip.ranges, words])
+    if band := linked.band_words(spread_of(result)[0], result, unit):
+        verdict = dataclasses.replace(verdict, note=f"{verdict.note} · {band}")
+    return [*first, tip, verdict]
+
+
+def _spin_words(result: SimulationResult, unit: str) -> str:
+    """How much the free spin about the tool matters; "" for an arm that has none."""
+    if result.setup.robot.n < 6 or result.worst < 0:
+        return ""
+    ends = pieces.attempt(cached.over_spin, result.setup)
+    if ends is None or not np.isfinite(ends.range).all():
+        return ""
+    return f"{format_many(ends.range, unit, between=' to ', with_unit=False)}: spin about the tool"
 
 
 def verdict_link(result: SimulationResult) -> None:
     """The verdict as a sentence that leads to its place."""
-    st.button(
-        result.verdict.sentence,
-        key="milling.verdict",
-        icon=":material/my_location:",
-        type="tertiary",
-        on_click=_land,
-        args=(result,),
-        disabled=result.worst < 0,
-        help="Go there: code line, arm, force and section",
-    )
+    how = {"type": "tertiary", "disabled": result.worst < 0, "help": "Go there: code line, arm, force and section"}
+    inputs.button(result.verdict.sentence, "milling.verdict", "my_location", _land, result, **how)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
 
 
@@ -125,7 +132,7 @@ def workbench(digest: str, dark: bool) -> None:
         if question == "force":
             _engaged(result, i, spread, peak, dark)
         elif question == "tip":
-            _code_and_arm(result, i, dark)
+            _code_and_arm(result, i)
         else:
             with st.container(border=True):
                 metrology_panel.section_facts(station_views.section(result, i, dark))
@@ -139,13 +146,14 @@ def workbench(digest: str, dark: bool) -> None:
         _part(result, i, spread, dark)
 
 
-def _code_and_arm(result: SimulationResult, i: int, dark: bool) -> None:
+def _code_and_arm(result: SimulationResult, i: int) -> None:
     code, arm = pieces.split([1, 1.15], "code-arm")
     with code, st.container(border=True, height="stretch"):
         st.markdown("**Program**")
         station_views.code(result, i)
     with arm, st.container(border=True, height="stretch"):
-        station_views.arm(result, i, dark)
+        if i >= 0:
+            arm_at(result, i, "linked-arm", 330, zoom=0.86)
 
 
 def _engaged(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import streamlit as st
 
@@ -70,8 +72,8 @@ def _switch_stock(kind: str) -> None:
 
 
 def _stl(stock: Stock | None) -> None:
-    look = inputs.Look(hint="STL carries no unit.")
-    inputs.choice("Unit of the file", UNIT, UNITS_OF_STL, session.kept(UNIT, "mm"), _take_unit, look)
+    look, take = inputs.Look(hint="STL carries no unit."), partial(inputs.reread, FILE, _take, UNIT)
+    inputs.choice("Unit of the file", UNIT, UNITS_OF_STL, session.kept(UNIT, "mm"), take, look)
     inputs.upload("Stock as a closed solid (.stl), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
     if stock is not None and stock.triangles is not None:
         for finding in session.kept(ODD, ()):
@@ -79,12 +81,6 @@ def _stl(stock: Stock | None) -> None:
         pieces.note(f"{pieces.badge('user')} solid of {format_count(len(stock.triangles), 'triangle')}, {_size(stock)}")
     elif FILE not in session.store().refused:
         pieces.note("Until a file is given, the stock stays as it was.")
-
-
-def _take_unit(unit: str) -> None:
-    session.keep(UNIT, unit)
-    if given := session.kept(FILE):
-        inputs.submit(FILE, None, lambda: _take(*given))
 
 
 def _take(data: bytes, name: str) -> None:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import streamlit as st
 
-from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import job as jobs
+from robomill.ui.job import Job
 from robomill.units import format_times
 from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
 from robomill.viz.picture import Camera
@@ -20,13 +20,12 @@ from robomill.viz.worker import RenderWorker
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
 SIZE = (960, 544)
-EVERY_S = 0.5
 KINDS = {"gif": "GIF", "mp4": "MP4"}
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Film:
-    """One film being made in a thread of its own, with a drawing process of its own; the thread touches no page."""
+    """What a film shows, how many frames it has and how it is kept."""
 
     result: SimulationResult
     kind: Kind
@@ -34,65 +33,27 @@ class Film:
     times: float
     camera: Camera
     dark: bool
-    done_frames: int = 0
-    data: bytes = b""
-    error: RobomillError | None = None
-    bug: BaseException | None = None
-    stop: threading.Event = field(default_factory=threading.Event)
-    done: threading.Event = field(default_factory=threading.Event)
 
-    @property
-    def digest(self) -> str:
-        """What the film shows."""
-        return self.result.setup.digest()
-
-    def start(self) -> None:
-        """Begin."""
-        threading.Thread(target=self._run, daemon=True, name="film").start()
-
-    def _run(self) -> None:
+    def make(self, job: Job) -> bytes:
+        """The film's bytes, by a drawing process of its own; none where it is given up."""
         worker = RenderWorker()
         try:
-            self._make(worker)
-        except RobomillError as exc:
-            self.error = exc
-        except Exception as exc:  # shown by the page that asked: a thread has nobody to raise to
-            self.bug = exc
+            shown = cached.pictured(self.result.setup, self.times)
+            more: dict[str, Any] = {
+                "camera": self.camera,
+                "dark": self.dark,
+                "size": SIZE,
+                "headroom": headroom(self.result),
+            }
+            worker.render(FilmStart("cut", surface_picture(self.result, shown, **more)))
+            for done, index in enumerate(film_samples(self.result, self.frames), start=1):
+                if job.stop.is_set():
+                    return b""
+                worker.render(film_frame(self.result, shown, "cut", int(index)))
+                job.reach(done / self.frames)
+            return worker.render(FilmEnd("cut", self.kind, max(self.frames / 6.0, 4.0)))
         finally:
             worker.close()
-            self.done.set()
-
-    def _make(self, worker: RenderWorker) -> None:
-        shown = cached.pictured(self.result.setup, self.times)
-        picture = surface_picture(
-            self.result,
-            shown,
-            camera=self.camera,
-            dark=self.dark,
-            size=SIZE,
-            headroom=headroom(self.result),
-        )
-        worker.render(FilmStart("cut", picture))
-        for index in film_samples(self.result, self.frames):
-            if self.stop.is_set():
-                return
-            worker.render(film_frame(self.result, shown, "cut", int(index)))
-            self.done_frames += 1
-        self.data = worker.render(FilmEnd("cut", self.kind, max(self.frames / 6.0, 4.0)))
-
-
-def current() -> Film | None:
-    """The film of this session, being made or done."""
-    found = session.kept(KEY)
-    return found if isinstance(found, Film) else None
-
-
-def give_up() -> None:
-    """Stop and forget the film."""
-    film = current()
-    if film is not None:
-        film.stop.set()
-        session.drop(KEY)
 
 
 def panel(result: SimulationResult, dark: bool) -> None:
@@ -105,59 +66,42 @@ def panel(result: SimulationResult, dark: bool) -> None:
         count = int(session.kept(COUNT, 36))
         inputs.slider("Pictures", COUNT, inputs.Span(*FRAMES, 4, "%d"), count, partial(session.keep, COUNT))
     camera: Any = view.camera
-    make.button(
-        "Make the film",
-        icon=":material/movie:",
-        key="milling.film.make",
-        width="stretch",
-        on_click=lambda: _begin(Film(result, chosen, count, view.exaggeration, camera, dark)),
-    )
+    with make:
+        film = Film(result, chosen, count, view.exaggeration, camera, dark)
+        inputs.button("Make the film", "milling.film.make", "movie", _begin, film, width="stretch")
     _progress()
 
 
 def _begin(film: Film) -> None:
-    give_up()
-    session.keep(KEY, film)
-    film.start()
+    jobs.begin(KEY, Job(film.make, film))
 
 
 def _progress() -> None:
-    film = current()
-    if film is None:
-        pieces.note("The cut from its first to its last move, in the camera and the exaggeration of the picture above.")
-    elif film.done.is_set():
-        _finished(film)
+    done = jobs.finished(KEY)
+    if done is not None:
+        _finished(done)
+    elif session.kept(KEY) is not None:
+        jobs.waiting(KEY, _words)
     else:
-        _waiting()
+        pieces.note("The cut from its first to its last move, in the camera and the exaggeration of the picture above.")
 
 
-@st.fragment(run_every=EVERY_S)
-def _waiting() -> None:
-    film = current()
-    if film is None or film.done.is_set():
-        st.rerun()
+def _words(job: Job) -> str:
+    frames = job.about.frames
+    return f"Picture {round(job.share * frames)} of {frames}" if job.share < 1 else "Writing the file"
+
+
+def _finished(job: Job) -> None:
+    film: Film = job.about
+    if job.error is not None:
+        pieces.error(job.error)
         return
-    words = "Writing the file" if film.done_frames == film.frames else f"Picture {film.done_frames} of {film.frames}"
-    bar, cancel = st.columns([4, 1], vertical_alignment="center")
-    bar.progress(film.done_frames / film.frames, words)
-    if cancel.button("Cancel", icon=":material/close:", key="milling.film.cancel", width="stretch"):
-        give_up()
-        st.rerun()
-
-
-def _finished(film: Film) -> None:
-    if film.bug is not None:
-        raise film.bug
-    if film.error is not None:
-        pieces.error(film.error)
-        return
-    if film.digest != session.project().setup.digest():
+    if film.result.setup.digest() != session.project().setup.digest():
         pieces.note("The film shows the set-up before the last change; make it again for this one.")
     if film.kind == "gif":
-        st.image(film.data, width="stretch")
+        st.image(job.made, width="stretch")
     else:
-        st.video(film.data, autoplay=True, loop=True, muted=True)
-    pieces.download(f"Film {KINDS[film.kind]}", film.data, f"cut.{film.kind}", MIME[film.kind], key="milling.get.film")
-    pieces.note(
-        f"{film.frames} pictures, {len(film.data) / 1e6:.1f} MB, displacement shown {format_times(film.times, 6)}."
-    )
+        st.video(job.made, autoplay=True, loop=True, muted=True)
+    pieces.download(f"Film {KINDS[film.kind]}", job.made, f"cut.{film.kind}", MIME[film.kind], key="milling.get.film")
+    size = len(job.made) / 1e6
+    pieces.note(f"{film.frames} pictures, {size:.1f} MB, displacement shown {format_times(film.times, 6)}.")

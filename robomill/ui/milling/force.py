@@ -47,8 +47,7 @@ def inputs_panel() -> None:
         if force.hint:
             pieces.note(force.hint)
         if force.stated:
-            provenance = setup.provenance.get("force", force.provenance)
-            pieces.note(f"{pieces.badge(provenance.kind)} {pieces.subscripts(provenance.source)}")
+            pieces.note(pieces.sourced(setup.provenance.get("force", force.provenance)))
     _process_switches(force is not None and force.follows_cut)
 
 
@@ -109,13 +108,13 @@ def _record(force: Any) -> None:
         most_MB=MAX_FORCE_MB,
         fresh=session.store().revision if force is None else "kept",
     )
-    left, right = st.columns(2)
+    (left, right), again = st.columns(2), partial(inputs.reread, FILE, _take)
     with left:
         felt = session.kept(SIDE, "tool")
-        inputs.choice("The sensor felt the force on the", SIDE, SIDES, felt, partial(_read_with, SIDE))
+        inputs.choice("The sensor felt the force on the", SIDE, SIDES, felt, partial(again, SIDE))
     with right:
         look = inputs.Look(hint="Accept forces whose size looks like another unit (mN, kN).")
-        inputs.switch("Trust the unit", TRUST, session.kept(TRUST, False), partial(_read_with, TRUST), look)
+        inputs.switch("Trust the unit", TRUST, session.kept(TRUST, False), partial(again, TRUST), look)
     if force is not None:
         _filter(force)
         samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
@@ -134,13 +133,6 @@ def _filter(force: MeasuredForce) -> None:
             inputs.number("force.cutoff", label="Cut-off", optional=False)
     with right:
         inputs.number("force.start", unit=declared.in_view(force.start_unit), digits=3)
-
-
-def _read_with(option: str, chosen: Any) -> None:
-    """Another way to read the file: read it again, if there is one."""
-    session.keep(option, chosen)
-    if given := session.kept(FILE):
-        inputs.submit(FILE, None, lambda: _take(*given))
 
 
 def _take(data: bytes, name: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 
 import numpy as np
-import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
@@ -134,21 +133,14 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         return
     unit = session.project().view.length
     F, largest = force_components(result, spread)[:, i], largest_deviations(result, spread)
-    body = ""
+    rows = []
     for row, (material, known) in enumerate(zip(spread.materials, spread.axial, strict=True)):
-        shown = [format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row]]
-        cells = "".join(f'<td class="n">{v}</td>' for v in shown[:2])
-        axial = shown[2] if known else "not given"
-        strong = ' style="font-weight:600"' if row == 0 else ""
-        body += (
-            f"<tr{strong}><td>{html.escape(material.title)}</td>{cells}<td class='n'>{axial}</td>"
-            f"<td class='n'>{format_si(float(largest[row]), unit)}</td>"
-            f"<td>{pieces.badge(material.provenance.kind)}{' in force' if row == 0 else ''}</td></tr>"
-        )
-    head = "".join(f'<th class="n">{name}, N</th>' for name in NAMES)
-    st.html(
-        f'<table class="rm-facts"><tr><th>Row</th>{head}<th class="n">tip off, max</th><th></th></tr>{body}</table>'
-    )
+        feed, normal, axial = (format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row])
+        off = format_si(float(largest[row]), unit)
+        mark = pieces.badge(material.provenance.kind) + (" in force" if row == 0 else "")
+        rows.append((html.escape(material.title), feed, normal, axial if known else "not given", off, mark))
+    head = ("Row", *(f"{name}, N" for name in NAMES), "tip off, max", "")
+    pieces.table(rows, " nnnn ", head, strong=0)
     pieces.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
 
 

@@ -107,10 +107,7 @@ def _add(material: Material) -> None:
     for name, (label, first, example) in texts.items():
         key = f"{NEW}.{name}"
         inputs.text(label, key, session.kept(key, first), partial(session.keep, key), placeholder=example)
-    key = f"{NEW}.add"
-    copy = partial(inputs.submit, key, None, partial(_copy, material))
-    st.button("Add as a copy of this row", key=key, icon=":material/add:", on_click=copy)
-    inputs.sentence(key)
+    inputs.button("Add as a copy of this row", f"{NEW}.add", "add", _copy, material)
     inputs.upload("Or a row from a file (.toml)", f"{NEW}.file", _take, most_MB=1)
 
 

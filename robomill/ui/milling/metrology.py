@@ -144,13 +144,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
         )
         pieces.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
         if measured is not None:
-            st.button(
-                "Take it away",
-                key="milling.profile.clear",
-                icon=":material/close:",
-                on_click=session.drop,
-                args=(MEASURED,),
-            )
+            inputs.button("Remove the profile", "milling.profile.clear", "close", session.drop, MEASURED)
     if measured is None:
         return
     for words in measured.findings:

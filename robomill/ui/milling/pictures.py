@@ -11,11 +11,10 @@ import streamlit as st
 
 from robomill.io.meshes import FORMATS, mesh_bytes
 from robomill.report.tables import csv_text, deviation_columns
-from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
+from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.milling import scrubber as linked
-from robomill.ui.project import View
 from robomill.units import format_si, format_times
 from robomill.viz.picture import CAMERAS, SurfacePicture
 from robomill.viz.posed import posed
@@ -33,12 +32,6 @@ EXTRAS = {
 }
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
 VIEW, WITH = "milling.picture.view", "milling.picture.with"
-EYES = {
-    "iso": {"eye": {"x": -0.8, "y": -1.15, "z": 0.95}, "up": {"x": 0, "y": 0, "z": 1}},
-    "along": {"eye": {"x": -1.6, "y": 0.0, "z": 0.55}, "up": {"x": 0, "y": 0, "z": 1}},
-    "top": {"eye": {"x": 0.0, "y": 0.0, "z": 1.8}, "up": {"x": 0, "y": 1, "z": 0}},
-    "front": {"eye": {"x": 0.0, "y": -1.8, "z": 0.05}, "up": {"x": 0, "y": 0, "z": 1}},
-}
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
 
@@ -54,11 +47,9 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     if png is not None:
         st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
     else:
-        pieces.figure(
-            turnable(result, shown, view, dark, height),
-            "surface",
-            alt="The machined surface, to be turned with the mouse.",
-        )
+        camera: Any = view.camera
+        fig = surface_figure(shown, result.setup.tolerance, view.length, dark=dark, height=height, camera=camera)
+        pieces.figure(fig, "surface", alt="The machined surface, to be turned with the mouse.")
     times = (
         "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
     )
@@ -68,36 +59,17 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     )
 
 
-def turnable(result: SimulationResult, shown: Enlarged, view: View, dark: bool, height: int) -> Any:
-    """The surface as a figure that is turned with the mouse, seen as the camera preset has it until then."""
-    limit, revision = result.setup.tolerance, f"surface-{view.camera}"
-    fig = surface_figure(shown, limit, view.length, dark=dark, height=height, revision=revision)
-    ratio = fig.layout.scene.aspectratio
-    fig.update_layout(
-        scene_camera={**EYES[view.camera], "projection": {"type": "orthographic"}},
-        scene_aspectratio={a: 1.4 * float(getattr(ratio, a)) for a in "xyz"},
-    )
-    return fig
-
-
 def _controls() -> str:
     view = session.project().view
     first, camera, times = pieces.split([2.1, 1.3, 0.9], "picture", gap="small")
     with first:
         how = inputs.pick("View", VIEW, HOW)
     with camera:
-        inputs.choice("Camera", "view.camera", CAMERAS, view.camera, lambda c: session.look(camera=c), inputs.LISTED)
+        inputs.seen("Camera", "view.camera", CAMERAS, inputs.LISTED)
     with times:
         known = view.exaggeration in EXAGGERATIONS
         options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: format_times(view.exaggeration, 6)}
-        inputs.choice(
-            "Exaggeration",
-            "view.exaggeration",
-            options,
-            view.exaggeration,
-            lambda v: session.look(exaggeration=float(v)),
-            inputs.LISTED,
-        )
+        inputs.seen("Exaggeration", "view.exaggeration", options, inputs.LISTED)
     if how != "turn":
         inputs.several("With", WITH, EXTRAS, _extras(), partial(session.keep, WITH), inputs.HIDDEN)
     return str(how)

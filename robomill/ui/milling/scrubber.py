@@ -16,7 +16,6 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import inputs, pieces, session, uncertainty
-from robomill.ui.milling.tools import names
 from robomill.units import format_many, format_si, from_si
 from robomill.viz.along import add_picks, add_point, shade
 from robomill.viz.deviation import Components, components_figure
@@ -54,23 +53,10 @@ def scrubber(result: SimulationResult) -> int:
     with st.container(horizontal=True, gap="small"):  # a row that breaks where the window is narrow
         for step, label, words in ((-1, "Back", "previous line"), (1, "Next", "next line")):
             other = place + step
-            st.button(
-                label,
-                key=f"milling.{label.lower()}",
-                help=f"To the {words} that cuts",
-                disabled=not 0 <= other < len(lines),
-                on_click=_to_line,
-                args=(result, lines, other),
-            )
-        st.button(
-            "Worst",
-            key="milling.worst",
-            icon=":material/my_location:",
-            on_click=go_to,
-            args=(result, result.worst),
-            disabled=result.worst < 0,
-            help="Land on the largest deviation",
-        )
+            how = {"help": f"To the {words} that cuts", "disabled": not 0 <= other < len(lines)}
+            inputs.button(label, f"milling.{label.lower()}", "", _to_line, result, lines, other, **how)
+        how = {"help": "Land on the largest deviation", "disabled": result.worst < 0}
+        inputs.button("Worst", "milling.worst", "my_location", go_to, result, result.worst, **how)
     return nearest_judged(result, station_m(result))
 
 
@@ -97,8 +83,8 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
         f"tip off by <b>{format_si(float(result.deviation[i]), unit)}</b>{_range(spread, i, unit)}",
         f"force {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}",
     ]
-    if tool := names(result.setup.tools, int(result.path.tool[i])):
-        words.insert(1, html.escape(tool))
+    if result.setup.tools:
+        words.insert(1, html.escape(result.setup.tools.called(int(result.path.tool[i]))))
     st.html(f'<p class="rm-lead" style="font-size:.95rem">{" · ".join(words)}</p>')
 
 

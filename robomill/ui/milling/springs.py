@@ -73,13 +73,7 @@ def _one(kind: type[Spring]) -> None:
     declared.fields(spring, key, lambda name, v: _put(kind, spring.edited(**{name: v})))
     fitted = spring.fitted(cutter)
     if fitted != spring:
-        st.button(
-            _otherwise(spring, fitted),
-            key=f"{key}.same",
-            on_click=lambda: _put(kind, fitted),
-            type="tertiary",
-            icon=":material/sync:",
-        )
+        inputs.button(_otherwise(spring, fitted), f"{key}.same", "sync", _put, kind, fitted, type="tertiary")
     pieces.note(f"{pieces.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
 
 
@@ -236,14 +230,16 @@ def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, 
 def lines_table(result: SimulationResult, i: int) -> None:
     """Who gives how much at the station, joint by joint and spring by spring."""
     unit = session.project().view.length
-    body = ""
-    for name, share, kind, counts in [*lines(result, i), ("together", result.delta[i], "computed", True)]:
-        cells = "".join(f'<td class="n">{_signed(v, unit)}</td>' for v in share)
-        remark = "" if counts else " shown, not added"
-        strong = ' style="font-weight:600"' if name == "together" else ""
-        body += f"<tr{strong}><td>{html.escape(name)}</td>{cells}<td>{pieces.badge(kind)}{remark}</td></tr>"
-    head = "".join(f'<th class="n">δ<sub>{a}</sub>, {unit}</th>' for a in "XYZ")
-    st.html(f'<table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table>')
+    rows = [
+        (
+            html.escape(name),
+            *(_signed(v, unit) for v in share),
+            pieces.badge(kind) + ("" if counts else " shown, not added"),
+        )
+        for name, share, kind, counts in [*lines(result, i), ("together", result.delta[i], "computed", True)]
+    ]
+    head = ("", *(f"δ<sub>{a}</sub>, {unit}" for a in "XYZ"), "")
+    pieces.table(rows, " nnn ", head, strong=len(rows) - 1)
 
 
 def _signed(value: float, unit: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -14,17 +13,15 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, session, shell
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import at_feed, station_m
-from robomill.ui.milling.tools import names
-from robomill.units import format_si, format_times, from_si
-from robomill.viz.arm import arm_figure, displacement_scale
+from robomill.units import format_si, from_si
 from robomill.viz.deviation import Shares, shares_figure
 from robomill.viz.dial import Dial, dial_figure
 from robomill.viz.sections import section_figure
-from robomill.viz.theme import joint_colours
-from robomill.viz.views import arm_scene, section_drawing
+from robomill.viz.theme import tool_colours
+from robomill.viz.views import section_drawing
 
 AROUND = 5
 
@@ -58,23 +55,9 @@ def _tool_of_line(result: SimulationResult) -> dict[int, tuple[str, str]]:
     """What the lines that cut are cut with: the tool's name and its colour; nothing where one cutter does all."""
     path, known = result.path, result.setup.tools
     numbers = cutting_numbers(path).tolist() if known else []
-    colours = dict(zip(numbers, cycle(joint_colours(7, False)), strict=False))
+    colours = tool_colours(numbers, shell.dark())
     pairs = np.unique(np.stack([path.block, path.tool])[:, path.cutting], axis=1).T.tolist() if known else []
-    return {block: (names(known, number), colours[number]) for block, number in pairs}
-
-
-def arm(result: SimulationResult, i: int, dark: bool, height: int = 330) -> None:
-    """The arm as it stands at the station."""
-    if i < 0:
-        return
-    scene = arm_scene(result, i)
-    drawn = displacement_scale(result.delta[i], scene.frames)
-    pieces.figure(
-        arm_figure(scene, dark=dark, height=height, revision="linked-arm", zoom=0.86),
-        "linked-arm",
-        alt="The arm at the station with force and displacement.",
-        caption=f"Blue: force on the tool. Orange: displacement, shown {format_times(drawn)}.",
-    )
+    return {block: (known.called(number), colours[number]) for block, number in pairs}
 
 
 def dial(
@@ -145,18 +128,11 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
 
 def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> None:
     """Which joint or spring gives, stacked along the path."""
-    view, unit = session.project().view, session.project().view.length
+    unit = session.project().view.length
     title, pick = st.columns([1, 1.2], vertical_alignment="center")
     title.markdown("**What gives**")
     with pick:
-        inputs.choice(
-            "Shares of",
-            "view.share_axis",
-            {a: f"in {a.upper()}" for a in "xyz"},
-            view.share_axis,
-            lambda a: session.look(share_axis=a),
-            inputs.HIDDEN,
-        )
+        inputs.seen("Shares of", "view.share_axis", {a: f"in {a.upper()}" for a in "xyz"}, inputs.HIDDEN)
     axis = session.project().view.share_axis
     column = "xyz".index(axis)
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)

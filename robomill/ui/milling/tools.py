@@ -46,15 +46,6 @@ def panel() -> None:
         _ways_in(setup.tools)
 
 
-def names(tools: ToolTable, number: int) -> str:
-    """A tool in a few words: ``"T2 · 20.00 mm flat end mill, 4 flutes"``; "" where no table says."""
-    if number not in tools:
-        return ""
-    tool = tools[number]
-    said = tool.name or ("" if tool.cutter is None else tool.cutter.title)
-    return f"T{number} · {said}" if said else f"T{number}"
-
-
 def missing(tools: ToolTable, cut_with: Iterable[int]) -> list[int]:
     """Numbers of tools that cut and that nobody has described: none where one unnamed or single tool cuts."""
     wanted = sorted(number for number in set(cut_with) if number > 0)
@@ -114,14 +105,14 @@ def _table(tools: ToolTable) -> None:
 
 
 def _ways_in(tools: ToolTable) -> None:
-    look = inputs.Look(hint="A .tbl does not say its unit.")
+    look, take = inputs.Look(hint="A .tbl does not say its unit."), partial(inputs.reread, FILE, _take, UNIT)
     units = {unit: unit_label(unit) for unit in UNITS}
-    inputs.choice("Unit of the file", UNIT, units, session.kept(UNIT, UNITS[0]), _take_unit, look)
+    inputs.choice("Unit of the file", UNIT, units, session.kept(UNIT, UNITS[0]), take, look)
     inputs.upload("Tool table (.tbl of LinuxCNC, .csv or .toml)", FILE, _take, most_MB=MAX_TABLE_MB)
     if tools:
-        st.button("One cutter for all", key="milling.tools.clear", icon=":material/close:", on_click=_clear)
+        inputs.button("One cutter for all", "milling.tools.clear", "close", _clear)
     else:
-        st.button("By hand, from this cutter", key="milling.tools.make", icon=":material/add:", on_click=_make)
+        inputs.button("By hand, from this cutter", "milling.tools.make", "add", _make)
 
 
 def _clear() -> None:
@@ -133,12 +124,6 @@ def _make() -> None:
     """A table that holds the cutter in force under the first number that cuts."""
     numbers = _cut_with().tolist() or [1]
     session.change(tools=ToolTable((TableTool(int(numbers[0]) or 1, session.project().setup.cutter),)))
-
-
-def _take_unit(unit: str) -> None:
-    session.keep(UNIT, unit)
-    if given := session.kept(FILE):
-        inputs.submit(FILE, None, lambda: _take(*given))
 
 
 def _take(data: bytes, name: str) -> None:

@@ -8,16 +8,13 @@ import streamlit as st
 from robomill.io.robots import load_robot, robot_names
 from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
 from robomill.robot.model import USER_SET, Robot
-from robomill.simulation.run import deviation_over_spin
-from robomill.simulation.samples import sampled
-from robomill.ui import inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import Project, is_stiffness
 from robomill.ui.robot import tables
-from robomill.units import format_si, unit_label
+from robomill.units import format_many, format_si, unit_label
 
 MINUS, GIVEN = "−", "given"
-SAMPLES = 400  # of a path, by which its spins are compared on the page
 SPELLINGS = "7.14, 7,14 and 7.14e-7 (in rad/(N m)) are the same."
 
 
@@ -181,14 +178,14 @@ def _spin(project: Project) -> None:
             lambda angle: session.change(spin=angle),
         )
     if st.button("How much does the spin matter here?", key="robot.spin_range", icon=":material/360:"):
-        over = deviation_over_spin(
-            setup, sampled(setup.toolpath, max(setup.step, float(setup.toolpath.s[-1]) / SAMPLES))
-        )
-        low, high = over.range
+        over = pieces.attempt(cached.over_spin, setup)
+        if over is None:
+            return
         missed = int((over.missed > over.missed[over.best]).sum())
+        ends = format_many(over.range, project.view.length, between=" and ")
+        best = format_si(float(over.angle[over.best]), "deg", 0)
         pieces.note(
-            f"Over all spins the largest deviation of this cut lies between {format_si(low, 'mm', 3)} and "
-            f"{format_si(high, 'mm', 3)}; least at {format_si(float(over.angle[over.best]), 'deg', 0)}."
+            f"Over all spins the largest deviation of this cut lies between {ends}; least at {best}."
             + (f" {missed} of {len(over.angle)} spins do not reach as much of the path." if missed else "")
         )
 
@@ -196,4 +193,4 @@ def _spin(project: Project) -> None:
 def _said(robot: Robot, block: str) -> None:
     found = robot.provenance.get(block)
     if found is not None:
-        pieces.note(f"{pieces.badge(found.kind)} {pieces.subscripts(found.source)}")
+        pieces.note(pieces.sourced(found))

@@ -50,23 +50,15 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
     robot = project.setup.robot
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         st.markdown("**Joint angles**")
-        st.button(
-            "At the cut",
-            on_click=lambda: session.look(theta=None),
-            type="tertiary",
-            key="pose.cut",
-            icon=":material/my_location:",
-            disabled=result is None or result.worst < 0,
-        )
-        st.button(
-            "Home",
-            on_click=lambda: session.look(theta=tuple(robot.home.tolist())),
-            type="tertiary",
-            key="pose.home",
-            icon=":material/home:",
-        )
+        idle = result is None or result.worst < 0
+        inputs.button("At the cut", "pose.cut", "my_location", _stand, None, type="tertiary", disabled=idle)
+        inputs.button("Home", "pose.home", "home", _stand, tuple(robot.home.tolist()), type="tertiary")
     for i, number in enumerate(robot.joint_numbers):
         _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
+
+
+def _stand(theta: tuple[float, ...] | None) -> None:
+    session.look(theta=theta)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
@@ -133,10 +125,5 @@ def share_bars(pose: PoseReport, dark: bool) -> None:
     shares = pose.shares("yy")
     total = float(shares.sum()) or 1.0
     st.markdown("**Where the give along Y comes from**")
-    rows = "".join(
-        f'<tr><td class="q">joint {number}</td><td class="rm-barcell"><span class="rm-bar" '
-        f'style="width:{100 * value / total:.1f}%;background:{colour}"></span></td>'
-        f'<td class="n">{format_percent(value / total)}</td></tr>'
-        for number, value, colour in zip(pose.robot.joint_numbers, shares, joint_colours(7, dark))
-    )
-    st.html(f'<table class="rm-facts rm-narrow">{rows}</table>')
+    each = zip(pose.robot.joint_numbers, shares / total, joint_colours(7, dark))
+    pieces.table([(f"joint {n}", pieces.bar(share, colour), format_percent(share)) for n, share, colour in each], "sbn")

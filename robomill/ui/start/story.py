@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-from typing import Any
 
 import numpy as np
 import streamlit as st
@@ -15,13 +14,11 @@ from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.ui import cached, pieces
-from robomill.ui.project import Project, View, preset_setup
+from robomill.ui import cached, evidence, pieces
+from robomill.ui.project import Project, View
 from robomill.units import format_percent, format_si, format_times
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
-
-PAPER = "paper_flute"
 
 DOORS = (
     (
@@ -57,9 +54,8 @@ def cause(result: SimulationResult, unit: str) -> str:
     numbers = result.setup.robot.joint_numbers
     blame = " and ".join(f"joint {numbers[j]} ({format_percent(share[j])})" for j in main)
     force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
-    digits = 4 if unit == "in" else 3
     moved = ", ".join(
-        f"{format_si(float(v), unit, digits, sign=True)} in {a}"
+        f"{format_si(float(v), unit, sign=True)} in {a}"
         for a, v in zip("XYZ", result.delta[i])
         if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
     )
@@ -87,9 +83,7 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
         with st.container(key="picture-groove"):
             st.image(png, width="stretch", alt=alt)
     else:
-        unit = view.length
-        revision = "start-surface"
-        figure = surface_figure(shown, result.setup.tolerance, unit, dark=dark, height=height, revision=revision)
+        figure = surface_figure(shown, result.setup.tolerance, view.length, dark=dark, height=height)
         pieces.figure(figure, "start-surface", alt=alt)
     pieces.note(
         f"The groove as milled, displacement shown {format_times(view.exaggeration, 6)}. Colours end at the tolerance, "
@@ -99,57 +93,33 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
 
 def where_from(setup: SimulationSetup) -> None:
     """Each block of numbers with its badge and its source."""
-    rows = [
-        (
-            s.what,
-            pieces.subscripts(s.value),
-            f"{pieces.badge(s.provenance.kind)} {pieces.subscripts(s.provenance.source)}",
-        )
-        for s in sources(setup)
-    ]
-    body = "".join(
-        f'<tr><td class="q">{html.escape(a)}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows
-    )
-    st.html(f'<table class="rm-facts">{body}</table>')
+    rows = [(html.escape(s.what), pieces.subscripts(s.value), pieces.sourced(s.provenance)) for s in sources(setup)]
+    pieces.table(rows, "qv ")
 
 
-def evidence(project: Project) -> None:
+def beside_the_paper(project: Project) -> None:
     """The paper's numbers beside those of robomill, for the paper's own cut; never forced to match."""
-    if project.preset != PAPER:
+    if not evidence.is_papers_path(project):
         pieces.note("The paper's numbers are shown beside robomill's when its milling test is open.")
         return
-    preset = preset_setup(PAPER)
-    rows: list[tuple[str, float, str]] = []
-    for label, setup in (
-        ("robomill, as edited" if project.setup.digest() != preset.digest() else "", project.setup),
-        ("robomill, Table 2", preset),
-        ("robomill, Table 3", preset.replace(robot=preset.robot.with_compliance_set("table_3"))),
-    ):
-        if label:
-            rows.append((label, _aside(cached.result(setup)), "computed"))
-    rows[-1:-1] = [("paper, predicted from Table 2", SLOT.from_table_2, "paper")]
-    rows += [
-        ("paper, predicted from its measured map", SLOT.from_map, "paper"),
-        ("paper, measured on the part (about)", SLOT.measured, "measured"),
+    found = pieces.attempt(evidence.claims, project)
+    if found is None:
+        return
+    top = max((abs(c.value) for c in found if np.isfinite(c.value)), default=1.0) or 1.0
+    digits = 3 if project.view.length == "in" else 2
+    rows = [
+        (
+            f"{html.escape(c.label)} {pieces.badge(c.kind)}",
+            pieces.bar(abs(c.value) / top, c.kind),
+            "about " * c.rough + format_si(abs(c.value), project.view.length, digits),
+        )
+        for c in found
     ]
-    bars(rows, project.view.length)
+    pieces.table(rows, " bn")
     pieces.note(
         f"Sideways error of the groove. {format_si(SLOT.from_map, 'mm', 2)} is read off a map whose raw data are "
         "not printed; Table 3 alone cannot give it, and nothing here is tuned to match."
     )
-
-
-def bars(rows: list[tuple[str, float, str]], unit: str) -> None:
-    """Lengths side by side: label, value in m, provenance."""
-    top = max((abs(v) for _, v, _ in rows if np.isfinite(v)), default=1.0) or 1.0
-    digits = 3 if unit == "in" else 2
-    body = "".join(
-        f'<tr><td>{html.escape(label)}</td><td class="rm-barcell"><span class="rm-bar rm-{kind}" '
-        f'style="width:{abs(value) / top * 100:.1f}%"></span></td>'
-        f'<td class="n">{format_si(value, unit, digits)}</td><td>{pieces.badge(kind)}</td></tr>'
-        for label, value, kind in rows
-    )
-    st.html(f'<table class="rm-facts">{body}</table>')
 
 
 def doors() -> None:
@@ -163,11 +133,3 @@ def doors() -> None:
                 label=label if there else "Open the robot",
                 icon=":material/arrow_forward:",
             )
-
-
-def _aside(result: Any) -> float:
-    """Sideways error at mid-cut, m."""
-    from robomill.simulation.stations import nearest_judged
-
-    i = nearest_judged(result, 0.5 * float(result.path.s[-1]))
-    return abs(float(result.delta[i, 1])) if i >= 0 else float("nan")

@@ -86,8 +86,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
         words = "tool " + ", ".join(map(str, tools)) if tools else "no tool named"
         rows.append(("Written in", written_in(setup.source, path, long=True), words))
         rows.append(("Moves", move_words(path), ""))
-    body = "".join(f'<tr><td class="q">{a}</td><td class="v">{b}</td><td>{c}</td></tr>' for a, b, c in rows)
-    st.html(f'<table class="rm-facts">{body}</table>')
+    pieces.table(rows, "qv ")
 
 
 def _plain(value: float, unit: str) -> str:
@@ -128,7 +127,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
         of_line = result.judged & (result.path.block == line)
         if of_line.any():
             largest = float(result.deviation[of_line].max())
-            words.append(f"deviation up to {format_si(largest, unit, 3 if unit == 'mm' else 4)}")
+            words.append(f"deviation up to {format_si(largest, unit)}")
     return f"{words[0]} — {'; '.join(words[1:])}."
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -13,33 +13,36 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import nearest_judged
+from robomill.simulation.tools import cutting_numbers
 from robomill.ui import inputs, pieces, session
+from robomill.ui.arm import arm_at
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
 from robomill.units import from_si, unit_label
-from robomill.viz.arm import arm_figure
 from robomill.viz.path_picture import BUDGET, PathPicture, decimate
 from robomill.viz.toolpath import plan_picture, turnable_picture
-from robomill.viz.views import arm_scene
 
-COLOURS = {"reach": "Reach", "deviation": "Deviation", "limits": "Room to limits", "feed": "Feed", "depth": "Height"}
+COLOURS = {
+    "reach": "Reach",
+    "deviation": "Deviation",
+    "limits": "Room to limits",
+    "feed": "Feed",
+    "depth": "Height",
+    "tool": "Tool",
+}
 SHAPES = {"plan": "From above", "turn": "Turnable", "arm": "With the arm"}
 
 
 def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResult | None, dark: bool) -> None:
     """The choices and the picture; beside the drawing board a lower one."""
     unit, height = session.project().view.length, 300 if setup.source.kind == "sketch" else 420
-    colour, seen = _choices(result is not None)
+    colour, seen = _choices(result is not None, len(cutting_numbers(reach.path)) > 1)
     key = f"toolpath.{seen}"
     if seen == "arm" and result is not None:
         index = result.worst if result.worst >= 0 else nearest_judged(result, 0.0)
-        pieces.figure(
-            arm_figure(arm_scene(result, index), dark=dark, height=height, revision="path-arm", zoom=0.85),
-            key,
-            caption="The arm at the worst point of the path. Grey dots: out of reach.",
-            alt="The arm, the part and the path in the robot's frame.",
-        )
+        pieces.note("The arm at the worst point of the path.")
+        arm_at(result, index, key, height, zoom=0.85)
         return
     picture = _picture(setup, reach, result, colour, unit)
     thinned = f" {picture.caption}" if picture.caption else ""
@@ -61,9 +64,10 @@ def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResu
     )
 
 
-def _choices(simulated: bool) -> tuple[str, str]:
-    """What the path is coloured by, and from where it is seen."""
-    colours = {k: f"Coloured by {v.lower()}" for k, v in COLOURS.items() if simulated or k != "deviation"}
+def _choices(simulated: bool, several: bool) -> tuple[str, str]:
+    """What the path is coloured by (by tool where there are ``several``), and from where it is seen."""
+    left_out = {"deviation": not simulated, "tool": not several}
+    colours = {k: f"Coloured by {v.lower()}" for k, v in COLOURS.items() if not left_out.get(k, False)}
     shapes = {k: v for k, v in SHAPES.items() if simulated or k != "arm"}
     with st.container(horizontal=True, horizontal_alignment="distribute", vertical_alignment="center", gap="small"):
         with st.container(width="content"):
@@ -99,6 +103,9 @@ def _picture(
     elif colour == "depth":
         z = from_si(path.p[:, 2], unit)
         more = {"value": z - float(z.min()), "title": "Height above the deepest point", "unit": unit_label(unit)}
+    elif colour == "tool":
+        names = {n: setup.tools.called(n) for n in cutting_numbers(path).tolist()}
+        more = {"tools": path.tool, "tool_names": names}
     stock = setup.stock_block
     return PathPicture(
         points=from_si(path.p, unit),
@@ -160,10 +167,5 @@ def stock_note(setup: SimulationSetup) -> None:
         return
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         pieces.note("The path leaves the stock that is stated: what lies outside cuts air.")
-        st.button(
-            "Let the stock follow the path",
-            key="toolpath.stock",
-            icon=":material/fit_screen:",
-            type="tertiary",
-            on_click=lambda: session.change(stock=None),
-        )
+        follow = partial(session.change, stock=None)
+        inputs.button("Let the stock follow the path", "toolpath.stock", "fit_screen", follow, type="tertiary")

@@ -127,15 +127,9 @@ def _show_refused(refused: Refused, dark: bool) -> None:
     """A program that cannot be read is shown at the line that is at fault; the one before it stays in force."""
     pieces.error(f"{refused.source.name} was not taken. {refused.reason}")
     with st.container(horizontal=True, gap="small"):
-        st.button(
-            "Mend it here",
-            icon=":material/edit:",
-            key="toolpath.mend",
-            on_click=_mend,
-            args=(refused,),
-            disabled=len(refused.source.text) > EDITABLE_CHARACTERS,
-        )
-        st.button("Leave it", icon=":material/close:", key="toolpath.leave", on_click=_leave, type="tertiary")
+        long = len(refused.source.text) > EDITABLE_CHARACTERS
+        inputs.button("Mend it here", "toolpath.mend", "edit", _mend, refused, disabled=long)
+        inputs.button("Leave it", "toolpath.leave", "close", _leave, type="tertiary")
     level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
     program_view(refused.source.text, level, dark, fixed=refused.line)
 

@@ -30,12 +30,7 @@ def _presets() -> None:
     with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
         chosen = inputs.pick("Ready-made sketch", SHAPE, PRESETS, "slot", inputs.LISTED)
         word = session.kept(WORD, "ROBOMILL")
-        st.button(
-            "Draw it",
-            icon=":material/draw:",
-            key="toolpath.draw",
-            on_click=lambda: inputs.submit(WORD, word, lambda: _draw(word)),
-        )
+        inputs.button("Draw it", "toolpath.draw", "draw", inputs.submit, WORD, word, lambda: _draw(word))
     if chosen == "word":
         inputs.text("Word", WORD, word, _draw, max_chars=40)
     else:
@@ -58,7 +53,7 @@ def _settings() -> None:
         st.caption(f"that is {format_si(sketch_source().sketch.v_f, 'mm/s', 1)}")
     with right:
         _setting("depth", view.length, 0.02 if inches else 0.5)
-        st.button("For all shapes", key="toolpath.all", type="tertiary", icon=":material/done_all:", on_click=_all)
+        inputs.button("For all shapes", "toolpath.all", "done_all", _all, type="tertiary")
     with st.expander("Plunge, clearance, spindle", icon=":material/height:"):
         one, two, three = st.columns(3)
         with one:

@@ -11,7 +11,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.ui import cached, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import (
     duration,
@@ -57,10 +57,9 @@ def ask_button(setup: SimulationSetup) -> None:
     count = samples(setup)
     words = "the engagement is found step by step" if setup.engagement else f"about {format_short_count(count)} points"
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        if st.button("Simulate", icon=":material/play_arrow:", type="primary", key="toolpath.simulate"):
-            session.keep(ASKED, setup.digest())
-            st.rerun()
-        pieces.note(f"Not simulated yet: {words}. Until then the path is coloured by reach.")
+        ask = (session.keep, ASKED, setup.digest())
+        inputs.button("Simulate", "toolpath.simulate", "play_arrow", *ask, type="primary")
+        pieces.note(f"Not simulated yet: {words}. The deviation can be seen after that.")
 
 
 def headline(

@@ -10,7 +10,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
 from robomill.io.tool_tables import read_tool_table
-from robomill.ui.milling.tools import missing, names, tool_frame, tools_of
+from robomill.ui.milling.tools import missing, tool_frame, tools_of
 
 TBL = "T1 P1 D8 Z50 ; roughing\nT2 P2 D-20 Z62.5 X1.5 Q3\n"
 KNOWN = ToolTable(
@@ -75,10 +75,3 @@ def test_a_row_without_a_diameter_is_refused_by_its_row() -> None:
 )
 def test_tools_that_cut_unknown_are_asked_for(tools: ToolTable, cut_with: list[int], asked: list[int]) -> None:
     assert missing(tools, cut_with) == asked
-
-
-def test_a_tool_is_named_by_what_the_table_says() -> None:
-    assert names(KNOWN, 5) == "T5 · finisher"
-    assert names(KNOWN, 3).startswith("T3 · 12.00 mm bull")
-    assert names(KNOWN, 9) == "T9"
-    assert names(KNOWN, 4) == ""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from robomill.errors import GCodeError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.reading import ProgramReading
+from robomill.ui.job import Job
+from robomill.ui.toolpath.reading import reading
 
 
 def program(lines: int) -> str:
@@ -12,30 +13,30 @@ def program(lines: int) -> str:
     return f"G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\n{body}\nG0 Z5\nM2\n"
 
 
-def finished(reading: ProgramReading) -> ProgramReading:
-    reading.start()
-    assert reading.done.wait(60)
-    return reading
+def finished(job: Job) -> Job:
+    job.start()
+    assert job.done.wait(60)
+    return job
 
 
 def test_a_program_is_read_and_kept_for_the_page() -> None:
     source = GCodeSource(program(30_000), "long.nc")
-    reading = finished(ProgramReading(source))
-    assert reading.error is None
-    assert reading.bug is None
-    assert reading.share > 0.9
+    job = finished(reading(source))
+    assert job.error is None
+    assert job.bug is None
+    assert job.share > 0.9
     assert source.read() is GCodeSource(program(30_000), "long.nc").read(), "what was read is not read again"
 
 
 def test_a_refusal_is_handed_over_with_its_line() -> None:
-    reading = finished(ProgramReading(GCodeSource(program(2_000).replace("M2", "G2 X55.5"))))
-    assert isinstance(reading.error, GCodeError)
-    assert reading.error.line == 2006
+    job = finished(reading(GCodeSource(program(2_000).replace("M2", "G2 X55.5"))))
+    assert isinstance(job.error, GCodeError)
+    assert job.error.line == 2006
 
 
 def test_a_reading_that_is_given_up_stops() -> None:
-    reading = ProgramReading(GCodeSource(program(60_000).replace("G21", "G21 "), "stopped.nc"))
-    reading.stop.set()
-    finished(reading)
-    assert isinstance(reading.error, GCodeError)
-    assert "cancelled" in str(reading.error)
+    job = reading(GCodeSource(program(60_000).replace("G21", "G21 "), "stopped.nc"))
+    job.stop.set()
+    finished(job)
+    assert isinstance(job.error, GCodeError)
+    assert "cancelled" in str(job.error)

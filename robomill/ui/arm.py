@@ -1,0 +1,49 @@
+"""The arm as a figure on any page: built once for equal scenes, a classroom sees the same ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from robomill.arrays import digest
+from robomill.simulation.result import SimulationResult
+from robomill.ui import cached, pieces, shell
+from robomill.units import format_times
+from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
+from robomill.viz.views import arm_scene
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+
+def arm(
+    scene: ArmScene,
+    key: str,
+    words: tuple[str, str],
+    height: int,
+    zoom: float = 1.0,
+    more: tuple[Any, Callable[[go.Figure, bool], Any]] | None = None,
+) -> None:
+    """The arm with its caption and what a screen reader says (``words``).
+
+    ``more``: what else the figure depends on, and what adds it to the figure, light or dark.
+    """
+    dark = shell.dark()
+
+    def draw() -> go.Figure:
+        fig = arm_figure(scene, dark=dark, height=height, revision=key, zoom=zoom)
+        if more is not None:
+            more[1](fig, dark)
+        return fig
+
+    kept = (digest((scene, None if more is None else more[0])), dark)
+    pieces.figure(cached.kept_figure(key, kept, draw), key, caption=words[0], alt=words[1])
+
+
+def arm_at(result: SimulationResult, i: int, key: str, height: int, zoom: float = 1.0) -> None:
+    """The arm as it stands at sample ``i`` of a run, with force and displacement."""
+    scene = arm_scene(result, i)
+    drawn = format_times(displacement_scale(result.delta[i], scene.frames))
+    lost = "" if result.reached.all() else " Grey dots: out of reach."
+    caption = f"Blue: force on the tool. Orange: displacement, shown {drawn}.{lost}"
+    arm(scene, key, (caption, "The arm, the part and the path with force and displacement."), height, zoom)

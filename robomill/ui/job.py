@@ -1,0 +1,95 @@
+"""Long work beside the page: in a thread of its own that touches nothing of the page, with progress and cancel."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import streamlit as st
+
+from robomill.errors import RobomillError
+from robomill.ui import inputs, session
+
+EVERY_S = 0.4
+
+
+@dataclass(eq=False)
+class Job:
+    """``work(job)`` made in a thread; it says its ``share`` (0 to 1) by ``reach`` and ends early once ``stop`` is set.
+
+    ``about`` is what it is made of; ``made`` what it answered, ``error`` why it was refused.
+    """
+
+    work: Callable[[Job], Any]
+    about: Any
+    share: float = 0.0
+    made: Any = None
+    error: RobomillError | None = None
+    bug: BaseException | None = None
+    began: float = field(default_factory=time.monotonic)
+    stop: threading.Event = field(default_factory=threading.Event)
+    done: threading.Event = field(default_factory=threading.Event)
+
+    def start(self) -> None:
+        """Begin."""
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def reach(self, share: float) -> None:
+        """Say how much is done."""
+        self.share = max(self.share, min(float(share), 1.0))
+
+    @property
+    def left_s(self) -> float:
+        """Seconds until it is done, as far as one can tell; NaN at the beginning."""
+        spent = time.monotonic() - self.began
+        return spent * (1.0 / self.share - 1.0) if self.share > 0.02 else float("nan")
+
+    def _run(self) -> None:
+        try:
+            self.made = self.work(self)
+        except RobomillError as exc:
+            self.error = exc
+        except Exception as exc:  # shown by the page that asked: a thread has nobody to raise to
+            self.bug = exc
+        finally:
+            self.done.set()
+
+
+def begin(key: str, job: Job) -> None:
+    """Start ``job`` and keep it under ``key``; an earlier one there is given up."""
+    give_up(key)
+    session.keep(key, job)
+    job.start()
+
+
+def give_up(key: str) -> None:
+    """Stop and forget the job kept under ``key``."""
+    job: Job | None = session.drop(key)
+    if job is not None:
+        job.stop.set()
+
+
+def finished(key: str) -> Job | None:
+    """The job kept under ``key`` where it has ended; its bug, if it met one, is raised here."""
+    job: Job | None = session.kept(key)
+    if job is None or not job.done.is_set():
+        return None
+    if job.bug is not None:
+        raise job.bug
+    return job
+
+
+@st.fragment(run_every=EVERY_S)
+def waiting(key: str, words: Callable[[Job], str]) -> None:
+    """Progress in ``words`` and a cancel button; the page runs again at the end."""
+    job: Job | None = session.kept(key)
+    if job is None or job.done.is_set():
+        st.rerun()
+        return
+    bar, cancel = st.columns([4, 1], vertical_alignment="center")
+    bar.progress(job.share, words(job))
+    with cancel:
+        inputs.button("Cancel", f"{key}.cancel", "close", give_up, key, width="stretch")

@@ -1,0 +1,38 @@
+"""The ray to the edge of the workspace, by the triangle of the stretched arm."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.workspace.ray import ray_through
+
+# The arm straight, the tool hanging a_5 below the wrist.
+STRETCHED = np.sqrt((1.22 + 1.1) ** 2 - 0.3**2)
+
+
+def test_the_ray_ends_at_a_singularity() -> None:
+    way = ray_through(rm.load_robot("slavkovic_5r"), [0.0, -1.3, 0.0])
+    assert way.radius[way.start] == pytest.approx(1.3)
+    assert (np.diff(way.radius) > 0).all()
+    assert way.det[-1] < 1e-3 * way.det.max()
+    assert way.radius[-1] == pytest.approx(STRETCHED, abs=1e-6)
+
+
+def test_distances_are_from_the_base_wherever_it_stands() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    T_base = np.array(robot.T_base)
+    T_base[:3, 3] += (0.4, 0.2, 0.0)
+    way = ray_through(robot.replace(T_base=T_base), [0.4, -1.1, 0.0])
+    assert way.radius[way.start] == pytest.approx(1.3)
+    assert way.radius[-1] == pytest.approx(STRETCHED, abs=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(way.p[:, :2] - [0.4, 0.2], axis=1), way.radius, atol=1e-12)
+
+
+def test_the_whole_ray_is_in_reach_and_nothing_behind_its_end() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    way = ray_through(robot, [0.0, -1.3, 0.0])
+    np.testing.assert_allclose(rm.tool_pose(robot, way.theta)[:, :3, 3], way.p, atol=1e-9)
+    behind = rm.pose_from_world([0.0, -way.radius[-1] - 1e-5, 0.0, 0.0, 0.0])
+    assert not rm.inverse_kinematics(robot, behind).reached
