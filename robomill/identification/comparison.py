@@ -46,13 +46,12 @@ class Comparison:
         """A table: model, parameters, in-sample and cross-validated relative error, residual rms (m), remark."""
         table: list[dict[str, object]] = []
         for result in self.results:
-            inside = in_sample(result)
             remark = []
             if result is self.best:
                 remark.append("predicts best")
             if result is self.simplest_good:
                 remark.append("simplest that predicts as well")
-            if result.cv_relative_error > OVERFIT * inside:
+            if result.cv_relative_error > OVERFIT * result.in_sample:
                 remark.append("over-fits: far better on its own data than on poses left out")
             if result.active_bounds:
                 remark.append(f"held at zero: {', '.join(result.active_bounds)}")
@@ -60,7 +59,7 @@ class Comparison:
                 {
                     "model": result.model,
                     "parameters": len(result.labels) - len(result.lumped),
-                    "in_sample": inside,
+                    "in_sample": result.in_sample,
                     "cross_validated": result.cv_relative_error,
                     "residual_rms": result.residual_rms,
                     "remark": "; ".join(remark),
@@ -83,11 +82,6 @@ class Comparison:
             f"The joint-only values have absorbed what is not in the joints ({changes} against the model "
             f"{richer.model}): they predict well only near the measured poses, and say little of the joints themselves."
         )
-
-
-def in_sample(result: IdentificationResult) -> float:
-    """Mean over poses of |residual| / |measured| with every pose in the fit; flatters."""
-    return float(np.nanmean(result.in_sample_by_pose))
 
 
 def compare_models(

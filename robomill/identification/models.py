@@ -112,6 +112,12 @@ class Model:
         """Whether springs of that kind are in it."""
         return kind in MODELS[self.name].kinds
 
+    def bending_at(self, joints: tuple[int, ...], turned: bool) -> Model:
+        """The same springs with links that bend at these joints, or at none."""
+        kinds = (MODELS[self.name].kinds - {"bending"}) | ({"bending"} if joints else set())
+        name = next(name for name, family in MODELS.items() if family.kinds == kinds)
+        return Model(name, joints, turned)
+
     def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
         """What is fitted, in the order of the equations' columns."""
         if self.has("entry"):

@@ -66,7 +66,7 @@ def _asked_for(robot: Robot, tests: LoadTests, choice: Model) -> bool:
         system = build_system(robot, tests, choice, FREED["both"])
     except LoadTestError:
         return False
-    x = replace(system, freed=(), terms=None).fit().x
+    x = system.fit().x
     p, s = len(x), 6
     G = slopes(system.every_term, x, np.zeros(s), system.freed)
     scale = np.where(np.linalg.norm(G, axis=0) > 0, np.linalg.norm(G, axis=0), 1.0)

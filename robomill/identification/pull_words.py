@@ -9,6 +9,7 @@ from robomill.arrays import frozen
 from robomill.identification.found_points import FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull, Says
 from robomill.identification.load_test import LoadTests
+from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding, Level
 from robomill.robot.model import Robot
 from robomill.units import format_si
@@ -31,6 +32,15 @@ def load_point(found: LinesOfPull, robot: Robot, tests: LoadTests) -> FoundPoint
         return None
     stated = frozen(tests.force_point.mean(axis=0))
     return FoundPoint("force", found.shift, found.covariance, stated, robot.T_tool, found.dof)
+
+
+def pull_report(
+    found: LinesOfPull, robot: Robot, tests: LoadTests, result: IdentificationResult
+) -> tuple[FoundPoint | None, list[Finding]]:
+    """The load point by the lines of pull, and all that they say, of the points of the fit too."""
+    point = load_point(found, robot, tests)
+    offered = () if result.offer is None else result.offer.points
+    return point, [*disagreement(point, (*result.points, *offered)), *pull_findings(found, robot, tests)]
 
 
 def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Finding]:

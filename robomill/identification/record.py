@@ -10,7 +10,7 @@ from robomill.arrays import FloatArray
 from robomill.identification.found_points import FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull, lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.pull_words import disagreement, load_point, pull_findings
+from robomill.identification.pull_words import load_point, pull_findings, pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -30,9 +30,7 @@ def identification_record(
         tests = tests.without(result.excluded).with_joints(robot)
         lines = lines_of_pull(robot, tests)
         record["lines_of_pull"] = lines_of_pull_record(lines, robot, tests)
-        found += pull_findings(lines, robot, tests)
-        offered = () if result.offer is None else result.offer.points
-        found += disagreement(load_point(lines, robot, tests), (*result.points, *offered))
+        found += pull_report(lines, robot, tests, result)[1]
     return record, found
 
 

@@ -113,6 +113,11 @@ class IdentificationResult:
         return len(self.components) == 1
 
     @property
+    def in_sample(self) -> float:
+        """Mean over poses of |residual| / |measured| with every pose in the fit; flatters."""
+        return float(np.nanmean(self.in_sample_by_pose))
+
+    @property
     def excluded(self) -> tuple[int, ...]:
         """Rows left out."""
         return self.treatment.exclude

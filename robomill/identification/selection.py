@@ -14,7 +14,7 @@ from robomill.identification.fitting import Fitted, fit_system
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
 from robomill.identification.system import build_system
-from robomill.identification.treatment import AUTO, Treatment, with_bending, without_bending
+from robomill.identification.treatment import AUTO, Treatment
 from robomill.robot.model import Robot
 
 MOST = 2  # joints at which links may bend when that is chosen by the tests
@@ -45,8 +45,7 @@ class Candidates:
         if bend not in self.kept:
             model, (joints, turned) = self.model, bend
             if self._open:
-                name = with_bending(model.name) if joints else without_bending(model.name)
-                model = Model(name, joints, turned)
+                model = model.bending_at(joints, turned)
             by_size = self.treatment.weights == "size"
             system = build_system(self.robot, self.tests, model, self.treatment.freed, by_size)
             fitted = fit_system(system, self.treatment.robust, self.starts)

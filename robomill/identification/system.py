@@ -49,10 +49,9 @@ class System:
         """(e,) displacements rather than rotations."""
         return self.component < 3
 
-    def fit(self, weights: FloatArray | None = None, chosen: BoolArray | None = None) -> Fit:
-        """Weighted bounded fit with the points as they are, of all equations or of those chosen."""
-        fixed = replace(self, freed=(), terms=None)
-        return fixed.factored(fixed.factor(weights, chosen), self.count(weights, chosen)).fit().fit
+    def fit(self) -> Fit:
+        """Bounded fit with the points as they are."""
+        return replace(self, freed=(), terms=None).fit_points().fit
 
     def fit_points(self, weights: FloatArray | None = None, starts: Sequence[FloatArray] = ()) -> PointFit:
         """The same with the freed points fitted too."""

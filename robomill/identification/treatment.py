@@ -8,7 +8,6 @@ from typing import Literal
 
 from robomill.errors import LoadTestError
 from robomill.identification.folds import LEAVE_OUT
-from robomill.identification.models import MODELS
 from robomill.identification.points import FREED, Point
 
 BENDING_JOINTS = (2, 3)
@@ -53,24 +52,6 @@ def _joints(given: Iterable[int] | str) -> tuple[int, ...]:
     if isinstance(given, str):
         raise LoadTestError(f"bending: found {given!r}, expected joint numbers or auto.")
     return tuple(dict.fromkeys(int(joint) for joint in given))
-
-
-def without_bending(model: str) -> str:
-    """The model of these names that has the same springs but for those of bending links."""
-    kinds = _kinds(model) - {"bending"}
-    return next(name for name, family in MODELS.items() if family.kinds == kinds)
-
-
-def with_bending(model: str) -> str:
-    """The model that has springs of bending links besides."""
-    kinds = _kinds(model) | {"bending"}
-    return next(name for name, family in MODELS.items() if family.kinds == kinds)
-
-
-def _kinds(model: str) -> frozenset[str]:
-    if model not in MODELS:
-        raise LoadTestError(f"Model {model!r}: expected one of {', '.join(MODELS)}.")
-    return frozenset(MODELS[model].kinds)
 
 
 STANDARD = Treatment()

@@ -87,8 +87,8 @@ def _of_frame(table: Columns, robot: Robot | None, T: FloatArray, how: str) -> d
         )
     if frame == "flange":
         T = T @ _needed(table, robot, "poses of the flange").T_tool
-    base = "" if robot is None or "base" not in robot.provenance else f" ({robot.provenance['base'].source})"
-    text = f"Poses are of the {frame}, in {{M}}{base}, with {how}."
+    base = "" if robot is None or "base" not in robot.provenance else f"; {robot.provenance['base'].source}"
+    text = f"Poses are of the {frame} with {how}{base}."
     return {"x_M": world_of(T), "findings": (Finding("info", table.place.head, text, code="pose-frame"),)}
 
 

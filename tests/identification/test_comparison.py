@@ -10,7 +10,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.comparison import Comparison, _rank, compare_models, in_sample
+from robomill.identification.comparison import Comparison, _rank, compare_models
 from robomill.identification.estimate import identify
 from robomill.identification.models import Model
 from robomill.identification.plan import box_candidates
@@ -82,7 +82,7 @@ def test_over_fitting_shows():
     comparison = compare_models(ROBOT, bent_tests(3, 0.4, poses=5))
     richest = max(comparison.results, key=lambda r: len(r.labels))
     joints = next(r for r in comparison.results if r.model == "joints")
-    assert in_sample(richest) < in_sample(joints)
+    assert richest.in_sample < joints.in_sample
     rows = {row["model"]: row for row in comparison.rows()}
     assert rows[richest.model]["cross_validated"] > 1.3 * rows[richest.model]["in_sample"]
     assert "over-fits" in rows[richest.model]["remark"]
@@ -179,7 +179,7 @@ def test_the_error_inside_is_the_mean_over_poses_by_hand():
     )
     moved = tests.displacement[:, :3]
     error = [np.linalg.norm(left[k : k + 3]) / np.linalg.norm(moved[k : k + 3]) for k in range(0, len(left), 3)]
-    assert in_sample(result) == pytest.approx(np.mean(error))
+    assert result.in_sample == pytest.approx(np.mean(error))
 
 
 def test_models_come_in_the_order_of_their_error():

@@ -186,7 +186,7 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
         springs = len(result.springs(robot))
         pieces.note(
             "Sets the joint compliances"
-            + (f" and {springs} springs beside the joints" if springs else "")
+            + (f" and {springs} spring{'s' * (springs > 1)} beside the joints" if springs else "")
             + " of the project's robot; their uncertainty goes along as bands."
         )
     inputs.sentence("identification.use")

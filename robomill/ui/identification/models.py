@@ -9,7 +9,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.identification.comparison import OVERFIT, Comparison, in_sample
+from robomill.identification.comparison import OVERFIT, Comparison
 from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
@@ -38,7 +38,7 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
         pieces.figure(
             models_figure(
                 names,
-                np.array([from_si(in_sample(r), "%") for r in results]),
+                np.array([from_si(r.in_sample, "%") for r in results]),
                 np.array([from_si(r.cv_relative_error, "%") for r in results]),
                 next(k for k, r in enumerate(results) if r is best),
                 dark=dark,

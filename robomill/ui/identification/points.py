@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.identification.found_points import TITLES, FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull
-from robomill.identification.pull_words import disagreement, load_point, pull_findings
+from robomill.identification.pull_words import pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui import pieces
@@ -27,7 +27,7 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
     if tests is None or lines is None:
         pieces.note("One joint at a time: there is no load point on the tool.")
         return
-    by_lines = load_point(lines, robot, tests)
+    by_lines, found = pull_report(lines, robot, tests, result)
     if by_lines is not None:
         rows.append(_row("Load point, by the lines of pull", by_lines, unit))
     if rows:
@@ -37,8 +37,7 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
             pieces.note(
                 f"x, y, z in {unit_label(unit)}; 95 % intervals, each with everything else that was fitted left free."
             )
-    offered = () if result.offer is None else result.offer.points
-    for finding in (*disagreement(by_lines, (*result.points, *offered)), *pull_findings(lines, robot, tests)):
+    for finding in found:
         st.info(finding.message, icon=ICONS.get(finding.level))
     if len(lines.pulley):
         with st.container(border=True):

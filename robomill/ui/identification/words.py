@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.identification.comparison import in_sample
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
@@ -193,7 +192,7 @@ def title(result: IdentificationResult) -> str:
 
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
     """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
-    cv, inside = result.cv_relative_error, in_sample(result)
+    cv, inside = result.cv_relative_error, result.in_sample
     single = result.single
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
     least = Tile("Least known joint", "none", "this model has no joints")
@@ -204,6 +203,7 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
         least = Tile(f"Least known: {label}", within(half), note if np.isfinite(half) else "these tests do not see it")
     odd = len(result.outliers)
+    fit = f"{odd} outlier{'s' * (odd > 1)}" if odd else "no outlier"
     return [
         Tile(
             f"Error on {'readings' if single else 'poses'} left out",
@@ -212,6 +212,6 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
             kind="computed",
         ),
         least,
-        Tile("Residual, rms", rms, f"{result.equations:,} equations, " + (f"{odd} outliers" if odd else "no outlier")),
+        Tile("Residual, rms", rms, f"{result.equations:,} equations, {fit}"),
         Tile("The cut at its worst", *cut),
     ]
