@@ -34,9 +34,7 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
         with st.container(border=True):
             st.markdown("**Points of the tool, in the flange**")
             pieces.facts(rows)
-            pieces.note(
-                f"x, y, z in {unit_label(unit)}; 95 % intervals, each with everything else that was fitted left free."
-            )
+            pieces.note(f"Off the stated ones; x, y, z in {unit_label(unit)} with 95 % intervals, all else left free.")
     for finding in found:
         st.info(finding.message, icon=ICONS.get(finding.level))
     if len(lines.pulley):
@@ -73,7 +71,7 @@ def _row(name: str, point: FoundPoint, unit: str) -> tuple[str, str, str]:
     half = np.ptp(point.ci95, axis=1) / 2
     place = format_many(point.in_flange, unit, digits, with_unit=False)
     sure = format_many(half, unit, digits, with_unit=False) if np.isfinite(half).all() else "not held"
-    return name, f"({place}) ± ({sure})", f"{format_si(point.off, unit, digits)} off the stated one"
+    return name, f"{format_si(point.off, unit, digits)} off", f"({place}) ± ({sure})"
 
 
 def _gaps(lines: LinesOfPull, unit: str, dark: bool) -> None:
