@@ -10,7 +10,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret, read_gcode
-from robomill.toolpath.gcode.arcs import chord_counts
+from robomill.toolpath.gcode.arcs import Arcs, chord_counts
 from robomill.toolpath.gcode.chords import to_toolpath
 
 PLANES = {
@@ -190,3 +190,22 @@ def test_the_top_of_a_half_turn_that_grows_narrower() -> None:
     assert program.extents[1][1] == pytest.approx(points[:, 1].max(), abs=1e-9)
     assert program.extents[1][1] * 1e3 == pytest.approx(3000.0, abs=0.01)
     assert program.extents[0] == pytest.approx(points.min(axis=0), abs=1e-9)
+
+
+@pytest.mark.parametrize("ends", [(10.0, 10.0), (10.0, 4.0), (3.0, 12.0), (1e-3, 8.0)])
+@pytest.mark.parametrize("sweep", [1.3, -4.0, 11.0])
+def test_the_bend_of_a_spiral_is_the_sagitta_of_a_short_chord(ends, sweep):
+    """Where it is widest: eight times how far a short piece stands off its chord, over its angle squared."""
+    r0, r1 = ends
+
+    def at(t):  # the radius changes evenly with the angle
+        return (r0 + (r1 - r0) * t / sweep) * np.exp(1j * t)
+
+    start, end = (np.array([[z.real, z.imag, 0.0]]) for z in (at(0.0), at(sweep)))
+    found = Arcs(start, end, np.zeros((1, 3)), np.array([17]), np.array([sweep])).bend[0]
+    h = 1e-3 * np.sign(sweep)
+    a = 0.0 if r0 >= r1 else sweep - h
+    chord = at(a + h) - at(a)
+    points = at(a + h * np.linspace(0, 1, 2001)) - at(a)
+    sagitta = np.abs((points * np.conj(chord)).imag).max() / abs(chord)
+    assert found == pytest.approx(8.0 * sagitta / h**2, rel=2e-3)
