@@ -20,6 +20,7 @@ from robomill.arrays import FloatArray, frozen
 from robomill.compiled import In1, In2, InBool1, Out2, OutInt1
 from robomill.kinematics.forward import joint_frames
 from robomill.robot.model import Robot
+from robomill.units import format_si, format_significant, from_si
 
 SQUARE = 1e-9  # rad: how square or parallel axes must be
 CROSSING = 1e-9  # m: how close axes must pass to count as crossing
@@ -203,7 +204,7 @@ def shortfall(arm: Decoupled, T_MT: FloatArray) -> str:
     p = np.array(arm.S) @ (T_MT[:3, 3] - R @ arm.c_w - arm.origin)
     rho = float(np.hypot(p[0], p[1]))
     if rho < abs(arm.h):
-        return f"{abs(arm.h) - rho:.2g} m inside the arm's lateral offset, too close to axis 1"
+        return f"{_metres(abs(arm.h) - rho)} inside the arm's lateral offset, too close to axis 1"
     L_2, L_3 = abs(arm.l_2), abs(arm.l_3)
     x = np.sqrt(max(rho**2 - arm.h**2, 0.0))
     reach = [float(np.hypot(side * x - arm.a_1, p[2])) for side in (1.0, -1.0)]
@@ -216,4 +217,4 @@ def shortfall(arm: Decoupled, T_MT: FloatArray) -> str:
 
 
 def _metres(value: float) -> str:
-    return f"{value:.2f} m" if value >= 0.01 else f"{value * 1e3:.2g} mm"
+    return format_si(value, "m", 2) if value >= 0.01 else f"{format_significant(from_si(value, 'mm'), 2)} mm"

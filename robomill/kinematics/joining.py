@@ -15,10 +15,11 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions
 from robomill.kinematics.transforms import turn_between
 from robomill.robot.model import Robot
+from robomill.units import to_si
 
 # A joint turns easily by so much for a length of path and for a turn of the tool. Away from singular configurations
 # a millimetre takes some tenths of a degree: 1 mm at the end of 0.3 m is 0.2 degrees.
-EASY_PER_LENGTH = float(np.radians(2.0)) * 1e3  # rad/m
+EASY_PER_LENGTH = to_si(2.0, "deg/mm")
 EASY_PER_TURN = 2.0
 # Order in which shoulder and elbow are tried: as at home, other elbow, other shoulder, both.
 ARM_ORDER = np.array([0, 0, 1, 1, 2, 2, 3, 3])

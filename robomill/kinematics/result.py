@@ -12,7 +12,7 @@ from robomill.kinematics.choice import every, overshoot, spun, turn
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, decoupled, shortfall
 from robomill.kinematics.forward import rows
 from robomill.robot.model import Robot
-from robomill.units import format_si
+from robomill.units import format_si, to_si
 
 Mode = Literal["position", "axis", "pose"]
 
@@ -57,7 +57,7 @@ def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
     arm = decoupled(robot)
     if arm is None:
         return f"no configuration within the limits found; the nearest attempt stays {format_si(residual, 'mm')} away"
-    angles = np.radians(np.arange(0.0, 360.0, 10.0)) if result.free_spin else [0.0]
+    angles = to_si(np.arange(0.0, 360.0, 10.0), "deg") if result.free_spin else [0.0]
     poses = np.array([spun(T_MT, float(angle)) for angle in angles])
     missing = [shortfall(arm, T) for T in poses]
     if all(missing):

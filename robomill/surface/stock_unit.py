@@ -8,16 +8,11 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.provenance import Finding
 from robomill.surface.stock import Stock
-from robomill.units import format_si
+from robomill.units import format_si, to_si
 
-TIMES = {
-    1e-3: "millimetres read as metres",
-    1 / 25.4: "millimetres read as inches",
-    0.1: "millimetres read as centimetres",
-    10.0: "centimetres read as millimetres",
-    25.4: "inches read as millimetres",
-    1000.0: "metres read as millimetres",
-}
+NAMES = {"mm": "millimetres", "m": "metres", "in": "inches", "cm": "centimetres"}
+MISREAD = (("mm", "m"), ("mm", "in"), ("mm", "cm"), ("cm", "mm"), ("in", "mm"), ("m", "mm"))  # meant, read as
+TIMES = {to_si(1.0, meant) / to_si(1.0, read): f"{NAMES[meant]} read as {NAMES[read]}" for meant, read in MISREAD}
 HELD, LOST = 0.9, 0.5
 """Shares of the path within the block: so much is a part that is cut, less than this one that is missed."""
 TOO_LARGE = 20.0

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
-from robomill.units import format_si
+from robomill.units import format_si, to_si
 
 CLOSEST = 1e-3
-SMALLEST_ANGLE = math.radians(2.0)
+SMALLEST_ANGLE = to_si(2.0, "deg")
 
 
 @dataclass(frozen=True, eq=False)

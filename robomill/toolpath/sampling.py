@@ -10,11 +10,11 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import PER_MOVE, Toolpath
-from robomill.units import from_si
+from robomill.units import from_si, to_si
 from robomill.vectors import angle_between
 
 MAX_SAMPLES = 5_000_000
-CORNER = math.radians(10.0)
+CORNER = to_si(10.0, "deg")
 
 
 def resample(path: Toolpath, step: float) -> Toolpath:

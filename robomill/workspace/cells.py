@@ -15,7 +15,7 @@ from robomill.workspace.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
+class SolvedGrid:
     """Every cell of a grid at the tool tilt A, B: joints, Jacobian, joint shares, determinant; NaN where not reached.
 
     theta (nx, ny, nz, n), reached (nx, ny, nz), J (nx, ny, nz, 6, n), shares (nx, ny, nz, n, 6) m/N: each joint's part

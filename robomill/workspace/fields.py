@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
 from robomill.robot.model import Robot
-from robomill.workspace.cells import Cells
+from robomill.workspace.cells import SolvedGrid
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import MapQuantity, map_quantity
 from robomill.workspace.solve import solve_grid
@@ -29,7 +29,7 @@ class Field:
 
 
 @dataclass(frozen=True, eq=False)
-class ComplianceField(Cells):
+class ComplianceField(SolvedGrid):
     """The cells of a grid, asked for any quantity by its name."""
 
     def values(self, name: str) -> FloatArray:

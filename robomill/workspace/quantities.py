@@ -17,7 +17,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.robot.model import Robot
 from robomill.units import unit_label
-from robomill.workspace.cells import Cells
+from robomill.workspace.cells import SolvedGrid
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 Colours = Literal["sequential", "diverging", "joints", "reach"]
@@ -38,7 +38,7 @@ class MapQuantity:
     unit: str
     formula: str
     meaning: str
-    law: Callable[[Cells], FloatArray]
+    law: Callable[[SolvedGrid], FloatArray]
     colours: Colours = "sequential"
     rests_on: Basis = "geometry"
 
@@ -217,7 +217,7 @@ def _joint(robot: Robot, c: str, joint: int) -> MapQuantity:
 def _share(robot: Robot, c: str, joint: int) -> MapQuantity:
     k, number = COMPONENTS.index(c), robot.joint_numbers[joint]
 
-    def law(field: Cells) -> FloatArray:
+    def law(field: SolvedGrid) -> FloatArray:
         whole = np.abs(field.shares[..., k]).sum(axis=-1)
         nothing = np.where(field.reached, 0.0, np.nan)
         return np.divide(field.shares[..., joint, k], whole, out=nothing, where=whole > 0)
@@ -245,7 +245,7 @@ def _one_sign(c: str) -> bool:
     return c[0] == c[1]
 
 
-def _largest(field: Cells, size: FloatArray) -> FloatArray:
+def _largest(field: SolvedGrid, size: FloatArray) -> FloatArray:
     """Number (as in the robot's table) of the joint with the largest ``size`` (nx, ny, nz, n)."""
     numbers = np.array(field.robot.joint_numbers, dtype=np.float64)
     return field.where_reached(numbers[np.argmax(size[field.reached], axis=-1)])

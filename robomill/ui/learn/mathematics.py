@@ -56,7 +56,7 @@ def component(pose: PoseReport, row: int, column: int) -> str:
     for i, number in enumerate(pose.robot.joint_numbers):
         if abs(shares[i]) <= max(SMALL, 1e-3 * top):
             continue
-        C = float(pose.robot.C_theta[i] * 1e6)
+        C = float(from_si(pose.robot.C_theta[i], "urad/(N m)"))
         a, b = (float(pose.J[k, i]) for k in (row, column))
         factors = rf"({a:.3f})^2" if row == column else rf"({a:.3f})({b:.3f})"
         terms.append(rf"\underbrace{{{C:.3f}\cdot {factors}}}_{{\text{{joint {number}}}}}")
