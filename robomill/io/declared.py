@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from robomill.errors import RobomillError
 from robomill.io.tables import Table, shown
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, declared_types, quantities
@@ -79,7 +80,17 @@ def from_table(
             known[name] = codec.read(table, name, Around(folder, known))
         table.asked.update(keys)
     table.finish()
-    return cls(**known)
+    try:
+        return cls(**known)
+    except RobomillError as refused:
+        raise _placed(refused, table, cls) from None
+
+
+def _placed(refused: RobomillError, table: Table, cls: type) -> RobomillError:
+    """What a value of ``cls`` refuses, with the table and the key of the field it names before it."""
+    declared = quantities(cls).get(refused.where or "")
+    place = table.where if declared is None else f"{table.where}, {declared.key}"
+    return type(refused)(f"{place}: {refused}", where=refused.where)
 
 
 def to_table(value: Any, codecs: Mapping[Any, Codec] = CODECS) -> dict[str, Any]:

@@ -99,19 +99,8 @@ def _tool(table: Table) -> TableTool:
     assumed, cutter = tuple(table.words("assumed")), None
     if said:
         assumed += tuple(name for name in ASKED if keys[name] not in said and name not in assumed)
-        cutter = _cutter(Table({keys["kind"]: ASSUMED_KIND} | said, table.where, table.error))
+        cutter = from_table(Table({keys["kind"]: ASSUMED_KIND} | said, table.where, table.error), Cutter)
     return from_table(table, TableTool, given={"cutter": cutter, "assumed": assumed})
-
-
-def _cutter(table: Table) -> Cutter:
-    try:
-        return from_table(table, Cutter)
-    except CuttingError as exc:
-        if str(exc).startswith(table.where):
-            raise
-        declared = quantities(Cutter).get(exc.where or "")
-        key = declared.key if declared is not None else ""
-        raise CuttingError(f"{', '.join(filter(None, (table.where, key)))}: {exc}", where=exc.where) from None
 
 
 def _from_tbl(text: str, place: str, unit: str) -> list[TableTool]:

@@ -98,6 +98,11 @@ class SimulationResult:
         lost |= ~np.isfinite(self.F).all(axis=1)
         return np.asarray(lost & self.path.cutting & self.reached)
 
+    @cached_property
+    def missed(self) -> BoolArray:
+        """(m,) points that are not reached, or at feed outside the measured map."""
+        return np.asarray((self.path.cutting & ~self.answered & ~self.not_judged) | ~self.reached)
+
     @property
     def theta(self) -> FloatArray:
         return self.ik.theta

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
+from robomill.simulation.spread import AlloySpread, alloy_spread
 from robomill.surface.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
@@ -90,3 +90,14 @@ def offset_band(result: SimulationResult, spread: AlloySpread, profile: GroovePr
     """(2, q) m: lowest and highest centre offset over the alloy's rows at the profile's stations."""
     every = offset_by_row(result, spread, profile.station, profile.centre_offset)
     return np.stack([every.min(axis=0), every.max(axis=0)])
+
+
+def sideways(result: SimulationResult) -> tuple[float, float, float]:
+    """The groove's centre offset (m, left of the feed +) at mid-cut; its range over the alloy's rows (NaN without)."""
+    middle = 0.5 * float(result.path.s[-1])
+    offset = result.groove(middle).centre_offset
+    spread = alloy_spread(result)
+    if spread is None or len(spread.titles) < 2:
+        return offset, float("nan"), float("nan")
+    every = offset_by_row(result, spread, middle, offset)
+    return offset, float(np.min(every)), float(np.max(every))

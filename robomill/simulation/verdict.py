@@ -77,11 +77,10 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
     said = f"{_said(result, readings, share)}: {WORDS[level]}"
-    missed = _missed(result)
     if result.worst < 0:
         level, said = _nothing(result)
-    elif missed:
-        level, said = "unreached", f"{missed}; of the rest: {said}."
+    elif result.missed.any():
+        level, said = "unreached", f"{missed_words(result)}; of the rest: {said}."
     elif result.not_judged.any() and not deciding:
         level, said = "unjudged", ""
     elif result.not_judged.any() and level != "out":
@@ -89,7 +88,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     else:
         said += "."
     if result.not_judged.any() and level != "missed":
-        said = f"{said} {_count(result)}.".strip()
+        said = f"{said} {unjudged_words(result)}.".strip()
     return Verdict(level, share, said, *readings)
 
 
@@ -150,7 +149,7 @@ def _of(result: Run, reading: Reading) -> str:
     return f"{line} ({format_percent(reading.share)} of {format_si(reading.tolerance, 'mm', 2)})"
 
 
-def _count(result: Run) -> str:
+def unjudged_words(result: Run) -> str:
     """How many points of the cut are not judged, on which lines, and why."""
     lost = result.not_judged
     why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
@@ -160,14 +159,11 @@ def _count(result: Run) -> str:
     return f"{int(lost.sum())} of {total} points of the cut are not judged (line {lines}): {why.rstrip('.')}{more}"
 
 
-def _missed(result: Run) -> str:
-    """How many points have no answer though a model holds there, and why; "" where every one has."""
-    missed = result.path.cutting & ~result.answered & ~result.not_judged | ~result.reached
-    if not missed.any():
-        return ""
+def missed_words(result: Run) -> str:
+    """How many points have no answer though a model holds there, and why."""
+    missed = result.missed
     why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
-    where = named(result.path.block[missed].tolist())
-    return f"{int(missed.sum())} of {len(result.path)} points {why} (line {where})"
+    return f"{int(missed.sum())} of {len(result.path)} points {why} (line {named(result.path.block[missed].tolist())})"
 
 
 def _nothing(result: Run) -> tuple[Level, str]:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
 import streamlit as st
 
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
 from robomill.report.paper import SLOT
-from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.spread import alloy_spread
-from robomill.simulation.stations import offset_by_row
+from robomill.simulation.stations import sideways
 from robomill.ui import cached, pieces
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
 from robomill.units import from_si
@@ -61,17 +58,6 @@ def _computed(label: str, setup: SimulationSetup) -> Claim:
     result = cached.result(setup)
     value, low, high = sideways(result)
     return Claim(label, "computed", value, low, high, note="middle of the groove")
-
-
-def sideways(result: SimulationResult) -> tuple[float, float, float]:
-    """Centre offset at mid-cut with its range over the alloy's rows (NaN without), m."""
-    middle = 0.5 * float(result.path.s[-1])
-    offset = result.groove(middle).centre_offset
-    spread = alloy_spread(result)
-    if spread is None or len(spread.titles) < 2:
-        return offset, float("nan"), float("nan")
-    every = offset_by_row(result, spread, middle, offset)
-    return offset, float(np.min(every)), float(np.max(every))
 
 
 def panel(project: Project, dark: bool) -> None:

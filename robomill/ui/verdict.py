@@ -15,7 +15,7 @@ from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.tooth import LEFT_OUT
-from robomill.simulation.verdict import Reading, Verdict
+from robomill.simulation.verdict import Reading, Verdict, missed_words, unjudged_words
 from robomill.ui import cached, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_count, format_many, format_percent, format_si
@@ -42,7 +42,8 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     if np.isfinite(verdict.share):
         share = f"{format_percent(verdict.share)} of the tolerance used"
     if verdict.level == "unjudged":
-        share = lost_words(result)
+        lost, total = int(result.not_judged.sum()), int(result.path.cutting.sum())
+        share = f"{lost} of {format_count(total, 'point')} of the cut are not judged"
     made = {
         "wall": reading_tile("Wall error", "wall", verdict, before, unit),
         "floor": reading_tile("Floor error", "floor", verdict, before, unit),
@@ -115,12 +116,18 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
 
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
-    """What a gauge would read on the part, for a foreman; what is not known comes first."""
-    verdict = result.verdict
+    """What a gauge would read on the part, for a foreman, and how much of the cut is not judged."""
     if result.worst < 0:
-        return verdict.sentence
-    if verdict.level in ("unreached", "unjudged"):
-        return _sentence(lost_words(result))
+        return result.verdict.sentence
+    if result.verdict.level == "unreached":
+        return _sentence(missed_words(result))
+    known = _known_sentence(result, unit)
+    return f"{known} {_sentence(unjudged_words(result))}" if result.not_judged.any() else known
+
+
+def _known_sentence(result: SimulationResult, unit: str) -> str:
+    """What a gauge would read where it is known."""
+    verdict = result.verdict
     digits = 3 if unit == "in" else 2
     wall, floor = verdict.wall, verdict.floor
     if one_groove(result.path) and wall.worst >= 0 and floor.worst >= 0:
@@ -135,16 +142,6 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
         worst = format_si(result.max_deviation, unit, digits)
         said = [f"no wall or floor is left to measure; the tip is {worst} off at line {result.worst_block}"]
     return _sentence(", ".join(said))
-
-
-def lost_words(result: SimulationResult) -> str:
-    """How much of the cut has no answer, in a few words."""
-    total = int(result.path.cutting.sum())
-    missed = result.path.cutting & ~result.answered & ~result.not_judged
-    if result.verdict.level == "unreached":
-        why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
-        return f"{int(missed.sum())} of {format_count(total, 'point')} of the cut {why}"
-    return f"{int(result.not_judged.sum())} of {format_count(total, 'point')} of the cut are not judged"
 
 
 def _sentence(words: str) -> str:

@@ -220,3 +220,9 @@ def test_the_first_tool_that_cuts_is_the_cutter_where_none_is_named() -> None:
     without = text[: text.index("[cutter]")] + text[text.index("[force]") :]
     assert setup_from_toml(without).cutter == Cutter("ball", 6e-3)
     assert setup_from_toml(text).cutter == setup.cutter
+
+
+def test_a_cutter_that_cannot_be_is_refused_with_its_table_and_key():
+    text = SAMPLE.read_text(encoding="utf-8").replace('kind = "flat"', 'kind = "drill"', 1)
+    with pytest.raises(RobomillError, match=r"^setup.toml, \[cutter\], tip_angle_deg: A drill needs a tip angle"):
+        setup_from_toml(text, "setup.toml", SAMPLE.parent)
