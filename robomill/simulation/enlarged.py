@@ -9,7 +9,6 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.cutting.tooling import Tooling
 from robomill.simulation.result import SimulationResult
-from robomill.surface.deviation import deviation
 from robomill.surface.stock import stock_grid
 from robomill.surface.zmap import ZMap, cut
 
@@ -46,15 +45,12 @@ def enlarged(result: SimulationResult, times: float) -> Enlarged:
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
     ideal, drawn = at(0.0), at(times)
-    if times <= 1.0:
-        reach = 1.3 * float(np.nanmax(result.deviation, initial=0.0)) + 2 * cell
-        return Enlarged(ideal, drawn, deviation(ideal, drawn, reach=reach).error / (times or 1.0), times)
-    error = _true_error(result, ideal, drawn, times)
+    error = _true_error(result, ideal, drawn, times or 1.0)
     return Enlarged(ideal, drawn, np.where(ideal.cut_mask | drawn.cut_mask, error, np.nan), times)
 
 
 def _true_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float) -> FloatArray:
-    """True signed error (nx, ny) m, told by an enlarged picture.
+    """True signed error (nx, ny) m, told by a picture, enlarged or not: one law of colour at every exaggeration.
 
     Where the heights differ by no more than the enlarged path rises or sinks it is an error of height. Where they
     differ by more a wall has moved, by as much as the tip did sideways at the nearest sample: material is left beside
