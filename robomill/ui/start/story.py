@@ -13,15 +13,9 @@ from robomill.report.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-<<<<<<< HEAD
 from robomill.simulation.stations import joint_shares
 from robomill.ui import cached, evidence, pieces
 from robomill.ui.project import Project, View
-=======
-from robomill.simulation.stations import joint_shares, sideways
-from robomill.ui import cached, pieces
-from robomill.ui.project import Project, View, preset_setup
->>>>>>> 6269b5e (The page's headline speaks of what is known and counts what is not; refusals of a class name their table and key)
 from robomill.units import format_percent, format_si, format_times
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
@@ -108,7 +102,6 @@ def beside_the_paper(project: Project) -> None:
     if not evidence.is_papers_path(project):
         pieces.note("The paper's numbers are shown beside robomill's when its milling test is open.")
         return
-<<<<<<< HEAD
     found = pieces.attempt(evidence.claims, project)
     if found is None:
         return
@@ -121,21 +114,6 @@ def beside_the_paper(project: Project) -> None:
             "about " * c.rough + format_si(abs(c.value), project.view.length, digits),
         )
         for c in found
-=======
-    preset = preset_setup(PAPER)
-    rows: list[tuple[str, float, str]] = []
-    for label, setup in (
-        ("robomill, as edited" if project.setup.digest() != preset.digest() else "", project.setup),
-        ("robomill, Table 2", preset),
-        ("robomill, Table 3", preset.replace(robot=preset.robot.with_compliance_set("table_3"))),
-    ):
-        if label:
-            rows.append((label, abs(sideways(cached.result(setup))[0]), "computed"))
-    rows[-1:-1] = [("paper, predicted from Table 2", SLOT.from_table_2, "paper")]
-    rows += [
-        ("paper, predicted from its measured map", SLOT.from_map, "paper"),
-        ("paper, measured on the part (about)", SLOT.measured, "measured"),
->>>>>>> 6269b5e (The page's headline speaks of what is known and counts what is not; refusals of a class name their table and key)
     ]
     pieces.table(rows, " bn")
     pieces.note(
