@@ -193,6 +193,7 @@ def test_suspicions_are_said_aloud(change, words):
 def test_poses_in_the_wrong_unit_are_suspected():
     radians = read_load_tests(HEADER + ROW.replace("10,-20,30,0,15", "0.17,-0.35,0.52,0,0.26"))
     assert any("are these poses in rad" in f.message for f in radians.findings)
+    assert {f.line for f in radians.findings if f.code == "pose-unit"} == {0}, "of the whole file"
     metres = read_load_tests(f"X_mm,Y_mm,Z_mm,A_deg,B_deg,{LOADS}\n0.3,-1.3,0,0,0,0,250,0,0,0.5,0\n")
     assert any("are these poses in m?" in f.message for f in metres.findings)
     assert not any(f.level == "suspicious" for f in read_load_tests(HEADER + ROW).findings)

@@ -78,3 +78,18 @@ def test_a_cavity_is_not_removed():
     left = cut(stock, 2e-4, TOOLS["flat"], p)
     assert left.removed_volume == pytest.approx(2 * R * (0.06 * 0.003 - 0.02 * 0.002), rel=2e-3)
     assert left.z[50, 100] == pytest.approx(-0.003)
+
+
+def test_a_pass_far_off_with_another_axis_changes_nothing():
+    """Two leaning passes, the second under the overhang of the first, with and without an upright one elsewhere."""
+    k = np.array([0.0, np.sin(0.45), np.cos(0.45)])
+    leaning = (along(0.006, 0.006, 2e-3), along(0.009, 0.008, 2e-3))
+    alone, cutting = passes(*leaning)
+    truth = engage(March(STOCK, 2e-4, TOOLS["flat"], alone, np.broadcast_to(k, alone.shape), cutting))
+    mixed, cutting = passes(along(-0.012, 0.001, 2e-3), *leaning)
+    n = len(mixed) - len(alone)
+    axes = np.vstack([np.broadcast_to([0, 0, 1.0], (n, 3)), np.broadcast_to(k, alone.shape)])
+    found = engage(March(STOCK, 2e-4, TOOLS["flat"], mixed, axes, cutting))
+    for name in ("a_p", "a_e", "phi_st", "phi_ex"):
+        np.testing.assert_allclose(getattr(found, name)[n:], getattr(truth, name), atol=1e-9, err_msg=name)
+    assert np.nanmax(truth.a_e[len(alone) // 2 + 2 :]) > 1e-4
