@@ -74,7 +74,7 @@ def parser() -> argparse.ArgumentParser:
     ik.add_argument("--pose", required=True, help='"X,Y,Z,A,B" in mm and degrees')
 
     gcode = verb("gcode", run_gcode, "Read a program: moves, lengths, extents, findings.")
-    gcode.add_argument("file")
+    gcode.add_argument("file", help="a program, or - for what comes in")
     gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
     gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
@@ -190,12 +190,12 @@ def run_gcode(arguments: Any) -> int:
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    file = Path(arguments.file)
-    if _reads_as_apt(file):
-        record = path_record(read_apt(file))
+    source = _program(arguments.file)
+    if _reads_as_apt(source):
+        record = path_record(read_apt(source))
     else:
         tools = read_tool_table(arguments.tools, unit=arguments.tools_unit) if arguments.tools else None
-        program = interpret(file, dialect=arguments.dialect, tools=tools)
+        program = interpret(source, dialect=arguments.dialect, tools=tools)
         record = gcode_report(program)
         record["findings"] += [finding.record() for finding in tools.findings] if tools is not None else []
         if arguments.moves:
@@ -203,11 +203,27 @@ def run_gcode(arguments: Any) -> int:
     return say(arguments, record, gcode_lines(record))
 
 
-def _reads_as_apt(file: Path) -> bool:
+def _program(name: str) -> Path | bytes:
+    """The file of a program; where that is a stream, which can be read once, what comes out of it (``-``: stdin)."""
+    from robomill.toolpath.text import MAX_BYTES
+
+    file = Path("/dev/stdin" if name == "-" else name)
+    try:
+        if file.is_file() or file.is_dir() or not file.exists():
+            return file
+        with file.open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except OSError:
+        return file  # the interpreter says what is wrong with it
+
+
+def _reads_as_apt(source: Path | bytes) -> bool:
     from robomill.toolpath.apt import is_apt
 
+    if isinstance(source, bytes):
+        return is_apt(source)
     try:
-        with file.open("rb") as stream:
+        with source.open("rb") as stream:
             return is_apt(stream.read(200_000))
     except OSError:
         return False  # the interpreter says what is wrong with the file

@@ -8,6 +8,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.stroke_font import strokes
+from robomill.units import from_si
 
 # Half the sides of the plane of the paper's Fig. 8: X_M from -600 to 600 mm, Y_M from -1600 to -1000 mm.
 FIG_8_HALF = (0.6, 0.3)
@@ -62,7 +63,7 @@ def pocket(length: float, width: float, diameter: float, stepover: float = 0.6) 
     """
     a, b = (length - diameter) / 2.0, (width - diameter) / 2.0
     if min(a, b) <= 0:
-        raise ToolpathError(f"Pocket: a cutter of {diameter * 1e3:g} mm does not fit; take a smaller one.")
+        raise ToolpathError(f"Pocket: a cutter of {from_si(diameter, 'mm'):g} mm does not fit; take a smaller one.")
     rings = int(np.ceil(min(a, b) / (stepover * diameter)))
     step = min(a, b) / rings
     u, v = a - min(a, b), b - min(a, b)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -142,6 +144,18 @@ def test_files_are_written(capsys, tmp_path: Path) -> None:
     }
     assert json.loads((tmp_path / "run" / "result.json").read_text())["verdict"] == "ok"
     assert (tmp_path / "run" / "machined.stl").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("name", ["-", "/dev/stdin", "pipe"])
+def test_a_program_that_can_be_read_once(name: str, tmp_path: Path) -> None:
+    text = b"G21 G1 X5 F100\nM2\n"
+    file = tmp_path / "pipe"
+    if name == "pipe":
+        os.mkfifo(file)
+        threading.Thread(target=file.write_bytes, args=(text,), daemon=True).start()
+    command = [sys.executable, "-m", "robomill", "gcode", str(file) if name == "pipe" else name, "--json"]
+    done = subprocess.run(command, input=text if name != "pipe" else b"", capture_output=True, check=True, timeout=60)
+    assert json.loads(done.stdout)["length_mm"]["feed"] == pytest.approx(5.0)
 
 
 def test_gcode(capsys) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.motion_rules import axes
+from robomill.units import from_si
 
 CHORD_ERROR = 1e-6
 """m: no chord lies farther than this from its arc, unless the caller asks for another figure."""
@@ -143,7 +144,7 @@ def chord_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> I
     if total > MAX_POINTS:
         fits = chord_error * (total / MAX_POINTS) ** 2
         raise GCodeError(
-            f"Arcs: a chord error of {chord_error * 1e3:.3g} mm would need {total:.3g} points; "
-            f"at most {MAX_POINTS} fit, so use {fits * 1e3:.2g} mm or more, or fewer turns."
+            f"Arcs: a chord error of {from_si(chord_error, 'mm'):.3g} mm would need {total:.3g} points; "
+            f"at most {MAX_POINTS} fit, so use {from_si(fits, 'mm'):.2g} mm or more, or fewer turns."
         )
     return counts.astype(np.int64)

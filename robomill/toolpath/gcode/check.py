@@ -63,6 +63,8 @@ def check_words(block: Block) -> list[tuple[str, str]]:
     if non_modal == 40:
         if "p" not in words:
             raise block.refuse("G4 needs P, its dwell in seconds.")
+        if words["p"] < 0.0:
+            raise block.refuse(f"G4 has P{words['p']:g}; a dwell cannot be negative.")
         if is_arc(motion):
             raise block.refuse("G4 and an arc on one line both use P; put them on two lines.")
     if non_modal == 530 and motion not in (0, 10):

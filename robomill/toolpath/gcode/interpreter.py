@@ -45,7 +45,7 @@ class Interpreter(OWords):
             if self.pc >= len(self.file.lines):
                 self._end_of_file()
                 return
-            if self.machine.is_plain and self._run_plain():
+            if self.machine.is_plain and not self.file.has_o_word(self.pc) and self._run_plain():
                 continue
             index = self.pc
             self.pc = index + 1

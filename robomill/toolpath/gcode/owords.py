@@ -28,6 +28,10 @@ class File:
     folder: Path | None = None
     structure: flow.Structure | None = None
 
+    def has_o_word(self, index: int) -> bool:
+        """True if a line is known to be one of the structure."""
+        return self.structure is not None and index in self.structure.lines
+
     def o_words(self) -> flow.Structure:
         """The structure, found when it is first needed."""
         if self.structure is None:

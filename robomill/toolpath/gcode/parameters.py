@@ -83,6 +83,7 @@ class Parameters:
         values, settings = array("d", [0.0]) * STACK, array("d", [0.0]) * MAX_SETTINGS
         self._scratch = (values, marks, figures, keys, settings, array("d", [0.0]) * WIDTH, array("d", [0.0]) * 6)
         self._level, self._room, self._provided = 0, 0, 0
+        self._views: Store | None = None
         self._make_room(max(64, 2 * len(names)))
         for name in names:
             self._add(name)
@@ -96,13 +97,16 @@ class Parameters:
     def _store(self) -> Store:
         names: Any = (self._named, self._slots, self._letters, self._ends)
         fields: Any = (self.numbered, *names, *self._scratch, self._level, self._room, self._provided)
+        self._views = None
         return Store(*fields)
 
     def views(self) -> Store:
-        """The same memory, as arrays for compiled code."""
-        fields: Any = self.arrays
-        views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-3])
-        return Store(*views, *fields[-3:])
+        """The same memory, as arrays for compiled code; what holds them has to let go before a name is added."""
+        if self._views is None:
+            fields: Any = self.arrays
+            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-3])
+            self._views = Store(*views, *fields[-3:])
+        return self._views
 
     def _make_room(self, room: int) -> None:
         """Columns for ``room`` names, and half as many slots again and more."""
@@ -122,6 +126,7 @@ class Parameters:
         self._slots[place] = column + 1
 
     def _add(self, name: str) -> None:
+        self._views = None
         if len(self._columns) == self._room:
             self._make_room(2 * self._room)
         self._letters.extend(rules.codes(name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import streamlit as st
@@ -12,6 +11,7 @@ from robomill.arrays import digest
 from robomill.provenance import Finding
 from robomill.toolpath.text import split_lines
 from robomill.ui import session
+from robomill.ui.toolpath.component import component
 from robomill.viz.theme import palette
 
 KEY = "toolpath.program"
@@ -22,14 +22,9 @@ LONGEST = 400
 LEVELS = {"error": "Error", "warning": "Warning", "suspicious": "Look here", "ignored": "Ignored", "info": "Note"}
 
 
-def _read(suffix: str) -> str:
-    return Path(__file__).with_suffix(suffix).read_text(encoding="utf-8")
-
-
-_component = st.components.v2.component(
+_component = component(
     "robomill_program_view",
-    css=_read(".css"),
-    js=_read(".js"),
+    __file__,
     html='<div class="code" tabindex="0" role="listbox" aria-label="Program, line by line"></div>',
 )
 

@@ -8,7 +8,6 @@ changes: after undo, a preset, or an edit of the table.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import streamlit as st
@@ -18,6 +17,7 @@ from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
 from robomill.ui import inputs, session
 from robomill.ui.project import Project
+from robomill.ui.toolpath.component import component
 from robomill.ui.toolpath.sketch_table import in_unit, pad_elements, sketch_from_pad
 from robomill.ui.toolpath.sources import put_sketch
 from robomill.units import UNITS
@@ -27,16 +27,7 @@ MEMORY = "toolpath.pad-memory"
 HEIGHT = 430
 
 
-def _read(suffix: str) -> str:
-    return Path(__file__).with_suffix(suffix).read_text(encoding="utf-8")
-
-
-_component = st.components.v2.component(
-    "robomill_sketch_pad",
-    html=_read(".html"),
-    css=_read(".css"),
-    js=_read(".js"),
-)
+_component = component("robomill_sketch_pad", __file__)
 
 
 @dataclass

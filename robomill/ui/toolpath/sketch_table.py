@@ -41,10 +41,9 @@ def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str, feed_unit:
         depth = sketch.depth if empty(entry["depth"]) else to_si(float(entry["depth"]), unit)
         v_f = sketch.v_f if empty(entry["feed"]) else to_si(float(entry["feed"]), feed_unit)
         try:
-            found.append(Element(shape, _points(entry["points"], old, row, unit), depth, v_f))  # type: ignore[arg-type]
+            found.append(Element(shape, _points(entry["points"], old, unit), depth, v_f))  # type: ignore[arg-type]
         except ToolpathError as exc:
-            text = str(exc)
-            raise ToolpathError(text if text.startswith("Row") else f"Row {row}: {text}", where=f"row {row}") from None
+            raise ToolpathError(f"Row {row}: {exc}", where=f"row {row}") from None
     return sketch.replace(elements=tuple(found))
 
 
@@ -86,10 +85,10 @@ def sketch_from_pad(sent: Mapping[str, Any], sketch: Sketch, unit: str, feed_uni
     return sketch.replace(elements=tuple(found), grid=to_si(float(sent["grid"]), unit))
 
 
-def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
+def _points(typed: Any, old: Element | None, unit: str) -> Any:
     text = "" if empty(typed) else str(typed).strip()
     if not text:
-        raise ToolpathError(f"Row {row}: points are missing; type them as x, y; x, y in {unit_label(unit)}.")
+        raise ToolpathError(f"points are missing; type them as x, y; x, y in {unit_label(unit)}.")
     if _LONG.match(text) and old is not None:
         return old.points
     pairs = [part for part in re.split(r"[;\n]", text) if part.strip()]
@@ -98,7 +97,7 @@ def _points(typed: Any, old: Element | None, row: int, unit: str) -> Any:
         numbers = _NUMBER.findall(pair)
         if len(numbers) != 2 or _NUMBER.sub("", pair).strip(" ,()\t"):
             raise ToolpathError(
-                f"Row {row}: {pair.strip()!r:.40} is not a point; type x, y with a point as decimal mark, "
+                f"{pair.strip()!r:.40} is not a point; type x, y with a point as decimal mark, "
                 "and a semicolon between points."
             )
         found.append([parse_number(n) for n in numbers])

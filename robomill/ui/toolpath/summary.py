@@ -16,7 +16,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.program_view import LEVELS
 from robomill.ui.toolpath.reach import PathReach
-from robomill.units import format_count, format_si
+from robomill.units import format_count, format_si, from_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def duration(seconds: float) -> str:
     """A time as people say it."""
     if seconds < 120:
         return format_si(seconds, "s", 1)
-    minutes = round(seconds / 60)
+    minutes = round(from_si(seconds, "min"))
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
 
 

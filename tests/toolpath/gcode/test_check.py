@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.check import check_words
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.parameters import Parameters
@@ -73,3 +75,8 @@ def test_letters_that_a_line_uses(line):
         block.motion = block.g.get(modal.MOTION, -1)
         unused = [name for name, _ in check_words(block)]
         assert unused == ([] if letter in LINES[line] else [letter]), letter
+
+
+def test_a_dwell_cannot_be_negative():
+    with pytest.raises(GCodeError, match="Line 2: G4 has P-2; a dwell cannot be negative."):
+        interpret("G21\nG4 P-2\nM2\n")
