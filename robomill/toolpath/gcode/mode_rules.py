@@ -106,6 +106,8 @@ def _line(m, w, end, row, line: int) -> bool:
     arc, ends = is_arc(motion), motion == NO_MOTION and not has_axes
     if not arc and (has_centre or not math.isnan(w[R]) or not (ends or motion in (-1, RAPID, LINE))):
         return False
+    if motion == -1 and has_axes:  # words that no motion takes
+        return False
     if not (math.isnan(w[UNITS]) or w[UNITS] == m.unit_code):
         return False
     if not (math.isnan(w[COORDINATES]) or w[COORDINATES] == system_code(m.system)):

@@ -198,3 +198,13 @@ def test_words_of_other_controls_that_move_nothing_are_noted() -> None:
     with pytest.raises(GCodeError, match="Line 2: [$]H") as caught:
         interpret("G21\n$H\n")
     assert caught.value.line == 2
+
+
+def test_turned_axes_are_written_where_one_turns(tmp_path: Path) -> None:
+    """Of a program that turns an axis anywhere, every move says where its axes stand; of others none does."""
+    for words, turned in (("X1 A30", True), ("X1 Y2", False)):
+        program = interpret(f"G21 G90 F100\nG0 Z5\nG1 {words}\nG0 Z9\nM2\n")
+        write_moves_jsonl(program, tmp_path / "moves.jsonl")
+        rows = [json.loads(line) for line in (tmp_path / "moves.jsonl").read_text().splitlines()]
+        told = [row["rotary_deg"] for row in rows if "rotary_deg" in row]
+        assert told == ([pytest.approx([a, 0, 0]) for a in (0, 30, 30)] if turned else [])
