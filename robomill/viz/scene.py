@@ -29,14 +29,12 @@ def load() -> None:
     import pyvista  # noqa: F401
 
 
-def draw(picture: Any) -> bytes:
-    """PNG bytes of a SurfacePicture; anything else draws itself. Without a working OpenGL library the process ends."""
+def draw(picture: SurfacePicture) -> bytes:
+    """PNG bytes of a picture. Without a working OpenGL library the process ends."""
     import io
 
     from PIL import Image
 
-    if not isinstance(picture, SurfacePicture):
-        return bytes(picture.draw())
     stream = io.BytesIO()
     Image.fromarray(image(picture)).save(stream, "PNG", compress_level=3)
     return stream.getvalue()

@@ -12,7 +12,11 @@ from robomill.viz.animation import encode
 def test_a_film_is_written_as_gif_and_as_mp4() -> None:
     from PIL import Image
 
-    frames = [np.full((96, 160, 3), 40 * k, dtype=np.uint8) for k in range(4)]
+    frames = []
+    for k in range(4):
+        stream = io.BytesIO()
+        Image.fromarray(np.full((96, 160, 3), 40 * k, dtype=np.uint8)).save(stream, "PNG")
+        frames.append(stream.getvalue())
     gif = encode(frames, "gif", 4.0)
     opened = Image.open(io.BytesIO(gif))
     assert opened.n_frames >= 4

@@ -14,7 +14,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.stations import nearest_feed
 from robomill.toolpath.source import GCodeSource
-from robomill.viz.animation import FilmEnd, FilmStart, film_frame, film_samples
+from robomill.viz.animation import encode, film_frame, film_samples
 from robomill.viz.posed import posed
 from robomill.viz.views import surface_picture
 from robomill.viz.worker import RenderWorker
@@ -67,11 +67,9 @@ def test_a_film_of_an_arc_in_the_worker(worker: RenderWorker, process_result: Si
     text = "G21 G90 G17\nS12000 M3\nG0 X-12 Y0 Z5\nG1 Z-2 F600\nG2 X12 Y0 I12 J0 F1800\nG0 Z5\nM2\n"
     arc = simulate(process_result.setup.replace(source=GCodeSource(text), step=2e-3))
     shown = enlarged(arc, 10.0)
-    worker.render(FilmStart("arc", picture(arc, size=(320, 192), headroom=30.0)))
-    samples = film_samples(arc, 4)
-    for index in samples:
-        assert worker.render(film_frame(arc, shown, "arc", int(index))) == b""
-    gif = worker.render(FilmEnd("arc", "gif", 4.0))
+    still = picture(arc, size=(320, 192), headroom=30.0)
+    frames = [worker.render(film_frame(arc, shown, still, int(index))) for index in film_samples(arc, 4)]
+    gif = encode(frames, "gif", 4.0)
     from PIL import Image
 
     opened = Image.open(io.BytesIO(gif))

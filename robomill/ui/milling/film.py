@@ -13,7 +13,7 @@ from robomill.ui import cached, inputs, pieces, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
-from robomill.viz.animation import FRAMES, MIME, FilmEnd, FilmStart, Kind, film_frame, film_samples
+from robomill.viz.animation import FRAMES, MIME, Kind, encode, film_frame, film_samples
 from robomill.viz.picture import Camera
 from robomill.viz.views import headroom, surface_picture
 from robomill.viz.worker import RenderWorker
@@ -36,24 +36,19 @@ class Film:
 
     def make(self, job: Job) -> bytes:
         """The film's bytes, by a drawing process of its own; none where it is given up."""
-        worker = RenderWorker()
+        worker, pictures = RenderWorker(), []
         try:
             shown = cached.pictured(self.result.setup, self.times)
-            more: dict[str, Any] = {
-                "camera": self.camera,
-                "dark": self.dark,
-                "size": SIZE,
-                "headroom": headroom(self.result),
-            }
-            worker.render(FilmStart("cut", surface_picture(self.result, shown, **more)))
-            for done, index in enumerate(film_samples(self.result, self.frames), start=1):
+            how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
+            still = surface_picture(self.result, shown, headroom=headroom(self.result), **how)
+            for index in film_samples(self.result, self.frames):
                 if job.stop.is_set():
                     return b""
-                worker.render(film_frame(self.result, shown, "cut", int(index)))
-                job.reach(done / self.frames)
-            return worker.render(FilmEnd("cut", self.kind, max(self.frames / 6.0, 4.0)))
+                pictures.append(worker.render(film_frame(self.result, shown, still, int(index))))
+                job.reach(len(pictures) / self.frames)
         finally:
             worker.close()
+        return encode(pictures, self.kind, max(self.frames / 6.0, 4.0))
 
 
 def panel(result: SimulationResult, dark: bool) -> None:
