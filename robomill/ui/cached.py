@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import streamlit as st
 
+from robomill.arrays import digest
 from robomill.errors import RenderError
 from robomill.kinematics.spin import OverSpin
 from robomill.simulation.enlarged import Enlarged, enlarged
@@ -23,29 +25,55 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 SPIN_SAMPLES = 400
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+def shared(entries: int, key: Callable[..., Any], spinner: str | bool = False) -> Callable[[Function], Function]:
+    """Keeps the last answers of a function for everyone on the server, by the fingerprint of ``key(*arguments)``.
+
+    ``spinner`` are the words while one is made; a refusal is not kept.
+    """
+
+    def keep(function: Function) -> Function:
+        def made(fingerprint: str, _arguments: Any) -> Any:
+            return function(*_arguments)
+
+        # Streamlit knows a cache by the name of its function.
+        made.__module__, made.__qualname__ = function.__module__, function.__qualname__
+        held = st.cache_resource(max_entries=entries, show_spinner=spinner)(made)
+
+        @wraps(function)
+        def asked(*arguments: Any) -> Any:
+            return held(digest(key(*arguments)), arguments)
+
+        return cast("Function", asked)
+
+    return keep
+
+
+def by_setup(setup: SimulationSetup) -> str:
+    """The fingerprint of a set-up."""
+    return setup.digest()
+
+
+def by_result(result: SimulationResult) -> str:
+    """The fingerprint of the set-up that was run."""
+    return result.setup.digest()
+
+
+@shared(24, by_setup)
 def result(setup: SimulationSetup) -> SimulationResult:
     """``simulate(setup)``, from the cache where it was computed before. Raises the refusal of ``simulate``."""
-    return _result(setup.digest(), setup)
-
-
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _result(digest: str, _setup: SimulationSetup) -> SimulationResult:
-    found = simulate(_setup)
+    found = simulate(setup)
     _ = found.verdict  # so that what cannot be judged is refused here, where a page expects it
     return found
 
 
+@shared(16, by_setup)
 def over_spin(setup: SimulationSetup) -> OverSpin:
     """What the free spin about the tool does to the largest deviation, at ``SPIN_SAMPLES`` points of the path."""
-    return _over_spin(setup.digest(), setup)
-
-
-@st.cache_resource(max_entries=16, show_spinner=False)
-def _over_spin(digest: str, _setup: SimulationSetup) -> OverSpin:
-    path = _setup.toolpath
-    return deviation_over_spin(_setup, sampled(path, max(_setup.step, float(path.s[-1]) / SPIN_SAMPLES)))
+    path = setup.toolpath
+    return deviation_over_spin(setup, sampled(path, max(setup.step, float(path.s[-1]) / SPIN_SAMPLES)))
 
 
 def groove(setup: SimulationSetup, station: float) -> GrooveSection:
@@ -53,14 +81,10 @@ def groove(setup: SimulationSetup, station: float) -> GrooveSection:
     return result(setup).groove(station)
 
 
+@shared(16, lambda setup, times: (setup.digest(), times))
 def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     """The surfaces for pictures with the displacement ``times`` times enlarged, from the cache."""
-    return _pictured((setup.digest(), times), result(setup))
-
-
-@st.cache_resource(max_entries=16, show_spinner=False)
-def _pictured(key: tuple[str, float], _result: SimulationResult) -> Enlarged:
-    return enlarged(_result, key[1])
+    return enlarged(result(setup), times)
 
 
 def kept_figure(name: str, key: Sequence[Any], make: Callable[[], go.Figure]) -> go.Figure:

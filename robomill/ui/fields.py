@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-import streamlit as st
 
 from robomill.arrays import FloatArray, digest
 from robomill.compliance.posture import over_posture
@@ -13,6 +12,7 @@ from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
 from robomill.robot.model import Robot
+from robomill.ui.cached import shared
 from robomill.ui.project import MapView
 from robomill.units import format_si
 from robomill.workspace.fields import ComplianceField, compliance_field
@@ -43,7 +43,7 @@ def region(robot: Robot, view: MapView) -> Box:
         return Box(lower, upper)
     if view.region == "paper":
         return Box(*PAPER_BOX)
-    found = _proposed(f"{geometry_key(robot)}/{view.region}", robot, view.region, view.A, view.B)
+    found = _proposed(robot, view.region, view.A, view.B)
     if found is None:
         tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
         raise WorkspaceError(
@@ -53,9 +53,10 @@ def region(robot: Robot, view: MapView) -> Box:
     return found
 
 
+@shared(64, geometry_key)
 def flat(robot: Robot) -> int | None:
     """The axis a planar arm cannot move along, else None."""
-    return _flat(geometry_key(robot), robot)
+    return flat_axis(robot)
 
 
 def normals(robot: Robot) -> dict[str, str]:
@@ -109,9 +110,10 @@ def solid(robot: Robot, box: Box, cells: int | None = None) -> Grid:
     return coarse_grid(robot, box.lower, box.upper, cells)
 
 
+@shared(48, lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B))
 def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
     """Compliance, shares and determinant over ``grid``, from the cache."""
-    return _field(f"{robot.digest()}/{digest((grid.x, grid.y, grid.z, A, B))}", robot, grid, A, B)
+    return compliance_field(robot, grid, A, B)
 
 
 def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
@@ -128,43 +130,24 @@ def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
     return dataclasses.replace(known, robot=robot, shares=scaled_shares(known.shares, factors, axis=-2))
 
 
+@shared(48, lambda robot, T_MT: (robot.digest(), T_MT))
 def postures(robot: Robot, T_MT: FloatArray) -> FloatArray:
     """C (k, 3, 3) m/N of the postures found that hold the tool at T_MT (4, 4); none for arms that have no choice."""
-    return _postures(f"{robot.digest()}/{digest(T_MT)}", robot, T_MT)
+    return over_posture(robot, T_MT)
 
 
+@shared(24, lambda robot, box, z: (robot.digest(), box.lower, box.upper, z))
 def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     """The six lines of Fig. 8 over the region's plane, from the cache."""
-    key = f"{robot.digest()}/{digest((box.lower, box.upper, z))}"
     points = 61 if decoupled(robot) is not None else 13
-    return _lines(key, robot, box, z, points)
+    return border_and_middle_lines(robot, box.lower[:2], box.upper[:2], z, points=points)
 
 
 def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
     """The largest machining box at this tilt, from the cache."""
-    return _proposed(f"{geometry_key(robot)}/largest", robot, "largest", A, B)
+    return _proposed(robot, "largest", A, B)
 
 
-@st.cache_resource(max_entries=48, show_spinner=False)
-def _field(key: str, _robot: Robot, _grid: Grid, _A: float, _B: float) -> ComplianceField:
-    return compliance_field(_robot, _grid, _A, _B)
-
-
-@st.cache_resource(max_entries=64, show_spinner="Looking for the largest box in reach")
-def _proposed(key: str, _robot: Robot, kind: str, A: float, B: float) -> Box | None:
-    return largest_region(_robot, A, B) if kind == "largest" else reach_extent(_robot, A, B)
-
-
-@st.cache_resource(max_entries=64, show_spinner=False)
-def _flat(key: str, _robot: Robot) -> int | None:
-    return flat_axis(_robot)
-
-
-@st.cache_resource(max_entries=48, show_spinner=False)
-def _postures(key: str, _robot: Robot, _T_MT: FloatArray) -> FloatArray:
-    return over_posture(_robot, _T_MT)
-
-
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _lines(key: str, _robot: Robot, _box: Box, _z: float, _points: int) -> list[LineDeviation]:
-    return border_and_middle_lines(_robot, _box.lower[:2], _box.upper[:2], _z, points=_points)
+@shared(64, lambda robot, kind, A, B: (geometry_key(robot), kind, A, B), "Looking for the largest box in reach")
+def _proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
+    return largest_region(robot, A, B) if kind == "largest" else reach_extent(robot, A, B)

@@ -8,7 +8,6 @@ import numpy as np
 import plotly.graph_objects as go
 import streamlit as st
 
-from robomill.arrays import digest
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
@@ -16,6 +15,7 @@ from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.arm import arm
+from robomill.ui.cached import shared
 from robomill.ui.learn import lesson
 from robomill.ui.point import FORCE, InHand, in_hand
 from robomill.ui.project import Point
@@ -29,9 +29,9 @@ from robomill.workspace.quantities import map_quantity
 from robomill.workspace.ray import Ray, ray_through
 
 
-@st.cache_resource(max_entries=16, show_spinner=False)
-def _ray(key: str, _robot: Robot, _point: Point) -> Ray:
-    return ray_through(_robot, _point)
+@shared(16, lambda robot, point: (fields.geometry_key(robot), point))
+def _ray(robot: Robot, point: Point) -> Ray:
+    return ray_through(robot, point)
 
 
 @st.fragment
@@ -39,7 +39,7 @@ def edge(found: InHand) -> None:
     """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it."""
     st.html('<p class="rm-ask">Now drag the arm to the edge of its workspace.</p>')
     robot = found.pose.robot
-    way = _ray(f"{fields.geometry_key(robot)}/{digest(found.point)}", robot, found.point)
+    way = _ray(robot, found.point)
     unit = session.project().view.length
     radius = from_si(way.radius, unit)
     if len(way.p) < 3:

@@ -30,14 +30,10 @@ QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?",
 QUESTION = "milling.question"
 
 
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _spread(digest: str, _result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread | None]:
-    return alloy_spread(_result), peak_force(_result)
-
-
+@cached.shared(24, cached.by_result)
 def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread | None]:
     """Range over the alloy's rows and over a revolution, from the cache."""
-    return _spread(result.setup.digest(), result)
+    return alloy_spread(result), peak_force(result)
 
 
 def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:

@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import IntArray
-from robomill.errors import RobomillError, SurfaceError
+from robomill.errors import RobomillError
 from robomill.io.profiles import MeasuredProfile, read_profile
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
@@ -16,6 +16,7 @@ from robomill.simulation.stations import is_straight, offset_band
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import inputs, pieces, session
+from robomill.ui.cached import by_result, shared
 from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
@@ -26,16 +27,12 @@ MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
 
 
-@st.cache_resource(max_entries=16, show_spinner="Measuring the groove along its length")
-def _profile(digest: str, _result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
-    count = STATIONS if len(_result.path) <= MANY_SAMPLES else FEW_STATIONS
-    sections = _result.grooves(np.linspace(0.02, 0.98, count) * float(_result.path.s[-1]))
-    return groove_profile(sections), np.array([s.block for s in sections])
-
-
+@shared(16, by_result, "Measuring the groove along its length")
 def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
     """The groove at its stations (fewer on a very long program) and the line of each, from the cache."""
-    return _profile(result.setup.digest(), result)
+    count = STATIONS if len(result.path) <= MANY_SAMPLES else FEW_STATIONS
+    sections = result.grooves(np.linspace(0.02, 0.98, count) * float(result.path.s[-1]))
+    return groove_profile(sections), np.array([s.block for s in sections])
 
 
 def section_facts(groove: GrooveSection | None) -> None:
@@ -173,10 +170,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
 
 
 def _take(data: bytes, name: str) -> None:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SurfaceError(f"{name}: this is not a text file; expected a CSV table.") from None
+    text = inputs.decoded(data, name, "a CSV table")
     # Without a line break the text could be taken for the name of a file.
     session.keep(MEASURED, read_profile(text + "\n", name=name))
 

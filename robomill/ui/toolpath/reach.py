@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import streamlit as st
 
-from robomill.arrays import BoolArray, FloatArray, digest
+from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import translation
 from robomill.robot.model import Robot
@@ -16,6 +15,7 @@ from robomill.simulation.run import configurations
 from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.ui.cached import by_setup, shared
 from robomill.units import from_si
 
 MAX_SAMPLES = 400_000
@@ -38,17 +38,13 @@ class PathReach:
         return np.asarray(self.path.cutting & ~self.reached)
 
 
+@shared(12, by_setup)
 def path_reach(setup: SimulationSetup) -> PathReach:
     """The configurations of a run along the path; raises the refusal of reading it."""
-    return _path_reach(setup.digest(), setup)
-
-
-@st.cache_resource(max_entries=12, show_spinner=False)
-def _path_reach(key: str, _setup: SimulationSetup) -> PathReach:
-    whole = _setup.toolpath
-    path = sampled(whole, max(_setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
-    ik = configurations(_setup, path)
-    limits = _setup.robot.limits
+    whole = setup.toolpath
+    path = sampled(whole, max(setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
+    ik = configurations(setup, path)
+    limits = setup.robot.limits
     room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
     lost = np.flatnonzero(path.cutting & ~ik.reached)
     return PathReach(path, ik.reached, room, str(ik.reason(int(lost[0]))) if len(lost) else "")
@@ -65,8 +61,7 @@ def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] |
         low, high = (
             side * BOARD_HALF * 2.0 ** max(0.0, np.ceil(np.log2(3.0 * extent / BOARD_HALF))) for side in (-1.0, 1.0)
         )
-    key = digest((setup.robot.digest(), setup.T_MW, low, high, round(z, 6)))
-    runs = _board_runs(key, setup.robot, setup.T_MW, low, high, z)
+    runs = _board_runs(setup.robot, setup.T_MW, low, high, round(z, 6))
     nx, ny = BOARD_CELLS
     return {
         "x": float(from_si(low, unit)),
@@ -77,14 +72,14 @@ def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] |
     }
 
 
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _board_runs(key: str, _robot: Robot, _T_MW: FloatArray, low: float, high: float, z: float) -> list[list[int]]:
+@shared(24, lambda robot, *place: (robot.digest(), *place))
+def _board_runs(robot: Robot, T_MW: FloatArray, low: float, high: float, z: float) -> list[list[int]]:
     nx, ny = BOARD_CELLS
     x = low + (np.arange(nx) + 0.5) * (high - low) / nx
     y = low + (np.arange(ny) + 0.5) * (high - low) / ny
     X, Y = np.meshgrid(x, y)
     T_WT = translation(np.stack([X, Y, np.full_like(X, z)], axis=-1))
-    far = ~inverse_kinematics(_robot, _T_MW @ T_WT).reached
+    far = ~inverse_kinematics(robot, T_MW @ T_WT).reached
     edges = np.diff(np.pad(far.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     rows, starts = np.nonzero(edges == 1)
     ends = np.nonzero(edges == -1)[1]
