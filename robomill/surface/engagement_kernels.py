@@ -21,9 +21,9 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import CHAMFER, Shape
+from robomill.surface.envelope_kernels import Shape
 from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.step_kernels import END, FLANK, GAUSS, NOSE, Piece, Step, edge_sums, on_profile, stretch_ends
+from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, piece_between, stretch_ends
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 HALVINGS = 8  # of the angle across which the engaged length jumps
@@ -87,10 +87,7 @@ def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int
     length = ends[1] - ends[0]
     if length <= 0.0:
         return
-    _, low, sine, cosine = on_profile(shape, stretch, ends[0])
-    r, high, sine_end, cosine_end = on_profile(shape, stretch, ends[1])
-    arc = stretch == NOSE and shape.kind != CHAMFER
-    piece = Piece(arc, ends[0], ends[1], sine, cosine, sine_end, cosine_end)
+    piece = piece_between(shape, stretch, ends[0], ends[1])
     for n in range(len(room.exponents)):
         faces = (step.across * row[SINE], step.along)
         plain, up, lying = edge_sums(shape, piece, faces, room.exponents[n])
@@ -98,13 +95,13 @@ def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int
         row[SUMS + 3 * n + 1] += up
         row[SUMS + 3 * n + 2] += lying
     row[LENGTH] += length
-    row[WIDEST] = max(row[WIDEST], r)
+    row[WIDEST] = max(row[WIDEST], piece.radius)
     if stretch == END:
         row[FACE] += length
         return
-    row[HEIGHT] += high - low
-    row[LOWEST] = min(row[LOWEST], low)
-    row[HIGHEST] = max(row[HIGHEST], high)
+    row[HEIGHT] += piece.high - piece.low
+    row[LOWEST] = min(row[LOWEST], piece.low)
+    row[HIGHEST] = max(row[HIGHEST], piece.high)
 
 
 @part

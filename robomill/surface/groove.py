@@ -18,7 +18,7 @@ from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock, stock_span
-from robomill.surface.swept import CutPath, Station, SweptPath, station_at, swept_path
+from robomill.surface.swept import CutPath, Heights, Station, SweptPath, station_at, swept_path
 from robomill.surface.trace import trace_groove
 
 
@@ -33,7 +33,7 @@ class GrooveSection:
     centre_offset  machined middle between the walls minus the ideal one, positive along the feed-normal (left)
     floor_error    machined floor minus ideal floor at the tool axis, positive: material left
     wall_left, wall_right            positions w of the machined walls at the top; NaN where the stock's side is open
-    wall_left_ideal, wall_right_ideal
+    wall_left_ideal, wall_right_ideal    of the same pass, even where what is told leaves no material between two
     wall_left_angle, wall_right_angle    from the floor's side of the horizontal: 90 degrees is upright, more opens up
     wall_left_straightness, wall_right_straightness   range about the best straight line
     floor, floor_tilt                height at the tool axis; slope of the machined floor across the groove
@@ -70,8 +70,9 @@ def groove_sections(
 ) -> tuple[GrooveSection, ...]:
     """Sections of the groove at path lengths ``stations`` (q,) m of the commanded path; see GrooveSection.
 
-    The groove is the cut region around the tool, between the first material on either side; its walls come from
-    all feed moves of the path, so a neighbouring pass that merges with it moves its wall.
+    The groove is the cut region around the tool, between the first material on either side. A wall that the pass itself
+    left is measured from the one it was told to leave; where another pass took away what should have stayed, that wall
+    has no ideal, and the middle is NaN.
     """
     ideal = as_floats(path.p, "commanded points", (None, 3), error=SurfaceError)
     moved = as_floats(path.p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
@@ -82,31 +83,52 @@ def groove_sections(
     known = np.where(np.isfinite(moved).all(axis=1, keepdims=True), ideal, np.nan)
     told, left, sure = (swept_path(stock, tooling, p, path.k, used) for p in (ideal, moved, known))
     paths = told, left, sure
-    found = []
+    s, found = np.cumsum(np.append(0.0, np.where(used[1:], np.linalg.norm(np.diff(ideal, axis=0), axis=1), 0.0))), []
     for station in np.atleast_1d(np.asarray(stations, dtype=float)):
         place = station_at(ideal, used, float(station))
         i, f = place.entry, place.fraction
         tip = moved[i - 1] + f * (moved[i] - moved[i - 1])
         made = tooling.cutters[tooling.of_step[i]]
-        at = _Tool(place, int(lines[i]), tip, made, bool(unjudged[[i - 1, i]].any()))
+        near = slice(*np.searchsorted(s, float(station) + np.array([-OWN, OWN]) * made.diameter) - [1, -1])
+        near = slice(max(near.start, 0), near.stop)
+        k = path.k if path.k is None or np.ndim(path.k) == 1 else path.k[near]
+        some = Tooling(tooling.cutters, tooling.of_step[near])
+        own = tuple(swept_path(stock, some, p[near], k, used[near]) for p in (ideal, moved))
+        at = _Tool(place, int(lines[i]), tip, made, bool(unjudged[[i - 1, i]].any()), own)
         found.append(_section(paths, at, bool(unjudged.any()), samples))
     return tuple(found)
 
 
+OWN = 1.5  # cutter diameters of the path, before and after a station, whose walls are its own
 MANY_PASSES = 1.2  # cutter diameters: a cut wider than this was made by several passes
 WIDE = "wider than the cutter: several passes made it, so look at the walls; the middle and the tilt say little"
+NEIGHBOUR = "another pass took away a wall that this one was told to leave, so the middle is not measured"
+SAME, LIKE = 1e-7, 0.25  # m, and of the radius: walls that stand so close are one, or one as told and as left
 ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 
 
 @dataclass(frozen=True)
 class _Tool:
-    """The tool at a station: where it was told to be, in which source line, where its ``tip`` is, its ``cutter``."""
+    """The tool at a station: where it was told to be, in which source line, where its ``tip`` is, its ``cutter``, and
+    what its path ``own`` close by leaves, as told and as it went."""
 
     place: Station
     block: int
     tip: FloatArray
     cutter: Cutter
     not_judged: bool
+    own: tuple[SweptPath, ...]
+
+    def own_walls(self, line: tuple[float, float, float], skin: Heights) -> tuple[FloatArray, FloatArray]:
+        """Its own walls (left, right) m, told and as left; ``line``: where it is (shift), and the stock's sides."""
+        shift, low, high = line
+        walls = []
+        for path, middle in zip(self.own, (0.0, shift), strict=True):
+            assert self.place.normal is not None
+            height = path.heights(self.place.centre, self.place.normal, high - low)
+            found = trace_groove(height, middle, low, high, self.cutter.radius, skin)
+            walls.append(np.full(2, np.nan) if found is None else np.array([found.left, found.right]))
+        return walls[0], walls[1]
 
 
 def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_not: bool, samples: int) -> GrooveSection:
@@ -135,6 +157,12 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_no
         return _empty(place, block, f"a pass that is {what} goes through here, so what it leaves is not known")
     if machined is None:
         return _empty(place, block, "the deflected tool cuts nothing here")
+    told_walls, left_walls = at.own_walls((shift, low, high), skin)
+    walls = np.array([machined.left, machined.right])
+    ideal_walls = np.where(np.abs(walls - left_walls) < SAME, told_walls, [ideal.left, ideal.right])
+    ideal_walls[np.abs(walls - ideal_walls) > LIKE * cutter.radius + abs(shift)] = np.nan
+    taken = bool((np.isnan(ideal_walls) & ~np.isnan(walls)).any())
+    wide = NEIGHBOUR if taken else WIDE if walls[0] - walls[1] > MANY_PASSES * cutter.diameter else ""
     return GrooveSection(
         station=place.station,
         block=block,
@@ -142,12 +170,12 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_no
         normal=frozen(place.normal),
         width=machined.left - machined.right,
         depth=machined.top - machined.floor,
-        centre_offset=0.5 * (machined.left + machined.right) - 0.5 * (ideal.left + ideal.right),
+        centre_offset=float(walls.mean() - ideal_walls.mean()),
         floor_error=machined.floor - ideal.floor,
         wall_left=machined.left,
         wall_right=machined.right,
-        wall_left_ideal=ideal.left,
-        wall_right_ideal=ideal.right,
+        wall_left_ideal=float(ideal_walls[0]),
+        wall_right_ideal=float(ideal_walls[1]),
         wall_left_angle=machined.left_angle,
         wall_right_angle=machined.right_angle,
         wall_left_straightness=machined.left_straightness,
@@ -157,7 +185,7 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_no
         w=frozen(w),
         z_ideal=frozen(ideal.height(w)),
         z_machined=frozen(machined.height(w)),
-        note=WIDE if ideal.left - ideal.right > MANY_PASSES * cutter.diameter else "",
+        note=wide,
     )
 
 

@@ -38,11 +38,15 @@ class Step(NamedTuple):
 
 class Piece(NamedTuple):
     """A piece of the profile, from a place on one of its stretches to another: whether it is of a round nose, how far
-    along it the two are (m), and the sine and cosine of their normals' angle from the axis."""
+    along it the two are and how high (m), its radius at the end, and the sine and cosine of the normals' angle there.
+    """
 
     arc: bool
     start: float
     end: float
+    low: float
+    high: float
+    radius: float
     sine: float
     cosine: float
     sine_end: float
@@ -92,6 +96,15 @@ def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, floa
         return shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant
     sine, cosine = math.sin(s / shape.rc), math.cos(s / shape.rc)
     return shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine
+
+
+@part
+def piece_between(shape: Shape, stretch: int, start: float, end: float) -> Piece:
+    """The piece of a stretch of the profile between two places on it, m."""
+    _, low, sine, cosine = on_profile(shape, stretch, start)
+    radius, high, sine_end, cosine_end = on_profile(shape, stretch, end)
+    arc = stretch == NOSE and shape.kind != CHAMFER
+    return Piece(arc, start, end, low, high, radius, sine, cosine, sine_end, cosine_end)
 
 
 @part

@@ -32,9 +32,11 @@ class ZMap:
     z_stock               height of the stock before the cut: one number for a block, (nx, ny) for a mesh
     bottom                the stock's lower face, m
     overhang              number of cells where a tilted cutter left material over a void, which z cannot show
+    leaning               whether a tilted cutter cut: the places of its walls are not kept
     skipped               feed moves left out because one of their ends is not a number (not reached)
     below                 True where the cutter would have gone through the bottom
     void                  m^3 of no material between the stock's top and what was cut (cavities, undercuts of a mesh)
+    filled                m^3 of no material below what is seen from above, which z cannot show
     """
 
     x: FloatArray
@@ -48,6 +50,8 @@ class ZMap:
     skipped: int = 0
     below: bool = False
     void: float = 0.0
+    filled: float = 0.0
+    leaning: bool = False
 
     @property
     def dx(self) -> float:
@@ -91,12 +95,24 @@ class ZMap:
                 " what is seen from above, not the void below it."
             )
             found.append(Finding("warning", 0, text, code="undercut"))
+        if self.leaning:
+            text = (
+                "Surface: where a tilted cutter cut, walls slope over up to a cell in pictures and exported solids; "
+                "sections are exact."
+            )
+            found.append(Finding("info", 0, text, code="walls-to-a-cell"))
         if self.skipped:
             text = f"Surface: {self.skipped} feed moves have an end that is not reached and were not cut."
             found.append(Finding("warning", 0, text, code="not-cut"))
         if self.below:
             text = "Surface: the cutter goes through the bottom of the stock; heights end at its lower face."
             found.append(Finding("warning", 0, text, code="through-bottom"))
+        if self.filled > self.dx * self.dy * self.cell:
+            text = (
+                f"Surface: the stock has voids of {format_si(self.filled, 'mm3', 0)} below what is seen from above; a "
+                "height map has none, so pictures and exported solids are filled there."
+            )
+            found.append(Finding("warning", 0, text, code="void-filled"))
         return tuple(found)
 
 
@@ -122,12 +138,12 @@ def cut(
     z_stock = stock_heights(stock, x, y)
     z = np.empty((cells.nx, cells.ny))
     z[...] = z_stock
-    ends, edge, overhang, skipped = np.zeros((0, 6)), NO_EDGE, 0, 0
+    ends, edge, overhang, skipped, leans = np.zeros((0, 6)), NO_EDGE, 0, 0, False
     for each, made in Tooling.of(cutter, len(points)).steps_of_each():
         moves, lost = feed_passes(points, k, moves_at_feed(points, cutting) & made)
         ends, skipped = np.vstack([ends, moves.ends]), skipped + lost
-        edge, over = _cut_with(each, moves, (z, cells, cell), edge)
-        overhang += over
+        edge, over, tilted = _cut_with(each, moves, (z, cells, cell), edge)
+        overhang, leans = overhang + over, leans or tilted
     if must_touch and len(ends) + skipped == 0:
         raise SurfaceError("Cut: the path has no feed move; it needs at least two points with a cut between them.")
     bottom = float(stock.lower[2])
@@ -136,39 +152,42 @@ def cut(
         np.maximum(z, bottom, out=z)
     edge = EdgeCells(frozen(edge.index, np.int64), frozen(np.maximum(edge.mean, bottom)), frozen(edge.wall))
     z.flags.writeable = False
-    result = ZMap(x, y, cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below)
+    result = ZMap(x, y, cell, z, edge, frozen(z_stock), bottom, overhang, skipped, below, leaning=leans)
     if stock.triangles is not None:
-        result = replace(result, void=_void(result, stock.triangles))
+        void, filled = _voids(result, stock.triangles)
+        result = replace(result, void=void, filled=filled)
     if must_touch and result.removed_volume <= 0.0:
         raise SurfaceError(_misses(stock, ends))
     return result
 
 
-def _void(surface: ZMap, triangles: FloatArray) -> float:
-    """Volume (m^3) under the old top and above the new one where the mesh holds nothing: every other piece of a line
-    downwards, from its top, is material."""
-    mean = surface.mean
-    i, j = np.nonzero(mean < surface.z_stock)
-    if len(i) == 0:
-        return 0.0
-    rows, columns = slice(i.min(), i.max() + 1), slice(j.min(), j.max() + 1)
-    new, old = mean[rows, columns].reshape(-1), surface.z_stock[rows, columns].reshape(-1)
-    cell, height = crossings(triangles, surface.x[rows], surface.y[columns])
+def _voids(surface: ZMap, triangles: FloatArray) -> tuple[float, float]:
+    """Volumes (m^3) between the old top and the new one, and below the new one, where the mesh holds nothing: every
+    other piece of a line downwards, from its top, is material."""
+    new, old = surface.mean.reshape(-1), surface.z_stock.reshape(-1)
+    cell, height = crossings(triangles, surface.x, surface.y)
     order = np.lexsort((height, cell))
     cell, height = cell[order], height[order]
     count = np.bincount(cell, minlength=len(new))
     from_top = np.cumsum(count)[cell] - 1 - np.arange(len(cell))
-    above = np.maximum(height - new[cell], 0.0) * np.where(from_top % 2 == 0, 1.0, -1.0)
-    metal = np.bincount(cell, above, minlength=len(new))
-    closed = (count > 0) & (count % 2 == 0)
-    return float(np.sum(np.maximum(old - new, 0.0) - metal, where=closed)) * surface.dx * surface.dy
+    sign, closed = np.where(from_top % 2 == 0, 1.0, -1.0), (count > 0) & (count % 2 == 0)
+
+    def metal(above: FloatArray) -> FloatArray:
+        thick = np.bincount(cell, np.maximum(height - above[cell], 0.0) * sign, minlength=len(new))
+        return np.asarray(thick, dtype=np.float64)
+
+    over = metal(new)
+    below = metal(np.full(len(new), surface.bottom)) - over
+    void = np.sum(np.maximum(old - new, 0.0) - over, where=closed & (new < old))
+    filled = np.sum(new - surface.bottom - below, where=closed)
+    return float(void) * surface.dx * surface.dy, float(filled) * surface.dx * surface.dy
 
 
 def _cut_with(
     cutter: Cutter, moves: Passes, grid: tuple[FloatArray, Cells, float], edge: EdgeCells
-) -> tuple[EdgeCells, int]:
+) -> tuple[EdgeCells, int, bool]:
     """Cut the moves of one cutter into the heights of ``grid``: the cells at walls, after those of the cutters before,
-    and how many cells are undercut."""
+    how many cells are undercut, and whether the cutter leans."""
     z, cells, cell = grid
     flat = z.reshape(-1)
     ends, axes = at_one_axis(moves, cutter.radius, cell)
@@ -185,7 +204,7 @@ def _cut_with(
         overhang = int(cut_tilted(z, cells, cutter, (ends[leans], axes[leans])).sum())
         kept = flat[edge.index] == before
         edge = EdgeCells(edge.index[kept], edge.mean[kept], edge.wall[kept])
-    return edge, overhang
+    return edge, overhang, bool(leans.any())
 
 
 def _joined(old: EdgeCells, kept: BoolArray, fresh: EdgeCells) -> EdgeCells:

@@ -91,13 +91,15 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
         arrow(fig, (beside, middle), (beside, y), p.text, **HEAD)
     _text(fig, (beside, middle), _depth(d), p.text, dark)
 
+    _text(fig, (centre, d.floor + 0.42 * step), _floor(d), p.warm, dark)
+    if np.isnan(d.centre_offset):
+        return
     under, side, reach = d.floor - 0.42 * step, 1.0 if d.centre_offset >= 0 else -1.0, 0.55 * step
     for x, colour in ((ideal_centre, p.accent), (centre, p.warm)):
         _line(fig, (x, d.floor - 0.62 * step), (x, d.top + 0.45 * step), colour, "dashdot")
     arrow(fig, (centre + side * reach, under), (centre, under), p.warm, **HEAD)
     arrow(fig, (ideal_centre - side * reach, under), (ideal_centre, under), p.warm, **HEAD)
     _text(fig, (centre + side * reach, under), _off(d), p.warm, dark, "right" if side > 0 else "left")
-    _text(fig, (centre, d.floor + 0.42 * step), _floor(d), p.warm, dark)
 
 
 def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:

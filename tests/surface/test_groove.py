@@ -180,3 +180,34 @@ def test_a_path_without_feed_has_no_groove():
     stock, p, _, _ = slot(0.0)
     with pytest.raises(SurfaceError, match="no groove to measure"):
         groove_section(stock, FLAT, p, p, np.zeros(len(p), bool), None, 0.0)
+
+
+@pytest.mark.parametrize(("first", "second"), [(14e-6, 155e-6), (-0.2e-3, 0.1e-3)])
+def test_of_two_slots_that_touch_each_is_measured_from_its_own_track(first, second):
+    """8 mm slots at y = 0 and 8 mm, pushed apart: as told nothing stands between them, a thin rib does."""
+    x = np.arange(-0.03, 0.0301, 1e-3)
+    p = np.vstack([np.column_stack([x, 0 * x + y, 0 * x - 0.002]) for y in (0.0, 0.008)])
+    cutting = np.tile(np.arange(len(x)) > 0, 2)
+    aside = np.repeat([first, second], len(x))[:, None] * [0.0, 1.0, 0.0]
+    stock = Stock((-0.02, -0.015, -0.01), (0.02, 0.015, 0.0))
+    for section, pushed in zip(
+        groove_sections(stock, FLAT, CutPath(p, p + aside, cutting), [0.03, 0.09]), (first, second), strict=True
+    ):
+        assert section.centre_offset == pytest.approx(pushed, abs=1e-11)
+        assert section.width == pytest.approx(0.008, abs=1e-11)
+        assert section.note == ""
+
+
+def test_where_another_pass_took_away_a_wall_that_should_stay_the_middle_is_not_known():
+    """A rib of 0.1 mm is told to stay between two slots; pushed together they leave none."""
+    x = np.arange(-0.03, 0.0301, 1e-3)
+    p = np.vstack([np.column_stack([x, 0 * x + y, 0 * x - 0.002]) for y in (0.0, 0.0081)])
+    cutting = np.tile(np.arange(len(x)) > 0, 2)
+    aside = np.repeat([1e-4, -2e-4], len(x))[:, None] * [0.0, 1.0, 0.0]
+    stock = Stock((-0.02, -0.015, -0.01), (0.02, 0.015, 0.0))
+    one, other = groove_sections(stock, FLAT, CutPath(p, p + aside, cutting), [0.03, 0.09])
+    for section in (one, other):
+        assert np.isnan(section.centre_offset)
+        assert "another pass" in section.note
+    assert one.wall_right - one.wall_right_ideal == pytest.approx(1e-4, abs=1e-11)
+    assert other.wall_left - other.wall_left_ideal == pytest.approx(-2e-4, abs=1e-11)

@@ -78,6 +78,9 @@ def test_a_cavity_is_not_removed():
     left = cut(stock, 2e-4, TOOLS["flat"], p)
     assert left.removed_volume == pytest.approx(2 * R * (0.06 * 0.003 - 0.02 * 0.002), rel=2e-3)
     assert left.z[50, 100] == pytest.approx(-0.003)
+    # what is left of the air, which a height map has filled: all of it but the 8 mm of the slot down to -3 mm
+    assert left.filled == pytest.approx(0.02 * (0.02 * 0.005 - 2 * R * 0.002), rel=2e-2)
+    assert [note.code for note in left.notes()] == ["void-filled"]
 
 
 def test_a_pass_far_off_with_another_axis_changes_nothing():

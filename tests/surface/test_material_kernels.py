@@ -8,12 +8,10 @@ import pytest
 from robomill.cutting.tool import Cutter
 from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.material_kernels import (
-    AIR,
     AXIS,
     ENDS,
+    FAR,
     RUN,
-    SOLID,
-    UNSURE,
     Block,
     Columns,
     cell_of,
@@ -48,12 +46,12 @@ def columns(heights, slack):
 
 
 def test_a_height_in_a_column_of_layers():
-    """Two layers from 5 to 3 and from 1 to -2: solid inside, air outside, not sure within the slack of an end."""
+    """Two layers from 5 to 3 and from 1 to -2: the way to the nearest end, positive inside."""
     made = columns(np.array([[[5.0, 3, 1, -2, -np.inf, np.inf]]]), 0.1)
     for z in np.arange(-3, 6.5, 0.05) + 0.013:
-        near = min(abs(z - end) for end in (5, 3, 1, -2)) < 0.1
         inside = 3 < z < 5 or -2 < z < 1
-        assert in_column(made, 0, 0, z) == (UNSURE if near else SOLID if inside else AIR)
+        near = min(abs(z - end) for end in (5, 3, 1, -2))
+        assert in_column(made, 0, 0, z) == pytest.approx(near if inside else -near)
 
 
 def test_cells_are_found_by_their_centres():
@@ -71,12 +69,18 @@ def test_cells_are_found_by_their_centres():
 
 
 def test_cells_must_agree():
+    """The least of the four, ``FAR`` at most, where all lie on one side by more than the slack; else 0."""
     rng = np.random.default_rng(5)
-    heights = np.sort(rng.uniform(0, 6, (2, 2, 4)), axis=2)[..., ::-1].copy()
-    made = columns(heights, 0.05)
-    for z in rng.uniform(-0.5, 6.5, 300):
-        said = {in_column(made, i, j, z) for i in (0, 1) for j in (0, 1)}
-        assert looked_up(made, (0, 1, 0, 1), z) == (said.pop() if len(said) == 1 else UNSURE)
+    heights = 1e-3 * np.sort(rng.uniform(0, 6, (2, 2, 4)), axis=2)[..., ::-1].copy()
+    made = columns(heights, 5e-5)
+    said = set()
+    for z in 1e-3 * rng.uniform(-0.5, 6.5, 300):
+        deep = np.array([in_column(made, i, j, z) for i in (0, 1) for j in (0, 1)])
+        sure = (deep > made.slack).all() or (deep < -made.slack).all()
+        truth = np.sign(deep[0]) * min(np.abs(deep).min(), FAR) if sure else 0.0
+        assert looked_up(made, (0, 1, 0, 1), z) == pytest.approx(truth, abs=1e-15)
+        said.add(np.sign(truth))
+    assert said == {-1.0, 0.0, 1.0}
 
 
 CUTTERS = [

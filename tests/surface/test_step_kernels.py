@@ -8,7 +8,16 @@ from scipy.integrate import quad
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.envelope_kernels import cutter_shape
-from robomill.surface.step_kernels import END, FLANK, NOSE, edge_sums, on_profile, step_between, stretch_ends
+from robomill.surface.step_kernels import (
+    END,
+    FLANK,
+    NOSE,
+    edge_sums,
+    on_profile,
+    piece_between,
+    step_between,
+    stretch_ends,
+)
 
 CUTTERS = {
     "flat": Cutter("flat", 8e-3),
@@ -71,7 +80,7 @@ def test_an_edge_adds_up_to_its_integral(name, exponent):
                 return (facing if exponent == 1.0 else max(facing, 0.0) ** exponent), sine, cosine
 
             truth = [quad(lambda s, w=w: load(s)[0] * (1.0, *load(s)[1:])[w], *ends, epsabs=1e-14)[0] for w in range(3)]
-            found = edge_sums(shape, stretch, ends, faces, exponent)
+            found = edge_sums(shape, piece_between(shape, stretch, *ends), faces, exponent)
             np.testing.assert_allclose(found, truth, rtol=2e-4, atol=1e-4 * abs(truth[0]))
 
 

@@ -37,6 +37,17 @@ def test_the_unit_that_would_fit_is_named_with_both_extents(times: float, said: 
         assert "101.6 x 76.2 x 25.4 mm" in doubt
 
 
+def test_a_path_that_overruns_the_block_is_enough_where_hardly_any_of_it_meets_the_block_as_it_is() -> None:
+    """A slot from -200 to 200 mm through 300 x 200 x 40 mm, said in inches: three quarters of it would be held."""
+    size = np.array([0.3, 0.2, 0.04])
+    across = np.array([[-0.2, 0.0, -2e-3], [0.2, 0.0, -2e-3]])
+    for times, said in ((1 / 25.4, "inches read as millimetres"), (1.0, "")):
+        half = 0.5 * times * size
+        found = unit_doubt(Stock((-half[0], -half[1], -2 * half[2]), (half[0], half[1], 0.0)), across, CUTTING[:2])
+        assert said in "".join(finding.message for finding in found)
+        assert bool(found) == bool(said)
+
+
 def test_a_block_beside_the_path_is_not_a_matter_of_units() -> None:
     away = Stock((-0.3, -0.3, -0.01), (-0.2, -0.2, 0.0))
     assert unit_doubt(away, POCKET, CUTTING) == ()
