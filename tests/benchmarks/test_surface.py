@@ -144,3 +144,49 @@ def test_paper_slot_sections_and_engagement(capsys):
         print(f"\nPaper's slot: both surfaces {both * 1e3:.0f} ms,", end=" ")
         print(f"19 sections {sections * 1e3:.0f} ms, engagement {arcs * 1e3:.1f} ms")
     assert sections < 1.0
+
+
+def curved(chord=7e-4, turns=4, R=0.03):
+    """A closed contour, 1 mm further in with every turn, in chords: each a run of its own."""
+    t = np.linspace(0, 2 * np.pi * turns, 40_000)
+    r = R * (1 + 0.25 * np.sin(5 * t)) - 1e-3 * np.floor(t / (2 * np.pi))
+    p = np.column_stack([0.1 + r * np.cos(t), 0.05 + r * np.sin(t), np.full(len(t), -0.003)])
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
+    return np.column_stack([np.interp(np.arange(0, s[-1], chord), s, column) for column in p.T])
+
+
+def raster(step=1e-3, over=1e-3):
+    rows = []
+    for n, y in enumerate(np.arange(0.02, 0.08, over)):
+        x = np.arange(0.03, 0.17, step)[:: 1 if n % 2 == 0 else -1]
+        rows.append(np.column_stack([x, np.full(len(x), y), np.full(len(x), -0.002)]))
+    return np.vstack(rows)
+
+
+@pytest.mark.parametrize("path", [curved, raster], ids=["contour", "raster"])
+@pytest.mark.parametrize(
+    ("kind", "extra", "most"),
+    [
+        ("flat", {}, 4.0),
+        ("ball", {}, 4.0),
+        ("bull", {"corner_radius": 1.5e-3}, 4.0),
+        ("chamfer", {"tip_angle": 1.5}, 4.0),
+    ],
+)
+def test_engagement_beside_the_cut_alone(path, kind, extra, most, capsys):
+    """Steps a second, and what is met beside what it costs to cut the same moves one by one, in the same run."""
+    tool = Cutter(kind, 0.008, **extra)
+    p = path()
+    march = March(STOCK, 1e-4, tool, p)
+    met = best_of(lambda: engage(March(STOCK, 1e-4, tool, p)), 4)
+
+    def cut_alone():
+        for i in march.steps:
+            march.cut(int(i), p[i - 1], p[i])
+
+    cut_alone()
+    alone = best_of(cut_alone, 1)
+    with capsys.disabled():
+        print(f"\n{kind:8s} {path.__name__:7s} {len(p):6d} steps: {len(p) / met:8.0f} a second", end="")
+        print(f", {met / len(p) * 1e6:.1f} us each ({alone / len(p) * 1e6:.1f} us to cut one alone)")
+    assert met < most * alone
