@@ -132,13 +132,15 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
     negative = (fit.x == 0.0) & (fit.free * np.linalg.norm(system.A, axis=0) < -1e-9 * np.linalg.norm(system.b))
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
     found = diagnostics.fit_findings(system, fit, active, lumped)
+    interval = fit.interval(system.signed)
+    denied = np.isinf(interval[:, 1]) & (fit.free < 0.0)
     return IdentificationResult(
         choice=choice,
         labels=system.parameters,
         parameters=frozen(fit.x),
         covariance=frozen(fit.covariance),
-        parameter_stderr=frozen(fit.stderr),
-        parameter_ci95=frozen(fit.interval(system.signed)),
+        parameter_stderr=frozen(np.where(denied, np.inf, fit.stderr)),
+        parameter_ci95=frozen(interval),
         correlation=frozen(diagnostics.correlation(fit.covariance)),
         n=robot.n,
         condition=Condition(*fit.condition),
@@ -151,6 +153,7 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
         in_sample_by_pose=frozen(relative_by_pose(system, system.A @ fit.x - system.b, weights)),
         row=tests.row,
         components=tests.components,
+        kind=tests.provenance.kind,
         share=frozen(share),
         outliers=diagnostics.outliers(system, tests.row),
         unseen_joints=diagnostics.unseen_joints(fit, system.parameters, share),

@@ -80,7 +80,8 @@ class FoundPoint:
         if self.flat is not None:
             return f"The {title} is not held by these tests in every direction: load and measure along others too."
         half = format_si(self.off_half, "mm", 0) if self.off_half >= 1e-3 else format_si(self.off_half, "mm", 2)
-        return f"Your {title} seems {format_si(self.off, 'mm', 0)} (± {half}, 95 %) off the one that is stated."
+        stated = "the one that is stated" if self.stated.any() else "the tip of the tool, taken where none is stated"
+        return f"Your {title} seems {format_si(self.off, 'mm', 0)} (± {half}, 95 %) off {stated}."
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,9 +52,14 @@ class Fit:
         return np.where(self.seen, np.sqrt(np.clip(np.diag(np.nan_to_num(self.covariance)), 0.0, None)), np.inf)
 
     def interval(self, signed: BoolArray, level: float = LEVEL) -> FloatArray:
-        """(p, 2) intervals; cut at zero unless ``signed``; they always hold the estimate."""
+        """(p, 2) intervals; cut at zero unless ``signed``; they always hold the estimate.
+
+        Open where the readings ask for less than zero by more than chance: then nothing is known of that parameter.
+        """
         half = half_width(self.stderr, self.dof, level)
+        denied = ~signed & (self.free + half < 0.0)
         low, high = np.minimum(self.free - half, self.x), np.maximum(self.free + half, self.x)
+        high = np.where(denied, np.inf, high)
         return np.stack([np.where(signed, low, np.maximum(low, 0.0)), high], axis=-1)
 
 

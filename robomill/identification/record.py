@@ -38,6 +38,7 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
     """The result: SI but for names that end in a unit."""
     band = result.band
     return {
+        "joints": [p.joint for p in result.labels if p.joint is not None],
         "C_theta": plain(result.C_theta),
         "stderr": plain(result.stderr),
         "ci95": plain(result.ci95),

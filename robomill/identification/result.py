@@ -16,7 +16,7 @@ from robomill.identification.found_points import FoundPoint, Offer
 from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model, Parameter
 from robomill.identification.treatment import STANDARD, Treatment
-from robomill.provenance import Finding, Provenance
+from robomill.provenance import Finding, Kind, Provenance
 from robomill.robot.model import Robot
 
 
@@ -63,7 +63,7 @@ class IdentificationResult:
     ci95 (n, 2), cut at zero; correlation and covariance (p, p) of the parameters, NaN where not seen;
     parameters (p,) with which predictions are made; condition before and after column scaling;
     residual (m, 3) m, measured minus predicted, NaN where not measured ((m, 1) rad for tests of single joints), in
-    columns called ``components``;
+    columns called ``components``; kind: the tests' provenance;
     explanations: one sentence a parameter; residual_share (m,) of the measured size; residual_rms m (rad); noise:
     standard deviation of one measured number, m (rad), as the residuals say; cv_relative_error: mean over poses of
     |predicted - measured| / |measured|, each pose predicted without itself: the headline; in_sample_by_pose
@@ -94,6 +94,7 @@ class IdentificationResult:
     row: IntArray
     share: FloatArray
     components: tuple[str, ...]
+    kind: Kind = "measured"
     cv_relative_error: float = float("nan")
     outliers: tuple[Outlier, ...] = ()
     unseen_joints: tuple[UnseenJoint, ...] = ()
@@ -177,7 +178,7 @@ class IdentificationResult:
 
     def springs(self, robot: Robot) -> tuple[Spring, ...]:
         """The bending and tool springs found, for ``extra_contributions``; empty for the joints alone."""
-        source = Provenance("measured", f"identified from {len(self.row)} load tests, model {self.model}")
+        source = Provenance(self.kind, f"identified from {len(self.row)} load tests, model {self.model}")
         values = {(p.kind, p.at, p.axis): float(self.parameters[k]) for k, p in enumerate(self.labels)}
         found: list[Spring] = []
         for index, number in enumerate(robot.joint_numbers, 1):
@@ -196,16 +197,26 @@ class IdentificationResult:
                 return text
         raise LoadTestError(f"Joint {joint}: not among the fitted joints.")
 
+    @property
+    def gives(self) -> bool:
+        """Whether any joint came out with a compliance above zero."""
+        return self.has_joints and bool((np.nan_to_num(self.C_theta) > 0.0).any())
+
     def applied_to(self, robot: Robot) -> Robot:
         """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""
         if not self.has_joints:
             raise LoadTestError("The constant model has no joint compliances to give to a robot.")
+        if not self.gives:
+            raise LoadTestError(
+                "No joint gives way by these tests: each came out rigid or is not seen, which no arm is; look at the "
+                "signs of forces and displacements."
+            )
         seen = np.isfinite(self.C_theta)
         kept = [str(robot.joint_numbers[i]) for i in np.flatnonzero(~seen)]
         source = f"identified from {len(self.row)} load tests, model {self.model}"
         if kept:
             source += f"; joint {', '.join(kept)} not seen, value kept from {robot.compliance_set}"
-        provenance = {**robot.provenance, "compliance.identified": Provenance("measured", source)}
+        provenance = {**robot.provenance, "compliance.identified": Provenance(self.kind, source)}
         changed = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta))
         sets = {**robot.compliance_sets, "identified": changed.C_theta_all}
         return changed.replace(compliance_sets=sets, compliance_set="identified", provenance=provenance)

@@ -130,9 +130,12 @@ def _held(point: dict[str, Any]) -> list[tuple[float, tuple[float, float]]]:
 
 def identification_lines(record: dict[str, Any]) -> list[str]:
     lines = [f"model {record['model']}", "joint   C_theta (1e-7 rad/(N m))   95 % interval"]
-    for i, (value, interval) in enumerate(zip(record["C_theta"] or [], record["ci95"] or []), start=1):
+    for joint, value, interval in zip(record["joints"], record["C_theta"], record["ci95"]):
+        if value is None:
+            lines.append(f"{joint:5d}     not seen")
+            continue
         shown = [float("nan") if v is None else from_si(v, "1e-7 rad/(N m)") for v in (value, *interval)]
-        lines.append(f"{i:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
+        lines.append(f"{joint:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
     if record["cv_relative_error"] is not None:
         lines.append(f"cross-validated error  {100 * record['cv_relative_error']:.1f} % of the measured displacement")
     if record["bending_joints"]:

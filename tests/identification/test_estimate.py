@@ -117,7 +117,7 @@ def test_springs_of_a_result_can_be_simulated():
     C = rm.cartesian_compliance(arm, theta) + extra_contributions(result.springs(arm), joint_frames(arm, theta)).sum(-3)
     np.testing.assert_allclose(C, choice.compliance(ROBOT, theta, true_parameters(ROBOT, choice, EXTRA)), rtol=1e-7)
     assert arm.compliance_set == "identified"
-    assert arm.provenance["compliance.identified"].kind == "measured"
+    assert arm.provenance["compliance.identified"].kind == tests.provenance.kind == "synthetic"
 
 
 # ---- intervals
@@ -188,8 +188,11 @@ def test_bounded_fit_is_that_of_nnls_and_says_what_is_on_the_bound():
         np.testing.assert_allclose(fit.x * scale, nnls(A / scale, b)[0], atol=1e-10 * np.abs(fit.x * scale).max())
     tests = simulated_tests(ROBOT, *three_directions(poses(ROBOT, 10), 250.0))
     result = identify(ROBOT, LoadTests(tests.wrench, -tests.displacement, theta=tests.theta))
-    assert (result.C_theta == 0).all()
+    assert np.isnan(result.C_theta).all()  # less than zero by more than chance: nothing is known, least of all that
+    np.testing.assert_array_equal(result.ci95, [[0.0, np.inf]] * 5)  # all are rigid
     assert len(result.active_bounds) == 5
+    with pytest.raises(LoadTestError, match="No joint gives way"):
+        result.applied_to(ROBOT)
     assert any("sign" in f.message for f in result.findings)
 
 
@@ -202,7 +205,7 @@ def test_those_and_only_those_on_the_bound_are_told(turned):
     b = (A @ C_theta).reshape(len(tests), 3)
     result = identify(ROBOT, LoadTests(tests.wrench, b, theta=tests.theta))
     assert result.active_bounds == tuple(f"joint {i + 1}" for i in turned)
-    np.testing.assert_array_equal(np.flatnonzero(result.C_theta == 0), turned)
+    np.testing.assert_array_equal(np.flatnonzero(~(result.C_theta > 0)), turned)
 
 
 def test_column_scaling_shows_in_the_condition_number_only():

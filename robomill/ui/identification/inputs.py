@@ -164,6 +164,9 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     if not result.has_joints:
         pieces.note("One constant matrix has no joints to give to the project; choose a model with joint springs.")
         return
+    if not result.gives:
+        pieces.note("No joint gives way by these tests, so there is nothing to give to the project: look at the signs.")
+        return
     setup = session.project().setup
     fitted = adopted(setup, robot, result, bench.name)
     known = session.known(setup)
@@ -199,10 +202,8 @@ def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, 
     marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
     found = result.springs(robot)
     names = {spring.name for spring in found}
-    identified = IDENTIFIED in setup.robot.provenance  # springs that were measured then came from that
-    old = tuple(
-        s for s in setup.springs if s.name not in names and not (identified and s.provenance.kind == "measured")
-    )
+    ours = ("measured", "synthetic") if IDENTIFIED in setup.robot.provenance else ()  # such springs came from that
+    old = tuple(s for s in setup.springs if s.name not in names and s.provenance.kind not in ours)
     return setup.replace(robot=applied.replace(provenance=marked), springs=old + found, measured_map=None)
 
 
