@@ -126,7 +126,7 @@ class CutConditions:
         for name, text in (("n_s", "the spindle stands still"), ("v_f", "the feed rate is 0")):
             bad = np.flatnonzero(engaged & (getattr(self, name) <= 0.0))
             if bad.size:
-                word = "S" if name == "n_s" else "F"
+                word = "S and M3" if name == "n_s" else "F"
                 raise CuttingError(
                     f"{self.place(bad[0])}: {text} while the tool is in the material; give {word} before the cut.",
                     where=name,

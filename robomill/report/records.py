@@ -204,6 +204,7 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             "count": int(lost.sum()),
             "of": int(path.cutting.sum()),
             "blocks": sorted(set(path.block[lost].tolist())),
+            "rapids": list(result.rapids),
             "reasons": [
                 {"code": each.code, "why": each.why, "count": int((each.where & lost).sum())}
                 for each in result.unjudged

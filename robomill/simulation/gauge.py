@@ -107,10 +107,11 @@ def _rims(at: Places, q: IntArray, u: FloatArray, sign: FloatArray, length: Floa
     length = np.tile(length, len(HEIGHTS)) / len(HEIGHTS)
     R, nose = at.number("radius")[q], at.number("nose_height")[q]
     deep = at.depth(q, at.c[q] + (R + BESIDE)[:, None] * u)
-    height = np.where(deep > nose, nose + share * (deep - nose), ON_NOSE * deep)
+    low = np.maximum(nose, at.below[q])
+    height = np.where(deep > low, low + share * (deep - low), ON_NOSE * deep)
     radius = at.radius_at(q, height)
     stands = at.depth(q, at.c[q] + (radius + BESIDE)[:, None] * u) > height
-    return Rims(q, u, sign, length, height, radius, deep).only((deep > SAME) & stands)
+    return Rims(q, u, sign, length, height, radius, deep - at.below[q]).only((deep > at.below[q] + SAME) & stands)
 
 
 def _standing(at: Places, rims: Rims) -> tuple[FloatArray, FloatArray, BoolArray]:
@@ -173,6 +174,7 @@ def _floors(at: Places) -> Readings:
     chosen &= (np.abs(offset) + aside[q] < flat[q]) | (offset == 0.0)  # else metal left there is the wall's error
     q, offset = q[chosen], offset[chosen]
     inside = at.depth(q, at.c[q] + offset[:, None] * at.left_of[q]) > SAME
+    inside &= at.below[q] <= SAME  # there is no floor beneath a cut through the stock
     q, offset = q[inside], offset[inside]
     lines = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
     told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])

@@ -44,10 +44,9 @@ class Places:
         return np.array([getattr(cutter, name) for cutter in self.cutters])[self.of]
 
     def depth(self, q: IntArray, points: FloatArray) -> FloatArray:
-        """How high (m) the stock stood over points (m, 3) m along the axes of places q; 0 beside and below it."""
+        """How high (m) the stock stood over points (m, 3) m along the axes of places q; 0 beside it."""
         stock = self.result.setup.stock_block
         inside = ((points[:, :2] >= stock.lower[:2]) & (points[:, :2] <= stock.upper[:2])).all(axis=1)
-        inside &= points[:, 2] >= stock.lower[2] - 1e-9
         top = np.full(len(points), float(stock.upper[2]))
         if stock.triangles is not None:
             cells = stock_grid(stock, self.result.setup.cell)
@@ -55,6 +54,12 @@ class Places:
             x, y = np.clip(np.rint(at).astype(int), 0, [cells.nx - 1, cells.ny - 1]).T
             top = stock_heights(stock, cells.x, cells.y)[x, y]
         return np.where(inside, np.maximum(top - points[:, 2], 0.0) / self.axial[q, 2], 0.0)
+
+    @property
+    def below(self) -> FloatArray:
+        """(q,) m along the axis: how far the tip stands below the bottom of the stock, where walls begin, or 0."""
+        bottom = float(self.result.setup.stock_block.lower[2])
+        return np.asarray(np.maximum(bottom - self.c[:, 2], 0.0) / self.axial[:, 2])
 
     @property
     def steep(self) -> BoolArray:

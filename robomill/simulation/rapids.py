@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from robomill.provenance import Finding, named
@@ -11,12 +13,11 @@ from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
 LEAST_DEPTH = 1e-6  # m: less than this is rounding
-MANY = 2000
+MANY = 50  # lines: more are not looked for
 
 
-def rapid_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
-    """Rapids that break the tool, with their lines."""
-    lines = rapids_through_material(setup, path)
+def rapid_notes(lines: Sequence[int]) -> tuple[Finding, ...]:
+    """Rapids that break the tool, by their lines."""
     if not lines:
         return ()
     also = f" (also line {named(lines[1:])})" if len(lines) > 1 else ""
@@ -28,11 +29,11 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     """Source lines of rapids that pass through material which no cut of the program removes, in order.
 
     Told by cutting the stock once with the feed moves and once with all, at the cells' centres, where heights are
-    exact; so a rapid through material that is cut only later is not found. Looks at most at ``MANY`` rapids one by one.
+    exact; so a rapid through material that is cut only later is not found. The first ``MANY`` lines are found.
     """
     moves = path.step_length > 0
     feed, rapid = moves & path.cutting, moves & ~path.cutting
-    rapid[0] = False
+    rapid[: np.argmax(moves) + 1] = False  # where the machine stands before its first move is not known
     low, high = setup.stock_block.lower, setup.stock_block.upper
     tools = tooling(setup, path)
     widest = max(cutter.radius for cutter in tools.cutters)
@@ -53,6 +54,17 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     def cuts(rapids: np.ndarray) -> bool:
         return bool((base - heights(rapids)).max() > LEAST_DEPTH)
 
-    if not cuts(suspects):
-        return ()
-    return tuple(sorted({int(path.block[i]) for i in suspects[:MANY] if cuts(np.array([i]))}))
+    bad: set[int] = set()
+
+    def look(rapids: np.ndarray) -> None:
+        """Halve a group that cuts until single rapids are left."""
+        if len(bad) >= MANY or not len(rapids) or not cuts(rapids):
+            return
+        if len(rapids) == 1:
+            bad.add(int(path.block[rapids[0]]))
+            return
+        for half in np.array_split(rapids, 2):
+            look(half)
+
+    look(suspects)
+    return tuple(sorted(bad))

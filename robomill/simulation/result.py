@@ -20,7 +20,7 @@ from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.posture import posture_notes
-from robomill.simulation.rapids import rapid_notes
+from robomill.simulation.rapids import rapid_notes, rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import tool_notes, tooling
@@ -200,9 +200,14 @@ class SimulationResult:
         return deviation(self.ideal, self.machined)
 
     @cached_property
+    def rapids(self) -> tuple[int, ...]:
+        """Source lines of rapids through material that no cut removes: what they leave is not judged."""
+        return rapids_through_material(self.setup, self.setup.toolpath)
+
+    @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:
         """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material."""
-        return self.machined.notes() + rapid_notes(self.setup, self.setup.toolpath)
+        return self.machined.notes() + rapid_notes(self.rapids)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
@@ -217,7 +222,10 @@ class SimulationResult:
         """The groove's sections at ``stations`` (q,) m."""
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
-        run = CutPath(path.p, moved, path.cutting, path.k, path.block, self.not_judged)
+        who = np.where(self.reached, "measured map", "tool")
+        outside = [f"the {name} does not reach this point" for name in who]
+        why = np.where(self.not_judged, "not judged here", outside)
+        run = CutPath(path.p, moved, path.cutting, path.k, path.block, why.tolist())
         return groove_sections(self.setup.stock_block, self.tooling, run, stations)
 
     @cached_property

@@ -59,6 +59,7 @@ class Verdict:
         return self.level in ("out", "unjudged", "unreached", "missed")
 
 
+RAPID = "a rapid runs through material that no cut removes"
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
     "tight": "within tolerance, tight",
@@ -77,18 +78,19 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
     said = f"{_said(result, readings, share)}: {WORDS[level]}"
+    unknown = unjudged_words(result)
     if result.worst < 0:
         level, said = _nothing(result)
     elif result.missed.any():
         level, said = "unreached", f"{missed_words(result)}; of the rest: {said}."
     elif result.not_judged.any() and not deciding:
         level, said = "unjudged", ""
-    elif result.not_judged.any() and level != "out":
+    elif unknown and level != "out":
         level, said = "unjudged", f"{said}, where it is judged."
     else:
         said += "."
-    if result.not_judged.any() and level != "missed":
-        said = f"{said} {unjudged_words(result)}.".strip()
+    if unknown and level != "missed":
+        said = f"{said} {unknown}.".strip()
     return Verdict(level, share, said, *readings)
 
 
@@ -150,13 +152,16 @@ def _of(result: Run, reading: Reading) -> str:
 
 
 def unjudged_words(result: Run) -> str:
-    """How many points of the cut are not judged, on which lines, and why."""
-    lost = result.not_judged
-    why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
-    more = f" (and {len(result.unjudged) - 1} more reasons)" if len(result.unjudged) > 1 else ""
-    lines = named(result.path.block[lost].tolist())
-    total = int(result.path.cutting.sum())
-    return f"{int(lost.sum())} of {total} points of the cut are not judged (line {lines}): {why.rstrip('.')}{more}"
+    """How many points of the cut are not judged, on which lines, and why, and which rapids; "" where all is."""
+    lost, said = result.not_judged, []
+    if lost.any():
+        why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
+        more = f" (and {len(result.unjudged) - 1} more reasons)" if len(result.unjudged) > 1 else ""
+        points = f"{int(lost.sum())} of {int(result.path.cutting.sum())} points of the cut are not judged"
+        said.append(f"{points} (line {named(result.path.block[lost].tolist())}): {why.rstrip('.')}{more}")
+    if result.rapids:
+        said.append(f"{RAPID[0].upper()}{RAPID[1:]} (line {named(result.rapids)}): not judged")
+    return ". ".join(said)
 
 
 def missed_words(result: Run) -> str:
@@ -168,7 +173,7 @@ def missed_words(result: Run) -> str:
 
 def _nothing(result: Run) -> tuple[Level, str]:
     """Level and sentence where not one sample counts."""
-    if result.not_judged.any():
+    if result.not_judged.any() or result.rapids:
         return "unjudged", ""
     if result.answered[result.path.cutting].any():
         return "missed", "The path never touches the stock: move the stock or the path."

@@ -78,7 +78,7 @@ def groove_sections(
     moved = as_floats(path.p_machined, "deflected points", (len(ideal), 3), error=SurfaceError, finite=False)
     used = np.asarray(path.cutting, dtype=bool)
     lines = np.zeros(len(ideal), dtype=int) if path.block is None else np.asarray(path.block)
-    unjudged = np.zeros(len(ideal), dtype=bool) if path.not_judged is None else np.asarray(path.not_judged)
+    why = ["the tool does not reach this point"] * len(ideal) if path.why is None else path.why
     tooling = Tooling.of(cutter, len(ideal))
     known = np.where(np.isfinite(moved).all(axis=1, keepdims=True), ideal, np.nan)
     told, left, sure = (swept_path(stock, tooling, p, path.k, used) for p in (ideal, moved, known))
@@ -94,8 +94,8 @@ def groove_sections(
         k = path.k if path.k is None or np.ndim(path.k) == 1 else path.k[near]
         some = Tooling(tooling.cutters, tooling.of_step[near])
         own = tuple(swept_path(stock, some, p[near], k, used[near]) for p in (ideal, moved))
-        at = _Tool(place, int(lines[i]), tip, made, bool(unjudged[[i - 1, i]].any()), own)
-        found.append(_section(paths, at, bool(unjudged.any()), samples))
+        lost = i if not np.isfinite(moved[i]).all() else i - 1
+        found.append(_section(paths, _Tool(place, int(lines[i]), tip, made, why[lost], own), samples))
     return tuple(found)
 
 
@@ -109,14 +109,14 @@ ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 
 @dataclass(frozen=True)
 class _Tool:
-    """The tool at a station: where it was told to be, in which source line, where its ``tip`` is, its ``cutter``, and
-    what its path ``own`` close by leaves, as told and as it went."""
+    """The tool at a station: where it was told to be, in which source line, where its ``tip`` is, or ``why`` that is
+    not known, its ``cutter``, and what its path ``own`` close by leaves, as told and as it went."""
 
     place: Station
     block: int
     tip: FloatArray
     cutter: Cutter
-    not_judged: bool
+    why: str
     own: tuple[SweptPath, ...]
 
     def own_walls(self, line: tuple[float, float, float], skin: Heights) -> tuple[FloatArray, FloatArray]:
@@ -131,13 +131,13 @@ class _Tool:
         return walls[0], walls[1]
 
 
-def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_not: bool, samples: int) -> GrooveSection:
+def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, samples: int) -> GrooveSection:
     """``paths``: as told, as left, and as told where it is known what is left."""
     stock, place, tip, cutter, block = paths[0].stock, at.place, at.tip, at.cutter, at.block
     if place.normal is None:
         return _empty(place, block, "the feed is along the tool axis here, so there is no section across it")
     if not np.isfinite(tip).all():
-        return _empty(place, block, "not judged here" if at.not_judged else "the tool does not reach this point")
+        return _empty(place, block, at.why)
     shift = float((tip - place.centre) @ place.normal)
     low, high = stock_span(stock, place.centre, place.normal)
     window = 2.5 * cutter.radius + abs(shift)
@@ -153,8 +153,7 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, judged_no
         return _empty(place, block, "the tool passes above the stock here" if above else "nothing is to be cut here")
     inside = w[~(w < ideal.right) & ~(w > ideal.left)]
     if (np.abs(told(inside) - sure(inside)) > ONE_HEIGHT).any():
-        what = "not judged" if judged_not else "not reached"
-        return _empty(place, block, f"a pass that is {what} goes through here, so what it leaves is not known")
+        return _empty(place, block, "a pass without a number goes through here, so what it leaves is not known")
     if machined is None:
         return _empty(place, block, "the deflected tool cuts nothing here")
     told_walls, left_walls = at.own_walls((shift, low, high), skin)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,7 @@ Heights = Callable[[FloatArray], FloatArray]
 class CutPath:
     """A path as commanded and as it was really run: tool tips p, p_machined (m, 3) m in {W} (not finite where not
     reached, not judged), cutting (m,) bool, unit tool axes k (3,) or (m, 3) (None: upright), source lines block (m,);
-    ``not_judged`` (m,) bool says which of those that are not finite are reached.
+    ``why`` (m,) says in words why a point that is not finite is not.
     """
 
     p: FloatArray
@@ -32,7 +32,7 @@ class CutPath:
     cutting: BoolArray
     k: FloatArray | None = None
     block: IntArray | None = None
-    not_judged: BoolArray | None = None
+    why: Sequence[str] | None = None
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     if verdict.level == "unjudged":
         lost, total = int(result.not_judged.sum()), int(result.path.cutting.sum())
         share = f"{lost} of {format_count(total, 'point')} of the cut are not judged"
+        share += " and a rapid through material" if result.rapids else ""
     made = {
         "wall": reading_tile("Wall error", "wall", verdict, before, unit),
         "floor": reading_tile("Floor error", "floor", verdict, before, unit),
@@ -121,8 +122,8 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
         return result.verdict.sentence
     if result.verdict.level == "unreached":
         return _sentence(missed_words(result))
-    known = _known_sentence(result, unit)
-    return f"{known} {_sentence(unjudged_words(result))}" if result.not_judged.any() else known
+    known, unknown = _known_sentence(result, unit), unjudged_words(result)
+    return f"{known} {_sentence(unknown)}" if unknown else known
 
 
 def _known_sentence(result: SimulationResult, unit: str) -> str:

@@ -40,7 +40,10 @@ def test_depth_beyond_the_flutes_is_warned_of():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"n_s": 0.0}, "Line 12: the spindle stands still while the tool is in the material; give S before the cut."),
+        (
+            {"n_s": 0.0},
+            "Line 12: the spindle stands still while the tool is in the material; give S and M3",
+        ),
         ({"v_f": 0.0}, "Line 12: the feed rate is 0"),
         ({"v_f": -0.01}, "Line 12: v_f is negative"),
         ({"a_p": -1e-3}, "Line 12: a_p is negative"),

@@ -14,6 +14,7 @@ from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
 from robomill.io.workpiece import part_frame
+from robomill.report.records import simulation_record
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=4e-4)
@@ -259,3 +260,14 @@ def test_the_law_of_a_thrust_is_told_where_it_was_used():
     stated = codes(SETUP.replace(source=hole))
     laws = {"thrust-end-teeth", "thrust-lips"}
     assert [run & laws for run in (mill, lips, stated)] == [{"thrust-end-teeth"}, {"thrust-lips"}, set()]
+
+
+def test_a_rapid_through_the_part_is_not_judged_and_never_green():
+    slot = ("G0 X-60 Y0", "G0 Z-2", "G1 X60 F1800", "G0 Z20")
+    calm = program(*slot)
+    rash = program(*slot, "G0 X-60 Y14", "G0 Z-1", "G0 X60")
+    assert calm.verdict.level in ("ok", "tight")
+    assert calm.rapids == ()
+    assert (rash.verdict.level, rash.rapids) == ("unjudged", (8,))
+    assert rash.verdict.wall == calm.verdict.wall
+    assert simulation_record(rash)["not_judged"]["rapids"] == [8]

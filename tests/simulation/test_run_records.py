@@ -76,3 +76,15 @@ def test_columns_in_x_y_z_turn_with_the_sensor(turns_with):
     assert ("force-axes" in {note.code for note in run.notes}) == (turns_with == "robot")
     again = setup_from_toml(setup_to_toml(run.setup))
     assert again.digest() == run.setup.digest()
+
+
+@pytest.mark.parametrize(("length", "longer"), [(1.1, False), (3.0, True)])
+def test_where_a_record_over_time_begins_is_said_and_whether_much_of_it_is_left(length, longer):
+    t = np.linspace(0.0, length, 200)  # one cut of 20 mm at 20 mm/s takes 1 s
+    record = ForceRecord(t, np.tile([-10.0, 50.0, 0.0], (200, 1)))
+    one = GCodeSource("G21 G90 S12000 M3\nG0 X-10 Y0 Z5\nG0 Z-2\nG1 X10 F1200\nG0 Z18\nM2\n")
+    notes = {
+        note.code: note
+        for note in rm.simulate(SETUP.replace(source=one, force=MeasuredForce(record, cutoff=None))).notes
+    }
+    assert (notes["record-start"].line, "record-longer" in notes) == (4, longer)

@@ -115,7 +115,7 @@ def test_what_cannot_be_measured_says_why():
     assert "beside the stock" in outside.note
     moved[2] = np.nan
     assert "does not reach" in groove_section(stock, FLAT, p, moved, cutting, None, 0.03).note
-    lost = CutPath(p, moved, np.array(cutting), not_judged=np.array([False, False, True, False]))
+    lost = CutPath(p, moved, np.array(cutting), why=["", "", "not judged here", ""])
     assert groove_sections(stock, FLAT, lost, [0.03])[0].note == "not judged here"
     assert np.isnan(groove_sections(stock, FLAT, lost, [0.03])[0].width)
     high_up = np.array([0, 0, 0.03])
@@ -131,12 +131,12 @@ def test_metal_that_a_pass_without_a_number_takes_away_is_not_measured():
     cutting, shift = np.array([False, True, True, False, False, True]), np.array([0, 1e-4, -2e-5])
     moved = p + shift
     moved[5] = np.nan
-    path = CutPath(p, moved, cutting, not_judged=np.array([False] * 5 + [True]))
+    path = CutPath(p, moved, cutting, why=["not judged here"] * 6)
     stock = Stock((-0.03, -0.02, -0.01), (0.03, 0.02, 0.0))
     away, at, beside = groove_sections(stock, FLAT, path, np.array([0.03, 0.05, 0.0545]) + 0.007)
     assert (away.centre_offset, away.floor_error) == pytest.approx((1e-4, -2e-5), abs=1e-9)
     assert np.isnan([at.centre_offset, at.floor_error, at.width]).all()
-    assert "not judged goes through here" in at.note
+    assert "without a number goes through here" in at.note
     assert beside.centre_offset == pytest.approx(1e-4, abs=1e-9)
     with pytest.raises(SurfaceError, match="runs from 0 to 207"):
         groove_section(stock, FLAT, p, moved, cutting, None, 0.3)

@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import ForceModel, Frame
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import Finding, Provenance
 from robomill.quantities import quantity
 from robomill.units import format_si
 
@@ -23,6 +23,7 @@ PAPER_CUTOFF = 50.0
 #: Order of the Butterworth filter; run forwards and backwards it has twice that and no phase.
 ORDER = 2
 FEWEST = 4
+LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspected
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +154,23 @@ class MeasuredForce(ForceModel):
     def notes(self) -> tuple[str, ...]:
         """What the reader noticed."""
         return self.record.notes
+
+    def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
+        """What the reader noticed; of a record over time where it is taken to begin, and whether much is left of it."""
+        found, record = super().findings(conditions), self.record
+        if not self.in_time or not conditions.cutting.any():
+            return found
+        began, last = (format_si(v, "s", 3) for v in (self.start, record.x[-1]))
+        text = f"the first cut is taken to begin at {began} of the force record; what moves before it is no part of it."
+        found += (Finding("info", int(conditions.block[np.argmax(conditions.cutting)]), text, code="record-start"),)
+        ends = float(conditions.t[conditions.cutting].max()) + self.start
+        if record.x[-1] - ends > LEFT_OVER * (record.x[-1] - record.x[0]):
+            text = (
+                f"Force: the record goes on to {last}, the last cut ends at {format_si(ends, 's', 3)}: is it of this "
+                "program, at this feed, and does it begin with the first cut?"
+            )
+            found += (Finding("suspicious", 0, text, code="record-longer"),)
+        return found
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Force ON the tool (m, 3) N, interpolated at every step; 0 on rapids.
