@@ -47,8 +47,8 @@ def claims(project: Project, process: bool = False) -> list[Claim]:
     known = [plain]
     if process:
         known.append(_process_setup())
-        rows.append(_computed("robomill, process data and Table 2", known[-1]))
-        rows.append(_computed("robomill, process data and Table 3", known[-1].replace(robot=third)))
+        rows.append(_computed("process data, Table 2", known[-1]))
+        rows.append(_computed("process data, Table 3", known[-1].replace(robot=third)))
     if project.setup.digest() not in {setup.digest() for setup in known}:
         rows.append(dataclasses.replace(_computed("robomill, your set-up", project.setup), kind="user"))
     return rows
