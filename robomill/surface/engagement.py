@@ -2,7 +2,7 @@
 
 Angles count clockwise from the feed-normal +y (left of the feed), seen from above with x along the feed: 0 is the
 left side, 90 degrees straight ahead, 180 the right side, as in the mean-force formulas. A step's engagement is
-taken at its middle, so the path should be resampled first. Where material begins and ends is found on the swept
+taken at its end, on curves in the middle of its chord. Where material begins and ends is found on the swept
 bodies of the moves themselves, so it does not depend on the size of the cells.
 """
 

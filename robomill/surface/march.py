@@ -19,6 +19,10 @@ from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 
 AT_ONCE = 8192  # steps: what they meet is kept in half precision where it serves only the course over a revolution
+CURVE = 0.01, 0.6  # rad: a path that bends by so much a step is a curve in chords; by less straight, by more a corner
+JUST_BEFORE = 0.99  # of its way: where a step ends on a face of the stock it has not met what is behind it
+DIVE = 0.5  # of its way: a move that goes down so much is a plunge
+BEFORE_STOP = 0.5  # cells: nearer to its bottom a plunge may find again the floor that an earlier one left there
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
 
@@ -103,6 +107,22 @@ class March:
                 | (tool[:-1] != tool[1:])
             )
         return begins
+
+    @cached_property
+    def _at(self) -> FloatArray:
+        """(n,) which share of its way the tool has gone where a step is looked at.
+
+        Almost all of it where it goes straight on, for what it meets belongs to its sample; down to shortly before the
+        bottom of a plunge; half of it before a stop or a corner, where walls of earlier passes often end too, and on
+        the chord of a curve, which has the curve's direction there.
+        """
+        length = np.linalg.norm(self.points[self.steps] - self.points[self.steps - 1], axis=1)
+        onward = np.where(np.diff(self.steps) == 1, np.einsum("ni,ni->n", self._feed[:-1], self._feed[1:]), -1.0)
+        bends = np.r_[False, (np.cos(CURVE[1]) < onward) & (onward < np.cos(CURVE[0])), False]
+        stops = np.append(onward < np.cos(CURVE[1]), True)
+        dives = np.einsum("ni,ni->n", self._feed, self._axes) < -DIVE
+        before = np.where(dives, np.minimum(0.5, BEFORE_STOP * self.cell / length), 0.5)
+        return np.where(bends[:-1] | bends[1:], 0.5, np.where(stops, 1.0 - before, JUST_BEFORE))
 
     @cached_property
     def _stepwise(self) -> tuple[Any, Any]:
@@ -208,6 +228,6 @@ class March:
         world, room = state
         found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
-        steps = Steps(np.ascontiguousarray(ends), self._feed[n], runs[0], runs[1].astype(np.int64))
+        steps = Steps(np.ascontiguousarray(ends), self._feed[n], self._at[n], runs[0], runs[1].astype(np.int64))
         march(world, room, steps, found, sectors, do)
         return found, sectors.reshape(len(n), len(room.sectors), 4)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
+from robomill.compiled import Axes, Out1, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import Room, add_part
@@ -44,11 +44,12 @@ Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
 
 
 class Steps(NamedTuple):
-    """Steps of a path: ends (n, 6) m, the unit feed each was told (n, 3), the run it belongs to (n,) and whether it
-    begins it (n,)."""
+    """Steps of a path: ends (n, 6) m, the unit feed each was told (n, 3), which share of the way the tool has gone
+    where it is looked at (n,), the run it belongs to (n,) and whether it begins it (n,)."""
 
     ends: Out2
     feed: Out2
+    at: Out1
     run: OutInt1
     begins: OutInt1
 
@@ -238,7 +239,7 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
         if do[0]:
-            step = step_between(ends, world.runs[r, AXIS:MOVE], steps.feed[n], r)
+            step = step_between(ends, world.runs[r, AXIS:MOVE], steps.feed[n], steps.at[n], r)
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
         if do[1]:
             go_on(world.runs[r], ends, steps.begins[n] == 1)

@@ -134,7 +134,7 @@ class CutCase:
         )
 
     def run(self, step: float, cell: float = 0.1) -> tuple[Floats, Floats]:
-        """How far along the last move (n,) mm the middles of the steps lie, and (n, 3) N in {W}, as a run finds it."""
+        """How far along the last move (n,) mm the tip is, and (n, 3) N in {W}, as a run finds it."""
         result = rm.simulate(self.setup(step, cell))
         path = result.path
         last = path.cutting & (path.block == path.block[path.cutting].max())
@@ -143,7 +143,7 @@ class CutCase:
         a, b = self.span
         inside = last & (path.step_length > 0) & (s > a + 1e-6) & (s < b + 1e-6)
         assert result.ik.reached[inside].all()
-        return s[inside] - 0.5 * path.step_length[inside] / MM, result.F[inside]
+        return s[inside], result.F[inside]
 
     def off(self, step: float, cell: float = 0.1, most: int = 12) -> float:
         """The largest error over the span, as a share of the largest force there (of 1 N at least)."""
@@ -232,6 +232,7 @@ CASES = (
         span=(0.0, 5.0),
     ),
     CutCase("plunge of a ball", BALL, (drill(-8),), span=(8.0, 10.0)),
+    CutCase("short plunge of a ball, to its bottom", BALL, (drill(-1),), span=(3.5, 4.1), steady=False),
     CutCase("helical entry", FLAT, (Pass(_helix(3.0, 1.0, 1.6)),), span=(0.0, 0.472), steady=False),
     CutCase(
         "across an older groove",

@@ -28,9 +28,8 @@ def line(a, b, step=5e-4):
 
 
 def degrees(found, x, p, at):
-    """phi_st, phi_ex in degrees of the step whose middle is nearest to x = at."""
-    middle = 0.5 * (x[1:] + x[:-1])
-    n = int(np.argmin(np.abs(middle - at))) + 1
+    """phi_st, phi_ex in degrees of the step that ends nearest to x = at."""
+    n = int(np.argmin(np.abs(x[1:] - at))) + 1
     return np.degrees(found.phi_st[n]), np.degrees(found.phi_ex[n]), found.a_p[n], found.a_e[n]
 
 
@@ -41,20 +40,20 @@ def run(p, stock=STOCK, cutter=FLAT, k=None, cutting=None):
 def test_air_entry_slot_and_exit():
     p = line([-0.01, 0, -0.002], [0.05, 0, -0.002])
     found = run(p)
-    middle = 0.5 * (p[1:, 0] + p[:-1, 0])
-    air = np.append(False, (middle < -R - 2e-4) | (middle > 0.04))
+    x = p[:, 0]
+    air = (x < -R - 2e-4) | (x > 0.04 + 2e-4)
     assert (found.phi_st[air] == 0).all()
     assert (found.phi_ex[air] == 0).all()
     assert (found.a_p[air] == 0).all()
     assert degrees(found, p[:, 0], p, 0.02) == pytest.approx((0.0, 180.0, 0.002, 0.008), rel=1e-5)
     # entering, the arc ahead of the stock's face x = 0 is open: half angle acos(distance / R) about 90 degrees
     # (near 0 and 180 degrees, where the chip has no thickness, material is seen a little early)
-    for at, tolerance in ((-0.00325, 6.0), (-0.00225, 6.0), (-0.00125, 12.0)):
+    for at, tolerance in ((-0.003, 6.0), (-0.002, 6.0), (-0.001, 12.0)):
         half = np.degrees(np.arccos(-at / R))
         st, ex, a_p, _ = degrees(found, p[:, 0], p, at)
         assert (st, ex) == pytest.approx((90 - half, 90 + half), abs=tolerance)
         assert a_p == pytest.approx(0.002)
-    rising = found.a_e[(np.append(0, middle) > -R) & (np.append(0, middle) < 0)]
+    rising = found.a_e[(x > -R) & (x < 0)]
     assert (np.diff(rising) >= 0).all()
 
 
@@ -113,7 +112,7 @@ def test_stepped_stock_gives_the_mean_depth():
 def test_a_plunge_engages_its_end_and_no_flank():
     """The disk of the end faces the feed: dphi ds over it is 2 pi R; nothing of the flank does."""
     found = run(line([0.02, 0, 0.003], [0.02, 0, -0.003]))
-    inside = np.append(False, line([0.02, 0, 0.003], [0.02, 0, -0.003])[1:, 2] < 0)
+    inside = np.append(False, line([0.02, 0, 0.003], [0.02, 0, -0.003])[1:, 2] < -1e-9)
     assert (found.a_p == 0).all()
     np.testing.assert_array_equal(found.part.touches, inside)
     lying, upright = found.part.of(1.0)[:, 4], found.part.of(1.0)[:, 7]
@@ -144,6 +143,15 @@ def in_material(material, stock, points):
     )
 
 
+def looked_at(p):
+    """Where a level walk is looked at: just before the ends of steps, half-way before a corner and beside a bend."""
+    way = np.diff(p, axis=0) / np.linalg.norm(np.diff(p, axis=0), axis=1, keepdims=True)
+    turn = np.append(np.arccos(np.clip((way[:-1] * way[1:]).sum(axis=1), -1.0, 1.0)), np.pi)
+    half = turn > 0.01
+    half[1:] |= (turn[:-1] > 0.01) & (turn[:-1] < 0.6)
+    return p[:-1] + np.where(half, 0.5, 0.99)[:, None] * np.diff(p, axis=0)
+
+
 def test_engaged_width_against_shapes():
     """A flat mill on a level walk: what stands ahead of its rim is the block less the capsules of the steps before."""
     rng = np.random.default_rng(6)
@@ -154,17 +162,20 @@ def test_engaged_width_against_shapes():
     found = engage(STOCK, cell, FLAT, p)
     material = shapely.box(*STOCK.lower[:2], *STOCK.upper[:2])
     phi = (np.arange(3600) + 0.5) * np.pi / 3600
-    widths, depths = [], []
+    widths, depths, plain, places = [], [], [], looked_at(p[:, :2])
     for a, b in pairwise(p[:, :2]):
         feed = (b - a) / np.linalg.norm(b - a)
         left = np.array([-feed[1], feed[0]])
-        rim = (a + b) / 2 + (R + 1.5 * cell) * (np.sin(phi)[:, None] * feed + np.cos(phi)[:, None] * left)
+        rim = places[len(widths)] + (R + 1e-6) * (np.sin(phi)[:, None] * feed + np.cos(phi)[:, None] * left)
         touched = in_material(material, STOCK, rim)
         widths.append(R * np.sin(phi)[touched].sum() * np.pi / 3600)
+        parts = np.diff(np.flatnonzero(np.diff(touched, prepend=~touched[0], append=~touched[-1])))
+        plain.append(parts.min() * np.pi / 3600 > 0.25)  # thinner ribs and gaps than R / 4 may be passed over
         span = np.flatnonzero(touched)
         depths.append(0.002 * len(span) / (span[-1] + 1 - span[0]) if len(span) else 0.0)
         material = material.difference(shapely.LineString([a, b]).buffer(R, quad_segs=200))
-    assert np.abs(found.a_e[1:] - widths).max() < 8 * cell
+    assert np.mean(plain) > 0.9
+    assert np.abs(found.a_e[1:] - widths)[plain].max() < 8 * cell
     assert np.median(np.abs(found.a_e[1:] - widths)) < 1.5 * cell
     assert np.median(np.abs(found.a_p[1:] - depths)) < 2e-5
     assert 0.1 < np.mean(np.array(widths) > 0.5 * R) < 0.95

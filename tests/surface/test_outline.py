@@ -11,6 +11,8 @@ from robomill.surface.outline import Outline
 
 FLAT, SMALL, BALL = Cutter("flat", 8e-3), Cutter("flat", 5e-3), Cutter("ball", 8e-3)
 UP = np.array([0.0, 0, 1])
+RAISED = np.array([0, 0, 1e-6, 0, 0, 1e-6])  # m: ends that are left a little higher than they were told
+SLACK = np.zeros(1)
 
 
 def random_walk(rng, n=12, depth=-2e-3):
@@ -49,7 +51,7 @@ def test_walls_are_where_the_polygon_ends(seed):
     cutters = (FLAT, SMALL)
     which = rng.integers(0, 2, len(ends))
     reach = 2e-3
-    outline = Outline(ends, cutters, which, reach)
+    outline = Outline(ends, ends, cutters, which, reach)
     radii = np.array([c.radius for c in cutters])[which]
     polygon = covered(ends, radii)
     checked = 0
@@ -57,19 +59,21 @@ def test_walls_are_where_the_polygon_ends(seed):
         share, angle = rng.uniform(0, 1), rng.uniform(0, 2 * np.pi)
         c, u = ends[n, :3] + share * (ends[n, 3:] - ends[n, :3]), np.array([np.cos(angle), np.sin(angle), 0])
         R = radii[n]
-        found = outline.walls(np.concatenate([c, UP, u])[None], np.array([1e-3]), np.array([R]))[0]
+        found, left, one = outline.walls(np.concatenate([c, UP, u])[None], np.array([1e-3]), np.array([R]))
         truth = ray_end(polygon, c[:2], u[:2], R - min(reach, 0.9 * R)) - R
         if np.isfinite(truth) and truth < reach:
             assert found == pytest.approx(truth, abs=2e-7)
+            assert left == found
+            assert one
             checked += 1
     assert checked > 3
 
 
 def test_below_every_tip_there_is_no_wall():
     ends = random_walk(np.random.default_rng(0))
-    outline = Outline(ends, (FLAT,), np.zeros(len(ends), dtype=int), 1e-3)
+    outline = Outline(ends, ends, (FLAT,), np.zeros(len(ends), dtype=int), 1e-3)
     place = np.concatenate([ends[0, :3], UP, [1.0, 0, 0]])[None]
-    assert np.isnan(outline.walls(place, np.array([-1e-4]), np.array([4e-3])))[0]
+    assert np.isnan(outline.walls(place, np.array([-1e-4]), np.array([4e-3]))[0])
 
 
 @pytest.mark.parametrize("cutter", [FLAT, BALL, Cutter("bull", 8e-3, corner_radius=1e-3)], ids=lambda c: c.kind)
@@ -78,7 +82,7 @@ def test_floors_are_the_lowest_stamp_and_lean_as_it_does(cutter, seed):
     rng = np.random.default_rng(seed)
     ends = random_walk(rng, 6)
     ends[:, [2, 5]] = rng.uniform(-3e-3, -1e-3, (6, 2))
-    outline = Outline(ends, (cutter,), np.zeros(6, dtype=int), 1e-3)
+    outline = Outline(ends, ends + RAISED, (cutter,), np.zeros(6, dtype=int), 1e-3)
     t = np.linspace(0, 1, 3001)[:, None]
     for n in range(6):
         c, angle = 0.5 * (ends[n, :3] + ends[n, 3:]), rng.uniform(0, 2 * np.pi)
@@ -90,13 +94,13 @@ def test_floors_are_the_lowest_stamp_and_lean_as_it_does(cutter, seed):
             r = np.hypot(*(at[:2] - tips[:, :2]).T)
             stamps.append((tips[:, 2] + cutter.profile(np.minimum(r, cutter.radius)))[r < cutter.radius])
         truth = np.concatenate(stamps).min() - c[2]
-        height, upright = (v[0] for v in outline.floors(np.concatenate([c, UP, u])[None], np.array([offset])))
+        height, above = (v[0] for v in outline.floors(np.concatenate([c, UP, u])[None], np.array([offset]), SLACK)[:2])
         assert height == pytest.approx(truth, abs=2e-6)
-        assert 0.0 <= upright <= 1.0 + 1e-12
+        assert 0.0 <= above <= RAISED[5] * (1.0 + 1e-9)
         if cutter.kind == "flat":
-            assert upright == 1.0
+            assert above == pytest.approx(RAISED[5])
     far = np.concatenate([[1.0, 1, 0], UP, [1.0, 0, 0]])[None]
-    assert np.isposinf(outline.floors(far, np.zeros(1))[0][0])
+    assert np.isposinf(outline.floors(far, np.zeros(1), SLACK)[0][0])
 
 
 def test_a_leaning_tool_is_asked_in_its_own_axes():
@@ -107,19 +111,20 @@ def test_a_leaning_tool_is_asked_in_its_own_axes():
     for u in ([0, 1.0, 0], [0, -1.0, 0], [1.0, 0, 0]):
         place = np.concatenate([[5e-3, 0, 0], UP, u])[None]
         leaning = np.concatenate([turn @ place[0, i : i + 3] for i in (0, 3, 6)])[None]
-        one = Outline(ends, (FLAT,), np.zeros(1, dtype=int), 1e-3)
-        two = Outline(np.hstack([ends[:, :3] @ turn.T, ends[:, 3:] @ turn.T]), (FLAT,), np.zeros(1, dtype=int), 1e-3)
+        turned = np.hstack([ends[:, :3] @ turn.T, ends[:, 3:] @ turn.T])
+        one, two = (Outline(e, e, (FLAT,), np.zeros(1, dtype=int), 1e-3) for e in (ends, turned))
         for q in (
             one.walls(place, np.array([1e-3]), np.array([4e-3])),
             two.walls(leaning, np.array([1e-3]), np.array([4e-3])),
         ):
-            assert q[0] == pytest.approx(15e-3 if u[0] else 0.0, abs=1e-12)
+            assert q[0][0] == pytest.approx(15e-3 if u[0] else 0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(("r", "part"), [(0.0, 1.0), (2e-3, np.sqrt(1 - 0.25)), (3.9e-3, np.sqrt(1 - (3.9 / 4) ** 2))])
 def test_the_floor_of_a_ball_leans_as_the_ball(r, part):
     ends = np.array([[-0.02, 0, 0, 0.02, 0, 0.0]])
     place = np.concatenate([[0, 0, 0], UP, [0, 1.0, 0]])[None]
-    height, upright = Outline(ends, (BALL,), np.zeros(1, dtype=int), 1e-3).floors(place, np.array([r]))
+    outline = Outline(ends, ends + RAISED, (BALL,), np.zeros(1, dtype=int), 1e-3)
+    height, above, _ = outline.floors(place, np.array([r]), SLACK)
     assert height[0] == pytest.approx(4e-3 - np.sqrt(16e-6 - r * r))
-    assert upright[0] == pytest.approx(part)
+    assert above[0] == pytest.approx(RAISED[5] * part)

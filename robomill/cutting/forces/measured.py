@@ -23,6 +23,7 @@ PAPER_CUTOFF = 50.0
 #: Order of the Butterworth filter; run forwards and backwards it has twice that and no phase.
 ORDER = 2
 FEWEST = 4
+ROUNDING = 1e-6  # of a rate: instants written with a few digits are not spaced alike
 LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspected
 
 
@@ -69,7 +70,7 @@ class ForceRecord:
         """
         if not cutoff > 0.0:
             raise CuttingError(f"{self.source}: cut-off {cutoff:g}; it must be greater than 0.", where="cutoff")
-        if self.rate <= 2.0 * cutoff:
+        if self.rate <= 2.0 * cutoff * (1.0 + ROUNDING):
             unit = "per second" if self.axis == "time" else "per metre"
             raise CuttingError(
                 f"{self.source}: {self.rate:.4g} samples {unit} are too few to filter at {cutoff:.4g} {unit}; "
