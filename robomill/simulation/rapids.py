@@ -9,11 +9,13 @@ import numpy as np
 from robomill.provenance import Finding, named
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
+from robomill.surface.stock import fitting_cell
 from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
 LEAST_DEPTH = 1e-6  # m: less than this is rounding
 MANY = 50  # lines: more are not looked for
+MOST_CELLS = 4_000_000  # a large block is looked at in larger cells than it is cut in
 
 
 def rapid_notes(lines: Sequence[int]) -> tuple[Finding, ...]:
@@ -44,10 +46,12 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     if not len(suspects):
         return ()
 
+    cell = max(setup.cell, fitting_cell(*setup.stock_block.size[:2], MOST_CELLS))
+
     def heights(rapids: np.ndarray) -> np.ndarray:
         chosen = feed.copy()
         chosen[rapids] = True
-        return cut(setup.stock_block, setup.cell, tools, path.p, path.k, chosen, must_touch=False).z
+        return cut(setup.stock_block, cell, tools, path.p, path.k, chosen, must_touch=False).z
 
     base = heights(np.zeros(0, dtype=int))
 

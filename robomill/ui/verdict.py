@@ -122,11 +122,11 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
         return result.verdict.sentence
     if result.verdict.level == "unreached":
         return _sentence(missed_words(result))
-    known, unknown = _known_sentence(result, unit), unjudged_words(result)
+    known, unknown = known_sentence(result, unit), unjudged_words(result)
     return f"{known} {_sentence(unknown)}" if unknown else known
 
 
-def _known_sentence(result: SimulationResult, unit: str) -> str:
+def known_sentence(result: SimulationResult, unit: str) -> str:
     """What a gauge would read where it is known."""
     verdict = result.verdict
     digits = 3 if unit == "in" else 2
