@@ -46,7 +46,8 @@ def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int
     if not len(suspects):
         return ()
 
-    cell = max(setup.cell, fitting_cell(*setup.stock_block.size[:2], MOST_CELLS))
+    length, width, _ = setup.stock_block.size
+    cell = max(setup.cell, fitting_cell(float(length), float(width), MOST_CELLS))
 
     def heights(rapids: np.ndarray) -> np.ndarray:
         chosen = feed.copy()
