@@ -78,8 +78,12 @@ class March:
 
     @cached_property
     def _feed(self) -> FloatArray:
-        span = self.points[self.steps] - self.points[self.steps - 1]
-        return np.asarray(span / np.linalg.norm(span, axis=1, keepdims=True))
+        return np.asarray((self.points[self.steps] - self.points[self.steps - 1]) / self._length[:, None])
+
+    @cached_property
+    def _length(self) -> FloatArray:
+        """(n,) m, as told."""
+        return np.linalg.norm(self.points[self.steps] - self.points[self.steps - 1], axis=1)
 
     @cached_property
     def _axes(self) -> FloatArray:
@@ -116,12 +120,11 @@ class March:
         bottom of a plunge; half of it before a stop or a corner, where walls of earlier passes often end too, and on
         the chord of a curve, which has the curve's direction there.
         """
-        length = np.linalg.norm(self.points[self.steps] - self.points[self.steps - 1], axis=1)
         onward = np.where(np.diff(self.steps) == 1, np.einsum("ni,ni->n", self._feed[:-1], self._feed[1:]), -1.0)
         bends = np.r_[False, (np.cos(CURVE[1]) < onward) & (onward < np.cos(CURVE[0])), False]
         stops = np.append(onward < np.cos(CURVE[1]), True)
         dives = np.einsum("ni,ni->n", self._feed, self._axes) < -DIVE
-        before = np.where(dives, np.minimum(0.5, BEFORE_STOP * self.cell / length), 0.5)
+        before = np.where(dives, np.minimum(0.5, BEFORE_STOP * self.cell / self._length), 0.5)
         return np.where(bends[:-1] | bends[1:], 0.5, np.where(stops, 1.0 - before, JUST_BEFORE))
 
     @cached_property

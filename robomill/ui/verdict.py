@@ -118,15 +118,20 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     """What a gauge would read on the part, for a foreman, and how much of the cut is not judged."""
+    return " ".join(verdict_sentences(result, unit)).rstrip()
+
+
+def verdict_sentences(result: SimulationResult, unit: str = "mm") -> tuple[str, str]:
+    """What a gauge would read on the part, and beside it how much of the cut is not judged; "" where all is."""
     if result.worst < 0:
-        return result.verdict.sentence
+        return result.verdict.sentence, ""
     if result.verdict.level == "unreached":
-        return _sentence(missed_words(result))
-    known, unknown = known_sentence(result, unit), unjudged_words(result)
-    return f"{known} {_sentence(unknown)}" if unknown else known
+        return _sentence(missed_words(result)), ""
+    unknown = unjudged_words(result)
+    return _known_sentence(result, unit), _sentence(unknown) if unknown else ""
 
 
-def known_sentence(result: SimulationResult, unit: str) -> str:
+def _known_sentence(result: SimulationResult, unit: str) -> str:
     """What a gauge would read where it is known."""
     verdict = result.verdict
     digits = 3 if unit == "in" else 2

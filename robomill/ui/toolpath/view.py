@@ -9,7 +9,6 @@ import streamlit as st
 
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict import unjudged_words
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 from robomill.ui import cached, inputs, pieces, session
@@ -23,7 +22,7 @@ from robomill.ui.toolpath.summary import (
     worst_first,
     written_in,
 )
-from robomill.ui.verdict import known_sentence, tip_tile, tone
+from robomill.ui.verdict import tip_tile, tone, verdict_sentences
 from robomill.units import (
     format_count,
     format_many,
@@ -78,8 +77,8 @@ def headline(
     lead = f"{format_count(summary.blocks, NOUNS[source.kind])} within {size}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
-    if reach is not None and result is not None and not missed_blocks(reach)[0] and (unknown := unjudged_words(result)):
-        lead += f" {unknown[0].upper()}{unknown[1:]}."
+    if reach is not None and result is not None and not missed_blocks(reach)[0]:
+        lead = f"{lead} {verdict_sentences(result, unit)[1]}".rstrip()
     pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit), lead)
 
 
@@ -92,7 +91,7 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
         return f"{format_si(length, unit, 1)} of the cut cannot be reached."
     if result is None or (result.worst < 0 and result.verdict.level != "unjudged"):
         return "The arm reaches all of the path."
-    said = known_sentence(result, unit) if result.worst >= 0 else result.verdict.sentence
+    said = verdict_sentences(result, unit)[0]
     return f"All in reach; {said[0].lower()}{said[1:]}"
 
 
