@@ -131,6 +131,17 @@ def format_times(times: SupportsFloat, digits: int = 2) -> str:
     return f"× {rounded(times, digits):,.12g}"
 
 
+def decimals(unit: str, digits: int | None) -> int:
+    """Decimals shown in ``unit``: ``digits``, or the unit's own. Of a length they are those in mm; inches show as much.
+
+    Two more then, but no more than an inch has: 0.23 mm are 0.0091 in.
+    """
+    own = UNITS[unit].digits
+    if digits is None:
+        return own
+    return max(digits, min(digits + 2, own)) if unit == "in" else digits
+
+
 def format_value(
     value: SupportsFloat,
     unit: str,
@@ -140,7 +151,7 @@ def format_value(
     missing: str = NOT_REACHED,
 ) -> str:
     """A value already in ``unit`` as text; NaN reads ``missing``, and no unit follows what is not finite."""
-    text = format_number(value, UNITS[unit].digits if digits is None else digits, sign, missing)
+    text = format_number(value, decimals(unit, digits), sign, missing)
     return _with_label(text, unit) if with_unit and math.isfinite(float(value)) else text
 
 

@@ -134,6 +134,10 @@ class CutConditions:
         result = np.zeros(len(self))
         return np.divide(self.v_f, self.n_s * np.asarray(flutes), out=result, where=engaged)
 
+    def chip(self, i: int, flutes: int) -> float:
+        """What one tooth is fed at step ``i``, m, whatever it meets there."""
+        return float(self.v_f[i] / (self.n_s[i] * flutes))
+
     @classmethod
     def steady(
         cls,

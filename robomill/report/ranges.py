@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -42,8 +43,9 @@ def ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ..
         return ()
     spread = alloy_spread(result)
     found = []
-    if over_lengths(result, result.worst) is not None:
-        found.append(_range(result, "assumed lengths", "assumed", lambda i: over_lengths(result, i)))
+    lengths = cache(lambda i: over_lengths(result, i))  # wall, floor and tip are often worst at one place
+    if lengths(result.worst) is not None:
+        found.append(_range(result, "assumed lengths", "assumed", lengths))
     if spread is not None and len(spread.titles) > 1:
         found.append(_range(result, "the alloy's rows", "assumed", lambda i: spread.delta[:, i] @ result.R_MF[i]))
     if (turn := tooth(result)) is not None:

@@ -27,14 +27,14 @@ def tile_text(result: SimulationResult, unit: str = "mm") -> str:
 
 def band_text(value: float, half: float, unit: str) -> str:
     """A value with its half width (m), to the digit that the half width allows."""
-    return format_many((value, half), unit, band_digits(half, unit), " ± ")
+    return format_many((value, half), unit, band_digits(half), " ± ")
 
 
-def band_digits(half: float, unit: str) -> int:
-    """Decimals that show a half width (m) to at least one digit: 2 to 4, more only in inches."""
-    size = float(from_si(half, unit))
+def band_digits(half: float) -> int:
+    """Decimals of a millimetre that show a half width (m) to at least one digit, 2 to 4."""
+    size = float(from_si(half, "mm"))
     needed = int(np.ceil(-np.log10(size) - 0.3)) if size > 0 else 4
-    return min(max(needed, 2), 4 if unit == "mm" else 5)
+    return min(max(needed, 2), 4)
 
 
 def banded(fig: go.Figure, result: SimulationResult, unit: str, *, dark: bool) -> bool:

@@ -89,7 +89,7 @@ def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None
     reading: Reading = getattr(verdict, name)
     if reading.worst < 0:
         return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
-    allowed = format_si(reading.tolerance, unit, 2 if unit == "mm" else 4)
+    allowed = format_si(reading.tolerance, unit, 2)
     way = WAYS[name][0 if reading.value > 0 else 1]
     was = change = ""
     if before is not None and getattr(before, name).worst >= 0:
@@ -134,18 +134,17 @@ def verdict_sentences(result: SimulationResult, unit: str = "mm") -> tuple[str, 
 def _known_sentence(result: SimulationResult, unit: str) -> str:
     """What a gauge would read where it is known."""
     verdict = result.verdict
-    digits = 3 if unit == "in" else 2
     wall, floor = verdict.wall, verdict.floor
     if one_groove(result.path) and wall.worst >= 0 and floor.worst >= 0:
-        sideways, down = (format_si(abs(v.value), unit, digits) for v in (wall, floor))
+        sideways, down = (format_si(abs(v.value), unit, 2) for v in (wall, floor))
         return f"The groove is {sideways} off {_aside(result, wall)} and {down} {_way('floor', floor)}."
     said = [
-        f"{name}s are up to {format_si(abs(v.value), unit, digits)} {_way(name, v)} (line {result.path.block[v.worst]})"
+        f"{name}s are up to {format_si(abs(v.value), unit, 2)} {_way(name, v)} (line {result.path.block[v.worst]})"
         for name, v in (("wall", wall), ("floor", floor))
         if v.worst >= 0
     ]
     if not said:
-        worst = format_si(result.max_deviation, unit, digits)
+        worst = format_si(result.max_deviation, unit, 2)
         said = [f"no wall or floor is left to measure; the tip is {worst} off at line {result.worst_block}"]
     return _sentence(", ".join(said))
 

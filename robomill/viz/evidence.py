@@ -58,12 +58,11 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: i
 def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
     p = palette(dark)
     colour = COLOURS.get(claim.kind, p.muted)
-    short = 2 if unit == "mm" else 4
     value = format_value(claim.value, unit)
-    said = value if claim.kind == "computed" else format_value(claim.value, unit, short)
+    said = value if claim.kind == "computed" else format_value(claim.value, unit, 2)
     text = f"<b>{'about ' * claim.rough}{said}</b>"
     if np.isfinite(claim.low) and np.isfinite(claim.high):
-        ends = [format_value(v, unit, short, with_unit=False) for v in (claim.low, claim.high)]
+        ends = [format_value(v, unit, 2, with_unit=False) for v in (claim.low, claim.high)]
         text += f"  ({ends[0]} to {ends[1]})"
         hover = f"{format_value(claim.low, unit)} to {format_value(claim.high, unit)}<extra></extra>"
         bar = {"mode": "lines", "line": {"color": colour, "width": 9}, "opacity": 0.35, "hovertemplate": hover}

@@ -58,3 +58,8 @@ def test_refused_conditions(change, sentence):
     with pytest.raises(CuttingError) as refusal:
         MechanisticForce(MILL, REF190).components(CutConditions(**{**base, "block": 12, **change}))
     assert sentence in str(refusal.value)
+
+
+def test_the_feed_of_a_tooth_is_that_of_a_turn_shared_by_the_teeth() -> None:
+    c = CutConditions.steady(0.03, 200.0, 2e-3)
+    assert c.chip(0, 3) == pytest.approx(30.0 / 200.0 / 3 * 1e-3)

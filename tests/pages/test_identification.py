@@ -405,7 +405,7 @@ def test_what_is_known_goes_through_the_project_file() -> None:
         (2.916e-4, 1.3e-6, "mm", "0.292 ± 0.001 mm"),
         (2.9162e-4, 3e-7, "mm", "0.2916 ± 0.0003 mm"),
         (1.2e-3, 4e-4, "mm", "1.20 ± 0.40 mm"),
-        (2.54e-4, 2.54e-5, "in", "0.010 ± 0.001 in"),
+        (2.54e-4, 2.54e-5, "in", "0.0100 ± 0.0010 in"),
     ],
 )
 def test_digits_follow_the_half_width(value: float, half: float, unit: str, text: str) -> None:

@@ -8,9 +8,9 @@ from robomill.errors import ProjectError, SetupError
 from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.kinematics.transforms import translation
+from robomill.simulation.reach import path_reach
 from robomill.simulation.run import configurations, deviation_over_spin
 from robomill.simulation.samples import sampled
-from robomill.ui.toolpath.reach import path_reach
 
 PAPER = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=5e-3)
 FANUC = PAPER.replace(robot=rm.load_robot("fanuc_r2000ic"), T_MW=translation(np.array([1.7, 0.3, 0.5])))

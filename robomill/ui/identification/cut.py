@@ -43,7 +43,7 @@ def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str
     now = cut_of(robot).max_deviation
     if not np.isfinite(half):
         return "not known", "no residuals to judge the noise by"
-    digits = uncertainty.band_digits(half, unit)
+    digits = uncertainty.band_digits(half)
     text = uncertainty.band_text(found.max_deviation, half, unit)
     setup = session.project().setup
     if known.held_by(found.setup.robot, found.setup.springs).holds_for(setup.robot, setup.springs):

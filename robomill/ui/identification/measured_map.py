@@ -78,7 +78,7 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
         z = 0.0
         if field is not None:
             levels = np.unique(np.round(field.p[:, 2], 6))
-            texts = {float(v): format_si(float(v), unit, 0 if unit == "mm" else 2) for v in levels}
+            texts = {float(v): format_si(float(v), unit, 0) for v in levels}
             nearest = min(texts, key=abs)
             z = inputs.pick("Level Z in {M}", "identification.map.level", texts, nearest, inputs.LISTED)
     return component, z
@@ -96,8 +96,7 @@ def tiles(field: MeasuredField, check: MapCheck, cut: Cut, unit: str) -> list[pi
     """Points, difference to the joint model, symmetry, and the cut by both methods."""
     lines = field.lines
     shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
-    digits = 0 if unit == "mm" else 1
-    where = format_many(field.p[check.worst], unit, digits, with_unit=False)
+    where = format_many(field.p[check.worst], unit, 0, with_unit=False)
     text, note = cut.words(unit)
     return [
         pieces.Tile("Measured points", f"{len(field.p)}", f"{shape}, three ways each", kind=field.provenance.kind),
@@ -134,15 +133,14 @@ class Cut:
             return "not computed", "the cut is not reached"
         if self.by_map is None or not self.covered:
             return "not covered", "the cut lies outside the measured region"
-        digits = 3 if unit == "mm" else 4
-        beside = f"{format_si(self.by_joints.max_deviation, unit, digits)} by the joint model"
+        beside = f"{format_si(self.by_joints.max_deviation, unit)} by the joint model"
         missing = int((self.by_joints.judged & ~np.isfinite(self.by_map.deviation)).sum())
         if missing:
             beside += f"; {missing} of {int(self.by_joints.judged.sum())} points not covered"
         banded = uncertainty.tile_text(self.by_map, unit)
         if banded:
             return banded, f"95 % by the map's own errors; {beside}"
-        return format_si(self.by_map.max_deviation, unit, digits), beside
+        return format_si(self.by_map.max_deviation, unit), beside
 
 
 def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | None:
@@ -237,12 +235,12 @@ def _cut(field: MeasuredField, cut: Cut, unit: str, dark: bool) -> None:
             alt="Deviation along the path by map and joint model.",
         )
     with right, st.container(border=True, height="stretch"):
-        i, digits = by_joints.worst, 3 if unit == "mm" else 4
+        i = by_joints.worst
         st.markdown(f"**At its worst, line {by_joints.worst_block}**")
         head = f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
         body = "".join(
             f"<tr><td>{axis}</td>"
-            + "".join(f'<td class="n">{format_si(float(v), unit, digits, sign=True)}</td>' for v in values)
+            + "".join(f'<td class="n">{format_si(float(v), unit, sign=True)}</td>' for v in values)
             + "</tr>"
             for axis, *values in zip("XYZ", by_map.delta[i], by_joints.delta[i], strict=True)
         )

@@ -67,11 +67,10 @@ def offer(bench: Bench, result: IdentificationResult) -> None:
 
 
 def _row(name: str, point: FoundPoint, unit: str) -> tuple[str, str, str]:
-    digits = 1 if unit == "mm" else 3
     half = np.ptp(point.ci95, axis=1) / 2
-    place = format_many(point.in_flange, unit, digits, with_unit=False)
-    sure = format_many(half, unit, digits, with_unit=False) if np.isfinite(half).all() else "not held"
-    return name, f"{format_si(point.off, unit, digits)} off", f"({place}) ± ({sure})"
+    place = format_many(point.in_flange, unit, 1, with_unit=False)
+    sure = format_many(half, unit, 1, with_unit=False) if np.isfinite(half).all() else "not held"
+    return name, f"{format_si(point.off, unit, 1)} off", f"({place}) ± ({sure})"
 
 
 def _gaps(lines: LinesOfPull, unit: str, dark: bool) -> None:
@@ -91,8 +90,7 @@ def _gaps(lines: LinesOfPull, unit: str, dark: bool) -> None:
 
 
 def _pulleys(lines: LinesOfPull, unit: str) -> str:
-    digits = 0 if unit == "mm" else 1
-    places = "; ".join(f"({format_many(p, unit, digits, with_unit=False)})" for p in lines.pulley)
+    places = "; ".join(f"({format_many(p, unit, 0, with_unit=False)})" for p in lines.pulley)
     return f"Pulley at {places} {unit_label(unit)} in {{M}}."
 
 

@@ -47,11 +47,10 @@ def edge(found: InHand) -> None:
         return
     out = lesson.progress().out
     i = way.start if out is None else int(np.abs(way.radius - out).argmin())
-    digits = 0 if unit == "mm" else 1
     inputs.stops(
         f"Distance from the base, {unit_label(unit)}",
         f"learn.out.{len(radius)}:{unit}",
-        {k: format_value(r, unit, digits, with_unit=False) for k, r in enumerate(radius)},
+        {k: format_value(r, unit, 0, with_unit=False) for k, r in enumerate(radius)},
         i,
         lambda k: lesson.go(out=float(way.radius[k])),
     )

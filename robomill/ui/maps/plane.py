@@ -15,7 +15,7 @@ from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import MapView, Point
-from robomill.units import UNITS, format_si, from_si, to_si, unit_label
+from robomill.units import UNITS, decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import Grid
@@ -110,7 +110,7 @@ def slider(region: Region, normal: str, at: float) -> None:
     inputs.slider(
         name,
         f"maps.at.{normal}:{unit}",
-        inputs.Span(round(low, 3), round(high, 3), step, "%.0f" if unit == "mm" else "%.2f"),
+        inputs.Span(round(low, 3), round(high, 3), step, f"%.{decimals(unit, 0)}f"),
         round(float(from_si(at, unit)), 3),
         lambda v: session.see(at=to_si(v, unit), normal=normal),
     )
@@ -118,7 +118,7 @@ def slider(region: Region, normal: str, at: float) -> None:
 
 def title(normal: str, at: float, unit: str) -> str:
     """``Z_M = 0 mm`` as people read it."""
-    return f"{normal.upper()}<sub>M</sub> = {format_si(at, unit, 0 if unit == 'mm' else 2)}"
+    return f"{normal.upper()}<sub>M</sub> = {format_si(at, unit, 0)}"
 
 
 def axes(normal: str, unit: str) -> tuple[str, str]:

@@ -20,7 +20,6 @@ from robomill.units import (
     format_percent,
     format_si,
     format_times,
-    format_value,
     from_si,
     unit_label,
 )
@@ -35,8 +34,7 @@ AXES = "XYZ"
 
 def place(point: Point, unit: str) -> str:
     """``(0, -1300, 0) mm``."""
-    digits = 0 if unit == "mm" else 1
-    return "(" + ", ".join(format_value(float(from_si(v, unit)), "1", digits) for v in point) + f") {unit_label(unit)}"
+    return f"({format_many(point, unit, 0, with_unit=False)}) {unit_label(unit)}"
 
 
 def headline(found: InHand, unit: str) -> str:

@@ -21,6 +21,7 @@ from robomill.ui.point import in_hand, middle
 from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
+    decimals,
     format_many,
     format_number,
     format_percent,
@@ -74,7 +75,7 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
 def box_size(size: FloatArray, unit: str) -> str:
     """``1200 x 600 x 500`` without its unit; a flat box has two numbers."""
     sides = [v for v in size if v > 1e-6] or [0.0]
-    return format_many(sides, unit, 0 if unit == "mm" else 1, " × ", with_unit=False)
+    return format_many(sides, unit, 0, " × ", with_unit=False)
 
 
 def _against(box: Box, robot: Robot, unit: str) -> str:
@@ -130,7 +131,6 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     st.markdown("**Machining boxes**")
     largest = fields.proposed_box(robot, view.A, view.B)
     rows = []
-    digits = 0 if unit == "mm" else 1
     flat = fields.flat(robot) is not None
     for name, box, kind in (
         ("largest without a singularity", largest, "computed"),
@@ -138,7 +138,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     ):
         if box is None or (flat and kind == "paper"):
             continue
-        corner = format_many(box.lower, unit, digits, with_unit=False)
+        corner = format_many(box.lower, unit, 0, with_unit=False)
         mark = pieces.badge(kind) + (" place in Y " + pieces.badge("assumed") if kind == "paper" else "")
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
     pieces.facts(rows)
@@ -179,7 +179,7 @@ def _pair(region: Region) -> None:
             inputs.slider(
                 f"{name} {('left' if k == 0 else 'right')}, {unit_label(unit)}",
                 f"maps.pair.{k}.{normal}:{unit}",
-                inputs.Span(ends[0], ends[1], float(from_si(step, unit)), "%.0f" if unit == "mm" else "%.2f"),
+                inputs.Span(ends[0], ends[1], float(from_si(step, unit)), f"%.{decimals(unit, 0)}f"),
                 ends[2],
                 partial(_put_pair, k, unit, (first, second)),
             )

@@ -92,11 +92,10 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
         )
     c = result.conditions
     if bool(c.engaged[i]) and bool(c.n_s[i] > 0):
-        f_z = c.v_f[i] / c.n_s[i] / result.tooling.at(i).flutes
         rows.append(
             (
                 "Chip",
-                format_si(float(f_z), "mm/tooth", 3),
+                format_si(c.chip(i, result.tooling.at(i).flutes), "mm/tooth", 3),
                 f"{format_si(float(c.n_s[i]), '1/min')}, {format_si(float(c.v_f[i]), 'mm/min')}",
             )
         )

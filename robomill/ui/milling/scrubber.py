@@ -148,5 +148,5 @@ def band_words(spread: AlloySpread | None, result: SimulationResult, unit: str) 
     if spread is None or len(spread.titles) < 2 or not result.judged.any():
         return ""
     largest = largest_deviations(result, spread)
-    ends = format_many((largest.min(), largest.max()), unit, 2 if unit == "mm" else 4, " to ")
+    ends = format_many((largest.min(), largest.max()), unit, 2, " to ")
     return f"{ends} by alloy row"

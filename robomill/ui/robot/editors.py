@@ -34,8 +34,8 @@ def editors(project: Project) -> None:
                 columns={
                     "joint": st.column_config.TextColumn("#", width=34),
                     **{
-                        title: st.column_config.NumberColumn(title, format="%.6g", width=64 if unit == "mm" else 54)
-                        for title, unit in ((tables.heading(each), each.unit) for each in tables.GEOMETRY.values())
+                        title: st.column_config.NumberColumn(title, format="%.6g", width=58)
+                        for title in map(tables.heading, tables.GEOMETRY.values())
                     },
                 },
                 locked=("joint",),

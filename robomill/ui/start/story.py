@@ -106,12 +106,11 @@ def beside_the_paper(project: Project) -> None:
     if found is None:
         return
     top = max((abs(c.value) for c in found if np.isfinite(c.value)), default=1.0) or 1.0
-    digits = 3 if project.view.length == "in" else 2
     rows = [
         (
             f"{html.escape(c.label)} {pieces.badge(c.kind)}",
             pieces.bar(abs(c.value) / top, c.kind),
-            "about " * c.rough + format_si(abs(c.value), project.view.length, digits),
+            "about " * c.rough + format_si(abs(c.value), project.view.length, 2),
         )
         for c in found
     ]

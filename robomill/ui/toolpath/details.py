@@ -9,11 +9,11 @@ import pandas as pd
 import streamlit as st
 
 from robomill.provenance import Finding
+from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
-from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
 from robomill.units import format_count, format_many, format_si, unit_label
 
@@ -90,7 +90,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
 
 
 def _plain(value: float, unit: str) -> str:
-    return format_si(value, unit, 2 if unit == "mm" else 4, with_unit=False)
+    return format_si(value, unit, 2, with_unit=False)
 
 
 def _range(values: tuple[float, float], unit: str) -> str:

@@ -12,7 +12,7 @@ from robomill.io.workpiece import part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.units import format_si, from_si, to_si, unit_label
+from robomill.units import decimals, format_si, from_si, to_si, unit_label
 from robomill.vectors import angle_between
 
 TOUCHED = "toolpath.touched"
@@ -32,11 +32,11 @@ def part_zero() -> None:
 
 def _by_numbers() -> None:
     unit, T_MW = session.project().view.length, session.project().setup.T_MW
-    step, digits = (10.0, 2) if unit == "mm" else (1.0, 4)
+    step = 10.0 if unit == "mm" else 1.0
     left, right = st.columns(2)
     for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
         with column:
-            inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=digits)
+            inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=decimals(unit, 2))
     with right:
         turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
         inputs.value("toolpath.turn", NumberBox("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)

@@ -10,6 +10,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import nearest_judged
@@ -17,9 +18,8 @@ from robomill.simulation.tools import cutting_numbers
 from robomill.ui import inputs, pieces, session
 from robomill.ui.arm import arm_at
 from robomill.ui.toolpath.program_view import select_line, selected_line
-from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import path_summary
-from robomill.units import from_si, unit_label
+from robomill.units import decimals, from_si, unit_label
 from robomill.viz.path_picture import BUDGET, PathPicture, decimate
 from robomill.viz.toolpath import plan_picture, turnable_picture
 
@@ -93,7 +93,7 @@ def _picture(
             "unit": unit_label(unit),
             "worst": use.worst,
             "limit": float(from_si(setup.tolerance, unit)),
-            "digits": 4 if unit == "in" else 3,
+            "digits": decimals(unit, None),
         }
     elif colour == "limits":
         more = {"value": from_si(reach.room, "deg"), "title": "Room to the nearest limit", "unit": "°", "digits": 1}

@@ -1,53 +1,22 @@
-"""Whether the arm can follow a path, and where on the board it reaches: quick answers, kept by fingerprint."""
+"""Where on the board the arm reaches, for the pad, and whether it can follow a path: both kept by fingerprint."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
-from robomill.kinematics.inverse import inverse_kinematics
-from robomill.kinematics.transforms import translation
+from robomill.arrays import FloatArray
 from robomill.robot.model import Robot
-from robomill.simulation.run import configurations
-from robomill.simulation.samples import sampled
+from robomill.simulation import reach
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.path import Toolpath
 from robomill.ui.cached import by_setup, shared
 from robomill.units import from_si
 
-MAX_SAMPLES = 400_000
 BOARD_CELLS = (80, 80)
 BOARD_HALF = 0.4
 
-
-@dataclass(frozen=True, eq=False)
-class PathReach:
-    """The sampled path, which samples (m,) are reached, and the room (m,) rad or m to the nearest joint limit."""
-
-    path: Toolpath
-    reached: BoolArray
-    room: FloatArray
-    reason: str
-
-    @property
-    def missed(self) -> BoolArray:
-        """(m,) samples at feed that cannot be reached."""
-        return np.asarray(self.path.cutting & ~self.reached)
-
-
-@shared(12, by_setup)
-def path_reach(setup: SimulationSetup) -> PathReach:
-    """The configurations of a run along the path; raises the refusal of reading it."""
-    whole = setup.toolpath
-    path = sampled(whole, max(setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
-    ik = configurations(setup, path)
-    limits = setup.robot.limits
-    room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
-    lost = np.flatnonzero(path.cutting & ~ik.reached)
-    return PathReach(path, ik.reached, room, str(ik.reason(int(lost[0]))) if len(lost) else "")
+path_reach = shared(12, by_setup)(reach.path_reach)
 
 
 def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] | None:
@@ -77,9 +46,7 @@ def _board_runs(robot: Robot, T_MW: FloatArray, low: float, high: float, z: floa
     nx, ny = BOARD_CELLS
     x = low + (np.arange(nx) + 0.5) * (high - low) / nx
     y = low + (np.arange(ny) + 0.5) * (high - low) / ny
-    X, Y = np.meshgrid(x, y)
-    T_WT = translation(np.stack([X, Y, np.full_like(X, z)], axis=-1))
-    far = ~inverse_kinematics(robot, T_MW @ T_WT).reached
+    far = ~reach.plane_reach(robot, T_MW, x, y, z)
     edges = np.diff(np.pad(far.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     rows, starts = np.nonzero(edges == 1)
     ends = np.nonzero(edges == -1)[1]

@@ -10,12 +10,12 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.provenance import Finding
+from robomill.simulation.reach import PathReach
 from robomill.toolpath.apt import is_apt
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.program_view import LEVELS
-from robomill.ui.toolpath.reach import PathReach
 from robomill.units import format_count, format_si, from_si
 
 

@@ -7,12 +7,12 @@ import dataclasses
 import numpy as np
 import streamlit as st
 
+from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 from robomill.ui import cached, inputs, pieces, session
-from robomill.ui.toolpath.reach import PathReach
 from robomill.ui.toolpath.summary import (
     duration,
     finding_words,
@@ -73,7 +73,7 @@ def headline(
         pieces.headline(f"Toolpath · {source.name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
-    size = format_many(summary.high - summary.low, unit, 1 if unit == "mm" else 2, " × ")
+    size = format_many(summary.high - summary.low, unit, 1, " × ")
     lead = f"{format_count(summary.blocks, NOUNS[source.kind])} within {size}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
@@ -107,7 +107,7 @@ def tiles(
     found = [
         pieces.Tile(
             "At feed",
-            format_si(float(path.s[-1]), unit, 1 if unit == "mm" else 2),
+            format_si(float(path.s[-1]), unit, 1),
             f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
         )
     ]

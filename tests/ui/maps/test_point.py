@@ -44,4 +44,4 @@ def test_headline_words(found: PoseReport) -> None:
 
 
 def test_place_in_inches() -> None:
-    assert place((0.0254, 0.0, -0.254), "in") == "(1.0, 0.0, −10.0) in"
+    assert place((0.0254, 0.0, -0.254), "in") == "(1.00, 0.00, −10.00) in"

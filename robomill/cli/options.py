@@ -1,0 +1,71 @@
+"""What the options say: numbers, joint coordinates, the points of an axis, a program's file; refused by their name."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from robomill.errors import RobomillError
+
+
+def numbers(text: str, option: str, count: int | None, what: str) -> list[float]:
+    try:
+        values = [float(word) for word in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != (count or max(len(values), 1)) or not all(map(math.isfinite, values)):
+        raise RobomillError(
+            f"{option}: expected {count or 'one or more'} numbers separated by commas ({what}), found {text!r}."
+        )
+    return values
+
+
+def wholes(text: str, option: str) -> tuple[int, ...]:
+    return tuple(int(v) for v in numbers(text, option, None, "whole numbers"))
+
+
+def theta(robot: Any, text: str) -> Any:
+    import numpy as np
+
+    from robomill.units import to_si
+
+    what = f"the {robot.n} joint coordinates of {robot.name}"
+    values = np.array(numbers(text, "--theta-deg", robot.n, what))
+    return np.array([to_si(value, unit) for value, unit in zip(values, robot.joint_units, strict=True)])
+
+
+def axis(text: str, option: str) -> Any:
+    """Points of one axis in m from "low:high:step" or one number, in mm."""
+    from robomill.units import to_si
+    from robomill.workspace.grid import axis_points
+
+    words = text.split(":")
+    low, *rest = numbers(",".join(words), option, 3 if len(words) != 1 else 1, "low:high:step or one number, in mm")
+    return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")
+
+
+def program(name: str) -> Path | bytes:
+    """The file of a program; where that is a stream, which can be read once, what comes out of it (``-``: stdin)."""
+    from robomill.toolpath.text import MAX_BYTES
+
+    file = Path("/dev/stdin" if name == "-" else name)
+    try:
+        if file.is_file() or file.is_dir() or not file.exists():
+            return file
+        with file.open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except OSError:
+        return file  # the interpreter says what is wrong with it
+
+
+def reads_as_apt(source: Path | bytes) -> bool:
+    from robomill.toolpath.apt import is_apt
+
+    if isinstance(source, bytes):
+        return is_apt(source)
+    try:
+        with source.open("rb") as stream:
+            return is_apt(stream.read(200_000))
+    except OSError:
+        return False  # the interpreter says what is wrong with the file

@@ -1,0 +1,168 @@
+"""What each verb does: read, compute, print the record; everything is imported by the verb that needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from robomill.cli import options
+
+
+def say(arguments: Any, record: dict[str, Any], lines: Sequence[str], code: int = 0) -> int:
+    """Print the record as JSON, or its lines for a person; returns the exit code."""
+    from robomill.io.results import json_text
+    from robomill.report.records import jsonable
+
+    print(json_text(jsonable(record)).rstrip("\n") if arguments.json else "\n".join(lines))
+    return code
+
+
+def run_robots(arguments: Any) -> int:
+    from robomill.io.robots import load_robot, robot_names
+    from robomill.report.plain import robot_lines
+    from robomill.report.records import robots_record
+
+    record = robots_record([load_robot(name) for name in robot_names()])
+    return say(arguments, record, robot_lines(record))
+
+
+def run_pose(arguments: Any) -> int:
+    from robomill.compliance.at_pose import at_pose
+    from robomill.report.plain import pose_lines
+    from robomill.report.records import pose_record
+
+    robot = _robot(arguments)
+    record = pose_record(at_pose(robot, options.theta(robot, arguments.theta_deg)))
+    return say(arguments, record, pose_lines(record))
+
+
+def run_ik(arguments: Any) -> int:
+    import numpy as np
+
+    from robomill.io.robots import load_robot
+    from robomill.kinematics.inverse import inverse_kinematics
+    from robomill.kinematics.transforms import pose_from_world
+    from robomill.report.plain import ik_lines
+    from robomill.report.records import ik_record
+    from robomill.units import to_si
+
+    robot = load_robot(arguments.robot)
+    values = np.array(options.numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
+    x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
+    record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
+    return say(arguments, record, ik_lines(record))
+
+
+def run_gcode(arguments: Any) -> int:
+    from robomill.io.tool_tables import read_tool_table
+    from robomill.report.plain import gcode_lines
+    from robomill.report.records import path_record
+    from robomill.toolpath.apt import read_apt
+    from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
+
+    source = options.program(arguments.file)
+    if options.reads_as_apt(source):
+        record = path_record(read_apt(source))
+    else:
+        tools = read_tool_table(arguments.tools, unit=arguments.tools_unit) if arguments.tools else None
+        program = interpret(source, dialect=arguments.dialect, tools=tools)
+        record = gcode_report(program)
+        record["findings"] += [finding.record() for finding in tools.findings] if tools is not None else []
+        if arguments.moves:
+            write_moves_jsonl(program, arguments.moves)
+    return say(arguments, record, gcode_lines(record))
+
+
+def run_map(arguments: Any) -> int:
+    from robomill.io.maps import write_map
+    from robomill.report.plain import map_lines
+    from robomill.report.records import map_record
+    from robomill.units import to_si
+    from robomill.workspace.fields import compliance_field
+    from robomill.workspace.grid import Grid
+
+    robot = _robot(arguments)
+    grid = Grid(*(options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
+    A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
+    everything = compliance_field(robot, grid, A, B)
+    fields = [everything.field(name) for name in ",".join(arguments.quantity).split(",")]
+    if arguments.out:
+        write_map(arguments.out, fields)
+    record = map_record(fields)
+    return say(arguments, record, map_lines(record))
+
+
+def run_identify(arguments: Any) -> int:
+    from robomill.identification.estimate import identify
+    from robomill.identification.plan import next_best
+    from robomill.identification.record import identification_record
+    from robomill.identification.treatment import Treatment
+    from robomill.io.load_test_sheets import measuring_sheet
+    from robomill.io.load_tests import read_load_tests
+    from robomill.io.robots import load_robot, robot_to_toml
+    from robomill.report.plain import identification_lines
+
+    robot = load_robot(arguments.robot)
+    tests = read_load_tests(Path(arguments.tests), robot)
+    joints = arguments.bending if arguments.bending == "auto" else options.wholes(arguments.bending, "--bending")
+    treatment = Treatment(
+        joints,
+        arguments.fit_points,
+        arguments.robust,
+        options.wholes(arguments.exclude, "--exclude") if arguments.exclude else (),
+        arguments.weights,
+        arguments.leave_out,
+    )
+    result = identify(robot, tests, arguments.model, treatment)
+    record, findings = identification_record(robot, tests, result)
+    record["findings"] = [finding.record() for finding in findings]
+    if arguments.out:
+        Path(arguments.out).write_text(robot_to_toml(result.applied_to(robot)), encoding="utf-8")
+    if arguments.sheet:
+        plan = next_best(robot, tests, result, count=arguments.next)
+        record["next"] = plan.rows()
+        Path(arguments.sheet).write_text(measuring_sheet(plan, Path(arguments.tests).name), encoding="utf-8")
+    return say(arguments, record, identification_lines(record))
+
+
+def run_simulate(arguments: Any) -> int:
+    from robomill.io.programs import read_program
+    from robomill.io.projects import load_setup
+    from robomill.io.results import json_text, write_files
+    from robomill.report.plain import simulation_lines
+    from robomill.report.records import jsonable, simulation_record
+    from robomill.report.tables import csv_text, deviation_columns, section_columns
+    from robomill.simulation.run import simulate
+    from robomill.units import to_si
+
+    setup = load_setup(arguments.setup)
+    if arguments.program:
+        setup = setup.replace(source=read_program(arguments.program))
+    if arguments.tol is not None:
+        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"), floor_tolerance=None, feed_tolerance=None)
+    setup = setup.replace(robot=_with_set(setup.robot, arguments))
+    result = simulate(setup)
+    record = simulation_record(result)
+    if arguments.out:
+        from robomill.io.meshes import mesh_bytes
+
+        files: dict[str, str | bytes] = {
+            "result.json": json_text(jsonable(record)),
+            "deviation.csv": csv_text(deviation_columns(result)),
+            "sections.csv": csv_text(section_columns(result)),
+            "machined.stl": mesh_bytes(result.machined, "stl"),
+        }
+        write_files(Path(arguments.out), files)
+    return say(arguments, record, simulation_lines(record), 1 if result.verdict.red else 0)
+
+
+def _robot(arguments: Any) -> Any:
+    """The robot asked for, with the compliance set asked for."""
+    from robomill.io.robots import load_robot
+
+    return _with_set(load_robot(arguments.robot), arguments)
+
+
+def _with_set(robot: Any, arguments: Any) -> Any:
+    return robot.with_compliance_set(arguments.compliance_set) if arguments.compliance_set else robot

@@ -1,0 +1,51 @@
+"""Whether the arm can follow a path, and which points of a plane it reaches: the questions asked before a cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import translation
+from robomill.robot.model import Robot
+from robomill.simulation.run import configurations
+from robomill.simulation.samples import sampled
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+
+MAX_SAMPLES = 400_000
+
+
+@dataclass(frozen=True, eq=False)
+class PathReach:
+    """The sampled path, which samples (m,) are reached, and the room (m,) rad or m to the nearest joint limit."""
+
+    path: Toolpath
+    reached: BoolArray
+    room: FloatArray
+    reason: str
+
+    @property
+    def missed(self) -> BoolArray:
+        """(m,) samples at feed that cannot be reached."""
+        return np.asarray(self.path.cutting & ~self.reached)
+
+
+def path_reach(setup: SimulationSetup) -> PathReach:
+    """The configurations of a run along the path; raises the refusal of reading it."""
+    whole = setup.toolpath
+    path = sampled(whole, max(setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
+    ik = configurations(setup, path)
+    limits = setup.robot.limits
+    room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
+    lost = np.flatnonzero(path.cutting & ~ik.reached)
+    return PathReach(path, ik.reached, room, str(ik.reason(int(lost[0]))) if len(lost) else "")
+
+
+def plane_reach(robot: Robot, T_MW: FloatArray, x: FloatArray, y: FloatArray, z: float) -> BoolArray:
+    """(ny, nx) whether the upright tool gets to the points x (nx,), y (ny,) of the plane z of {W}, m."""
+    X, Y = np.meshgrid(x, y)
+    T_WT = translation(np.stack([X, Y, np.full_like(X, z)], axis=-1))
+    return np.asarray(inverse_kinematics(robot, T_MW @ T_WT).reached)
