@@ -12,9 +12,9 @@ from robomill.units import format_value, from_si
 AXES = "XYZ"
 
 
-def matrix_lines(rows: Sequence[Sequence[float]], digits: int = 4, indent: str = "  ") -> list[str]:
+def matrix_lines(rows: Sequence[Sequence[float]]) -> list[str]:
     """A matrix with aligned columns."""
-    return [indent + " ".join(f"{v:{digits + 6}.{digits}f}" for v in row) for row in rows]
+    return ["  " + " ".join(f"{v:10.4f}" for v in row) for row in rows]
 
 
 def robot_lines(record: dict[str, Any]) -> list[str]:

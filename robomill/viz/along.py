@@ -10,7 +10,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.viz.theme import axis, axis_colours, figure, palette, rgba
+from robomill.simulation.result import SimulationResult
+from robomill.viz.theme import axis, axis_colours, figure, palette, rgba, say
 
 MAX_POINTS = 6000
 MAX_PICKS = 800
@@ -24,6 +25,11 @@ def thin(count: int, keep: Sequence[int] = ()) -> IntArray:
         return np.arange(count)
     chosen = np.linspace(0, count - 1, MAX_POINTS).astype(np.int64)
     return np.unique(np.concatenate([chosen, np.asarray(keep, dtype=np.int64)]))
+
+
+def at_feed(result: SimulationResult, values: FloatArray) -> FloatArray:
+    """``values`` (m, k) with NaN where nothing is cut, so that lines break there."""
+    return np.where(result.path.cutting[:, None], values, np.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +70,15 @@ class Along:
         """A quiet line at zero."""
         self.fig.add_hline(y=0, line={"color": palette(self.dark).line, "width": 1})
 
-    def done(self, title: str, station: float | None = None, **more: Any) -> go.Figure:
-        """The figure with its axes (``more``: of y) and a line where the station is."""
-        if station is not None:
-            self.fig.add_vline(x=station, line={"color": palette(self.dark).accent, "width": 1.6})
+    def station(self, at: float, name: str = "") -> None:
+        """A line where the station is."""
+        accent = palette(self.dark).accent
+        self.fig.add_vline(x=at, line={"color": accent, "width": 1.6})
+        if name:
+            say(self.fig, name, at, 0, accent, yref="paper", yshift=10, xshift=4, xanchor="left")
+
+    def done(self, title: str, **more: Any) -> go.Figure:
+        """The figure with its axes (``more``: of y)."""
         return self.fig.update_layout(
             xaxis=axis(f"Length cut, {self.unit}", dark=self.dark), yaxis=axis(title, dark=self.dark, **more)
         )

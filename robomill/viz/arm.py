@@ -64,7 +64,7 @@ def arm_figure(
         vector = _sized(scene.displacement, 0.17 * reach)
         opaque += solids.arrow(tip, vector, p.warm, width)
         said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
-    fig.add_traces([solids.painted(opaque, "arm"), _joint_hover(scene.frames, p.text), solids.words(said)])
+    fig.add_traces([solids.painted(opaque), _joint_hover(scene.frames, p.text), solids.words(said)])
     fig.add_traces(_part_traces(scene, reach, dark))
     fig.update_layout(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
     return fig

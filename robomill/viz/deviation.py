@@ -3,120 +3,92 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
-from robomill.arrays import FloatArray, IntArray
-from robomill.viz.along import Along, add_band
+from robomill.arrays import FloatArray
+from robomill.simulation.result import SimulationResult
+from robomill.units import from_si
+from robomill.viz.along import Along, add_band, at_feed
 from robomill.viz.theme import axis_colours, joint_colours, palette, rgba, say
 
 DASHES = {"x": "dot", "y": "solid", "z": "dash"}
 
 
-@dataclass(frozen=True, eq=False)
-class Components:
-    """Path deviation delta (m, 3) against the length cut s (m,), with the lines (m,) and the tolerance; in ``unit``."""
-
-    s: FloatArray
-    delta: FloatArray
-    block: IntArray
-    tolerance: float
-    unit: str
-
-
-@dataclass(frozen=True, eq=False)
-class Shares:
-    """Shares (m, n) of one ``component`` of the deviation ("x", "y", "z") by joint and spring, with their sum (m,)."""
-
-    s: FloatArray
-    shares: FloatArray
-    names: Sequence[str]
-    total: FloatArray
-    component: str
-    unit: str
-
-
-@dataclass(frozen=True, eq=False)
-class BandCurve:
-    """value +- half (m,) of a ``component`` ("": the size) against s (m,), what the project has now, in ``unit``."""
-
-    s: FloatArray
-    value: FloatArray
-    half: FloatArray
-    now: FloatArray | None
-    component: str
-    unit: str
-
-
-def components_figure(c: Components, *, dark: bool, height: int = 300, station: float | None = None) -> go.Figure:
-    """The deviation's size and components."""
+def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> go.Figure:
+    """The deviation's size and components; a line at sample ``i``."""
     p = palette(dark)
-    size = np.linalg.norm(c.delta, axis=1)
-    worst = int(np.nanargmax(np.nan_to_num(size)))
-    plot = Along.begin(c.s, c.unit, "components", dark=dark, height=height, keep=[worst])
+    s, delta = from_si(result.path.s, unit), from_si(at_feed(result, result.delta), unit)
+    tolerance = float(from_si(result.setup.tolerance, unit))
+    plot = Along.begin(s, unit, "components", dark=dark, height=330, keep=[max(result.worst, 0)])
     below = {"fill": "tozeroy", "fillcolor": rgba(p.text, 0.05)}
-    plot.curve(size, "size", {"color": p.text, "width": 2.4}, "%{y:.4f} " + c.unit, **below)
+    plot.curve(np.linalg.norm(delta, axis=1), "size", {"color": p.text, "width": 2.4}, "%{y:.4f} " + unit, **below)
     for column, (name, colour) in enumerate(axis_colours(dark).items()):
         line = {"color": colour, "width": 2, "dash": DASHES[name]}
-        lines = c.block[plot.chosen]
-        words = f"δ<sub>{name.upper()}</sub>"
-        plot.curve(c.delta[:, column], words, line, "%{y:+.4f} " + c.unit, customdata=lines)
-    for side in (1, -1) if np.nanmin(c.delta, initial=0.0) < -0.6 * c.tolerance else (1,):
-        plot.level(side * c.tolerance, p.bad)
-    words = f"tolerance {c.tolerance:g} {c.unit}"
-    say(plot.fig, words, 1, c.tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
+        lines = result.path.block[plot.chosen]
+        plot.curve(delta[:, column], f"δ<sub>{name.upper()}</sub>", line, "%{y:+.4f} " + unit, customdata=lines)
+    for side in (1, -1) if np.nanmin(delta, initial=0.0) < -0.6 * tolerance else (1,):
+        plot.level(side * tolerance, p.bad)
+    say(plot.fig, f"tolerance {tolerance:g} {unit}", 1, tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
     plot.zero()
-    _name_station(plot, station)
-    return plot.done(f"Deviation in {{M}}, {c.unit}", station)
+    if i >= 0:
+        plot.station(float(s[i]), "station")
+    return plot.done(f"Deviation in {{M}}, {unit}")
 
 
-def shares_figure(c: Shares, *, dark: bool, height: int = 300, station: float | None = None) -> go.Figure:
-    """Shares stacked: what pushes the tip up above zero, what pulls it back below."""
-    p = palette(dark)
-    plot = Along.begin(c.s, c.unit, f"shares-{c.component}", dark=dark, height=height)
-    hover = "%{y:+.4f} " + c.unit
-    shares, names, order = _without_the_small(c.shares, c.names)
+def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: bool, i: int = -1) -> go.Figure:
+    """Shares of a ``component`` ("x", "y", "z") by joint and spring, stacked; a line at sample ``i``.
+
+    What pushes the tip up stands above zero, what pulls it back below.
+    """
+    p, column = palette(dark), "xyz".index(component)
+    s, hover = from_si(result.path.s, unit), "%{y:+.4f} " + unit
+    every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
+    named = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
+    plot = Along.begin(s, unit, f"shares-{component}", dark=dark, height=320)
+    shares, names, order = _without_the_small(from_si(at_feed(result, every), unit), named)
     for j, name in enumerate(names):
         colour = joint_colours(7, dark)[order[j] % 7] if order[j] >= 0 else p.muted
-        named = False
+        said = False
         for sign, stack in ((1, "up"), (-1, "down")):
             part = np.where(np.sign(np.nan_to_num(shares[:, j])) == sign, shares[:, j], 0.0)
             if np.any(part[plot.chosen]):  # a joint that pushes both ways has two areas and needs one name
                 area = {"stackgroup": stack, "fillcolor": rgba(colour, 0.78), "legendgroup": name}
-                plot.curve(part, name, {"width": 0.6, "color": colour}, hover, showlegend=not named, **area)
-                named = True
-    plot.curve(c.total, "total", {"color": p.text, "width": 2.2}, hover)
+                plot.curve(part, name, {"width": 0.6, "color": colour}, hover, showlegend=not said, **area)
+                said = True
+    total = from_si(at_feed(result, result.delta), unit)[:, column]
+    plot.curve(total, "total", {"color": p.text, "width": 2.2}, hover)
     plot.zero()
-    _name_station(plot, station)
-    return plot.done(f"Share of δ<sub>{c.component.upper()}</sub>, {c.unit}", station)
+    if i >= 0:
+        plot.station(float(s[i]), "station")
+    return plot.done(f"Share of δ<sub>{component.upper()}</sub>, {unit}")
 
 
-def band_figure(c: BandCurve, *, dark: bool, height: int = 320) -> go.Figure:
-    """The curve with its band; dashed beneath it the values that the project has now."""
-    p = palette(dark)
-    symbol = f"δ<sub>{c.component.upper()}</sub>" if c.component else "size"
-    plot = Along.begin(c.s, c.unit, f"band-{c.component}", dark=dark, height=height)
-    add_band(plot.fig, c.s, c.value, c.half, c.component, dark=dark)
+def band_figure(
+    curves: tuple[FloatArray, FloatArray, FloatArray, FloatArray], component: str, unit: str, *, dark: bool
+) -> go.Figure:
+    """Length cut, value, half width of its band, and what the project has now (dashed), each (m,) in ``unit``.
+
+    ``component`` is "x", "y", "z", or "" for the size.
+    """
+    p, (s, value, half, now) = palette(dark), curves
+    symbol = f"δ<sub>{component.upper()}</sub>" if component else "size"
+    plot = Along.begin(s, unit, f"band-{component}", dark=dark, height=320)
+    add_band(plot.fig, s, value, half, component, dark=dark)
     if plot.fig.data:
         plot.fig.data[0].showlegend = True
-    if c.now is not None:
-        line = {"color": p.muted, "width": 1.6, "dash": "dash"}
-        plot.curve(c.now, "project now", line, "%{y:+.4f} " + c.unit)
-    line = {"color": axis_colours(dark).get(c.component, p.text), "width": 2.4}
-    hover = "%{y:+.4f} ± %{customdata:.4f} " + c.unit
-    plot.curve(c.value, f"{symbol}, load tests", line, hover, customdata=c.half[plot.chosen])
-    return plot.done(f"Deviation {symbol} in {{M}}, {c.unit}")
+    plot.curve(now, "project now", {"color": p.muted, "width": 1.6, "dash": "dash"}, "%{y:+.4f} " + unit)
+    line = {"color": axis_colours(dark).get(component, p.text), "width": 2.4}
+    hover = "%{y:+.4f} ± %{customdata:.4f} " + unit
+    plot.curve(value, f"{symbol}, load tests", line, hover, customdata=half[plot.chosen])
+    return plot.done(f"Deviation {symbol} in {{M}}, {unit}")
 
 
-def both_figure(
-    s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: str, *, dark: bool, height: int = 280
-) -> go.Figure:
+def both_figure(s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: str, *, dark: bool) -> go.Figure:
     """Size of the deviation along the path (m,) by the measured map and by the joint model, in ``unit``."""
     p = palette(dark)
-    plot = Along.begin(s, unit, "both", dark=dark, height=height)
+    plot = Along.begin(s, unit, "both", dark=dark, height=280)
     plot.curve(by_map, "measured map", {"color": p.warm, "width": 2.4}, "%{y:.4f} " + unit)
     plot.curve(by_joints, "joint model", {"color": p.accent, "width": 2.2, "dash": "dash"}, "%{y:.4f} " + unit)
     return plot.done(f"Deviation, {unit}", rangemode="tozero")
@@ -132,9 +104,3 @@ def _without_the_small(shares: FloatArray, names: Sequence[str]) -> tuple[FloatA
     rest = shares[:, ~large].sum(axis=1, keepdims=True)
     label = f"{', '.join(name for name, big in zip(names, large, strict=True) if not big)} (under 1 %)"
     return np.hstack([shares[:, large], rest]), [*(names[int(j)] for j in kept), label], [*kept.tolist(), -1]
-
-
-def _name_station(plot: Along, station: float | None) -> None:
-    if station is not None:
-        beside: dict[str, Any] = {"yref": "paper", "yshift": 10, "xshift": 4, "xanchor": "left"}
-        say(plot.fig, "station", station, 0, palette(plot.dark).accent, **beside)

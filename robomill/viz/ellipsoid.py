@@ -12,11 +12,12 @@ from robomill.viz import solids
 from robomill.viz.theme import palette
 
 
-def ellipsoid_mesh(C: FloatArray, centre: FloatArray, times: float, count: int = 28) -> solids.Mesh:
+def ellipsoid_mesh(C: FloatArray, centre: FloatArray, times: float) -> solids.Mesh:
     """Points centre + times * C u for unit vectors u: the ellipsoid with the principal compliances as half axes.
 
     C (3, 3) m/N, centre (3,) m, ``times`` m per m/N.
     """
+    count = 28
     v = np.linspace(0.0, np.pi, count)
     u = np.linspace(0.0, 2.0 * np.pi, 2 * count, endpoint=False)
     sphere = np.stack(

@@ -36,11 +36,11 @@ class Claim:
     rough: bool = False
 
 
-def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool, height: int = 0) -> go.Figure:
+def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool) -> go.Figure:
     """Each claim a row: a dot with its number, a bar for its range."""
     rows = len(claims)
     margin = {"l": 12, "r": 24, "t": 8, "b": 8}
-    fig = figure(dark=dark, height=height or 70 + 46 * rows, revision="evidence", margin=margin)
+    fig = figure(dark=dark, height=70 + 46 * rows, revision="evidence", margin=margin)
     measured = [c.value for c in claims if c.kind == "measured" and np.isfinite(c.value)]
     for value in measured[:1]:
         fig.add_vline(x=value, line={"color": COLOURS["measured"], "width": 1.2, "dash": "dash"})

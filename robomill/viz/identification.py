@@ -18,7 +18,6 @@ from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure
 
 MAX_TESTS = 3000
 REFERENCE_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open", "circle-open")
-AXES = ("x", "y", "z")
 MARGIN = {"l": 8, "r": 16, "t": 34, "b": 8}
 ROW = "Row of the file"
 _ROW = 46
@@ -100,7 +99,7 @@ def _compared(fig: go.Figure, shown: Intervals, dark: bool) -> None:
         fig.add_scatter(x=shown.truth, y=y, mode="markers", name="truth", marker=marker, hovertemplate=hover)
 
 
-def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool, height: int = 330) -> go.Figure:
+def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool) -> go.Figure:
     """Correlations (p, p) of the fitted parameters with their numbers; grey where one is not known."""
     p = palette(dark)
     text = [
@@ -108,7 +107,7 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
         for i, row in enumerate(correlation)
     ]
     written = len(names) <= 8
-    fig = figure(dark=dark, height=height, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
+    fig = figure(dark=dark, height=330, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
     fig.add_heatmap(
         z=correlation,
         x=list(names),
@@ -134,7 +133,7 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
 
 
 def residuals_figure(
-    row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, names: Sequence[str] = AXES, *, dark: bool
+    row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, names: Sequence[str], *, dark: bool
 ) -> go.Figure:
     """Residuals (m, k) of each test against its row (m,); ``outlier`` (m,) are ringed and named.
 

@@ -15,11 +15,10 @@ def ray_figure(
     curves: tuple[FloatArray, FloatArray],
     *,
     dark: bool,
-    height: int = 250,
 ) -> go.Figure:
     """Two curves (m,), one above the other, against radius (m,), marked at ``here``; titles of radius and curves."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision="ray", showlegend=False, margin={"l": 8, "r": 8, "t": 8, "b": 8})
+    fig = figure(dark=dark, height=250, revision="ray", showlegend=False, margin={"l": 8, "r": 8, "t": 8, "b": 8})
     for values, colour, suffix, title in zip(curves, (p.accent, p.caution), ("", "2"), titles[1:], strict=True):
         fig.add_scatter(
             x=radius,

@@ -30,10 +30,10 @@ class Level:
     signed: bool = False
 
 
-def level_figure(level: Level, *, dark: bool, revision: str, height: int = 340) -> go.Figure:
+def level_figure(level: Level, *, dark: bool, revision: str) -> go.Figure:
     """The level as a map with its measured points."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 8, "b": 8})
+    fig = figure(dark=dark, height=340, revision=revision, margin={"l": 8, "r": 8, "t": 8, "b": 8})
     bar: dict[str, Any] = colour_bar(f"{level.title}, {level.unit}", dark=dark)
     # Within the paper, over a plot that leaves room for it: outside, plotly would shrink the plot.
     bar.update(

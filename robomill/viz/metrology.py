@@ -30,17 +30,14 @@ class ProfileCurves:
     measured: tuple[FloatArray, FloatArray] | None = None
 
 
-def profile_figure(
-    curves: ProfileCurves, *, dark: bool, height: int = 320, station: float | None = None, block: IntArray | None = None
-) -> go.Figure:
-    """The profile with its tolerance, its band, its best line and what was measured."""
+def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, dark: bool) -> go.Figure:
+    """The profile with its tolerance, its band, its best line and what was measured; ``block`` (q,) source lines."""
     p, unit = palette(dark), curves.unit
-    plot = Along.begin(curves.station, unit, "profile", dark=dark, height=height)
+    plot = Along.begin(curves.station, unit, "profile", dark=dark, height=320)
     if curves.band is not None:
         plot.shade((curves.band[0], curves.band[1]), "alloy's rows", rgba(p.accent, 0.16))
-    lines = np.zeros(len(curves.station)) if block is None else block
-    hover = "%{y:+.4f} " + unit + (", line %{customdata}" if block is not None else "")
-    plot.curve(curves.offset, "centre offset", {"color": p.accent, "width": 2.4}, hover, customdata=lines)
+    hover = "%{y:+.4f} " + unit + ", line %{customdata}"
+    plot.curve(curves.offset, "centre offset", {"color": p.accent, "width": 2.4}, hover, customdata=block)
     plot.curve(curves.floor, "floor", {"color": p.warm, "width": 2, "dash": "dash"}, "%{y:+.4f} " + unit)
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
@@ -59,16 +56,15 @@ def profile_figure(
     plot.zero()
     drawn = [curves.offset, curves.floor, *([] if curves.band is None else [curves.band])]
     reach = 1.15 * max(curves.tolerance, *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))
-    return plot.done(f"Error of the groove, {unit}", station, range=[-reach, reach])
+    plot.station(station)
+    return plot.done(f"Error of the groove, {unit}", range=[-reach, reach])
 
 
-def histogram_figure(
-    edges: FloatArray, share: FloatArray, tolerance: float, unit: str, *, dark: bool, height: int = 320
-) -> go.Figure:
-    """Share of the cut area (%) by signed error (``unit``), in the colours of the surface; tolerance marked."""
+def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, dark: bool) -> go.Figure:
+    """Share of the cut area (%) by signed error (µm), in the colours of the surface; tolerance marked."""
     p = palette(dark)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    fig = figure(dark=dark, height=height, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
+    fig = figure(dark=dark, height=320, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
     fig.add_bar(
         x=middle,
         y=share,
@@ -82,14 +78,14 @@ def histogram_figure(
             "cmax": tolerance,
             "line": {"width": 0.6, "color": p.line},
         },
-        hovertemplate="%{x:+.0f} " + unit + "<br>%{y:.1f} % of the area<extra></extra>",
+        hovertemplate="%{x:+.0f} µm<br>%{y:.1f} % of the area<extra></extra>",
     )
     for side, words in ((-1, "− tolerance"), (1, "+ tolerance")):
         fig.add_vline(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
         say(fig, words, side * tolerance, 1.0, p.bad, yref="paper", yanchor="bottom")
     reach = max(1.12 * tolerance, float(np.abs(edges).max()) * 1.04)
     fig.update_layout(
-        xaxis=axis(f"Signed error, {unit} (− too deep, + material left)", dark=dark, range=[-reach, reach]),
+        xaxis=axis("Signed error, µm (− too deep, + material left)", dark=dark, range=[-reach, reach]),
         yaxis=axis("Share of the cut area, %", dark=dark, rangemode="tozero"),
     )
     return fig

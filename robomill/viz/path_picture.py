@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -64,7 +64,7 @@ class PathPicture:
 
 
 def decimate(
-    points: FloatArray, cutting: BoolArray, reached: BoolArray, budget: int, must: list[int] | None = None
+    points: FloatArray, cutting: BoolArray, reached: BoolArray, budget: int, must: Sequence[int] = ()
 ) -> IntArray:
     """Indices of at most about ``budget`` points (m, 3) that look like all of them.
 
@@ -75,7 +75,7 @@ def decimate(
     if m <= budget:
         return np.arange(m)
     corner = np.zeros(m, dtype=bool)
-    corner[[0, m - 1, *(must or [])]] = True
+    corner[[0, m - 1, *must]] = True
     for flag in (cutting, reached):
         change = np.flatnonzero(flag[1:] != flag[:-1])
         # A path that changes all the time has no ends worth keeping before its shape.

@@ -38,10 +38,10 @@ class SectionDrawing:
     unit: str = "mm"
 
 
-def section_figure(drawing: SectionDrawing, *, dark: bool, height: int = 400, revision: str = "section") -> go.Figure:
+def section_figure(drawing: SectionDrawing, *, dark: bool) -> go.Figure:
     """The drawing, to one scale in both directions; the reader looks along the feed, left is left."""
     p, d = palette(dark), drawing
-    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 30, "b": 8})
+    fig = figure(dark=dark, height=320, revision="section", margin={"l": 8, "r": 8, "t": 30, "b": 8})
     good = np.isfinite(d.machined)
     u, z = d.u[good], d.machined[good]
     if len(u) == 0:

@@ -143,10 +143,9 @@ def line_panels(
     unit: str,
     *,
     dark: bool,
-    columns: int = 3,
 ) -> go.Figure:
     """Deviation along straight lines, total and by joint, all panels on one vertical scale."""
-    p = palette(dark)
+    p, columns = palette(dark), 3
     rows = -(-len(panels) // columns)
     margin = {"l": 8, "r": 8, "t": 58, "b": 8}
     layout = house_layout(dark=dark, height=LINES_HEIGHT, revision="lines", hovermode="x unified", margin=margin)

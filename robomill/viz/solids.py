@@ -95,10 +95,10 @@ def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Mesh
     return points, np.array(faces, dtype=float)
 
 
-def painted(solids: Sequence[Painted], name: str) -> go.Mesh3d:
+def painted(solids: Sequence[Painted]) -> go.Mesh3d:
     """One Mesh3d trace of opaque solids, each in its own colour."""
     colours = [colour for mesh, colour in solids for _ in mesh[1]]
-    return trace([mesh for mesh, _ in solids], None, name, facecolor=colours)
+    return trace([mesh for mesh, _ in solids], None, "arm", facecolor=colours)
 
 
 def trace(meshes: Sequence[Mesh], colour: str | None, name: str, **more: Any) -> go.Mesh3d:

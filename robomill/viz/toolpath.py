@@ -17,10 +17,10 @@ MAX_PICKS = 3_000
 CLASSES = 16
 
 
-def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revision: str = "path-plan") -> go.Figure:
+def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> go.Figure:
     """The path from above: rapids dotted, cuts coloured, what is out of reach crossed, the selected line marked."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 8, "r": 8, "t": 30, "b": 8})
+    fig = figure(dark=dark, height=height, revision="path-plan", margin={"l": 8, "r": 8, "t": 30, "b": 8})
     _stock(fig, picture, dark)
     kept, ends = picture.kept, _ends(picture)
     cut, lost = picture.cutting[kept], picture.cutting[kept] & ~picture.reached[kept]
@@ -55,12 +55,10 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430, revisio
     return fig
 
 
-def turnable_picture(
-    picture: PathPicture, *, dark: bool, height: int = 430, revision: str = "path-turn"
-) -> tuple[go.Figure, float]:
+def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> tuple[go.Figure, float]:
     """The path to be turned, and how many times heights are enlarged in it."""
     p = palette(dark)
-    fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    fig = figure(dark=dark, height=height, revision="path-turn", margin={"l": 0, "r": 0, "t": 0, "b": 0})
     kept, ends = picture.kept, _ends(picture)
     rapid = ~picture.cutting[kept] & (np.arange(len(kept)) > 0)
 
@@ -89,7 +87,7 @@ def turnable_picture(
             "aspectmode": "manual",
             "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
             "camera": {"projection": {"type": "orthographic"}, **camera},
-            "uirevision": revision,
+            "uirevision": "path-turn",
         }
     )
     return fig, times

@@ -215,5 +215,5 @@ def test_inches(app: AppTest) -> None:
     kept = store(app)
     kept.project = dataclasses.replace(kept.project, view=dataclasses.replace(kept.project.view, units="in"))
     go(app, COMPLIANCE)
-    assert "(0.0, −51.2, 0.0) in" in words(app)
+    assert "(0.00, −51.18, 0.00) in" in words(app)
     assert not app.exception

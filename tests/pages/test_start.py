@@ -38,7 +38,7 @@ def test_no_graphics_library_is_said_once_with_the_command(app: AppTest) -> None
 def test_inch_changes_every_number_on_the_page(app: AppTest) -> None:
     app.button_group(key="view.units").set_value("in").run()
     assert not app.exception
-    assert "The groove is 0.009 in off in Y" in words(app)
+    assert "The groove is 0.0090 in off in Y" in words(app)
     assert store(app).project.view.units == "in"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.viz.along import add_band
-from robomill.viz.deviation import BandCurve, band_figure
+from robomill.viz.deviation import band_figure
 from robomill.viz.identification import (
     MAX_TESTS,
     Intervals,
@@ -86,7 +86,7 @@ def test_every_outlier_is_drawn_however_many_tests_there_are() -> None:
     residual = np.random.default_rng(0).normal(size=(m, 3))
     outlier = np.zeros(m, dtype=bool)
     outlier[[7, 77_777]] = True
-    fig = residuals_figure(row, residual, outlier, "mm", dark=False)
+    fig = residuals_figure(row, residual, outlier, "mm", "xyz", dark=False)
     assert len(fig.data[0].x) <= MAX_TESTS + 2
     named = next(t for t in fig.data if t.name == "does not fit")
     assert list(named.x) == [9, 77_779]
@@ -94,7 +94,7 @@ def test_every_outlier_is_drawn_however_many_tests_there_are() -> None:
 
 
 def test_single_joints_have_one_residual_each() -> None:
-    fig = residuals_figure(np.arange(4), np.arange(4.0)[:, None], np.zeros(4, dtype=bool), "mrad", dark=True)
+    fig = residuals_figure(np.arange(4), np.arange(4.0)[:, None], np.zeros(4, dtype=bool), "mrad", [""], dark=True)
     assert [t.name for t in fig.data] == ["residual"]
 
 
@@ -116,7 +116,7 @@ def test_a_band_lies_around_its_curve_and_stops_where_nothing_is_known() -> None
     s = np.linspace(0, 10, 21)
     value, half = np.sin(s), np.full(21, 0.1)
     value[8:11] = np.nan
-    fig = band_figure(BandCurve(s, value, half, value - 0.2, "y", "mm"), dark=False)
+    fig = band_figure((s, value, half, value - 0.2), "y", "mm", dark=False)
     shades = [t for t in fig.data if t.fill == "toself"]
     assert len(shades) == 2
     n = len(shades[0].x) // 2

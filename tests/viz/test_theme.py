@@ -11,11 +11,10 @@ import pytest
 
 from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import peak_force
-from robomill.units import from_si
+from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.viz.arm import arm_figure
-from robomill.viz.deviation import Components, Shares, components_figure, shares_figure
-from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
+from robomill.viz.deviation import components_figure, shares_figure
+from robomill.viz.engagement import engagement_figure, force_figure
 from robomill.viz.evidence import Claim, evidence_figure
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 from robomill.viz.sections import section_figure
@@ -25,15 +24,12 @@ from robomill.viz.views import arm_scene, section_drawing
 
 
 def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
-    s, delta = from_si(result.path.s, "mm"), from_si(result.delta, "mm")
     shown = enlarged(result, 10.0)
     groove = result.groove(0.5 * float(result.path.s[-1]))
-    names = [f"joint {i}" for i in range(1, 6)]
-    shares = Shares(s, from_si(result.delta_joint[:, :, 1], "mm"), names, delta[:, 1], "y", "mm")
     return {
         "arm": arm_figure(arm_scene(result, result.worst), dark=dark),
-        "components": components_figure(Components(s, delta, result.path.block, 0.3, "mm"), dark=dark, station=50.0),
-        "shares": shares_figure(shares, dark=dark),
+        "components": components_figure(result, "mm", dark=dark, i=result.worst),
+        "shares": shares_figure(result, "y", "mm", dark=dark),
         "section": section_figure(section_drawing(groove, "mm"), dark=dark),
         "surface": surface_figure(shown, 0.3e-3, "mm", dark=dark),
     }
@@ -77,11 +73,8 @@ CLAIMS = (Claim("a", "paper", 0.23), Claim("b", "computed", 0.28, 0.2, 0.4))
 
 def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
     """One figure of each kind."""
-    s = from_si(result.path.s, "mm")
     peak = peak_force(result)
     assert peak is not None
-    c = result.conditions
-    curves = ForceCurves(s, result.force_components, "mm", peak=(peak.low, peak.high))
     q = np.linspace(0.0, 100.0, 21)
     profile = ProfileCurves(
         q,
@@ -93,12 +86,11 @@ def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
         fit=0.2 + 0 * q,
         measured=(q, 0.29 + 0 * q),
     )
-    arc = [from_si(v, "deg") for v in (c.phi_st, c.phi_ex)]
     return {
-        "force": force_figure(curves, dark=dark, station=50.0),
-        "engagement": engagement_figure(ArcCurves(s, *arc, from_si(c.a_p, "mm"), "mm"), dark=dark),
-        "profile": profile_figure(profile, dark=dark, station=50.0),
-        "histogram": histogram_figure(np.linspace(-300, 300, 11), np.full(10, 10.0), 300.0, "µm", dark=dark),
+        "force": force_figure(result, alloy_spread(result), peak, "mm", dark=dark, i=result.worst),
+        "engagement": engagement_figure(result, "mm", dark=dark),
+        "profile": profile_figure(profile, np.arange(21), 50.0, dark=dark),
+        "histogram": histogram_figure(np.linspace(-300, 300, 11), np.full(10, 10.0), 300.0, dark=dark),
         "evidence": evidence_figure(CLAIMS, "mm", dark=dark),
     }
 

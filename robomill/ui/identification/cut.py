@@ -20,7 +20,7 @@ from robomill.ui.box import NumberBox
 from robomill.ui.identification.bench import Bench
 from robomill.ui.identification.inputs import BANDS, adopted, field, knowledge
 from robomill.units import format_si, from_si
-from robomill.viz.deviation import BandCurve, band_figure
+from robomill.viz.deviation import band_figure
 
 
 def cut_of(robot: Robot) -> SimulationResult:
@@ -78,10 +78,9 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
         pieces.error(exc)
         return
     st.markdown(f"**{uncertainty.sentence(found, known, unit)}**")
-    s, value, half, before = (from_si(v, unit) for v in _curves(found, now, known, axis))
     with st.container(border=True):
         pieces.figure(
-            band_figure(BandCurve(s, value, half, before, axis, unit), dark=dark),
+            band_figure(_curves(found, now, known, axis, unit), axis, unit, dark=dark),
             "ident-band",
             name="deviation-band",
             table=lambda: band_columns(found, known),
@@ -92,9 +91,9 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
 
 
 def _curves(
-    found: SimulationResult, now: SimulationResult, known: Knowledge, axis: str
+    found: SimulationResult, now: SimulationResult, known: Knowledge, axis: str, unit: str
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Length cut, value, half width and the project's value now (m,), all m, where the tool cuts."""
+    """Length cut, value, half width and the project's value now (m,), all in ``unit``, where the tool cuts."""
     band = deviation_band(found, known)
     cutting = found.judged
     if axis:
@@ -103,7 +102,8 @@ def _curves(
     else:
         value, half, before = found.deviation, size_band(found, band), now.deviation
     blank = np.where(cutting, 1.0, np.nan)
-    return found.path.s, value * blank, half * blank, before * blank
+    s, value, half, before = (from_si(v, unit) for v in (found.path.s, value * blank, half * blank, before * blank))
+    return s, value, half, before
 
 
 def band_columns(found: SimulationResult, known: Knowledge) -> dict[str, Any]:

@@ -173,16 +173,11 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     in_force = setup.measured_map is None and known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
         session.know(knowledge(bench, robot, result))  # force and lengths may have been stated since
-    st.button(
-        "In force in the project" if in_force else "Use these compliances in the project",
-        type="primary",
-        icon=":material/check:" if in_force else ":material/input:",
-        key="identification.use",
-        width="stretch",
-        disabled=in_force,
-        on_click=_use,
-        args=(bench, fitted, robot, result),
+    label, icon = (
+        ("In force in the project", "check") if in_force else ("Use these compliances in the project", "input")
     )
+    put = (_use, bench, fitted, robot, result)
+    inputs.button(label, "identification.use", icon, *put, type="primary", width="stretch", disabled=in_force)
     if in_force:
         pieces.note("Every page counts with them now, and shows its deviation with a band. Undo leads back.")
     else:
@@ -192,7 +187,6 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
             + (f" and {springs} spring{'s' * (springs > 1)} beside the joints" if springs else "")
             + " of the project's robot; their uncertainty goes along as bands."
         )
-    inputs.sentence("identification.use")
 
 
 def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, name: str) -> SimulationSetup:
@@ -216,13 +210,10 @@ def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowl
 
 
 def _use(bench: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
-    def put() -> None:
-        known = knowledge(bench, robot, result)
-        session.change(robot=fitted.robot, springs=fitted.springs, measured_map=None)
-        session.know(known)
-        bench.robot_name = ""
-
-    inputs.submit("identification.use", None, put)
+    known = knowledge(bench, robot, result)
+    session.change(robot=fitted.robot, springs=fitted.springs, measured_map=None)
+    session.know(known)
+    bench.robot_name = ""
 
 
 def field(bench: Bench, name: str, box: NumberBox) -> None:

@@ -144,13 +144,11 @@ def _rules(bench: Bench, robot: Robot, lab: Laboratory) -> None:
             key = f"identification.lab.{name}"
             with column:
                 inputs.value(key, box, asked(name), partial(session.keep, key))
-        st.button(
-            "Begin anew",
-            on_click=lambda: _begin(bench, Laboratory(robot, **{name: asked(name) for name in boxes})),
-            key="identification.lab.begin",
-            icon=":material/restart_alt:",
-            width="stretch",
-        )
+
+        def anew() -> None:
+            _begin(bench, Laboratory(robot, **{name: asked(name) for name in boxes}))
+
+        inputs.button("Begin anew", "identification.lab.begin", "restart_alt", anew, width="stretch")
 
 
 def _measure(bench: Bench, lab: Laboratory) -> None:
@@ -178,37 +176,21 @@ def _measure(bench: Bench, lab: Laboratory) -> None:
         inputs.choice("Direction", "identification.lab.axis", axes, trial.axis, lambda v: write(axis=v))
     spent = lab.budget == 0 or bench.handed_in
     first, second = st.columns(2)
-    first.button(
-        "Measure",
-        key="identification.lab.measure",
-        type="primary",
-        width="stretch",
-        disabled=spent,
-        icon=":material/straighten:",
-        on_click=_push,
-        args=(bench, False),
-    )
-    second.button(
-        "Along X, Y and Z",
-        key="identification.lab.three",
-        width="stretch",
-        disabled=spent or lab.budget < 3,
-        on_click=_push,
-        args=(bench, True),
-    )
-    inputs.sentence("identification.lab.measure")
+    with first:
+        one = ("identification.lab.measure", "straighten", _push, bench, False)
+        inputs.button("Measure", *one, type="primary", width="stretch", disabled=spent)
+    with second:
+        three = ("identification.lab.three", "", _push, bench, True)
+        inputs.button("Along X, Y and Z", *three, width="stretch", disabled=spent or lab.budget < 3)
     if spent and not bench.handed_in:
         pieces.note("The budget is spent: hand in what you have.")
 
 
 def _push(bench: Bench, three: bool) -> None:
-    def put() -> None:
-        assert bench.laboratory is not None
-        trial = bench.trial
-        F = np.eye(3) * trial.load if three else trial.F
-        bench.laboratory = bench.laboratory.measure_at(np.array(trial.pose), F)
-
-    inputs.submit("identification.lab.measure", None, put)
+    assert bench.laboratory is not None
+    trial = bench.trial
+    F = np.eye(3) * trial.load if three else trial.F
+    bench.laboratory = bench.laboratory.measure_at(np.array(trial.pose), F)
 
 
 def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
@@ -234,13 +216,8 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
 
 def _hand_in(bench: Bench, lab: Laboratory, result: IdentificationResult) -> None:
     if not bench.handed_in:
-        st.button(
-            "Hand in and see the truth",
-            key="identification.lab.hand_in",
-            icon=":material/flag:",
-            on_click=bench.writer("handed_in"),
-            args=(True,),
-        )
+        show = (bench.writer("handed_in"), True)
+        inputs.button("Hand in and see the truth", "identification.lab.hand_in", "flag", *show)
         pieces.note(result.explain(result.weakest_joint))
         return
     score = lab.score(result)

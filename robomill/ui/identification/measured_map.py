@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -237,17 +238,12 @@ def _cut(field: MeasuredField, cut: Cut, unit: str, dark: bool) -> None:
     with right, st.container(border=True, height="stretch"):
         i = by_joints.worst
         st.markdown(f"**At its worst, line {by_joints.worst_block}**")
-        head = f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
-        body = "".join(
-            f"<tr><td>{axis}</td>"
-            + "".join(f'<td class="n">{format_si(float(v), unit, sign=True)}</td>' for v in values)
-            + "</tr>"
+        head = "", f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
+        body = [
+            (axis, *(format_si(float(v), unit, sign=True) for v in values))
             for axis, *values in zip("XYZ", by_map.delta[i], by_joints.delta[i], strict=True)
-        )
-        st.html(
-            f'<table class="rm-facts"><tr><th></th><th class="n">{head[0]}</th><th class="n">{head[1]}</th></tr>'
-            f"{body}</table>"
-        )
+        ]
+        pieces.table(body, " nn", head)
         for finding in by_map.notes:
             if finding.code == "map-axis":
                 pieces.note(finding.sentence)
@@ -257,13 +253,14 @@ def _use(field: MeasuredField) -> None:
     """Let the simulation run from the map instead of the joint model, or go back to the joints."""
     setup = session.project().setup
     in_force = setup.measured_map is not None and digest(setup.measured_map) == digest(field)
-    st.button(
-        "Go back to the joint model" if in_force else "Simulate from this map",
-        key="identification.map.use",
-        type="secondary" if in_force else "primary",
-        on_click=session.change,
-        kwargs={"measured_map": None if in_force else field},
-        help="The simulation runs from this map now."
+    label, hint, look = (
+        ("Go back to the joint model", "The simulation runs from this map now.", "secondary")
         if in_force
-        else "Deflections then come from the measured map; the joints' shares are still shown.",
+        else (
+            "Simulate from this map",
+            "Deflections then come from the measured map; the joints' shares are still shown.",
+            "primary",
+        )
     )
+    change = partial(session.change, measured_map=None if in_force else field)
+    inputs.button(label, "identification.map.use", "", change, help=hint, type=look)

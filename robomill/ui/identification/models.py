@@ -13,7 +13,7 @@ from robomill.identification.comparison import OVERFIT, Comparison
 from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import pieces
+from robomill.ui import inputs, pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench, comparison_of
 from robomill.ui.project import PRISMATIC_UNITS
@@ -56,13 +56,8 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
         pieces.note(f"{MODELS[name].title}: {html.escape(reason)}")
     _side_by_side(results, rows, robot, joint_unit)
     if bench.model != best.model:
-        st.button(
-            f"Take {best.choice.title.lower()}",
-            key="identification.take_best",
-            icon=":material/thumb_up:",
-            on_click=bench.writer("model"),
-            args=(best.model,),
-        )
+        take = (bench.writer("model"), best.model)
+        inputs.button(f"Take {best.choice.title.lower()}", "identification.take_best", "thumb_up", *take)
 
 
 def _judgement(compared: Comparison) -> str:
@@ -92,17 +87,15 @@ def _side_by_side(
     results: tuple[IdentificationResult, ...], rows: list[dict[str, Any]], robot: Robot, joint_unit: str
 ) -> None:
     """Joint values of every model in columns, with the remarks beneath."""
-    head = "".join(f'<th class="n">J{j}</th>' for j in robot.joint_numbers)
+    head = ("", *(f"J{j}" for j in robot.joint_numbers), "")
     units = [PRISMATIC_UNITS[joint_unit] if slides else joint_unit for slides in robot.chain.prismatic]
-    body = ""
-    for result, row in zip(results, rows, strict=True):
-        cells = "".join(
-            f'<td class="n">{words.number(float(words.shown(c, unit)), unit)}</td>'
-            for c, unit in zip(result.C_theta, units, strict=True)
+    shown = [
+        (
+            result.choice.title,
+            *(words.number(float(words.shown(c, unit)), unit) for c, unit in zip(result.C_theta, units, strict=True)),
+            html.escape(str(row["remark"]).capitalize()),
         )
-        remark = html.escape(str(row["remark"]).capitalize())
-        body += f"<tr><td>{result.choice.title}</td>{cells}<td>{remark}</td></tr>"
-    st.html(
-        f'<div style="overflow-x:auto"><table class="rm-facts"><tr><th></th>{head}<th></th></tr>{body}</table></div>'
-    )
+        for result, row in zip(results, rows, strict=True)
+    ]
+    pieces.table(shown, f" {'n' * len(units)} ", head)
     pieces.note(f"Joint values in {unit_label(joint_unit)}; – where a model has none or the tests do not see it.")

@@ -12,7 +12,7 @@ from robomill.identification.lines_of_pull import LinesOfPull
 from robomill.identification.pull_words import pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import pieces
+from robomill.ui import inputs, pieces
 from robomill.ui.identification.bench import Bench, lines_of, used_tests
 from robomill.units import format_many, format_si, from_si, unit_label
 from robomill.viz.identification import gaps_figure
@@ -45,25 +45,12 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
 def offer(bench: Bench, result: IdentificationResult) -> None:
     """The button that fits the points that are worth it (its sentence is among the findings), or the way back."""
     if result.offer is not None:
-        wanted = result.offer.fit_points
         names = " and ".join(TITLES[point.point] for point in result.offer.points)
-        st.button(
-            f"Fit the {names}",
-            key="identification.offer",
-            icon=":material/my_location:",
-            width="stretch",
-            on_click=bench.writer("fit_points"),
-            args=(wanted,),
-        )
+        fit = (bench.writer("fit_points"), result.offer.fit_points)
+        inputs.button(f"Fit the {names}", "identification.offer", "my_location", *fit, width="stretch")
     elif result.points:
-        st.button(
-            "Take the points as stated",
-            key="identification.stated",
-            icon=":material/undo:",
-            width="stretch",
-            on_click=bench.writer("fit_points"),
-            args=("none",),
-        )
+        back = (bench.writer("fit_points"), "none")
+        inputs.button("Take the points as stated", "identification.stated", "undo", *back, width="stretch")
 
 
 def _row(name: str, point: FoundPoint, unit: str) -> tuple[str, str, str]:

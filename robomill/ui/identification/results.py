@@ -104,10 +104,8 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
             cells = [f"counted with {result.lumped[parameter.label]}", "", ""]
         cells += [words.number(columns[c][k], unit) for c in references]
         own = "" if unit == common else f" <small>{html.escape(unit_label(unit))}</small>"
-        row = "".join(f'<td class="n">{c}</td>' for c in cells)
-        body.append(f'<tr><td style="white-space:nowrap">{pieces.subscripts(parameter.label)}{own}</td>{row}</tr>')
-    top = "".join(f'<th class="{"n" if i else ""}">{html.escape(h)}</th>' for i, h in enumerate(head))
-    st.html(f'<div style="overflow-x:auto"><table class="rm-facts"><tr>{top}</tr>{"".join(body)}</table></div>')
+        body.append((f"{pieces.subscripts(parameter.label)}{own}", *cells))
+    pieces.table(body, "s" + "n" * (len(head) - 1), list(map(html.escape, head)))
     sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
     said = [f"{pieces.badge(source.kind)} {title}" for title, source in sources if source and title in references]
     pieces.note(f"In {unit_label(common)}. {' '.join(said)}")
@@ -165,19 +163,11 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
         lambda chosen: setattr(bench, "excluded", tuple(sorted(chosen))),
     )
     left, right = st.columns(2)
-    left.button(
-        f"Leave out {'this row' if len(rows) == 1 else f'these {len(rows)} rows'} and refit",
-        key="identification.leave_out",
-        disabled=not rows,
-        width="stretch",
-        icon=":material/filter_alt:",
-        on_click=lambda: setattr(bench, "excluded", flagged),
-    )
-    right.button(
-        "Use every row again",
-        key="identification.use_all",
-        disabled=not bench.excluded,
-        width="stretch",
-        icon=":material/undo:",
-        on_click=lambda: setattr(bench, "excluded", ()),
-    )
+    leave_out = bench.writer("excluded")
+    these = "this row" if len(rows) == 1 else f"these {len(rows)} rows"
+    with left:
+        out = ("identification.leave_out", "filter_alt", leave_out, flagged)
+        inputs.button(f"Leave out {these} and refit", *out, disabled=not rows, width="stretch")
+    with right:
+        every = ("identification.use_all", "undo", leave_out, ())
+        inputs.button("Use every row again", *every, disabled=not bench.excluded, width="stretch")

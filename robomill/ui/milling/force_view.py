@@ -13,11 +13,9 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
 from robomill.ui import pieces, session
-from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, from_si
-from robomill.viz.engagement import ArcCurves, ForceCurves, engagement_figure, force_figure
+from robomill.viz.engagement import COMPONENTS, engagement_figure, force_figure
 
-NAMES = ("feed", "feed-normal", "axial")
 OF_CUTTER = ("stock-unit", "wide-cutter", "beyond-flutes")  # codes of findings that stand beside cutter and stock
 
 
@@ -27,34 +25,18 @@ def force_plot(
     spread: AlloySpread | None,
     peak: ForceSpread | None,
     dark: bool,
-    height: int = 360,
 ) -> None:
     """Mean force by component along the cut; shaded: the alloy's rows; dotted: the extremes of a revolution."""
     unit = session.project().view.length
-    s = from_si(result.path.s, unit)
-    curves = ForceCurves(
-        s,
-        linked.at_feed(result, result.force_components),
-        unit,
-        peak=None if peak is None else (linked.at_feed(result, peak.low), linked.at_feed(result, peak.high)),
-        alloy=_band(result, spread),
-    )
     words = "Mean force on the tool; feed-normal is the left of the feed, axial positive out of the part."
     pieces.figure(
-        force_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
+        force_figure(result, spread, peak, unit, dark=dark, i=i),
         "force",
         name="force",
         table=lambda: force_columns(result, peak),
         caption=words,
         alt="Mean force on the tool along the path by component, with the peak of a turn and the alloy's band.",
     )
-
-
-def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatArray, FloatArray] | None:
-    if spread is None or len(spread.titles) < 2:
-        return None
-    rows = force_components(result, spread)
-    return linked.at_feed(result, rows.min(axis=0)), linked.at_feed(result, rows.max(axis=0))
 
 
 def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[str, FloatArray]:
@@ -67,7 +49,7 @@ def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[st
         "phi_st_deg": from_si(c.phi_st, "deg"),
         "phi_ex_deg": from_si(c.phi_ex, "deg"),
     }
-    for k, name in enumerate(NAMES):
+    for k, name in enumerate(COMPONENTS):
         columns[f"F_{name.replace('-', '_')}_N"] = result.force_components[:, k]
         if peak is not None:
             columns[f"low_{name.replace('-', '_')}_N"] = peak.low[:, k]
@@ -103,20 +85,14 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
 
 
 def _three(force: FloatArray) -> str:
-    return ", ".join(f"{name} {format_si(float(v), 'N', sign=True)}" for name, v in zip(NAMES, force, strict=True))
+    return ", ".join(f"{name} {format_si(float(v), 'N', sign=True)}" for name, v in zip(COMPONENTS, force, strict=True))
 
 
-def engagement_plot(result: SimulationResult, i: int, dark: bool, height: int = 300) -> None:
+def engagement_plot(result: SimulationResult, i: int, dark: bool) -> None:
     """Arc and depth along the path."""
-    unit, c = session.project().view.length, result.conditions
-    engaged = c.engaged[:, None]
-    arc = np.where(engaged, np.stack([c.phi_st, c.phi_ex], axis=1), np.nan)
-    s = from_si(result.path.s, unit)
-    depth = np.where(result.path.cutting, from_si(c.a_p, unit), np.nan)
-    curves = ArcCurves(s, from_si(arc[:, 0], "deg"), from_si(arc[:, 1], "deg"), depth, unit)
     source = "found from the stock as it stands" if result.setup.engagement else "a full slot, as assumed"
     pieces.figure(
-        engagement_figure(curves, dark=dark, height=height, station=float(s[i]) if i >= 0 else None),
+        engagement_figure(result, session.project().view.length, dark=dark, i=i),
         "milling.engagement",
         name="engagement",
         table=lambda: force_columns(result, None),
@@ -138,7 +114,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         off = format_si(float(largest[row]), unit)
         mark = pieces.badge(material.provenance.kind) + (" in force" if row == 0 else "")
         rows.append((html.escape(material.title), feed, normal, axial if known else "not given", off, mark))
-    head = ("Row", *(f"{name}, N" for name in NAMES), "tip off, max", "")
+    head = ("Row", *(f"{name}, N" for name in COMPONENTS), "tip off, max", "")
     pieces.table(rows, " nnnn ", head, strong=0)
     pieces.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
 

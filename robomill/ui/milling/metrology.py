@@ -74,7 +74,7 @@ def section_facts(groove: GrooveSection | None) -> None:
     )
 
 
-def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool, height: int = 320) -> None:
+def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool) -> None:
     """Centre offset and floor along the groove, best fit, and a measured profile over it."""
     unit = session.project().view.length
     along = pieces.attempt(profile, result)
@@ -97,7 +97,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     )
     missing = f" {found.missing} of {len(found.station)} stations have no groove to measure." if found.missing else ""
     pieces.figure(
-        profile_figure(curves, dark=dark, height=height, station=float(from_si(station_m(result), unit)), block=block),
+        profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
         name="groove-profile",
         table=lambda: profile_columns(found, block),
@@ -175,7 +175,7 @@ def _take(data: bytes, name: str) -> None:
     session.keep(MEASURED, read_profile(text + "\n", name=name))
 
 
-def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> None:
+def spread_panel(result: SimulationResult, dark: bool) -> None:
     """How the error is spread over the cut area: histogram, volumes, share out of tolerance."""
     tolerance = result.setup.tolerance
     try:
@@ -188,7 +188,7 @@ def spread_panel(result: SimulationResult, dark: bool, height: int = 320) -> Non
     edges, area = error.histogram(48, limit)
     share = 100.0 * area / error.cut_area if error.cut_area else area
     pieces.figure(
-        histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), "µm", dark=dark, height=height),
+        histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), dark=dark),
         "histogram",
         name="error-histogram",
         table=lambda: {

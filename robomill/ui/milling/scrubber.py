@@ -17,8 +17,8 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import inputs, pieces, session, uncertainty
 from robomill.units import format_many, format_si, from_si
-from robomill.viz.along import add_picks, add_point, shade
-from robomill.viz.deviation import Components, components_figure
+from robomill.viz.along import add_picks, add_point, at_feed, shade
+from robomill.viz.deviation import components_figure
 from robomill.viz.theme import palette, rgba
 
 MAX_HOVERED = 100_000
@@ -95,13 +95,12 @@ def _range(spread: AlloySpread | None, i: int, unit: str) -> str:
     return f" ({format_many((low, high), unit, between=' to ', with_unit=False)} by alloy row)"
 
 
-def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool, height: int = 330) -> None:
+def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
     """Deviation by component with its band; a click on the curve moves the scrubber there."""
     unit = session.project().view.length
     s = from_si(result.path.s, unit)
     delta = from_si(at_feed(result, result.delta), unit)
-    drawn = Components(s, delta, result.path.block, float(from_si(result.setup.tolerance, unit)), unit)
-    fig = components_figure(drawn, dark=dark, station=float(s[i]) if i >= 0 else None, height=height)
+    fig = components_figure(result, unit, dark=dark, i=i)
     size = np.linalg.norm(delta, axis=1)
     caption = "Deflected minus commanded, in {M}. Click the curve to go there."
     if spread is not None and len(spread.titles) > 1:
@@ -136,11 +135,6 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
 def _station_at(result: SimulationResult, point: Mapping[str, Any]) -> None:
     total = float(from_si(float(result.path.s[-1]), session.project().view.length))
     session.look(station=min(max(float(point["x"]) / total, 0.0), 1.0))
-
-
-def at_feed(result: SimulationResult, values: FloatArray) -> FloatArray:
-    """``values`` (m, k) with NaN where nothing is cut, so that lines break there."""
-    return np.where(result.path.cutting[:, None], values, np.nan)
 
 
 def band_words(spread: AlloySpread | None, result: SimulationResult, unit: str) -> str:

@@ -15,9 +15,9 @@ from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
 from robomill.ui import cached, inputs, pieces, session, shell
 from robomill.ui.milling import springs as springs_panel
-from robomill.ui.milling.scrubber import at_feed, station_m
+from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_si, from_si
-from robomill.viz.deviation import Shares, shares_figure
+from robomill.viz.deviation import shares_figure
 from robomill.viz.dial import Dial, dial_figure
 from robomill.viz.sections import section_figure
 from robomill.viz.theme import tool_colours
@@ -105,7 +105,7 @@ def dial(
     )
 
 
-def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> Any:
+def section(result: SimulationResult, i: int, dark: bool) -> Any:
     """The dimensioned section at the station; returns it."""
     unit = session.project().view.length
     groove = pieces.attempt(cached.groove, result.setup, station_m(result))
@@ -115,7 +115,7 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
         pieces.note(f"No section here: {groove.note}.")
         return groove
     pieces.figure(
-        section_figure(section_drawing(groove, unit), dark=dark, height=height),
+        section_figure(section_drawing(groove, unit), dark=dark),
         "linked-section",
         name="groove-sections",
         table=lambda: section_columns(result),
@@ -126,7 +126,7 @@ def section(result: SimulationResult, i: int, dark: bool, height: int = 320) -> 
     return groove
 
 
-def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> None:
+def shares(result: SimulationResult, i: int, dark: bool) -> None:
     """Which joint or spring gives, stacked along the path."""
     unit = session.project().view.length
     title, pick = st.columns([1, 1.2], vertical_alignment="center")
@@ -134,14 +134,8 @@ def shares(result: SimulationResult, i: int, dark: bool, height: int = 320) -> N
     with pick:
         inputs.seen("Shares of", "view.share_axis", {a: f"in {a.upper()}" for a in "xyz"}, inputs.HIDDEN)
     axis = session.project().view.share_axis
-    column = "xyz".index(axis)
-    every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
-    names = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
-    s = from_si(result.path.s, unit)
-    total = from_si(at_feed(result, result.delta), unit)[:, column]
-    drawn = Shares(s, from_si(at_feed(result, every), unit), names, total, axis, unit)
     pieces.figure(
-        shares_figure(drawn, dark=dark, station=float(s[i]) if i >= 0 else None, height=height),
+        shares_figure(result, axis, unit, dark=dark, i=i),
         f"shares-{axis}",
         name=f"joint-shares-{axis}",
         table=lambda: deviation_columns(result),
