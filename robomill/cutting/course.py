@@ -58,7 +58,7 @@ class Course:
         each = (self.c[:, None], self.feed, self.arc, self.sectors.reshape(len(self.c), -1), mean)
         numbers = np.concatenate(each, axis=1)
         scale = np.max(np.abs(numbers), axis=0) * 1e-3
-        rounded = np.round(numbers / np.where(scale > 0.0, scale, 1.0))
+        rounded = np.round(numbers / np.where(scale > 0.0, scale, np.inf))
         _, first, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
         return first, inverse.ravel()
 

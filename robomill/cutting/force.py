@@ -184,7 +184,8 @@ def feed_frame(p: ArrayLike, k: ArrayLike) -> FloatArray:
     axis = axis / np.linalg.norm(axis, axis=1, keepdims=True)
     moving = feed_share(p, k) > PLUNGE
     moving &= np.linalg.norm(across, axis=1) > 0.0
-    fallback = np.where(np.abs(axis[:, :1]) > 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+    x, y, _ = np.eye(3)
+    fallback = np.where(np.abs(axis[:, :1]) > 0.9, y, x)
     feed = fallback
     if moving.any():
         index = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), -1))

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from robomill.cutting.conditions import CutConditions, cut_warnings
+from robomill.cutting.conditions import PLUNGE, CutConditions, cut_warnings
 from robomill.cutting.forces.mechanistic import MechanisticForce
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material
 
@@ -63,3 +64,80 @@ def test_refused_conditions(change, sentence):
 def test_the_feed_of_a_tooth_is_that_of_a_turn_shared_by_the_teeth() -> None:
     c = CutConditions.steady(0.03, 200.0, 2e-3)
     assert c.chip(0, 3) == pytest.approx(30.0 / 200.0 / 3 * 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "engaged"),
+    [
+        ({}, True),
+        ({"a_p": 0.0}, False),
+        ({"phi_st": 1.0, "phi_ex": 1.0}, False),
+        ({"cutting": False}, False),
+        ({"across": PLUNGE}, False),
+        ({"across": 2.0 * PLUNGE}, True),
+        ({"across": PLUNGE, "along": -1.0}, True),
+        ({"across": 0.0, "along": 1.0}, False),
+    ],
+)
+def test_where_the_cutter_cuts(change, engaged):
+    base = {"v_f": 0.03, "n_s": 200.0, "a_p": 2e-3, "phi_st": 0.0, "phi_ex": np.pi, "cutting": True, "s": 0.0, "t": 0.0}
+    conditions = CutConditions(**{**base, **change})
+    np.testing.assert_array_equal(conditions.engaged, [engaged])
+    np.testing.assert_array_equal(conditions.f_z(3), [0.03 / 200.0 / 3 if engaged else 0.0])
+
+
+def test_the_first_step_that_cannot_be_is_named_by_its_line_or_its_number():
+    for block, place in (([0, 1, 5], "Line 1"), ([0, 0, 0], "Step 1")):
+        with pytest.raises(CuttingError, match=f"^{place}: a_p is negative"):
+            CutConditions.steady(0.03, 200.0, [1e-3, -1e-3, -2e-3], block=block)
+    arcs = {"arc": (np.array([0.0, 1.0, -0.5]), np.array([np.pi, 0.5, 1.0]))}
+    with pytest.raises(CuttingError, match="^Step 1: arc of engagement from 57.30"):
+        CutConditions.steady(0.03, 200.0, 2e-3, **arcs)
+    with pytest.raises(CuttingError, match="^Step 2: the spindle stands still"):
+        CutConditions.steady(0.03, [200.0, 200.0, 0.0, 0.0], 2e-3).f_z(3)
+
+
+@pytest.mark.parametrize(("name", "value"), [("v_f", -1.0), ("n_s", -1.0), ("a_p", -1.0)])
+def test_what_stands_on_rapids_is_nobodys_business(name, value):
+    given = {"v_f": 0.03, "n_s": 200.0, "a_p": 2e-3, name: value}
+    assert not CutConditions.steady(**given, cutting=False).engaged.any()
+
+
+def test_arcs_may_be_out_by_rounding_and_no_more():
+    for arc in ((-0.5e-9, np.pi), (0.0, np.pi + 0.5e-9), (1.0, 1.0 - 0.5e-9)):
+        assert len(CutConditions.steady(0.03, 200.0, 2e-3, arc=arc)) == 1
+    for arc in ((-2e-9, np.pi), (0.0, np.pi + 2e-9), (1.0, 1.0 - 2e-9)):
+        with pytest.raises(CuttingError, match="expected 0° <= start <= end <= 180°"):
+            CutConditions.steady(0.03, 200.0, 2e-3, arc=arc)
+        assert len(CutConditions.steady(0.03, 200.0, 2e-3, arc=arc, cutting=False)) == 1
+
+
+def test_each_cutter_is_warned_of_its_own_flutes_at_its_deepest_step():
+    cutters = (MILL.replace(flute_length=2e-3), MILL, MILL.replace(flute_length=1e-3))
+    depth = 1e-3 * np.array([2.0, 3.0, 2.5, 9.0, 1.5, 0.5])
+    of_step = Tooling(cutters, [0, 0, 0, 1, 2, 2])
+    block = np.array([1, 2, 3, 4, 5, 6])
+    conditions = CutConditions.steady(0.03, 200.0, depth, block=block)
+    many = CutConditions(**{**vars(conditions), "tooling": of_step})
+    found = cut_warnings(MILL, many)
+    assert [(each.line, each.code) for each in found] == [(2, "beyond-flutes"), (5, "beyond-flutes")]
+    assert "depth 3.000 mm" in found[0].message
+    assert "2 steps" in found[0].message
+    rapid = CutConditions(**{**vars(many), "cutting": block != 2})
+    assert [each.line for each in cut_warnings(MILL, rapid)] == [3, 5]
+    # What is engaged higher up than it is deep counts by its highest place.
+    reach = CutConditions(**{**vars(conditions), "reach": np.where(block == 6, 4e-3, 1e-3)})
+    assert [each.line for each in cut_warnings(cutters[0], reach)] == [6]
+
+
+def test_thrusts_of_mills_and_drills_are_said_once_each_where_they_are_computed():
+    drill = Cutter("drill", 6e-3, tip_angle=math.radians(118.0))
+    along = np.array([-DISH, -0.5, -0.6, -1.0, -1.0, -1.0])
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, along=along, block=np.arange(1, 7))
+    conditions = CutConditions(**{**vars(conditions), "tooling": Tooling((MILL, drill), [0, 0, 0, 0, 1, 1])})
+    found = cut_warnings(MILL, conditions)
+    assert [(each.line, each.code) for each in found] == [(2, "thrust-end-teeth"), (5, "thrust-lips")]
+    assert ["3 steps" in found[0].message, "2 steps" in found[1].message] == [True, True]
+    only = cut_warnings(MILL, conditions, np.array([True, False, False, True, False, False]))
+    assert [(each.line, each.code) for each in only] == [(4, "thrust-end-teeth")]
+    assert cut_warnings(MILL, conditions, False) == ()

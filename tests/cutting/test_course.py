@@ -8,8 +8,10 @@ import pytest
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.course import Course
 from robomill.cutting.course import force_over_pitch as over_pitch
-from robomill.cutting.edge import mean_force
+from robomill.cutting.edge import EdgeTerm, mean_force
+from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.tool import DISH, Cutter
 from tests.cutting.cutters import CHIP, CUTTERS, MILL, REF190, SLOT
 
 
@@ -63,3 +65,160 @@ def test_left_hand_cutter_is_the_mirror_image_at_every_instant():
     left = MILL.replace(hand="left", helix="left")
     turns = [force_over_pitch(REF190.terms, *case) for case in ((MILL, CHIP, 2e-3, arc), (left, CHIP, 2e-3, mirrored))]
     np.testing.assert_allclose(turns[1], turns[0] * [1, -1, 1], atol=1e-12)
+
+
+def edges_of(count):
+    """Where sectors begin: half turns, or the quarters of twelve panels on a half turn, as their definition says."""
+    if count <= 2:
+        return np.pi * np.arange(count + 1)
+    corners = np.pi * np.sin(np.pi * np.arange(13) / 24) ** 2
+    half = np.interp(np.arange(49) / 4, np.arange(13), corners)
+    return half if count == 48 else np.append(half, np.pi + half[1:])
+
+
+def by_teeth(terms, cutter, c, feed, sectors, instants):
+    """Every tooth at every instant as points along its edge, each a vector (feed, left, up)."""
+    edges, R, flutes = edges_of(len(sectors)), cutter.diameter / 2, cutter.flutes
+    v, force = np.array([feed[0], 0.0, feed[1]]), np.zeros((instants, 3))
+    hand, pull = (1.0 if cutter.hand == "right" else -1.0), (1.0 if cutter.helix == cutter.hand else -1.0)
+    top, nose = sectors[:, 2].max(), min(cutter.corner_radius, sectors[:, 2].max())
+    points = [(0.0, 0.0, None)]  # height, angle of the normal, length; the end face has its length from the sector
+    if nose > 0.0:
+        rho, last = cutter.corner_radius, math.acos(1.0 - nose / cutter.corner_radius)
+        points += [(rho * (1 - math.cos(k)), k, rho * last / 300) for k in (np.arange(300) + 0.5) * last / 300]
+    if top > nose:
+        points += [(z, math.pi / 2, (top - nose) / 300) for z in nose + (np.arange(300) + 0.5) * (top - nose) / 300]
+    for i in range(instants):
+        for tooth in range(flutes):
+            turn = 2 * np.pi / flutes * ((i + 0.5) / instants + tooth)
+            for z, kappa, length in points:
+                lagging = turn - z * math.tan(cutter.helix_angle) / R * pull
+                phi = (lagging if hand > 0 else np.pi - lagging) % (2 * np.pi)
+                n = np.searchsorted(edges, phi) - 1
+                if n >= len(sectors):
+                    continue
+                height, low, high, face = sectors[n]
+                if length is None:
+                    db = face
+                else:
+                    db = length * height / (high - low) if low < z < high else 0.0
+                radial, up = np.array([math.sin(phi), math.cos(phi), 0.0]), np.array([0.0, 0.0, 1.0])
+                motion = hand * np.array([math.cos(phi), -math.sin(phi), 0.0])
+                normal = math.sin(kappa) * radial - math.cos(kappa) * up
+                h = c * (normal @ v)
+                if h > 1e-6 * c and db > 0.0:
+                    for term in terms:
+                        along = -math.cos(kappa) * radial - math.sin(kappa) * up
+                        push = -term.Kt * motion - term.Kr * normal + pull * term.Ka * along
+                        force[i] += h**term.exponent * db * push
+    return force
+
+
+def random_sectors(count, seed):
+    """Sectors with material, with a gap in it, and without; those behind only part of the end face."""
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(0.0, 0.6e-3, count)
+    high = low + rng.uniform(0.5e-3, 2e-3, count)
+    sectors = np.stack([(high - low) * rng.uniform(0.4, 1.0, count), low, high, rng.uniform(0.0, 1e-3, count)], axis=1)
+    sectors[rng.random(count) < 0.2] = 0.0
+    return sectors
+
+
+@pytest.mark.parametrize(
+    ("cutter", "count", "feed"),
+    [
+        (MILL, 48, (1.0, 0.0)),
+        (MILL.replace(hand="left", helix="left", flutes=2), 48, (1.0, 0.0)),
+        (MILL.replace(helix="left"), 96, (0.8, -0.6)),
+        (Cutter("bull", 8e-3, corner_radius=1e-3, flutes=2), 96, (0.6, -0.8)),
+        (Cutter("ball", 8e-3, flutes=1), 1, (1.0, 0.0)),
+        (MILL, 2, (0.0, -1.0)),
+    ],
+    ids=["mill", "left-hand", "pushing", "bull-diving", "ball", "plunge"],
+)
+def test_sectors_over_a_pitch_as_points_along_every_tooth(cutter, count, feed):
+    """Lengths of a slice are counted whole where its middle is: the mean of a few per cent of the largest is left."""
+    sectors = random_sectors(count, seed=count)
+    terms = (EdgeTerm(1.0, 8e8, 3e8, 2e8), EdgeTerm(0.0, 2e4, 3e4, 1e4))
+    course = Course(np.array([CHIP]), np.array([feed]), np.array([[0.0, np.pi]]), sectors[None])
+    found, expected = over_pitch(terms, cutter, course, 24)[0], by_teeth(terms, cutter, CHIP, feed, sectors, 24)
+    largest = np.linalg.norm(expected, axis=1).max()
+    assert np.abs(found - expected).mean() < 0.02 * largest
+    assert np.abs(found.mean(axis=0) - expected.mean(axis=0)).max() < 0.01 * largest
+
+
+def test_the_end_face_has_no_lag():
+    """A sector about straight ahead, only the end face: the one tooth is there when it points ahead."""
+    sectors = np.zeros((1, 48, 4))
+    ahead = np.searchsorted(edges_of(48), 0.5 * np.pi) - 1
+    sectors[0, ahead, 3] = 2e-3
+    mill = MILL.replace(flutes=1, helix_angle=math.radians(60))
+    course = Course(np.array([CHIP]), np.array([[0.6, -0.8]]), np.array([[0.0, np.pi]]), sectors)
+    force = over_pitch(REF190.terms, mill, course, 3600)[0]
+    phi = (np.arange(3600) + 0.5) * 2 * np.pi / 3600
+    cuts = phi[np.abs(force).sum(axis=1) > 0.0]
+    np.testing.assert_allclose([cuts.min(), cuts.max()], edges_of(48)[[ahead, ahead + 1]], atol=2e-3)
+
+
+def with_part(sectors, arc, moments=None):
+    """Steps whose engaged part has these sectors (m, s, 4) and, by itself, the sums of a full slot."""
+    m = len(sectors)
+    sums = np.ones((m, 1, 8)) if moments is None else moments
+    conditions = CutConditions.steady(0.03, 200.0, np.full(m, 2e-3), arc=arc)
+    return CutConditions(**{**vars(conditions), "part": EngagedPart((1.0,), sums, sectors)})
+
+
+def test_sectors_at_the_ends_of_the_arc_are_as_full_as_their_part_within_it():
+    sectors = np.zeros((1, 96, 4))
+    sectors[0, :, 0], sectors[0, :, 2], sectors[0, :, 3] = 1e-3, 2e-3, 0.5e-3
+    edges = edges_of(96)
+    arc = (0.25 * edges[10] + 0.75 * edges[11], 0.5 * (edges[30] + edges[31]))
+    found = Course.of(with_part(sectors, arc), MILL, np.array([0])).sectors[0]
+    sectors = sectors.astype(np.float16).astype(float)[0]  # as a part keeps them
+    np.testing.assert_allclose(found[10, [0, 3]], 4.0 * sectors[10, [0, 3]])
+    np.testing.assert_allclose(found[30, [0, 3]], 2.0 * sectors[30, [0, 3]])
+    np.testing.assert_array_equal(found[11:30], sectors[11:30])
+    np.testing.assert_array_equal(found[48:], sectors[48:])  # behind: no arc is told there
+    np.testing.assert_array_equal(found[:, 1:3], sectors[:, 1:3])
+
+
+def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_the_dish():
+    slopes = np.array([0.0, -DISH, -1.001 * DISH])
+    conditions = CutConditions.steady(0.03, 200.0, [1e-3, 2e-3, 3e-3], along=slopes, arc=(0.5, 2.0))
+    course = Course.of(conditions, MILL, np.array([0, 1, 2]))
+    for n, (depth, face) in enumerate(((1e-3, 0.0), (2e-3, 0.0), (3e-3, MILL.radius))):
+        np.testing.assert_allclose(course.sectors[n], [[depth, 0.0, depth, face]] * 2)
+    np.testing.assert_allclose(course.arc, [[0.5, 2.0]] * 3)
+    np.testing.assert_allclose(course.feed, np.stack([np.ones(3), slopes], axis=1))
+    np.testing.assert_allclose(course.c, 0.03 / 200.0 / 3)
+
+
+def test_cuts_within_a_thousandth_of_the_largest_are_one():
+    depth = 1e-3 * np.array([2.0, 2.0005, 1.0, 1.9, 2.0])
+    course = Course.of(CutConditions.steady(0.03, 200.0, depth), MILL, np.arange(5))
+    mean = np.zeros((5, 3))
+    first, kind = course.alike(mean)
+    assert len(first) == 3
+    assert kind[0] == kind[1] == kind[4]
+    assert len({kind[0], kind[2], kind[3]}) == 3
+    np.testing.assert_array_equal(kind[first], range(3))
+    mean[4] = 100.0, 0.0, 0.0
+    mean[3] = 0.0, 1000.0, 0.0
+    _, kind = course.alike(mean)
+    assert kind[0] == kind[1] != kind[4]
+    np.testing.assert_allclose(course.at(np.array([2])).sectors[0, 0], [1e-3, 0.0, 1e-3, 0.0])
+
+
+def test_the_range_is_about_the_mean_of_the_part():
+    """Sums larger by any vector carry the whole course with them."""
+    sectors = np.stack([random_sectors(48, seed=5)] * 2)
+    moments = np.ones((2, 1, 8))
+    moments[1, 0, :2] += 3e-4, -2e-4
+    force = MechanisticForce(MILL, REF190)
+    conditions = with_part(sectors, (0.0, np.pi), np.concatenate([moments, moments], axis=1) * 1e-3)
+    part = EngagedPart((1.0, 0.0), conditions.part.moments, sectors)
+    conditions = CutConditions(**{**vars(conditions), "part": part})
+    mean, spread = force.components(conditions), force.peak(conditions)
+    assert (np.abs(mean[1] - mean[0])[:2] > 1e-3).all()
+    for ends in (spread.low, spread.high):
+        np.testing.assert_allclose(ends[1] - ends[0], mean[1] - mean[0], atol=1e-9)

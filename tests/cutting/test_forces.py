@@ -28,6 +28,7 @@ SLOT = CutConditions.steady(0.03, 200.0, [2e-3, 1e-3])
 
 def test_models_are_found_in_their_order_and_say_what_they_follow():
     assert list(FORCES) == ["path", "constant", "mechanistic", "kienzle", "measured"]
+    assert len({m.rank for m in FORCES.values()}) == len(FORCES)
     assert [m.follows_cut for m in FORCES.values()] == [False, False, True, True, False]
     assert [m.ends_with_material for m in FORCES.values()] == [True, True, False, False, False]
     assert [m.stated for m in FORCES.values()] == [True, True, False, False, False]

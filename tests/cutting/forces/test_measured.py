@@ -128,3 +128,77 @@ def test_refusals():
         MeasuredForce(record(100.0), cutoff=-5.0)
     with pytest.raises(CuttingError, match="Path starts at: found nan"):
         MeasuredForce(record(100.0), start=float("nan"))
+
+
+def test_a_record_in_the_axes_of_the_part_turns_with_it():
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x of the part is y of the robot
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True], t=[0.0, 1.0])
+    for frame, expected in (("W", [-100, 0, 0]), ("M", [0, 100, 0]), ("path", [0, 100, 0])):
+        force = MeasuredForce(record(100.0, frame=frame)).placed(turn)
+        assert force.turns_with_part == (frame == "W")
+        np.testing.assert_allclose(force.components(conditions)[1], expected, atol=1e-9)
+        assert force.placed(turn) is force
+    assert MeasuredForce(record(100.0)).in_time
+    assert not MeasuredForce(record(100.0, axis="path")).in_time
+
+
+def test_a_rate_of_twice_the_cut_off_is_too_few_and_rounded_instants_do_not_help():
+    for rate, enough in ((100.0, False), (100.00005, False), (100.001, True)):
+        x = np.arange(40) / rate
+        if enough:
+            assert len(record(np.ones(40), x).low_pass(50.0).x) == 40
+        else:
+            with pytest.raises(CuttingError, match="it takes more than 100"):
+                record(np.ones(40), x).low_pass(50.0)
+
+
+@pytest.mark.parametrize(("last", "longer"), [(2.0, False), (2.499, False), (2.502, True), (10.0, True)])
+def test_a_record_that_goes_on_by_a_fifth_of_its_time_is_suspected(last, longer):
+    """The cut ends 2 s after its begin, which is at 0.5 s of a record that begins at 0.5 s."""
+    x = np.linspace(0.5, 0.5 + last, 5)
+    t = np.array([7.0, 0.0, 1.0, 2.0, 9.0])
+    conditions = CutConditions.steady(
+        0.03, 200.0, 2e-3, cutting=[False, True, True, True, False], t=t, block=[3, 4, 5, 6, 7]
+    )
+    force = MeasuredForce(record(np.ones(5), x), start=0.5)
+    found = force.findings(conditions)
+    begin = found[0]
+    assert (begin.code, begin.line, "begin at 0.500 s" in begin.message) == ("record-start", 4, True)
+    assert [each.code for each in found[1:]] == (["record-longer"] if longer else [])
+    if longer:
+        assert f"goes on to {x[-1]:.3f} s, the last cut ends at 2.500 s" in found[1].message
+
+
+def test_only_a_record_over_time_laid_on_a_cut_has_a_begin():
+    air = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, False])
+    cut = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True])
+    noted = record(1.0, notes=("read with care",))
+    assert [each.code for each in MeasuredForce(noted).findings(air)] == ["force-note"]
+    assert [each.code for each in MeasuredForce(noted).findings(cut)][:2] == ["force-note", "record-start"]
+    by_length = record(1.0, axis="path", notes=("read with care",))
+    assert [each.code for each in MeasuredForce(by_length).findings(cut)] == ["force-note"]
+    np.testing.assert_array_equal(MeasuredForce(noted).components(air), np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "held"), [(-1.0, 99.0, True), (0.0, 100.0, True), (-1.5, 99.0, False), (0.0, 100.5, False)]
+)
+def test_a_cut_may_leave_the_record_by_a_sample(first, last, held):
+    """In samples, of which the record holds a hundred."""
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, t=np.array([first, last]) / 1024)
+    force = MeasuredForce(record(100.0, np.arange(100) / 1024), cutoff=None)
+    if held:
+        np.testing.assert_allclose(force.components(conditions)[:, 1], 100.0)
+    else:
+        with pytest.raises(CuttingError, match="record the whole cut"):
+            force.components(conditions)
+
+
+def test_a_record_over_length_is_filtered_at_the_median_feed_of_the_cut():
+    wave = np.cos(2 * np.pi * 40.0 * T)
+    by_length = record(wave, 0.03 * T, axis="path")
+    v_f = np.array([9.0, 0.03, 0.03, 0.03, 0.05, 0.01])
+    conditions = CutConditions.steady(v_f, 200.0, 2e-3, cutting=v_f != 9.0, s=0.03 * np.linspace(1.0, 3.0, 6))
+    expected = MeasuredForce(record(wave)).record.low_pass(50.0)
+    found = MeasuredForce(by_length).components(conditions)[1:, 1]
+    np.testing.assert_allclose(found, np.interp(np.linspace(1.0, 3.0, 6)[1:], expected.x, expected.F[:, 1]), atol=1e-6)
