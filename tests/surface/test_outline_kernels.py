@@ -1,0 +1,169 @@
+"""Walls and floors, part by part: capsules by their points, slopes by differences, fields of moves one by one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from scipy.spatial.transform import Rotation
+
+from robomill.cutting.tool import Cutter
+from robomill.surface.envelope_kernels import cutter_shape
+from robomill.surface.outline import Outline
+from robomill.surface.outline_kernels import Seen, Tracks, furthest, seen_from, squares_near, upright_part
+
+R = 4e-3
+FLAT = Cutter("flat", 2 * R)
+UP = np.array([0.0, 0.0, 1.0])
+T = np.linspace(0.0, 1.0, 20001)
+
+
+def test_a_move_is_seen_along_u_across_it_and_along_the_axis():
+    rng = np.random.default_rng(1)
+    for turn in Rotation.random(5, random_state=1).as_matrix():
+        c, u, k = rng.normal(size=3), turn[0], turn[2]
+        ends = rng.normal(size=6)
+        axes = np.stack([u, np.cross(k, u), k])
+        seen = seen_from(np.concatenate([c, k, u]), ends)
+        np.testing.assert_allclose(seen, [*axes @ (ends[:3] - c), *axes @ (ends[3:] - ends[:3])], atol=1e-12)
+
+
+MOVES = [
+    (0.0, 1e-3, 5e-3, 2e-3),
+    (1e-3, -2e-3, -5e-3, 3e-3),
+    (-2e-3, 0.5e-3, 3e-3, -4e-3),
+    (2e-3, -6e-3, 1e-3, 12e-3),
+    (0.0, 3e-3, 4e-3, 0.0),
+    (1e-3, -3e-3, -4e-3, 0.0),
+    (1e-3, R, 4e-3, 0.0),
+    (1e-3, 1.001 * R, 4e-3, 0.0),
+    (0.0, 2e-3, 0.0, 0.0),
+    (0.0, 5e-3, 0.0, 0.0),
+    (0.0, 5e-3, 2e-3, 3e-3),
+    (0.0, -5e-3, 2e-3, -3e-3),
+    (1e-3, -3e-3, 0.0, 6e-3),
+    (3e-3, 3e-3, 0.0, -9e-3),
+]
+
+
+@pytest.mark.parametrize(("u", "v", "du", "dv"), MOVES)
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_capsule_ends_where_the_last_of_its_disks_does(u, v, du, dv, way):
+    found = furthest(Seen(u, v, 0.0, du, dv, 0.0), R, way)
+    across = v + T * dv
+    on_line = np.abs(across) <= R
+    if not on_line.any():
+        assert math.isnan(found)
+        return
+    ends = way * (u + T * du)[on_line] + np.sqrt(R**2 - across[on_line] ** 2)
+    assert found == pytest.approx(way * ends.max(), abs=2e-7)
+
+
+@pytest.mark.parametrize(
+    "cutter",
+    [
+        FLAT,
+        Cutter("ball", 2 * R),
+        Cutter("bull", 2 * R, corner_radius=1e-3),
+        Cutter("chamfer", 2 * R, tip_angle=1.2, tip_diameter=2e-3),
+    ],
+    ids=lambda c: c.kind,
+)
+def test_the_normal_is_upright_by_the_slope_of_the_profile(cutter):
+    shape, h = cutter_shape(cutter), 1e-8
+    for r in (0.0, 0.9e-3, 1.5e-3, 2.5e-3, 3.2e-3, 3.9e-3):
+        slope = float(cutter.profile(r + h) - cutter.profile(max(r - h, 0.0))) / (2 * h if r else h)
+        assert upright_part(shape, r) == pytest.approx(1.0 / math.hypot(1.0, slope), abs=1e-5)
+    assert upright_part(shape, cutter.flat_radius) == 1.0
+    if cutter.corner_radius:
+        assert upright_part(shape, R) == 0.0
+
+
+def test_squares_around_a_point_are_its_own_and_those_beside_it():
+    rng = np.random.default_rng(0)
+    tracks = Tracks(None, None, None, None, np.array([1.0, -2.0]), 0.5, np.array([7, 4]))
+    centres = np.array([1.25, -1.75])[:, None] + 0.5 * np.arange(7)
+    for x, y in rng.uniform([0.6, -2.4], [4.9, 0.4], (200, 2)):
+        i, i_end, j, j_end = squares_near(tracks, x, y)
+        near = [np.flatnonzero(np.abs(c - at) < 0.75).tolist() for c, at in zip(centres, (x, y), strict=True)]
+        near[1] = [n for n in near[1] if n < 4]
+        assert ([*range(i, i_end)], [*range(j, j_end)]) == tuple(near)
+
+
+def field(n=300, seed=3):
+    """Short level moves of two mills all over a quarter of a metre, as told and, moved and lifted, as left."""
+    rng = np.random.default_rng(seed)
+    start = np.column_stack([rng.uniform(0.0, [0.25, 0.15], (n, 2)), rng.choice([-3e-3, -2e-3, -1e-3], n)])
+    stop = start + np.column_stack([rng.normal(0.0, 8e-3, (n, 2)), np.zeros(n)])
+    told = np.hstack([start, stop])
+    aside = np.column_stack([rng.normal(0.0, 1e-3, (n, 2)), rng.choice([-1e-4, 1.2e-3], n)])
+    return told, told + np.hstack([aside, aside]), rng.integers(0, 2, n)
+
+
+CUTTERS = (FLAT, Cutter("flat", 10e-3))
+
+
+def tracks(ends):
+    return shapely.linestrings(ends.reshape(-1, 2, 3)[:, :, :2])
+
+
+def test_floors_of_a_wide_field_are_those_of_the_lowest_mills_over_the_point():
+    told, left, cutter = field()
+    radii = np.array([c.radius for c in CUTTERS])[cutter]
+    outline = Outline(told, left, CUTTERS, cutter, 1e-3)
+    rng, slack = np.random.default_rng(4), np.zeros(1)
+    judged = {True: 0, False: 0}
+    for n in range(0, len(told), 3):
+        tip, angle, offset = 0.5 * (told[n, :3] + told[n, 3:]), rng.uniform(0, 7), 0.98 * radii[n] * rng.uniform(-1, 1)
+        u = np.array([np.cos(angle), np.sin(angle), 0.0])
+        point = shapely.Point(tip[:2] + offset * u[:2])
+        over = [shapely.distance(tracks(ends), point) <= radii for ends in (told, left)]
+        heights = told[:, 2] - tip[2], left[:, 2] - tip[2]
+        low_told = heights[0][over[0]].min(initial=np.inf)
+        low_left = heights[1][over[1]].min(initial=np.inf)
+        both = [height[over[0] & over[1]].min(initial=np.inf) for height in heights]
+        one = both[0] < np.inf and both[0] - low_told < 1e-6 and both[1] - low_left < 1e-6
+        found = outline.floors(np.concatenate([tip, UP, u])[None], np.array([offset]), slack)
+        assert found[0][0] == pytest.approx(low_told, abs=1e-9)
+        if np.isfinite(low_left):
+            assert found[1][0] == pytest.approx(low_left - low_told, abs=1e-9)
+        assert found[2][0] == one
+        judged[bool(one)] += 1
+    assert min(judged.values()) > 3
+
+
+def test_walls_of_a_wide_field_are_where_the_outlines_of_its_low_moves_end():
+    told, left, cutter = field(seed=5)
+    radii = np.array([c.radius for c in CUTTERS])[cutter]
+    reach, height = 2e-3, 0.6e-3
+    outline = Outline(told, left, CUTTERS, cutter, reach)
+    rng, judged = np.random.default_rng(6), {True: 0, False: 0}
+
+    def wall(ends, low, tip, u, start):
+        """How far from the tip along u the outline of the ``low`` moves goes on without a gap."""
+        ray = shapely.LineString([tip[:2] + start * u[:2], tip[:2] + 0.05 * u[:2]])
+        near = low & (shapely.distance(tracks(ends), ray) <= radii)
+        inside = shapely.union_all(shapely.buffer(tracks(ends[near]), radii[near], quad_segs=200)).intersection(ray)
+        for piece in getattr(inside, "geoms", [inside]):
+            along = sorted((np.array(q) - tip[:2]) @ u[:2] for q in piece.coords)
+            if along and along[0] <= start + 1e-7:
+                return along[-1]
+        return np.nan
+
+    for n in range(0, len(told), 4):
+        tip, angle = 0.5 * (told[n, :3] + told[n, 3:]), rng.uniform(0, 7)
+        u, start = np.array([np.cos(angle), np.sin(angle), 0.0]), radii[n] - reach
+        low = told[:, 2] < tip[2] + height
+        both = low & (left[:, 2] < tip[2] + height)
+        truth = wall(told, low, tip, u, start), wall(told, both, tip, u, start), wall(left, both, tip, u, start)
+        if np.nanmax([0.0, *truth]) > radii[n] + reach:
+            continue  # further off than it is looked for
+        asked = np.concatenate([tip, UP, u])[None], np.array([height]), radii[[n]]
+        found = [each[0] for each in outline.walls(*asked)]
+        np.testing.assert_allclose(found[:2], np.array([truth[0], truth[2]]) - radii[n], atol=1e-6)
+        one = abs(truth[1] - truth[0]) < 1e-6
+        assert found[2] == one
+        judged[one] += 1
+    assert min(judged.values()) > 5
