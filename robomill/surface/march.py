@@ -120,7 +120,7 @@ class March:
         bottom of a plunge; half of it before a stop or a corner, where walls of earlier passes often end too, and on
         the chord of a curve, which has the curve's direction there.
         """
-        onward = np.where(np.diff(self.steps) == 1, np.einsum("ni,ni->n", self._feed[:-1], self._feed[1:]), -1.0)
+        onward = np.einsum("ni,ni->n", self._feed[:-1], self._feed[1:]) * (np.diff(self.steps) == 1)
         bends = np.r_[False, (np.cos(CURVE[1]) < onward) & (onward < np.cos(CURVE[0])), False]
         stops = np.append(onward < np.cos(CURVE[1]), True)
         dives = np.einsum("ni,ni->n", self._feed, self._axes) < -DIVE
@@ -160,7 +160,7 @@ class March:
             phi = half * np.pi + kernels.half_turn()
             main = rows[half * kernels.ANGLES : (half + 1) * kernels.ANGLES]
             main[:, : kernels.LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
-        down = len(self.steps) and (np.einsum("ni,ni->n", self._feed, self._axes) < -FACING).any()
+        down = (np.einsum("ni,ni->n", self._feed, self._axes) < -FACING).any()
         return kernels.Room(
             np.array(self.exponents, dtype=float),
             np.zeros((3, 4)),

@@ -93,7 +93,7 @@ def _tiles(shape: tuple[int, ...], cells: Cells, low: FloatArray, high: FloatArr
     """First row of each tile that moves meet in x, and these moves: their range is (low, high), (n,) m."""
     rows = rows_of_tile(shape)
     for i in range(0, shape[0], rows):
-        x_low, x_high = cells.x0 + (i - 1) * cells.dx, cells.x0 + min(i + rows, shape[0]) * cells.dx
+        x_low, x_high = cells.x0 + i * cells.dx, cells.x0 + (min(i + rows, shape[0]) - 1) * cells.dx
         chosen = np.flatnonzero((low <= x_high) & (high >= x_low))
         if len(chosen):
             yield i, chosen

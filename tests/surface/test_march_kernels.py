@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -73,7 +75,7 @@ def stamped(move, x, y, count=1501):
 
 
 def walk(kind, points):
-    return [(CUTTERS[kind], a, b, UP) for a, b in zip(points, points[1:], strict=False)]
+    return [(CUTTERS[kind], a, b, UP) for a, b in pairwise(points)]
 
 
 PATHS = {

@@ -99,6 +99,7 @@ def test_floors_are_the_lowest_stamp_and_lean_as_it_does(cutter, seed):
         assert 0.0 <= above <= RAISED[5] * (1.0 + 1e-9)
         if cutter.kind == "flat":
             assert above == pytest.approx(RAISED[5])
+    assert outline.floors(np.concatenate([c, UP, u])[None], np.zeros(1), SLACK)[2][0]
     far = np.concatenate([[1.0, 1, 0], UP, [1.0, 0, 0]])[None]
     assert np.isposinf(outline.floors(far, np.zeros(1), SLACK)[0][0])
 
@@ -128,3 +129,34 @@ def test_the_floor_of_a_ball_leans_as_the_ball(r, part):
     height, above, _ = outline.floors(place, np.array([r]), SLACK)
     assert height[0] == pytest.approx(4e-3 - np.sqrt(16e-6 - r * r))
     assert above[0] == pytest.approx(RAISED[5] * part)
+
+
+def test_squares_are_as_wide_as_what_reaches_into_them_and_as_many_as_are_used():
+    """Half the longest move and the way it was moved, a cutter either side, the reach; first and last hold moves."""
+    rng = np.random.default_rng(9)
+    start = np.column_stack([rng.uniform(-0.2, [0.3, 0.1], (200, 2)), np.full(200, -1e-3)])
+    told = np.hstack([start, start + rng.uniform(-5e-3, 5e-3, (200, 3))])
+    left = told.copy()
+    left[7, 1] += 2e-3
+    tracks = Outline(told, left, (FLAT, SMALL), np.zeros(200, dtype=int), 1e-3)._tracks
+    longest = np.linalg.norm(told[:, 3:] - told[:, :3], axis=1).max()
+    middle = 0.5 * (told[:, :2] + told[:, 3:5])
+    for track in tracks:
+        assert track.size == pytest.approx(2 * 4e-3 + 2 * 1e-3 + 0.5 * longest + 2e-3)
+        where = np.floor((middle - track.corner) / track.size).astype(int)
+        np.testing.assert_array_equal(where.min(axis=0), 0)
+        np.testing.assert_array_equal(where.max(axis=0), track.squares - 1)
+        assert len(track.first) == np.prod(track.squares) + 1
+        counts = np.zeros(tuple(track.squares), dtype=int)
+        np.add.at(counts, tuple(where.T), 1)
+        np.testing.assert_array_equal(np.diff(track.first), counts.ravel())
+    order = [np.flatnonzero((told == end).all(axis=1))[0] for end in tracks[0].ends]
+    np.testing.assert_array_equal(tracks[1].ends, left[order])
+
+
+def test_a_field_of_very_many_squares_has_larger_ones(monkeypatch):
+    monkeypatch.setattr("robomill.surface.outline.MOST_SQUARES", 50)
+    for span in ((3.0, 2.0), (40.0, 0.0), (0.0, 40.0)):
+        ends = np.array([[0.0, 0, 0, 1e-3, 0, 0], [*span, 0, span[0] + 1e-3, span[1], 0]])
+        track = Outline(ends, ends, (FLAT,), np.zeros(2, dtype=int), 1e-3)._tracks[0]
+        assert 30 <= np.prod(track.squares) <= 75

@@ -96,6 +96,29 @@ def test_every_triangle_is_in_the_squares_it_covers():
             assert n in mesh.faces[mesh.first[b] : mesh.first[b + 1]]
 
 
+@pytest.mark.parametrize("normal", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0)])
+def test_the_skin_over_a_line_holds_to_the_very_ends_of_a_block(normal):
+    """A box of 8 x 6 mm, its faces upright: at its corners' distance and between them its top, beyond its bottom."""
+    box = stock_of(trimesh.creation.box((8 / 1024, 8 / 1024, 2 / 1024)))
+    height = skin_on_line(box, np.array([0.0, 1 / 1024, 0.0]) * abs(normal[0]), np.array(normal))
+    w = np.array([-4.1, -4.0, -3.9, -1.0, 0.0, 2.0, 4.0, 4.1]) / 1024
+    np.testing.assert_allclose(height(w) * 1024, [-1, 1, 1, 1, 1, 1, 1, -1], atol=1e-9)
+
+
+def test_the_skin_over_a_line_is_that_of_a_slope_between_its_corners():
+    """One triangle over (0, 0), (6, 0), (0, 6), rising 1 in 2 along X from -3, seen along lines in X and in Y."""
+    slope = np.array([[[0, 0, -3.0], [6, 0, 0.0], [0, 6, -3.0]]])
+    stock = Stock((0, 0, -9.0), (6, 6, 0.0), slope)
+    for centre, normal, points in (
+        ((0, 2, 0), (1, 0, 0), {-1.0: -9, 0.0: -3, 2.0: -2, 4.0: -1, 4.5: -9}),
+        ((4, 2, 0), (-1, 0, 0), {-0.5: -9, 0.0: -1, 2.0: -2, 4.0: -3}),
+        ((2, 0, 0), (0, 1, 0), {-1.0: -9, 0.0: -2, 4.0: -2, 4.1: -9}),
+        ((0, 7, 0), (1, 0, 0), {0.0: -9, 3.0: -9}),
+    ):
+        height = skin_on_line(stock, np.array(centre, float), np.array(normal, float))
+        np.testing.assert_allclose(height(np.array([*points])), [*points.values()], atol=1e-12)
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.4, 1.7])
 def test_the_skin_over_a_line_is_the_skin_at_its_points(angle):
     stock = stock_of(standing_ring())

@@ -78,6 +78,16 @@ def test_too_many_cells_are_refused_with_the_size_that_fits():
         assert max(dx, dy) <= cell * (1 + 1e-9)
 
 
+def test_a_block_is_thicker_than_a_nanometre():
+    for axis in range(3):
+        upper = np.ones(3)
+        upper[axis] = 1e-9
+        with pytest.raises(SurfaceError, match=f"Stock in {'XYZ'[axis]}"):
+            Stock((0, 0, 0), upper)
+        upper[axis] = 1.1e-9
+        assert Stock((0, 0, 0), upper).size[axis] == 1.1e-9
+
+
 def test_stock_refusals_and_defaults():
     with pytest.raises(SurfaceError, match="Stock in Y.*upper end must lie above"):
         Stock((0, 1, 0), (1, 1, 1))

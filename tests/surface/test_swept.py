@@ -9,7 +9,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.stock import Stock
-from robomill.surface.swept import station_at, swept_path
+from robomill.surface.swept import Body, station_at, swept_path
 
 R, LONG = 4e-3, 60e-3
 BLOCK = Stock([-40e-3, -40e-3, -20e-3], [40e-3, 40e-3, 0.0])
@@ -65,3 +65,50 @@ def test_a_station_counts_feed_moves_alone(rapids):
         station_at(p, cutting, 31e-3)
     with pytest.raises(SurfaceError):
         station_at(p, np.zeros(len(p), dtype=bool), 0.0)
+
+
+def test_moves_near_a_line_are_those_whose_track_may_meet_it():
+    """Plunges beside a line along Y of 10 mm either way: of 4 mm radius, up to 4 mm beside or beyond it."""
+    places = np.array([(4, 0), (4.1, 0), (-4, 0), (-4.1, 0), (0, 14), (0, 14.1), (0, -14), (0, -14.1), (4, -14)])
+    ends = np.column_stack([places, 0 * places[:, 0], places, 0 * places[:, 0] - 4]) / 1024
+    body = Body(Cutter("flat", 8 / 1024), ends, np.tile([0.0, 0.0, 1.0], (len(ends), 1)))
+    found, axes = body.near((np.zeros(3), np.array([0.0, 1.0, 0.0]), 10 / 1024), 0.0)
+    np.testing.assert_array_equal(found, ends[[0, 2, 4, 6, 8]])
+    assert axes.shape == (5, 3)
+    turned, _ = body.near((np.zeros(3), np.array([1.0, 0.0, 0.0]), 10 / 1024), 0.0)
+    np.testing.assert_array_equal(turned, ends[:4])
+
+
+def test_moves_that_pass_a_line_by_are_near_it():
+    """Ends on either side of the line, or one at its foot; leaning, as far as the side of the tool reaches below 0."""
+    ends = np.array([[-50, 3, -4, 60, 3, -4], [-50, 15, -4, 60, 15, -4], [0, -30, -4, 0, 30, -4], [6, 0, -5, 9, 0, -5]])
+    upright, leaning = np.tile([0.0, 0.0, 1.0], (4, 1)), np.tile([-0.6, 0.0, 0.8], (4, 1))
+    line = (np.zeros(3), np.array([0.0, 1.0, 0.0]), 10e-3)
+    for axes, expected in ((upright, [0, 2]), (leaning, [0, 1, 2, 3])):
+        found, _ = Body(Cutter("flat", 8e-3), ends * 1e-3, axes).near(line, 0.0)
+        np.testing.assert_array_equal(found, ends[expected] * 1e-3)
+
+
+def test_a_station_at_a_corner_is_the_end_of_the_move_before_and_the_begin_has_the_first():
+    p = np.array([[0.0, 0, 0], [3, 0, 0], [3, 0, 0], [3, 4, 0], [3, 4, -2]])
+    cutting = np.array([False, True, True, True, True])
+    for station, entry, fraction, centre, normal in (
+        (0.0, 1, 0.0, (0, 0, 0), (0, 1, 0)),
+        (3.0, 1, 1.0, (3, 0, 0), (0, 1, 0)),
+        (5.0, 3, 0.5, (3, 2, 0), (-1, 0, 0)),
+        (7.0, 3, 1.0, (3, 4, 0), (-1, 0, 0)),
+        (8.0, 4, 0.5, (3, 4, -1), None),
+        (9.0, 4, 1.0, (3, 4, -2), None),
+    ):
+        found = station_at(p, cutting, station)
+        assert (found.entry, found.fraction) == (entry, pytest.approx(fraction))
+        np.testing.assert_allclose(found.centre, centre)
+        if normal is None:
+            assert found.normal is None
+        else:
+            np.testing.assert_allclose(found.normal, normal, atol=1e-15)
+    for station in (-1e-6, 9.0 + 1e-6):
+        with pytest.raises(SurfaceError, match="the feed path runs from 0 to"):
+            station_at(p, cutting, station)
+    lead = station_at(np.vstack([[[-9.0, 0, 0]], p]), np.append(False, cutting), 0.0)
+    assert (lead.entry, lead.fraction) == (2, 0.0)

@@ -1,10 +1,13 @@
 """Cutting a path into the stock: exact volumes, heights by brute force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut
@@ -115,3 +118,46 @@ def test_tiles_do_not_show(monkeypatch):
     tiled = cut(STOCK, 3e-4, CUTTERS["ball"], p)
     np.testing.assert_allclose(tiled.z, whole.z, atol=1e-15)
     assert tiled.removed_volume == pytest.approx(whole.removed_volume, rel=1e-12)
+
+
+def test_notes_stand_at_no_line_and_only_where_there_is_something_to_say():
+    plain = cut(STOCK, 5e-4, FLAT, np.array([[0.01, 0.02, -0.002], [0.03, 0.02, -0.002]]))
+    assert plain.notes() == ()
+    odd = replace(plain, overhang=3, leaning=True, skipped=1, below=True, filled=1e-9)
+    found = odd.notes()
+    assert [note.code for note in found] == ["undercut", "walls-to-a-cell", "not-cut", "through-bottom", "void-filled"]
+    assert {note.line for note in found} == {0}
+    # A void smaller than a cube of one cell is rounding.
+    cube = plain.dx * plain.dy * plain.cell
+    assert replace(plain, filled=cube).notes() == ()
+    assert replace(plain, filled=1.01 * cube).notes() != ()
+
+
+def test_cells_of_one_row_are_as_large_as_they_are():
+    thin = cut(Stock((0, 0, -0.01), (0.06, 4e-4, 0)), 5e-4, FLAT, np.array([[0.01, 0.0, -0.002], [0.03, 0.0, -0.002]]))
+    assert thin.z.shape == (120, 1)
+    assert (thin.dx, thin.dy) == (pytest.approx(5e-4), 5e-4)
+    along_y = np.array([[0.0, 0.01, -0.002], [0.0, 0.03, -0.002]])
+    turned = cut(Stock((0, 0, -0.01), (4e-4, 0.06, 0)), 5e-4, FLAT, along_y)
+    assert (turned.dx, turned.dy) == (5e-4, pytest.approx(5e-4))
+
+
+def test_walls_of_an_earlier_cutter_stand_where_a_later_one_does_not_cut():
+    """Slots of two mills that cross: what is left is what the polygons of both leave, cell by cell."""
+    big, small = FLAT, Cutter("flat", 0.005)
+    p = np.array([[0.01, 0.0203, -0.002], [0.05, 0.0203, -0.002], [0.0301, 0.005, -0.002], [0.0301, 0.035, -0.002]])
+    cutting = np.array([False, True, False, True])
+    both = cut(STOCK, 7e-4, Tooling((big, small), [0, 0, 1, 1]), p, None, cutting)
+    plans = capsules(p[:2], 0.004), capsules(p[2:], 0.0025)
+    union = shapely.union_all(plans)
+    assert both.removed_volume == pytest.approx(union.area * 0.002, rel=1e-3)
+    i, j = np.divmod(both.edge.index, both.z.shape[1])
+    assert len(np.unique(both.edge.index)) == len(both.edge.index)
+    centres = shapely.points(both.x[i], both.y[j])
+    near = np.hypot(both.dx, both.dy) / 2
+    for plan in plans:
+        assert (shapely.distance(plan.boundary, centres) < near).sum() > 20
+    assert (shapely.distance(union.boundary, centres) < near).all()
+    assert (both.z.ravel()[both.edge.index] > -0.002).sum() > 20
+    swapped = cut(STOCK, 7e-4, Tooling((small, big), [1, 1, 0, 0]), p, None, cutting)
+    np.testing.assert_array_equal(swapped.z, both.z)

@@ -1,0 +1,224 @@
+"""How the turn is divided and a profile searched, as the Python it is written in: by a made-up cut whose ends are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.cutting.engaged import PANELS, sector_edges
+from robomill.cutting.tool import DISH, Cutter
+from robomill.surface import engagement_kernels as kernels
+from robomill.surface.engagement_kernels import (
+    ANGLES,
+    HALVINGS,
+    LENGTH,
+    PHI,
+    ROWS,
+    SUMS,
+    Ray,
+    Room,
+    divide,
+    follow_jumps,
+    half_turn,
+    jumps,
+    lay_out,
+    measure_stretch,
+    panel_end,
+)
+from robomill.surface.envelope_kernels import cutter_shape
+from robomill.surface.material_kernels import Block, Columns, Mesh, World
+from robomill.surface.step_kernels import END, FLANK, NOSE, on_profile, step_between, stretch_ends
+
+MM = 1e-3
+CUTTERS = {
+    "flat": Cutter("flat", 8 * MM),
+    "ball": Cutter("ball", 8 * MM),
+    "bull": Cutter("bull", 8 * MM, corner_radius=1.5 * MM),
+    "chamfer": Cutter("chamfer", 8 * MM, tip_angle=np.radians(80), tip_diameter=1 * MM),
+}
+
+
+def room_for(halves=1):
+    """Room as a march gives it, its first rows at the angles of one half turn or two."""
+    rows, gaps = np.zeros((ROWS, SUMS + 6)), 6 * PANELS
+    for half in range(2):
+        phi = half * np.pi + half_turn()
+        rows[half * ANGLES : (half + 1) * ANGLES, :LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
+    return Room(
+        np.array([1.0, 0.0]),
+        np.zeros((3, 4)),
+        np.zeros((120, 4)),
+        rows,
+        np.zeros((gaps, 7)),
+        np.zeros((gaps * (2 * HALVINGS + 2), 4)),
+        np.zeros((4 * PANELS * halves, 5)),
+    )
+
+
+def test_panels_and_the_angles_in_them():
+    """Ends of the panels, and in each of them the two nodes of Gauss' rule; a thousandth off the sides."""
+    ends = np.pi * np.sin(np.pi * np.arange(PANELS + 1) / (2 * PANELS)) ** 2
+    np.testing.assert_allclose(
+        [panel_end(n) for n in range(2 * PANELS)], [*ends[:-1], *(np.pi + ends[:-1])], atol=1e-12
+    )
+    nodes = 0.5 + 0.5 * np.polynomial.legendre.leggauss(2)[0]
+    phi = half_turn()
+    assert len(phi) == ANGLES
+    np.testing.assert_allclose(phi[3:-1:3], ends[1:-1], atol=1e-12)
+    for n in range(PANELS):
+        np.testing.assert_allclose(phi[3 * n + 1 : 3 * n + 3], ends[n] + np.diff(ends)[n] * nodes, atol=1e-12)
+    assert (phi[0], phi[-1]) == (1e-3, np.pi - 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "jump"), [(1.0, 1.0, False), (1.0, 0.81, False), (0.79, 1.0, True), (0.0, 1e-9, True), (0.0, 0.0, False)]
+)
+def test_lengths_that_differ_by_a_fifth_of_the_longer_are_a_jump(a, b, jump):
+    assert jumps(a, b) == jumps(b, a) == jump
+
+
+def lengths_of(angle):
+    """A made-up engaged length: three parts of the turn, each smooth by itself."""
+    return np.where(angle < 0.7, 0.0, np.where(angle < 2.0, 1.0 + 0.05 * angle, np.where(angle < 4.4, 0.0, 2.0)))
+
+
+def made_up(room, world, shape, step, first, end):
+    """What ``measure`` does, for the made-up cut."""
+    for row in room.rows[first:end]:
+        assert (row[1], row[2]) == (pytest.approx(math.sin(row[PHI])), pytest.approx(math.cos(row[PHI])))
+        row[LENGTH] = lengths_of(row[PHI])
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(monkeypatch, halves):
+    monkeypatch.setattr(kernels, "measure", made_up)
+    room = room_for(halves)
+    made_up(room, None, None, None, 0, ANGLES * halves)
+    count = follow_jumps(room, None, None, None, divide(room, halves))
+    row, middle, width, sector = room.pieces[:count].T
+    order = np.argsort(middle)
+    low, high = (middle - 0.5 * width)[order], (middle + 0.5 * width)[order]
+    # Gauss' nodes stand within their halves of a panel, whose weight they carry; pieces beside a jump are cut out evenly.
+    np.testing.assert_allclose(width.sum(), halves * np.pi, rtol=1e-12)
+    assert low[0] > -0.05
+    assert high[-1] < halves * np.pi + 0.05
+    assert (middle[order][1:] > middle[order][:-1]).all()
+    measured = room.rows[row.astype(int)]
+    assert (np.abs(measured[:, PHI] - middle) <= 1.01 * width).all()
+    edges = sector_edges(4 * PANELS * halves)
+    inside = (edges[sector.astype(int)] <= middle + 1e-12) & (middle <= edges[sector.astype(int) + 1] + 1e-12)
+    assert inside.all()
+    # The integral, off by no more than the smallest gap at each jump.
+    found = float(measured[:, LENGTH] @ width)
+    fine = (np.arange(400_000) + 0.5) / 400_000 * halves * np.pi
+    panel = np.diff([*map(panel_end, range(PANELS))]).max()
+    assert found == pytest.approx(lengths_of(fine).mean() * halves * np.pi, abs=2 * panel / 2**HALVINGS)
+    # Every jump is closed in upon, between rows of either side.
+    for jump in (0.7, 2.0, 4.4)[: 2 if halves == 1 else 3]:
+        angles = np.sort(room.rows[np.unique(row.astype(int)), PHI])
+        at = np.searchsorted(angles, jump)
+        assert angles[at] - angles[at - 1] < panel / 2**HALVINGS
+
+
+def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
+    room = room_for()
+    room.rows[:, LENGTH] = 1.0 + 0.1 * np.cos(room.rows[:, PHI])
+    count, gaps = divide(room, 1)
+    assert (count, gaps) == (2 * PANELS, 0)
+    row, middle, width, sector = room.pieces[:count].T
+    np.testing.assert_allclose(middle, room.rows[row.astype(int), PHI])
+    np.testing.assert_allclose(width @ np.sin(middle), 2.0, atol=1e-4)
+    np.testing.assert_array_equal(sector, [4 * n + s for n in range(PANELS) for s in (0, 3)])
+
+
+def block_world(layers=1, dx=0.5 * MM):
+    """A block from -10 mm to 0 in few cells."""
+    columns = Columns(
+        np.zeros((2, 2, layers)), np.zeros((2, 2, layers + 1), np.int32), np.zeros(1, np.int64), 0, 0, dx, dx, dx
+    )
+    nothing = np.zeros(0, dtype=np.int64)
+    block = Block(-1.0, -1.0, -10 * MM, 1.0, 1.0, 0.0)
+    return World(columns, np.zeros((1, 21)), block, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
+
+
+def step_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
+    v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
+    return step_between(np.array([0, 0, -depth] * 2), np.array(axis), v, 1.0, 0)
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("along", [0.0, -DISH, -1.01 * DISH])
+@pytest.mark.parametrize("depth", [0.5 * MM, 3 * MM, 20 * MM])
+def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth):
+    """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it."""
+    cutter, room, world = CUTTERS[name], room_for(), block_world(layers=6)
+    shape, step = cutter_shape(cutter), step_at(depth, along)
+    lay_out(room, shape, step, world)
+    first = 0
+    for stretch, most in ((END, 8), (NOSE, 9), (FLANK, 96)):
+        begin, stop, pieces, start = room.stretches[stretch]
+        expected = stretch_ends(shape, stretch, depth)
+        if stretch == END and -along <= DISH:
+            expected = (0.0, 0.0)
+        assert (begin, max(stop, begin)) == pytest.approx((expected[0], max(expected)))
+        if stop <= begin:
+            continue
+        if stretch == FLANK:
+            most = int(np.clip((stop - begin) / world.columns.dx, 8, 96))
+        assert (pieces, start) == (most, first)
+        s = np.linspace(begin, stop, most + 1)
+        s[[0, -1]] += np.array([1, -1]) * 0.01 * (stop - begin) / most
+        for place, at in zip(room.places[first:], s, strict=False):
+            np.testing.assert_allclose(place, on_profile(shape, stretch, at), atol=1e-12)
+        first += most + 1
+    assert not room.places[first:].any()
+
+
+def test_the_flank_of_an_upright_tool_in_one_layer_is_not_looked_at_in_places():
+    room = room_for()
+    lay_out(room, cutter_shape(CUTTERS["flat"]), step_at(2 * MM), block_world())
+    assert not room.places.any()
+    lay_out(room, cutter_shape(CUTTERS["flat"]), step_at(2 * MM, axis=(0.0, 0.6, 0.8)), block_world())
+    assert room.places.any()
+    reach = (2 * MM + 4 * MM * 0.6) / 0.8  # the rim that leans towards the material meets its top from further down
+    assert room.stretches[FLANK, 1] == pytest.approx(reach)
+
+
+SPANS = [[(0.4, 1.3)], [(0.0, 0.7), (1.9, 2.6)], [(0.9, 9.9)], [(-1.0, 9.9)], [(0.5, 2.2)]]
+
+
+@pytest.mark.parametrize("spans", SPANS)
+@pytest.mark.parametrize("stretch", [NOSE, FLANK])
+def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch, spans):
+    """Material in layers of known heights along the axis (mm), as deep as the nearest end of its layer."""
+    cutter, depth = CUTTERS["ball" if stretch == NOSE else "flat"], 3 * MM
+    shape, step = cutter_shape(cutter), step_at(depth)
+    room, world = room_for(), block_world(layers=6, dx=0.25 * MM)
+    lay_out(room, shape, step, world)
+
+    def deep(world, step, ray, at):
+        z = at[1] / MM
+        nearest = min(abs(z - end) for span in spans for end in span) * MM
+        return nearest if any(low < z < high for low, high in spans) else -nearest
+
+    monkeypatch.setattr(kernels, "engaged_at", deep)
+    row = room.rows[5]
+    row[LENGTH:] = 0.0
+    row[kernels.LOWEST] = math.inf
+    measure_stretch(room, row, world, (shape, step, Ray(1.0, 0.0, 0.0, 0.0)), stretch)
+    ends = [np.clip(span, 0.0, 3.0) for span in spans]
+    if stretch == NOSE:
+        length = sum(4.0 * np.diff(np.arccos(1.0 - end / 4.0))[0] for end in ends)
+    else:
+        length = sum(np.diff(end)[0] for end in ends)
+    assert row[LENGTH] / MM == pytest.approx(length, abs=2e-3)
+    assert row[kernels.HEIGHT] / MM == pytest.approx(sum(np.diff(end)[0] for end in ends), abs=2e-3)
+    assert row[kernels.LOWEST] / MM == pytest.approx(ends[0][0], abs=2e-3)
+    assert row[kernels.HIGHEST] / MM == pytest.approx(ends[-1][1], abs=2e-3)
+    highest = ends[-1][1]
+    radius = math.sqrt(highest * (8.0 - highest)) if stretch == NOSE else 4.0
+    assert row[kernels.WIDEST] / MM == pytest.approx(radius, abs=2e-3)
+    assert row[kernels.FACE] == 0.0
+    assert row[SUMS + 3] / MM == pytest.approx(length, abs=2e-3)  # of exponent 0: the length by itself
