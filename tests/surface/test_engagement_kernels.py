@@ -1,4 +1,4 @@
-"""How the turn is divided and a profile searched, as the Python it is written in: by a made-up cut whose ends are known."""
+"""How the turn is divided and a profile searched, as plain Python: by a made-up cut whose ends are known."""
 
 from __future__ import annotations
 
@@ -60,9 +60,8 @@ def room_for(halves=1):
 def test_panels_and_the_angles_in_them():
     """Ends of the panels, and in each of them the two nodes of Gauss' rule; a thousandth off the sides."""
     ends = np.pi * np.sin(np.pi * np.arange(PANELS + 1) / (2 * PANELS)) ** 2
-    np.testing.assert_allclose(
-        [panel_end(n) for n in range(2 * PANELS)], [*ends[:-1], *(np.pi + ends[:-1])], atol=1e-12
-    )
+    found = [panel_end(n) for n in range(2 * PANELS)]
+    np.testing.assert_allclose(found, [*ends[:-1], *(np.pi + ends[:-1])], atol=1e-12)
     nodes = 0.5 + 0.5 * np.polynomial.legendre.leggauss(2)[0]
     phi = half_turn()
     assert len(phi) == ANGLES
@@ -100,7 +99,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
     row, middle, width, sector = room.pieces[:count].T
     order = np.argsort(middle)
     low, high = (middle - 0.5 * width)[order], (middle + 0.5 * width)[order]
-    # Gauss' nodes stand within their halves of a panel, whose weight they carry; pieces beside a jump are cut out evenly.
+    # Gauss' nodes carry the weight of their half of a panel; pieces beside a jump are cut out evenly.
     np.testing.assert_allclose(width.sum(), halves * np.pi, rtol=1e-12)
     assert low[0] > -0.05
     assert high[-1] < halves * np.pi + 0.05
