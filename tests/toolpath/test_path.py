@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -38,3 +40,38 @@ def test_bad_rows_are_named(change: dict, sentence: str) -> None:
     arguments = dict(start=[[0.0, 0, 0]], end=[[0.1, 0, 0]], v_f=0.03) | change
     with pytest.raises(ToolpathError, match=sentence):
         toolpath_from_lines(**arguments)
+
+
+def test_length_and_time_are_those_of_the_moves_at_feed() -> None:
+    starts, ends = [[0, 0, 0], [0, 8e-3, 0]], [[3e-3, 4e-3, 0], [0, 8e-3, 6e-3]]
+    path = toolpath_from_lines(starts, ends, [0.01, 0.02], [50.0, 60.0])
+    assert path.step_length == pytest.approx([0, 5e-3, 5e-3, 6e-3])
+    assert path.s == pytest.approx([0, 5e-3, 5e-3, 11e-3])
+    assert path.t == pytest.approx([0, 0.5, 0.5, 0.8])
+    assert path.n_s == pytest.approx([50, 50, 60, 60])
+    assert path.block.tolist() == [1, 1, 2, 2]
+    assert path.extents[0].tolist() == [0, 0, 0]
+    assert path.extents[1] == pytest.approx([3e-3, 8e-3, 6e-3])
+    rapid = replace(path, cutting=[False, True, False, False])
+    assert rapid.extents[1] == pytest.approx([3e-3, 4e-3, 0])
+    air = replace(path, cutting=False)
+    assert air.extents[1] == pytest.approx([3e-3, 8e-3, 6e-3])
+    assert (air.s[-1], air.t[-1]) == (0.0, 0.0)
+
+
+def test_points_a_nanometre_apart_are_one() -> None:
+    near, apart = [0.01, 0.9e-9, 0], [0.01, 1.1e-9, 0]
+    for start, moves in ((near, 3), (apart, 4)):
+        assert len(toolpath_from_lines([[0, 0, 0], start], [[0.01, 0, 0], [0.02, 0, 0]], 0.03)) == moves
+    with pytest.raises(ToolpathError, match="Row 2: start and end are the same point"):
+        toolpath_from_lines([[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 0.9e-9, 0]], 0.03)
+
+
+def test_axes_are_unit_vectors_to_rounding() -> None:
+    for size, fits in ((1.0, True), (1 + 0.9e-6, True), (1 + 1.1e-6, False), (1 - 1.1e-6, False)):
+        if fits:
+            path = toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], 0.03, k=[0.0, 0.6 * size, 0.8 * size])
+            assert path.k[1] == pytest.approx([0, 0.6, 0.8], abs=1e-15)
+        else:
+            with pytest.raises(ToolpathError, match="found a length that is not 1"):
+                toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], 0.03, k=[0.0, 0.6 * size, 0.8 * size])

@@ -33,6 +33,29 @@ def test_the_tool_axis_turns_on_the_great_circle() -> None:
     assert fine.k[middle] == pytest.approx([0, np.sqrt(0.5), np.sqrt(0.5)])
 
 
+@pytest.mark.parametrize("angle", [0.0, 1e-14, 0.01, 0.6, 1.5, 2.9])
+def test_an_axis_turns_evenly_with_the_way(angle: float) -> None:
+    start, turned = np.array([0.0, 0.0, 1.0]), np.array([np.sin(angle), 0.0, np.cos(angle)])
+    path = toolpath_from_lines([[0, 0, 0]], [[0.1, 0, 0]], 0.03, k=[start, turned])
+    fine = resample(path, 0.0125)
+    told = fine.s / 0.1 * angle
+    np.testing.assert_allclose(fine.k, np.column_stack([np.sin(told), 0 * told, np.cos(told)]), atol=1e-9)
+
+
+def test_pieces_are_as_few_as_the_step_allows() -> None:
+    for length, step, pieces in ((0.01, 0.01, 1), (0.01, 0.0099, 2), (0.01, 0.0025, 4), (0.01, 0.00249, 5)):
+        fine = resample(toolpath_from_lines([[0, 0, 0]], [[length, 0, 0]], 0.03), step)
+        np.testing.assert_allclose(fine.step_length[fine.cutting], [0.0] + [length / pieces] * pieces)
+
+
+def test_the_step_that_a_refusal_names_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robomill.toolpath.sampling.MAX_SAMPLES", 100)
+    with pytest.raises(ToolpathError, match="at most 100 fit, so use ") as refused:
+        resample(two_lines(), 1e-4)
+    step = float(str(refused.value).split("so use ")[1].split(" mm")[0]) * 1e-3
+    assert 50 < len(resample(two_lines(), 1.01 * step)) <= 100
+
+
 @pytest.mark.parametrize("step", [0.0, -1.0, float("nan")])
 def test_a_step_must_be_a_length(step: float) -> None:
     with pytest.raises(ToolpathError, match="expected a length above 0"):

@@ -121,3 +121,69 @@ def test_a_spiral_is_drawn_within_its_chord_and_ends_in_a_full_circle(chord):
     assert np.ptp(outside) == pytest.approx(2 * np.pi)
     on_circle = np.diff(outside).max()
     assert radius * (1 - np.cos(on_circle / 2)) <= chord * 1.0001
+
+
+SIZES = {  # mm: what the tip covers in X and Y, with a cutter of 8 mm
+    "slot": (100, 0),
+    "fig_8": (1200, 600),
+    "circle": (60, 60),
+    "pocket": (52, 32),
+    "face": (80, 50),
+    "spiral": (60, 60),
+}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_presets_are_centred_on_the_part_zero_and_as_large_as_they_are(name):
+    path = preset(name, Sketch(), D).toolpath()
+    cut = path.p[path.cutting]
+    np.testing.assert_allclose(np.ptp(cut, axis=0)[:2] * 1e3, SIZES[name], atol=0.01)
+    np.testing.assert_allclose((cut.max(axis=0) + cut.min(axis=0))[:2], 0.0, atol=1e-5)
+
+
+def test_a_word_is_centred_and_as_high_as_it_is():
+    points = np.vstack([element.points for element in preset("word", Sketch(), D, " HE ").elements])
+    np.testing.assert_allclose(points.max(axis=0) + points.min(axis=0), 0.0, atol=1e-9)
+    assert np.ptp(points[:, 1]) == pytest.approx(18e-3)
+
+
+@pytest.mark.parametrize(
+    ("width", "stepover", "rows"), [(0.05, 0.01, 6), (0.05, 0.0125, 5), (0.05, 0.012, 6), (8, 9, 2)]
+)
+def test_a_zigzag_has_no_more_rows_than_it_needs(width, stepover, rows):
+    points = zigzag(0.08, width, stepover)
+    assert len(points) == 2 * rows
+    np.testing.assert_allclose(np.unique(points[:, 1].round(12)), np.linspace(-width / 2, width / 2, rows), atol=1e-12)
+    assert np.abs(points[:, 0]).tolist() == [0.04] * (2 * rows)
+    steps = np.diff(points, axis=0)
+    assert ((np.abs(steps) > 1e-9).sum(axis=1) == 1).all()  # along x, then up, there and back
+    assert points[0, 0] < 0
+
+
+def test_rings_of_a_pocket_are_as_few_as_they_may_be_and_lie_evenly():
+    points = pocket(0.06, 0.04, D)
+    heights = np.unique(np.abs(points[:, 1]).round(12))
+    assert len(heights) == 1 + np.ceil(0.016 / (0.6 * D))
+    np.testing.assert_allclose(np.diff(heights), 0.016 / (len(heights) - 1))
+    np.testing.assert_allclose(points[:2], [[-0.01, 0], [0.01, 0]], atol=1e-15)
+    square = pocket(0.04, 0.04, D)
+    np.testing.assert_array_equal(square[0], [0, 0])
+    assert len(square) == 1 + 5 * np.ceil(0.016 / (0.6 * D))
+    steps = np.diff(points[2:7], axis=0)
+    assert (steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0] > 0).all()  # counter-clockwise
+    for side in (D, 0.99 * D):
+        with pytest.raises(ToolpathError, match="of 8 mm does not fit"):
+            pocket(0.06, side, D)
+
+
+def test_signs_stand_a_gap_apart_and_a_blank_has_a_width():
+    (one,), width = strokes("I", HEIGHT)[0][:1], strokes("I", HEIGHT)[1]
+    two, both = strokes("II", HEIGHT)
+    with_blank, long = strokes("I I", HEIGHT)
+    assert both - width == pytest.approx(max(width, 2.0) + 2.0)
+    assert long - both == pytest.approx(2.0 + 2.0)
+    aside = np.array([max(width, 2.0) + 2.0, 0.0])
+    np.testing.assert_allclose(two[len(two) // 2], one + aside)
+    small, narrow = strokes("I", 0.5 * HEIGHT)
+    np.testing.assert_allclose(small[0], 0.5 * one)
+    assert narrow == pytest.approx(0.5 * width)

@@ -86,6 +86,11 @@ def test_expressions(text: str, value: float) -> None:
     assert xs(f"G0 X[{text}]") == [pytest.approx(value)]
 
 
+def test_whether_a_parameter_exists_is_one_or_nothing() -> None:
+    said = "#<here>=9\n" + "\n".join(f"G0 X[EXISTS[{what}]]" for what in ("#<here>", "#<there>", "#1", "#0", "#5602"))
+    assert xs(said)[:4] == [1, 0, 1, 0]
+
+
 def test_parameters_are_set_after_their_line() -> None:
     assert xs("#1=1\n#1=8 #2=[#1*10]\nG0 X#1\nG0 X#2\n#1=3 G0 X#1\nG0 X#1") == [8, 10, 8, 3]
     assert xs("#3=4 #4=3\nG0 X##4\nG0 X#[1+2]") == [4, 4]

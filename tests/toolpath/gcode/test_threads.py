@@ -73,6 +73,17 @@ def test_tapers(ends):
     np.testing.assert_allclose(np.abs(end[level, 2] - start[level, 2]), 24.0 - 2.0 * ramps, atol=1e-9)
 
 
+@pytest.mark.parametrize("length", [0.5, 1.0, 2.0])
+def test_a_taper_keeps_the_pitch_along_the_axis(length):
+    """1.5 mm a turn at ten turns a second, on the slant the longer way of it."""
+    start, end, kind, v_f = read(f"I-1 J0.2 K0.8 E{length} L3")
+    moved = np.abs(end - start) > 1e-9
+    along = (kind == FEED) & moved[:, 2]
+    way = np.linalg.norm(end - start, axis=1)
+    seconds = way[along] * 1e-3 / v_f[along]
+    np.testing.assert_allclose(np.abs(end - start)[along, 2] * 1e-3 / seconds, 15e-3)
+
+
 def test_diameters_halve_the_depths():
     """On a lathe that counts diameters (G7), I J K are twice as large for the same thread."""
     _, plain, kind, _ = read("I-1 J0.2 K0.8 R2 Q20")

@@ -1,0 +1,137 @@
+"""Programs of other controls: what they are told by, and what their words mean."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode.dialects import LONGEST, NAMES, choose_dialect
+from robomill.toolpath.gcode.stretches import Lines
+
+TOLD = [
+    ("G21\nG0 X1\n", "linuxcnc"),
+    ("#<depth>=2\nG65 P1\n", "linuxcnc"),
+    ("o100 sub\nG65\n", "linuxcnc"),
+    ('MSG("hello")\n', "sinumerik"),
+    ("; $PATH=/_N_WKS_DIR\n", "sinumerik"),
+    ("G0 X=5\n", "sinumerik"),
+    ("R1=AC(3)\nG2 X1 CR=5\n", "sinumerik"),
+    ("DEF REAL DEPTH\n", "sinumerik"),
+    ("G710\n", "sinumerik"),
+    ("G642\n", "sinumerik"),
+    ("G71\nG0 X1\n", "sinumerik"),
+    ("G71 P10 Q20 D1\n", "linuxcnc"),
+    ("M17\n", "sinumerik"),
+    ("$H\n", "grbl"),
+    ("$J=G91 X1\n", "grbl"),
+    ("$110=500\n", "grbl"),
+    ("G65 P9010\n", "fanuc"),
+    ("G54.1 P2\n", "fanuc"),
+    (":1234\nG0 X1\n", "fanuc"),
+    ("O1234\nG0 X1\n", "fanuc"),
+    ("O123\nG0 X1\n", "linuxcnc"),
+    ("M98 P100\n", "fanuc"),
+    ("IF [#1 EQ 2] GOTO 5\n", "fanuc"),
+    ("G28 U0 W0\n", "fanuc"),
+    ("(G65 $H and M17)\n; G710\nG0 X1\n", "linuxcnc"),
+    ("G0 X1" + " " * LONGEST + "G65\n", "linuxcnc"),
+]
+
+
+@pytest.mark.parametrize(("text", "name"), TOLD)
+def test_a_program_is_told_by_its_words(text: str, name: str) -> None:
+    found = choose_dialect(text, "auto")
+    assert (found.name, found.guessed) == (name, True)
+    for wanted in NAMES:
+        assert (choose_dialect(text, wanted).name, choose_dialect(text, wanted).guessed) == (wanted, False)
+
+
+def test_a_dialect_that_is_none_is_refused() -> None:
+    with pytest.raises(GCodeError, match="'heidenhain' is not known; expected auto, linuxcnc"):
+        choose_dialect("", "heidenhain")
+
+
+MEANS = [
+    ("fanuc", "G4 X2.5", "G4 P2.5"),
+    ("fanuc", "G04 U1.", "G04 P1."),
+    ("fanuc", "G4 P2500", "G4 P2.500"),
+    ("fanuc", "G4 P1.5", "G4 P1.5"),
+    ("fanuc", "G4 X.5", "G4 P.5"),
+    ("fanuc", "G5.1 Q1 R3\nG0 X5", "\nG0 X5"),
+    ("sinumerik", "G71 G0 X=5 Y=-2.5", "G21 G0 X5 Y-2.5"),
+    ("sinumerik", "G700 G0 X1", "G20 G0 X1"),
+    ("sinumerik", "G0 X=AC(4) Y2", "G0 X4 Y2"),
+    ("sinumerik", "G1 F60\nG2 X10 CR=5", "G1 F60\nG2 X10 R5"),
+    ("sinumerik", "G0 X10\nG1 F60\nG2 I-10 J0 X10 TURN=2", "G0 X10\nG1 F60\nG2 I-10 J0 X10 P3"),
+    ("sinumerik", "G500 G0 X3 D1", "G54 G0 X3"),
+    ("sinumerik", 'T="MILL_8" G0 X3', "G0 X3"),
+    ("sinumerik", "G0 X3 ; X9", "G0 X3"),
+    ("sinumerik", "TRAORI\nFFWON\nCYCLE832(0.01,1)\nG0 X3", "\n\n\nG0 X3"),
+    ("sinumerik", "G4 F2\nG0 X1", "G4 P2\nG0 X1"),
+]
+
+
+@pytest.mark.parametrize(("dialect", "lines", "plain"), MEANS)
+def test_words_mean_what_they_are_in_plain_words(dialect: str, lines: str, plain: str) -> None:
+    found, expected = (
+        interpret(f"G21 G90\n{text}\nG0 Z1\nM2\n", dialect=name)
+        for text, name in ((lines, dialect), (plain, "linuxcnc"))
+    )
+    for name in ("kind", "end", "sweep", "dwell"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-12)
+    assert found.dwell_time == pytest.approx(expected.dwell_time)
+
+
+def test_what_is_left_out_is_counted() -> None:
+    found = interpret("G21\nG187 P1\nG15\nM77\nG0 X1\nM2\n", dialect="fanuc")
+    left_out = {(each.code, each.line) for each in found.findings}
+    assert left_out >= {("harmless-g", 2), ("harmless-g", 3), ("unknown-m", 4)}
+    for dialect in ("linuxcnc", "grbl"):
+        with pytest.raises(GCodeError, match="Line 2: G187 is not known; it may move the machine"):
+            interpret("G21\nG187\nM2\n", dialect=dialect)
+
+
+@pytest.mark.parametrize("letter", ["Q", "P"])
+def test_words_without_use_are_refused_by_linuxcnc_and_counted_elsewhere(letter: str) -> None:
+    with pytest.raises(GCodeError, match=f"{letter} has no use here"):
+        interpret(f"G21\nG0 X1 {letter}3\nM2\n", dialect="linuxcnc")
+    findings = interpret(f"G21\nG0 X1 {letter}3\nM2\n", dialect="fanuc").findings
+    assert [(f.line, f.level) for f in findings if f.code == "unused-word"] == [(2, "ignored")]
+    with pytest.raises(GCodeError, match="I has no use here"):
+        interpret("G21\nG0 X1 I2\nM2\n", dialect="fanuc")
+
+
+@pytest.mark.parametrize(
+    ("call", "dialect", "repeats"),
+    [
+        ("M98 P1234", "fanuc", 1),
+        ("M98 P31234", "fanuc", 3),
+        ("M98 P1234 L4", "fanuc", 4),
+        ("M98 P1234 L1", "linuxcnc", 1),
+    ],
+)
+def test_subprograms_are_called_as_often_as_it_is_said(call: str, dialect: str, repeats: int) -> None:
+    text = f"G21 G91\n{call}\nM2\nO1234\nG0 X1\nM99\n"
+    assert interpret(text, dialect=dialect).end[-1, 0] * 1e3 == pytest.approx(repeats)
+
+
+def test_subprograms_that_cannot_be_are_refused() -> None:
+    for call, says in (("P1.5", "M98 has P1.5"), ("P-2", "M98 has P-2"), ("P7 L1000001", "at most 1000000")):
+        with pytest.raises(GCodeError, match=says):
+            interpret(f"G21\nM98 {call}\nM2\nO7\nG0 X1\nM99\n", dialect="fanuc")
+
+
+@pytest.mark.parametrize("data", [b"", b"\n", b"G0", b"G0\n", b"a\nbb\n\nc\xff\n", b"\n\nlast"])
+def test_lines_are_those_of_the_bytes(data: bytes) -> None:
+    lines, expected = Lines(data), data.decode("utf-8", "replace").split("\n")
+    assert len(lines) == len(expected)
+    assert list(lines) == expected
+    assert lines[-1] == expected[-1]
+    assert lines[1:] == expected[1:]
+    assert lines[::-2] == expected[::-2]
+    for outside in (len(expected), -len(expected) - 1):
+        with pytest.raises(IndexError):
+            lines[outside]
+    assert list(lines.plain_text.starts) == lines.starts.tolist()

@@ -1,0 +1,82 @@
+"""Program text: files and contents told apart, encodings, line ends, what is no text."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath import text as texts
+from robomill.toolpath.text import as_plain_bytes, read_source, split_lines
+
+
+@pytest.mark.parametrize(
+    ("source", "is_file"),
+    [
+        ("part.nc", True),
+        ("part.NGC", True),
+        ("a/b.tap", True),
+        ("G0 X1", False),
+        ("part.nc\nG0", False),
+        ("part.nc\rG0", False),
+        ("part\0.nc", False),
+        ("x" * 4093 + ".nc", False),
+        ("y" * 4092 + ".nc", True),
+        (" \tG21", False),
+    ],
+)
+def test_a_string_of_one_line_with_the_end_of_a_programs_name_is_a_file(source: str, is_file: bool) -> None:
+    if is_file:
+        with pytest.raises(GCodeError, match="cannot be read"):
+            read_source(source)
+    elif "\0" in source:
+        with pytest.raises(GCodeError, match="NUL"):
+            read_source(source)
+    else:
+        assert read_source(source) == (source.replace("\r", "\n").encode(), "program")
+
+
+def test_what_exists_is_a_file_whatever_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "O1234").write_bytes(b"G0\r\nX1\rY2\n")
+    monkeypatch.chdir(tmp_path)
+    for source in ("O1234", tmp_path / "O1234", str(tmp_path / "O1234")):
+        assert read_source(source) == (b"G0\nX1\nY2\n", "O1234")
+    assert read_source(bytearray(b"O1234")) == (b"O1234", "program")
+    with pytest.raises(GCodeError, match="expected text, bytes or a path, found int"):
+        read_source(5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32"])
+def test_a_mark_says_the_encoding(encoding: str) -> None:
+    marks = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+    assert as_plain_bytes(marks.get(encoding, b"") + "G0 X1 (5°)\n".encode(encoding)) == "G0 X1 (5°)\n".encode()
+
+
+def test_what_is_no_text_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for data, says in (
+        (b" \n\t\r", "found an empty file"),
+        (b"G0\nX1\nY\0", "^Line 3: found a NUL byte"),
+        (codecs.BOM_UTF16_LE + b"\x00\xd8", "starts like UTF-16 text but is not"),
+    ):
+        with pytest.raises(GCodeError, match=says):
+            as_plain_bytes(data)
+    fine = b"\x01" + b"G" * 99  # one sign in a hundred
+    assert as_plain_bytes(fine) == fine
+    with pytest.raises(GCodeError, match="found a binary file"):
+        as_plain_bytes(b"\x01" + b"G" * 98)
+    assert as_plain_bytes(b"\t\x0c\x1b\n" * 9) == b"\t\x0c\x1b\n" * 9
+    monkeypatch.setattr(texts, "MAX_BYTES", 10)
+    assert as_plain_bytes(b"G" * 10) == b"G" * 10
+    (tmp_path / "long.nc").write_bytes(b"G" * 11)
+    for long in (b"G" * 11, tmp_path / "long.nc"):
+        with pytest.raises(GCodeError, match="MB can be read"):
+            read_source(long)
+    (tmp_path / "long.nc").write_bytes(b"G" * 10)
+    assert read_source(tmp_path / "long.nc")[0] == b"G" * 10
+
+
+@pytest.mark.parametrize("text", ["a\nb", "a\r\nb\n", "a\rb\r", "\n\n", "", "a", "a\n\n"])
+def test_lines_are_those_of_a_text_that_may_end_one(text: str) -> None:
+    assert split_lines(text) == text.splitlines()
