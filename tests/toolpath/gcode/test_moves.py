@@ -44,6 +44,28 @@ def test_machine_coordinates_are_those_of_no_system(rotation):
     np.testing.assert_allclose(end(f"{start}\nG53 G0 Y30")[:2], [here[0], 30], atol=1e-9)
 
 
+def test_the_tip_stands_a_tools_offset_from_machine_coordinates():
+    """Along every axis: of the place named for the spindle, less the length in force; turned axes have none."""
+    start = "G10 L2 P1 X7 Y-3 Z1 A4\nG0 X5 Y2 Z4\nG92 X1 Y1 Z1\nG43.1 X2 Y5 Z6"
+    there = interpret(f"G21 G90\n{start}\nG53 G0 X20 Y30 Z40 A50 B60 C70\nM2\n")
+    np.testing.assert_allclose(there.end[-1] * 1e3, [18, 25, 34], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(there.rotary[-1]), [50, 60, 70], atol=1e-9)
+    here = end(start)
+    for axis, (letter, value) in enumerate((("X", 18), ("Y", 25), ("Z", 34))):
+        expected = [value if n == axis else here[n] - (2, 5, 6)[n] for n in range(3)]
+        np.testing.assert_allclose(end(f"{start}\nG53 G0 {letter}{20 + 10 * axis}"), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(("code", "parameter"), [("G28", 5161), ("G30", 5181)])
+def test_a_stored_point_is_kept_in_millimetres_of_the_machine(code, parameter):
+    text = f"G21 G90\nG10 L2 P1 X7 Y-3 Z1\nG43.1 Z6\nG0 X5 Y2 Z4 A9\nG92 Z1\nG20\n{code}.1\nG21\n"
+    read = [end(f"{text}G92.1 G49\nG10 L2 P1 X0 Y0 Z0\nG0 X#{parameter + n}")[0] for n in range(4)]
+    np.testing.assert_allclose(read, [12, -1, 11, 9], atol=1e-9)
+    back = interpret(f"{text}G0 X90 Y91 Z92 A80\n{code} X95 A70\nM2\n")
+    np.testing.assert_allclose(back.end[-1, 0] * 1e3, 12, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(back.rotary[-2:, 0]), [70, 9], atol=1e-9)
+
+
 @pytest.mark.parametrize("code", ["G28", "G30"])
 def test_a_stored_point_is_come_back_to_by_way_of_the_words(code):
     """All axes without words; with words by way of them, and on with the named axes alone."""
