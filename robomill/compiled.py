@@ -13,12 +13,14 @@ A kernel module is an ordinary module called ``kernels`` or ``*_kernels``, of pl
 
 The first call compiles what the cache on disk does not hold: correct, only slow. A program that talks to people says
 so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m robomill.compiled``
-compiles everything.
+compiles everything. What is damaged in the cache is removed and compiled anew (``seals``); where nothing can be kept,
+code lives in memory only.
 """
 
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import platform
 import re
@@ -27,7 +29,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import cache, cached_property, partial
 from importlib import import_module
@@ -37,6 +39,7 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, ge
 
 import numpy as np
 
+from robomill import seals
 from robomill.arrays import BoolArray, FloatArray, IntArray
 
 PACKAGE = Path(__file__).parent
@@ -48,6 +51,7 @@ COMPLETE = "complete"
 COMPILER = "numba"
 FEW = 8  # configurations or poses: some milliseconds of plain Python
 PLACE = "ROBOMILL_CACHE"
+ROOM = 1 << 16  # bytes that must find room where code is kept
 KEPT_FOLDERS = 4  # of older sources: so many stay beside the one in use
 # No reciprocals or reassociation: only a * b + c in one rounding.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
@@ -58,6 +62,7 @@ _called: set[Callable[..., Any]] = set()
 _lock = threading.RLock()  # around the compiler's configuration
 _building = threading.Lock()
 _tried = False
+_kept = True  # False once machine code could not be kept on disk
 _announced: list[Callable[[str], Any]] = []
 
 
@@ -134,26 +139,42 @@ class Kernel:
             return vars(self)["code"]
 
     def _made(self) -> Any:
-        """Compiled or loaded. An entry of the cache that cannot be read is removed and made again."""
+        """Compiled or loaded. An entry of the cache that is not as it was written is removed and made again."""
         from numba import config
-        from numba.core.errors import NumbaError
 
         _prepare()
+        folder = kept_in()
+        if folder is None or not _kept:
+            return _compile(self.plain, keep=False)
         before = config.CACHE_DIR  # type: ignore[attr-defined]
-        config.CACHE_DIR = str(kept_in())  # type: ignore[attr-defined]
+        config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
         try:
-            return _compile(self.plain)
-        except NumbaError:
-            raise
-        except Exception:  # whatever a damaged file makes of the unpickling or of the linker
-            for file in kept_in().glob(f"*/*{self.__name__}-*"):
-                file.unlink(missing_ok=True)
-            return _compile(self.plain)
+            return self._kept(folder)
         finally:
             config.CACHE_DIR = before  # type: ignore[attr-defined]
 
+    def _kept(self, folder: Path) -> Any:
+        from numba.core.errors import NumbaError
 
-def _compile(function: Callable[..., Any]) -> Any:
+        if not seals.sealed(folder, self.plain) and seals.remove(folder, self.plain):
+            _say()
+        for last in (False, True):
+            try:
+                code = _compile(self.plain)
+                if not seals.sealed(folder, self.plain):
+                    seals.seal(folder, self.plain)
+                return code
+            except NumbaError:
+                raise
+            except Exception as exc:  # a full disk, a shut folder, a file in the way; code that another compiler wrote
+                seals.remove(folder, self.plain)
+                if last or isinstance(exc, OSError):
+                    _cannot_keep(f"{folder}: {exc}")
+                    break
+        return _compile(self.plain, keep=False)
+
+
+def _compile(function: Callable[..., Any], keep: bool = True) -> Any:
     from numba import njit
     from numba.extending import register_jitable
 
@@ -161,7 +182,7 @@ def _compile(function: Callable[..., Any]) -> Any:
     while _parts:
         marked = _parts.pop()
         register_jitable(**options, forceinline=marked not in _called)(marked)
-    return njit(_signature(function), cache=True, nogil=True, **OPTIONS)(function)
+    return njit(_signature(function), cache=keep, nogil=True, **OPTIONS)(function)
 
 
 def _signature(function: Callable[..., Any]) -> Any:
@@ -205,22 +226,24 @@ def _sources() -> list[Path]:
 
 
 @cache
-def kept_in() -> Path:
+def kept_in() -> Path | None:
     """The folder of the machine code of these sources, this Python, this compiler and this processor.
 
     Where ROBOMILL_CACHE says, else beside the package where that can be written, else in the user's cache, else in a
-    private temporary folder.
+    private temporary folder; None where nothing can be written.
     """
     name = f"kernels-{_key()}"
     places = [root / name for root in _roots()]
     folder = next((place for place in places if _own(place)), None)
     if folder is None:
-        os.environ[PLACE] = tempfile.mkdtemp(prefix="robomill-")  # the process that compiles inherits it
-        folder = Path(os.environ[PLACE]) / name
-        folder.mkdir()
+        folder = _private(name)
+    if folder is None:
+        _cannot_keep("no folder can be written")
+        return None
     made = next((place for place in places if (place / COMPLETE).is_file()), folder)
     if made != folder:  # by whoever installed the package; the compiler wants to write where it reads
-        shutil.copytree(made, folder, dirs_exist_ok=True)
+        with suppress(OSError):  # what was not copied is compiled
+            shutil.copytree(made, folder, dirs_exist_ok=True)
     _forget_older(folder)
     return folder
 
@@ -257,13 +280,35 @@ def _roots() -> Iterator[Path]:
 
 
 def _own(folder: Path) -> bool:
-    """Whether the folder stands, made if need be, and can be written."""
+    """Whether the folder stands, made if need be, and can be written: a full disk still makes empty files."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(ROOM))
     except OSError:
         return False
     return True
+
+
+def _private(name: str) -> Path | None:
+    """A folder of this process and of those that it starts, which inherit its place."""
+    try:
+        root = tempfile.mkdtemp(prefix="robomill-")
+    except OSError:
+        return None
+    folder = Path(root) / name
+    if not _own(folder):
+        return None
+    os.environ[PLACE] = root
+    return folder
+
+
+def _cannot_keep(why: str) -> None:
+    """From now on code lives in memory; said once."""
+    global _kept
+    if _kept:
+        logging.getLogger("robomill").warning("Compiled code cannot be kept (%s): it is compiled at every start.", why)
+    _kept = False
 
 
 def _forget_older(folder: Path) -> None:
@@ -277,12 +322,37 @@ def _forget_older(folder: Path) -> None:
 
 
 def missing() -> tuple[str, ...]:
-    """The kernel modules that nobody has compiled for this machine yet; cheap, without the compiler."""
-    try:
-        done = (kept_in() / COMPLETE).read_text().split()
-    except OSError:
-        done = []
+    """The kernel modules that nobody has compiled for this machine yet, or whose code was found damaged; cheap, without
+    the compiler. None of them where nothing can be kept."""
+    folder = kept_in()
+    if folder is None or not _kept:
+        return ()
+    _heal(folder)
+    done = _done(folder)
     return tuple(name for name in modules() if name not in done)
+
+
+@cache
+def _heal(folder: Path) -> None:
+    """Once: what is damaged is removed and counts as missing."""
+    lost = seals.heal(folder)
+    if lost:
+        _note(folder, [name for name in _done(folder) if not name.endswith(lost)])
+
+
+def _done(folder: Path) -> list[str]:
+    try:
+        return (folder / COMPLETE).read_text(errors="replace").split()
+    except OSError:
+        return []
+
+
+def _note(folder: Path, done: Sequence[str]) -> None:
+    """These modules are compiled."""
+    with suppress(OSError):
+        note = folder / f"{COMPLETE}.{os.getpid()}"
+        note.write_text("\n".join(done) + "\n")
+        note.replace(folder / COMPLETE)
 
 
 def build() -> None:
@@ -303,13 +373,15 @@ def build() -> None:
 
 def compile_all() -> None:
     """Compile or load every kernel, and note that they are there."""
+    folder = kept_in()
     for name in modules():
         for entry in vars(import_module(name)).values():
+            if folder is None or not _kept:
+                return  # whoever needs it compiles it
             if isinstance(entry, Kernel):
                 entry.code  # noqa: B018
-    note = kept_in() / f"{COMPLETE}.{os.getpid()}"
-    note.write_text("\n".join(modules()) + "\n")
-    note.replace(kept_in() / COMPLETE)
+    if folder is not None:
+        _note(folder, modules())
 
 
 def announce(say: Callable[[str], Any]) -> None:
@@ -319,8 +391,13 @@ def announce(say: Callable[[str], Any]) -> None:
 
 def _prepare() -> None:
     if _announced and missing() and not _tried:
-        _announced[-1](WORDS)
+        _say()
         build()
+
+
+def _say() -> None:
+    if _announced:
+        _announced[-1](WORDS)
 
 
 if __name__ == "__main__":

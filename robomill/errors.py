@@ -62,4 +62,8 @@ class ProjectError(RobomillError):
 
 
 class RenderError(RobomillError):
-    """A picture that cannot be drawn on this machine; the sentence names the command that mends it."""
+    """A picture that could not be drawn, and why. ``again_s``: after so many seconds it may be asked for again."""
+
+    def __init__(self, message: str, *, again_s: float | None = None) -> None:
+        super().__init__(message)
+        self.again_s = again_s

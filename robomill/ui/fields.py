@@ -53,7 +53,7 @@ def region(robot: Robot, view: MapView) -> Box:
     return found
 
 
-@shared(64, geometry_key)
+@shared(geometry_key)
 def flat(robot: Robot) -> int | None:
     """The axis a planar arm cannot move along, else None."""
     return flat_axis(robot)
@@ -110,7 +110,7 @@ def solid(robot: Robot, box: Box, cells: int | None = None) -> Grid:
     return coarse_grid(robot, box.lower, box.upper, cells)
 
 
-@shared(48, lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B))
+@shared(lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B))
 def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
     """Compliance, shares and determinant over ``grid``, from the cache."""
     return compliance_field(robot, grid, A, B)
@@ -130,13 +130,13 @@ def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
     return dataclasses.replace(known, robot=robot, shares=scaled_shares(known.shares, factors, axis=-2))
 
 
-@shared(48, lambda robot, T_MT: (robot.digest(), T_MT))
+@shared(lambda robot, T_MT: (robot.digest(), T_MT))
 def postures(robot: Robot, T_MT: FloatArray) -> FloatArray:
     """C (k, 3, 3) m/N of the postures found that hold the tool at T_MT (4, 4); none for arms that have no choice."""
     return over_posture(robot, T_MT)
 
 
-@shared(24, lambda robot, box, z: (robot.digest(), box.lower, box.upper, z))
+@shared(lambda robot, box, z: (robot.digest(), box.lower, box.upper, z))
 def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     """The six lines of Fig. 8 over the region's plane, from the cache."""
     points = 61 if decoupled(robot) is not None else 13
@@ -148,6 +148,6 @@ def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
     return _proposed(robot, "largest", A, B)
 
 
-@shared(64, lambda robot, kind, A, B: (geometry_key(robot), kind, A, B), "Looking for the largest box in reach")
+@shared(lambda robot, kind, A, B: (geometry_key(robot), kind, A, B), "Looking for the largest box in reach")
 def _proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
     return largest_region(robot, A, B) if kind == "largest" else reach_extent(robot, A, B)

@@ -11,6 +11,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
 
 EVERY_S = 0.4
@@ -20,12 +21,14 @@ EVERY_S = 0.4
 class Job:
     """``work(job)`` made in a thread; it says its ``share`` (0 to 1) by ``reach`` and ends early once ``stop`` is set.
 
-    ``about`` is what it is made of; ``made`` what it answered, ``error`` why it was refused.
+    What the work says of its progress (``robomill.progress``) arrives here too. ``about`` is what it is made of;
+    ``made`` what it answered, ``error`` why it was refused.
     """
 
     work: Callable[[Job], Any]
     about: Any
     share: float = 0.0
+    stage: str = ""
     made: Any = None
     error: RobomillError | None = None
     bug: BaseException | None = None
@@ -37,8 +40,10 @@ class Job:
         """Begin."""
         threading.Thread(target=self._run, daemon=True).start()
 
-    def reach(self, share: float) -> None:
-        """Say how much is done."""
+    def reach(self, share: float, stage: str = "") -> None:
+        """Say how much of the work, or of a new ``stage`` of it, is done."""
+        if stage and stage != self.stage:
+            self.stage, self.share, self.began = stage, 0.0, time.monotonic()
         self.share = max(self.share, min(float(share), 1.0))
 
     @property
@@ -49,7 +54,10 @@ class Job:
 
     def _run(self) -> None:
         try:
-            self.made = self.work(self)
+            with watched(Progress(self.stop.is_set, lambda now: self.reach(now.share, now.stage))):
+                self.made = self.work(self)
+        except Cancelled:
+            pass
         except RobomillError as exc:
             self.error = exc
         except Exception as exc:  # shown by the page that asked: a thread has nobody to raise to

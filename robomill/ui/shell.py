@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
-from robomill.ui import cached, inputs, session
+from robomill.ui import inputs, rendered, session
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
@@ -48,7 +48,7 @@ def begin(title: str) -> Project:
     """Start a page: the first call of every page. Returns the project of this session."""
     st.set_page_config(page_title=f"{title} · robomill", page_icon=":material/precision_manufacturing:", layout="wide")
     st.html(CSS)
-    cached.worker()
+    rendered.queue().worker.start()
     if compiled.missing():
         with st.spinner(f"{compiled.WORDS} ..."):
             compiled.build()

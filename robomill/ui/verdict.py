@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import streamlit as st
 
 from robomill.arrays import digest
 from robomill.errors import RobomillError
@@ -58,14 +57,14 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
 
 def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
     """Between which ends the verdict's numbers may lie instead, from the cache."""
-    known = session.known(result.setup)
-    key = digest((result.setup.digest(), None if known is None else (known.covariance, known.source)))
-    return _ranges(key, result, known)
+    return _ranges(result, session.known(result.setup))
 
 
-@st.cache_resource(max_entries=24, show_spinner=False)
-def _ranges(key: str, _result: SimulationResult, _known: Knowledge | None) -> tuple[Range, ...]:
-    return ranges(_result, _known)
+@cached.shared(
+    lambda result, known: (cached.by_result(result), None if known is None else (known.covariance, known.source))
+)
+def _ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ...]:
+    return ranges(result, known)
 
 
 def range_words(found: Range, name: str, unit: str) -> str:

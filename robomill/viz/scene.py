@@ -29,8 +29,18 @@ def load() -> None:
     import pyvista  # noqa: F401
 
 
+def first() -> None:
+    """Draw something small: without a working OpenGL library the process ends here."""
+    import pyvista as pv
+
+    plotter = pv.Plotter(off_screen=True, window_size=[16, 16])
+    plotter.add_mesh(pv.Box())
+    plotter.screenshot(return_img=True)
+    plotter.close()
+
+
 def draw(picture: SurfacePicture) -> bytes:
-    """PNG bytes of a picture. Without a working OpenGL library the process ends."""
+    """PNG bytes of a picture."""
     import io
 
     from PIL import Image

@@ -2,34 +2,77 @@
 
 VTK without a usable OpenGL library ends its process without an exception, and it is not safe to use from several
 threads. So pictures are drawn by a child process that is spoken to over its stdin and stdout in length-prefixed
-messages; it is killed when it takes too long and started again on the next call.
+messages. It draws a small picture first and says when that worked: an end before it is the test for OpenGL, a later
+one has another reason. One worker, not two: a second takes half a gigabyte, and two drawing on two cores were no
+faster than one (software OpenGL uses all cores by itself).
 """
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import pickle
 import select
+import signal
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import time
+from dataclasses import dataclass
+from pathlib import Path
 from typing import IO, Any
 
 from robomill.errors import RenderError
 
 TIMEOUT_S = 40.0
 MEND = "apt-get install -y libegl1 libgl1-mesa-dri"
+NO_OPENGL = (
+    f"Rendered pictures need an OpenGL library that this machine lacks; as root, run: {MEND}. "
+    "Everything else works without it."
+)
+FREE_DEATHS = 2  # in a row, after which the next attempt has to wait
+LONGEST_PAUSE_S = 60.0
+REMEMBERED = 64  # pictures that ended the process
+OUT_OF_MEMORY = 12  # exit code of a drawing process that could not have the memory it asked for
+LOADED, READY = "loaded", "ready"  # what the process says: libraries are in, a first picture is drawn
 _LENGTH = struct.Struct("<Q")
+
+
+@dataclass
+class Failures:
+    """Deaths in a row of what is tried again, after a pause that grows with each. ``reason`` is that of the last."""
+
+    deaths: int = 0
+    reason: str = ""
+    until: float = 0.0
+
+    def note(self, reason: str) -> None:
+        """One more."""
+        self.deaths, self.reason = self.deaths + 1, reason
+        over = self.deaths - FREE_DEATHS
+        pause = min(2.0 ** min(over, 16), LONGEST_PAUSE_S) if over >= 0 else 0.0
+        self.until = time.monotonic() + pause
+
+    @property
+    def left_s(self) -> float:
+        """Seconds until the next attempt."""
+        return max(0.0, self.until - time.monotonic())
+
+    def refusal(self) -> RenderError:
+        """What is said while the pause lasts."""
+        again = max(self.left_s, 0.1)
+        return RenderError(f"{self.reason} It is tried again in {again:.0f} s.", again_s=again)
 
 
 class RenderWorker:
     """A handle on the drawing process. Calls from several threads wait for each other.
 
-    ``render(picture)`` returns PNG bytes (``picture`` is a dataclass of ``scene.py``). Raises RenderError with a
-    sentence and the command that mends it; after two deaths in a row the worker stays down.
+    ``render(picture)`` returns PNG bytes (``picture`` is a dataclass of ``scene.py``). A process that ends is started
+    again, at once or, after repeated deaths, with growing pauses: of starting it, and of each picture that ended it,
+    so that one picture keeps no other waiting. Raises RenderError with the true reason and when to ask again.
     """
 
     def __init__(self, timeout_s: float = TIMEOUT_S, command: tuple[str, ...] | None = None) -> None:
@@ -37,98 +80,189 @@ class RenderWorker:
         self._command = command or (sys.executable, "-m", "robomill.viz.worker")
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._deaths = 0
+        self._said: IO[bytes] | None = None  # what the process writes to stderr
+        self._stage, self._killed = "", 0
+        self._starts = Failures()
+        self._pictures: dict[bytes, Failures] = {}
 
     @property
     def down(self) -> bool:
-        """True when the last two attempts ended the process: this machine cannot draw."""
-        return self._deaths >= 2
+        """True when the last attempts to start the process failed."""
+        return self._starts.deaths >= FREE_DEATHS
+
+    @property
+    def refusal(self) -> RenderError | None:
+        """Why nothing can be drawn just now; None where a picture may be asked for."""
+        return self._starts.refusal() if self._starts.left_s > 0.0 else None
 
     def render(self, picture: Any) -> bytes:
-        """PNG bytes of ``picture``; one restart is tried before giving up."""
+        """PNG bytes of ``picture``; where the process ends, a second attempt is made at once."""
         message = pickle.dumps(picture, protocol=5)
-        with self._lock:
-            while not self.down:
-                try:
-                    answer = self._ask(message)
-                except (OSError, EOFError, TimeoutError) as exc:
-                    self._deaths += 1
-                    reason = str(exc) or type(exc).__name__
-                    self._stop()
-                    if isinstance(exc, TimeoutError):
-                        raise RenderError(f"Picture: {reason}; the drawing process was stopped. Try again.") from exc
+        name = hashlib.blake2b(message).digest()
+        while True:
+            with self._lock:
+                failures = self._pictures.get(name, Failures())
+                for each in (self._starts, failures):
+                    if each.left_s > 0.0:
+                        raise each.refusal()
+                answer = self._attempt(message, failures)
+                if answer is None:
+                    self._pictures.pop(name, None)
+                    self._pictures[name] = failures
+                    self._pictures = dict(list(self._pictures.items())[-REMEMBERED:])
                     continue
-                self._deaths = 0
-                kind, value = answer
-                if kind == "png":
-                    return bytes(value)
-                raise RenderError(f"Picture: {value}")
-        raise RenderError(
-            f"Rendered pictures need an OpenGL library that this machine lacks; as root, run: {MEND}. "
-            "Everything else works without it."
-        )
+                self._pictures.pop(name, None)
+            kind, value = answer
+            if kind == "png":
+                return bytes(value)
+            raise RenderError(f"Picture: {value}")
+
+    def _attempt(self, message: bytes, failures: Failures) -> tuple[str, Any] | None:
+        """The answer of the process, or None where it ended and ``failures``, or those of its start, say why."""
+        deadline = time.monotonic() + self._timeout_s
+        try:
+            self._wait_until_ready(deadline)
+            write_message(_pipe(self._process, "stdin"), message, deadline)
+            answer = pickle.loads(self._read(deadline))
+        except (OSError, EOFError) as exc:  # TimeoutError is an OSError
+            late = isinstance(exc, TimeoutError)
+            reason = f"drawing took longer than {self._timeout_s:g} s and was stopped" if late else self._why_ended()
+            if self._stage == READY:
+                failures.note(f"Picture: {reason}.")
+                if late:
+                    failures.note(f"Picture: {reason}.")  # no second attempt at once: it would take as long again
+            else:
+                self._starts.note(reason if reason == NO_OPENGL else f"Pictures: {reason}.")
+            self._stop()
+            return None
+        return answer[0], answer[1]
 
     def start(self) -> None:
         """Start the process without waiting for it, so that the first picture comes sooner."""
-        with self._lock:
-            if self._process is None and not self.down:
+        if not self._lock.acquire(blocking=False):
+            return  # someone is being served, so it is up
+        try:
+            if self._process is None and self.refusal is None:
                 with contextlib.suppress(OSError):
-                    self._process = self._start()
+                    self._start()
+        finally:
+            self._lock.release()
 
     def close(self) -> None:
         """Stop the process; the next call starts it again."""
         with self._lock:
             self._stop()
 
-    def _ask(self, message: bytes) -> tuple[str, Any]:
-        if self._process is None or self._process.poll() is not None:
-            self._process = self._start()
-        stdin, stdout = self._process.stdin, self._process.stdout
-        assert stdin is not None
-        assert stdout is not None
-        deadline = time.monotonic() + self._timeout_s
-        write_message(stdin, message)
-        return pickle.loads(_read_until(stdout, deadline, self._timeout_s))
+    def _wait_until_ready(self, deadline: float) -> None:
+        if self._process is not None and self._process.poll() is not None and self._stage == READY:
+            self._stop()  # ended while nobody asked for anything
+        if self._process is None:
+            self._start()
+        while self._stage != READY:
+            self._stage = pickle.loads(self._read(deadline))[0]
+        self._starts = Failures()
 
-    def _start(self) -> subprocess.Popen[bytes]:
+    def _start(self) -> None:
         # EGL first, software as its fallback; VTK's own choice would go through X11 and end the process.
         environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow", "PYVISTA_OFF_SCREEN": "true"}
-        return subprocess.Popen(
+        self._stage, self._killed = "", _ended_for_memory()
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
+        self._process = subprocess.Popen(
             self._command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=self._said,
             env=environment,
             bufsize=0,
         )
+        os.set_blocking(_pipe(self._process, "stdin").fileno(), False)
 
     def _stop(self) -> None:
         process, self._process = self._process, None
+        said, self._said = self._said, None
+        if said is not None:
+            said.close()
         if process is None:
             return
         process.kill()
         process.wait()
         for pipe in (process.stdin, process.stdout):
             if pipe is not None:
-                pipe.close()
+                with contextlib.suppress(OSError):
+                    pipe.close()
+
+    def _read(self, deadline: float) -> bytes:
+        return _read_until(_pipe(self._process, "stdout"), deadline)
+
+    def _why_ended(self) -> str:
+        """Why the process ended, in words."""
+        if self._process is None:
+            return "the drawing process could not be started"
+        try:
+            code = self._process.wait(timeout=5.0)
+        except subprocess.TimeoutExpired:
+            return "the drawing process closed its pipe"
+        if code == OUT_OF_MEMORY:
+            return "the drawing process ran out of memory"
+        if code >= 0:
+            return f"the drawing process ended with code {code}{self._last_words()}"
+        if -code == signal.SIGKILL:
+            if _ended_for_memory() > self._killed:
+                return "the drawing process ran out of memory and was killed by the system (signal 9)"
+            return "the drawing process was killed (signal 9)"
+        if self._stage == LOADED and -code in (signal.SIGSEGV, signal.SIGABRT):
+            return NO_OPENGL
+        name = signal.Signals(-code).name if -code in set(signal.Signals) else "unknown"
+        return f"the drawing process crashed (signal {-code}, {name}){self._last_words()}"
+
+    def _last_words(self) -> str:
+        if self._said is None:
+            return ""
+        end = self._said.seek(0, os.SEEK_END)
+        self._said.seek(max(0, end - 2000))
+        lines = self._said.read().decode(errors="replace").strip().splitlines()
+        return f": {lines[-1].strip():.160}" if lines else ""
 
 
-def write_message(stream: IO[bytes], message: bytes) -> None:
-    """Length as 8 bytes little endian, then the message."""
+def _ended_for_memory() -> int:
+    """How many processes the system has ended since it was short of memory, as far as it says so."""
+    count = 0
+    for file in (Path("/proc/vmstat"), Path("/sys/fs/cgroup/memory.events")):
+        with contextlib.suppress(OSError, ValueError):
+            words = dict(line.split() for line in file.read_text().splitlines())
+            count += int(words.get("oom_kill", 0))
+    return count
+
+
+def _pipe(process: subprocess.Popen[bytes] | None, name: str) -> IO[bytes]:
+    """A pipe of the process. Raises EOFError where it is not there."""
+    pipe: IO[bytes] | None = getattr(process, name, None)
+    if pipe is None:
+        raise EOFError(f"no {name}")
+    return pipe
+
+
+def write_message(stream: IO[bytes], message: bytes, deadline: float = float("inf")) -> None:
+    """Length as 8 bytes little endian, then the message. Raises TimeoutError where nobody takes it by ``deadline``."""
     data = memoryview(_LENGTH.pack(len(message)) + message)
     while data:
+        left = deadline - time.monotonic()
+        if left <= 0 or not select.select([], [stream], [], min(left, 60.0))[1]:
+            if left <= 0:
+                raise TimeoutError
+            continue
         written = stream.write(data)
-        data = data[written if written is not None else 0 :]
+        data = data[written or 0 :]
     stream.flush()
 
 
-def _read_until(stream: IO[bytes], deadline: float, timeout_s: float) -> bytes:
+def _read_until(stream: IO[bytes], deadline: float) -> bytes:
     def exactly(count: int) -> bytes:
         parts: list[bytes] = []
         while count:
             left = deadline - time.monotonic()
             if left <= 0 or not select.select([stream], [], [], left)[0]:
-                raise TimeoutError(f"drawing took longer than {timeout_s:g} s")
+                raise TimeoutError
             part = os.read(stream.fileno(), min(count, 1 << 20))
             if not part:
                 raise EOFError("the drawing process ended")
@@ -140,7 +274,7 @@ def _read_until(stream: IO[bytes], deadline: float, timeout_s: float) -> bytes:
 
 
 def main() -> None:
-    """The worker's loop: read a picture, draw it, answer with PNG bytes or with a sentence."""
+    """The worker's loop: draw a first picture, then read one, draw it, answer with PNG bytes or with a sentence."""
     # The pipe is taken away from file descriptor 1, so that whatever VTK prints cannot break a message.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
@@ -148,11 +282,16 @@ def main() -> None:
     from robomill.viz import scene
 
     scene.load()
+    write_message(out, pickle.dumps((LOADED, None)))
+    scene.first()
+    write_message(out, pickle.dumps((READY, None)))
     while header := stdin.read(_LENGTH.size):
         message = stdin.read(_LENGTH.unpack(header)[0])
         answer: tuple[str, Any]
         try:
             answer = ("png", scene.draw(pickle.loads(message)))
+        except MemoryError:
+            os._exit(OUT_OF_MEMORY)
         except Exception as exc:  # a drawing error is answered, it must not end the loop
             answer = ("error", f"{type(exc).__name__}: {exc}")
         write_message(out, pickle.dumps(answer, protocol=5))

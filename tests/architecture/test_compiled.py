@@ -1,7 +1,9 @@
 """Compiled kernels are what their Python says, are kept on disk, and heal; nothing imports the compiler too soon."""
 
 import importlib
+import io
 import os
+import pickle
 import subprocess
 import sys
 import threading
@@ -11,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core import caching
 
-from robomill import compiled
+from robomill import compiled, seals
 
 SOURCE = """
 from __future__ import annotations
@@ -63,6 +66,8 @@ def folder(tmp_path, monkeypatch):
     kept = tmp_path / "kept"
     kept.mkdir()
     monkeypatch.setattr(compiled, "kept_in", lambda: kept)
+    monkeypatch.setattr(compiled, "_kept", True)
+    compiled._heal.cache_clear()
     monkeypatch.syspath_prepend(tmp_path)
     return kept
 
@@ -88,15 +93,96 @@ def test_a_kernel_computes_what_its_python_says_and_is_kept(folder):
     np.testing.assert_allclose(out, EXPECTED)
 
 
-@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
-@pytest.mark.parametrize("damage", [b"", b"not a pickle", None])
-def test_a_damaged_cache_heals(folder, suffix, damage):
+def flipped(data):
+    """One byte in the middle of the code is another: nothing that the reading of it would notice."""
+    return data[: len(data) // 2] + bytes([data[len(data) // 2] ^ 255]) + data[len(data) // 2 + 1 :]
+
+
+DAMAGES = {
+    "empty": lambda data: b"",
+    "no pickle": lambda data: b"not a pickle",
+    "cut short": lambda data: data[:-40],
+    "flipped": flipped,
+    "longer": lambda data: data + b"more",
+}
+
+
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc", seals.SEAL])
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_cache_heals_and_says_that_it_compiles(folder, suffix, damage, monkeypatch):
     result()
     (file,) = folder.rglob(f"*{suffix}")
-    file.write_bytes(file.read_bytes()[:-40] if damage is None else damage)
+    file.write_bytes(DAMAGES[damage](file.read_bytes()))
+    said = []
+    monkeypatch.setattr(compiled, "_announced", [said.append])
+    monkeypatch.setattr(compiled, "missing", lambda: ())  # it was whole when the program began
     np.testing.assert_allclose(result()[0], EXPECTED)
+    assert said == [compiled.WORDS]
     _, total = result()
     assert sum(total.code.stats.cache_hits.values()) == 1
+    assert len(said) == 1
+
+
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc", seals.SEAL])
+def test_what_is_lost_or_cannot_be_read_is_made_again(folder, suffix):
+    for lose in (Path.unlink, lambda file: (file.unlink(), file.mkdir())):
+        result()
+        (file,) = folder.rglob(f"*{suffix}")
+        lose(file)
+        np.testing.assert_allclose(result()[0], EXPECTED)
+        assert file.is_file()
+        assert sum(result()[1].code.stats.cache_hits.values()) == 1
+
+
+def test_code_of_another_processor_is_not_run(folder):
+    """Another processor's entry under this one's name: the compiler's own index knows for what it compiled."""
+    result()
+    (index,) = folder.rglob("*.nbi")
+    version, rest = pickletools_split(index.read_bytes())
+    stamp, overloads = pickle.loads(rest)
+    ((signature, (triple, _, features), codes), name) = next(iter(overloads.items()))
+    foreign = {(signature, (triple, "another", features), codes): name}
+    index.write_bytes(version + pickle.dumps((stamp, foreign)))
+    seals.seal(folder, sys.modules["sums_kernels"].total.plain)
+    out, total = result()
+    np.testing.assert_allclose(out, EXPECTED)
+    assert sum(total.code.stats.cache_hits.values()) == 0
+    assert sum(result()[1].code.stats.cache_hits.values()) == 1
+
+
+def pickletools_split(data):
+    """The first pickle of ``data``, and what follows it."""
+    stream = io.BytesIO(data)
+    pickle.load(stream)
+    return data[: stream.tell()], data[stream.tell() :]
+
+
+def test_damage_is_found_before_it_is_needed_and_its_module_counts_as_missing(folder, monkeypatch):
+    result()
+    names = ("robomill.a.other_kernels", f"x.{folder.parent.name}.sums_kernels")
+    monkeypatch.setattr(compiled, "modules", lambda: names)
+    (folder / compiled.COMPLETE).write_text("\n".join(names))
+    assert compiled.missing() == ()
+    (file,) = folder.rglob("*.nbc")
+    file.write_bytes(flipped(file.read_bytes()))
+    assert compiled.missing() == ()  # looked for once a process
+    compiled._heal.cache_clear()
+    assert compiled.missing() == names[1:]
+    assert not list(folder.rglob("*.nb?"))
+
+
+@pytest.mark.parametrize("fault", ["full", "shut"])
+def test_where_nothing_can_be_kept_code_lives_in_memory_and_that_is_said_once(folder, fault, monkeypatch, caplog):
+    def refuse(*_):
+        raise OSError(28, "No space left on device")
+
+    place = (caching.IndexDataCacheFile, "_open_for_write")
+    monkeypatch.setattr(*(place if fault == "full" else (caching._CacheLocator, "ensure_cache_path")), refuse)
+    for _ in range(3):
+        np.testing.assert_allclose(result()[0], EXPECTED)
+    (record,) = [record for record in caplog.records if record.name == "robomill"]
+    assert "cannot be kept" in record.getMessage()
+    assert compiled.missing() == ()
 
 
 def test_two_threads_that_ask_at_the_same_moment_make_one_code(folder, monkeypatch):
@@ -104,7 +190,7 @@ def test_two_threads_that_ask_at_the_same_moment_make_one_code(folder, monkeypat
     total = importlib.import_module("sums_kernels").total
     asked, made = threading.Barrier(2), []
 
-    def slowly(function):
+    def slowly(function, keep=True):
         made.append(function)
         time.sleep(0.05)  # whoever did not wait is here by now
         return len(made)
@@ -153,7 +239,7 @@ def test_building_compiles_in_another_process_and_notes_it(tmp_path, monkeypatch
     """Here into a package of one small kernel."""
     package = tmp_path / "robomill"
     (package / "room").mkdir(parents=True)
-    for name in ("compiled.py", "arrays.py", "errors.py"):
+    for name in ("compiled.py", "seals.py", "arrays.py", "errors.py"):
         (package / name).write_text((compiled.PACKAGE / name).read_text())
     (package / "__init__.py").write_text("")
     (package / "room" / "__init__.py").write_text("")
@@ -198,10 +284,30 @@ def test_where_the_package_cannot_be_written_the_users_cache_serves(tmp_path, mo
 def test_where_nothing_can_be_written_a_temporary_folder_serves_and_its_child_finds_it(monkeypatch, fresh):
     monkeypatch.setenv(compiled.PLACE, "")
     real = compiled._roots
-    monkeypatch.setattr(compiled, "_own", lambda folder: False)
+    shut = list(real())
+    own = compiled._own
+    monkeypatch.setattr(compiled, "_own", lambda folder: folder.parent not in shut and own(folder))
     folder = compiled.kept_in()
     assert folder.is_dir()
     assert next(real()) == folder.parent
+
+
+def test_where_not_even_a_temporary_folder_can_be_written_there_is_none(monkeypatch, fresh, caplog):
+    monkeypatch.setattr(compiled, "_kept", True)
+    monkeypatch.setattr(compiled, "_own", lambda folder: False)
+    assert compiled.kept_in() is None
+    assert compiled.missing() == ()
+    assert len(caplog.records) == 1
+
+
+def test_a_full_disk_is_seen_though_it_makes_empty_files(tmp_path, monkeypatch):
+    class Full(io.BytesIO):
+        def write(self, data):
+            raise OSError(28, "No space left on device")
+
+    assert compiled._own(tmp_path / "room")
+    monkeypatch.setattr(compiled.tempfile, "TemporaryFile", lambda **_: Full())
+    assert not compiled._own(tmp_path / "room")
 
 
 def test_only_a_few_older_folders_are_kept(tmp_path):

@@ -8,10 +8,10 @@ import pytest
 from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import NumberInput
 
-from robomill.errors import RenderError
-from robomill.ui import cached
+from robomill.ui import rendered
 from robomill.ui.session import KEY, Store
-from robomill.viz.worker import RenderWorker
+from robomill.viz.render_queue import RenderQueue
+from robomill.viz.worker import NO_OPENGL, RenderWorker
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -20,18 +20,15 @@ class NoPictures(RenderWorker):
     """A machine without OpenGL."""
 
     def start(self) -> None:
-        self._deaths = 2
-
-    def render(self, picture: object) -> bytes:
-        self._deaths = 2
-        raise RenderError("Rendered pictures need an OpenGL library that this machine lacks; as root, run: apt-get.")
+        for _ in range(9):
+            self._starts.note(NO_OPENGL)
 
 
 @pytest.fixture
 def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
     """The start page, run once."""
-    worker = NoPictures()
-    monkeypatch.setattr(cached, "worker", lambda: worker)
+    queue = RenderQueue(NoPictures())
+    monkeypatch.setattr(rendered, "queue", lambda: queue)
     return AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()
 
 

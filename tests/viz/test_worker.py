@@ -1,31 +1,65 @@
-"""The drawing process: pictures come back, a crash or a hang is survived, and a machine without GL says so."""
+"""The drawing process: pictures come back, deaths are survived and told truly, and a machine without GL says so."""
 
 from __future__ import annotations
 
 import io
+import os
+import signal
 import sys
+import threading
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robomill.errors import RenderError
+from robomill.viz import worker as worker_module
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.worker import RenderWorker
 
 ECHO = """
 import os, pickle, struct, sys, time
 out = os.fdopen(os.dup(1), "wb"); os.dup2(2, 1)
+def say(answer):
+    answer = pickle.dumps(answer)
+    out.write(struct.pack("<Q", len(answer)) + answer); out.flush()
+BEFORE_LOADING
+say(("loaded", None))
+BEFORE_READY
+say(("ready", None))
 while header := sys.stdin.buffer.read(8):
     wish = pickle.loads(sys.stdin.buffer.read(struct.unpack("<Q", header)[0]))
     if wish == "die": os.abort()
+    if wish == "killed": os.kill(os.getpid(), 9)
+    if wish == "memory": os._exit(12)
+    if wish == "code": print("the last words", file=sys.stderr, flush=True); os._exit(3)
     if wish == "hang": time.sleep(60)
-    answer = pickle.dumps(("error", "no such thing") if wish == "refuse" else ("png", ("got " + wish).encode()))
-    out.write(struct.pack("<Q", len(answer)) + answer); out.flush()
+    if wish.startswith("once "):
+        if not os.path.exists(wish[5:]): open(wish[5:], "w").close(); os.kill(os.getpid(), 9)
+    if wish.startswith("tenth "):
+        with open(wish[6:], "a") as file: file.write("x")
+        if os.path.getsize(wish[6:]) <= 10: os.kill(os.getpid(), 9)
+    say(("error", "no such thing") if wish == "refuse" else ("png", ("got " + wish).encode()))
 """
 
 
-def fake(timeout_s: float = 20.0) -> RenderWorker:
-    return RenderWorker(timeout_s, (sys.executable, "-c", ECHO))
+def fake(timeout_s: float = 20.0, loading: str = "", ready: str = "") -> RenderWorker:
+    """A drawing process of few words, that runs these lines before it says that it has loaded, or is ready."""
+    text = ECHO.replace("BEFORE_LOADING", loading).replace("BEFORE_READY", ready)
+    return RenderWorker(timeout_s, (sys.executable, "-c", text))
+
+
+def short_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker_module, "LONGEST_PAUSE_S", 0.01)
+
+
+def kill(worker: RenderWorker) -> None:
+    """As the system does, or somebody by hand."""
+    process = worker._process
+    assert process is not None
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
 
 
 def test_messages_of_any_size_come_back() -> None:
@@ -43,14 +77,137 @@ def test_a_drawing_error_is_a_sentence_and_the_process_lives_on() -> None:
     worker.close()
 
 
-def test_a_crash_twice_in_a_row_names_the_command_that_mends_it() -> None:
+def test_a_process_killed_ten_times_between_pictures_is_started_again() -> None:
     worker = fake()
-    assert worker.render("before") == b"got before"
+    for n in range(10):
+        assert worker.render(f"{n}") == f"got {n}".encode()
+        kill(worker)
+    assert not worker.down
+    assert worker.render("after") == b"got after"
+    worker.close()
+
+
+def test_a_process_killed_in_mid_picture_is_started_again_for_it(tmp_path: Path) -> None:
+    worker = fake()
+    wish = f"once {tmp_path / 'mark'}"
+    assert worker.render(wish) == b"got " + wish.encode()
+    worker.close()
+
+
+@pytest.mark.parametrize(
+    ("wish", "said"),
+    [
+        ("killed", "was killed (signal 9)"),
+        ("die", "crashed (signal 6, SIGABRT)"),
+        ("memory", "ran out of memory"),
+        ("code", "ended with code 3: the last words"),
+    ],
+)
+def test_the_reason_of_a_death_is_the_true_one_and_others_are_served(wish: str, said: str) -> None:
+    worker = fake()
+    with pytest.raises(RenderError) as caught:
+        worker.render(wish)
+    assert said in str(caught.value)
+    assert "OpenGL" not in str(caught.value)
+    assert caught.value.again_s is not None
+    assert not worker.down
+    assert worker.refusal is None
+    assert worker.render("another's") == b"got another's"
+    with pytest.raises(RenderError, match="tried again in"):  # not drawn again before its pause is over
+        worker.render(wish)
+    worker.close()
+
+
+def test_ten_deaths_of_one_picture_and_it_is_drawn_after_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    short_pauses(monkeypatch)
+    worker, count = fake(), tmp_path / "count"
+    wish = f"tenth {count}"
+    for _ in range(9):
+        with pytest.raises(RenderError, match="signal 9"):
+            worker.render(wish)
+        assert worker.render("another's") == b"got another's"
+        time.sleep(0.02)
+    assert worker.render(wish) == b"got " + wish.encode()
+    assert len(count.read_text()) >= 10
+    worker.close()
+
+
+def test_pauses_grow_and_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [1000.0]
+    monkeypatch.setattr(worker_module.time, "monotonic", lambda: now[0])
+    failures = worker_module.Failures()
+    pauses = []
+    for _ in range(12):
+        failures.note("It was killed.")
+        pauses.append(failures.left_s)
+        now[0] += failures.left_s
+        assert failures.left_s == 0.0
+    for _ in range(2000):  # the machine's library is missing for a day
+        failures.note("It was killed.")
+    assert failures.left_s == 60.0
+    assert pauses == [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0, 60.0, 60.0]
+
+
+def test_a_machine_without_opengl_names_the_command_that_mends_it() -> None:
+    worker = fake(ready="os.kill(os.getpid(), 11)")
     with pytest.raises(RenderError, match="apt-get install -y libegl1 libgl1-mesa-dri"):
-        worker.render("die")
+        worker.render("any")
     assert worker.down
+    assert worker.refusal is not None
     with pytest.raises(RenderError, match="apt-get"):
-        worker.render("fine")
+        worker.render("other")
+    worker.close()
+
+
+@pytest.mark.parametrize(
+    ("loading", "said"),
+    [
+        ("os.kill(os.getpid(), 9)", "killed (signal 9)"),
+        ("raise ModuleNotFoundError('no vtk here')", "ended with code 1: ModuleNotFoundError: no vtk here"),
+        ("time.sleep(60)", "longer than 1.5 s"),
+    ],
+)
+def test_what_does_not_start_is_told_truly(loading: str, said: str) -> None:
+    worker = fake(1.5, loading=loading)
+    with pytest.raises(RenderError) as caught:
+        worker.render("any")
+    assert said in str(caught.value)
+    assert "OpenGL" not in str(caught.value)
+    worker.close()
+
+
+def test_a_process_killed_while_it_starts_is_started_again(tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+    once = f"p = {str(mark)!r}\nif not os.path.exists(p): open(p, 'w').close(); os.kill(os.getpid(), 9)"
+    worker = fake(loading=once)
+    worker.start()
+    assert worker.render("any") == b"got any"
+    worker.close()
+
+
+def test_what_could_not_start_starts_once_it_can(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    short_pauses(monkeypatch)
+    mark = tmp_path / "library"
+    worker = fake(ready=f"if not os.path.exists({str(mark)!r}): os.kill(os.getpid(), 11)")
+    with pytest.raises(RenderError, match="OpenGL"):
+        worker.render("any")
+    mark.touch()
+    time.sleep(0.02)
+    assert worker.render("any") == b"got any"
+    assert not worker.down
+    worker.close()
+
+
+def test_a_death_while_two_wait_serves_both(tmp_path: Path) -> None:
+    worker = fake()
+    answers: list[bytes] = []
+    wishes = [f"once {tmp_path / name}" for name in "ab"]
+    threads = [threading.Thread(target=lambda w=w: answers.append(worker.render(w))) for w in wishes]  # type: ignore[misc]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(30)
+    assert sorted(answers) == sorted(b"got " + wish.encode() for wish in wishes)
     worker.close()
 
 
@@ -59,6 +216,17 @@ def test_a_hang_is_ended_and_the_next_picture_comes() -> None:
     with pytest.raises(RenderError, match="longer than 1.5 s"):
         worker.render("hang")
     assert worker.render("next") == b"got next"
+    worker.close()
+
+
+def test_without_a_graphics_driver_the_real_process_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+    monkeypatch.setenv("LD_PRELOAD", "")
+    worker = RenderWorker()
+    try:
+        worker.render(groove(False, "iso"))
+    except RenderError as exc:
+        assert "apt-get install" in str(exc)  # noqa: PT017 - a machine with OSMesa draws nevertheless
     worker.close()
 
 

@@ -29,7 +29,7 @@ from robomill.workspace.quantities import map_quantity
 from robomill.workspace.ray import Ray, ray_through
 
 
-@shared(16, lambda robot, point: (fields.geometry_key(robot), point))
+@shared(lambda robot, point: (fields.geometry_key(robot), point))
 def _ray(robot: Robot, point: Point) -> Ray:
     return ray_through(robot, point)
 

@@ -8,15 +8,15 @@ from typing import Any
 
 import streamlit as st
 
+from robomill.progress import checkpoint
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
 from robomill.viz.animation import FRAMES, MIME, Kind, encode, film_frame, film_samples
 from robomill.viz.picture import Camera
 from robomill.viz.views import headroom, surface_picture
-from robomill.viz.worker import RenderWorker
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
 SIZE = (960, 544)
@@ -35,19 +35,20 @@ class Film:
     dark: bool
 
     def make(self, job: Job) -> bytes:
-        """The film's bytes, by a drawing process of its own; none where it is given up."""
-        worker, pictures = RenderWorker(), []
+        """The film's bytes; its pictures wait their turn with those of the pages."""
+        pictures: list[bytes] = []
+        shown = cached.pictured(self.result.setup, self.times)
+        how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
+        still = surface_picture(self.result, shown, headroom=headroom(self.result), **how)
+        queue, owner = rendered.queue(), f"film.{id(job)}"
         try:
-            shown = cached.pictured(self.result.setup, self.times)
-            how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
-            still = surface_picture(self.result, shown, headroom=headroom(self.result), **how)
-            for index in film_samples(self.result, self.frames):
-                if job.stop.is_set():
-                    return b""
-                pictures.append(worker.render(film_frame(self.result, shown, still, int(index))))
-                job.reach(len(pictures) / self.frames)
+            for index in film_samples(self.result, self.frames).tolist():
+                checkpoint(len(pictures) / self.frames, "pictures")
+                frame = partial(film_frame, self.result, shown, still, index)
+                pictures.append(rendered.wait(queue.order(owner, (owner, len(pictures)), frame)))
         finally:
-            worker.close()
+            queue.drop(owner)
+        checkpoint(1.0)
         return encode(pictures, self.kind, max(self.frames / 6.0, 4.0))
 
 

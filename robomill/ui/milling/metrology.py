@@ -27,7 +27,7 @@ MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
 
 
-@shared(16, by_result, "Measuring the groove along its length")
+@shared(by_result, "Measuring the groove along its length")
 def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
     """The groove at its stations (fewer on a very long program) and the line of each, from the cache."""
     count = STATIONS if len(result.path) <= MANY_SAMPLES else FEW_STATIONS

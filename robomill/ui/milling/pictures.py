@@ -13,7 +13,7 @@ from robomill.io.meshes import FORMATS, mesh_bytes
 from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_times
 from robomill.viz.picture import CAMERAS, SurfacePicture
@@ -32,6 +32,7 @@ EXTRAS = {
 }
 EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
 VIEW, WITH = "milling.picture.view", "milling.picture.with"
+PLACE = "milling.picture"
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
 
@@ -39,23 +40,26 @@ SIZE = (1360, 720)
 def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
     """The picture with its controls."""
     how = _controls()
-    view = session.project().view
-    shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
-    if shown is None:
-        return
-    png = _rendered(result, i, dark) if how != "turn" else None
-    if png is not None:
-        st.image(png, width="stretch", alt="The machined surface coloured by its signed error.")
+    view, tolerance = session.project().view, result.setup.tolerance
+
+    def turnable() -> None:
+        shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
+        if shown is not None:
+            camera: Any = view.camera
+            fig = surface_figure(shown, tolerance, view.length, dark=dark, height=height, camera=camera)
+            pieces.figure(fig, "surface", alt="The machined surface, to be turned with the mouse.")
+
+    if how == "turn":
+        turnable()
     else:
-        camera: Any = view.camera
-        fig = surface_figure(shown, result.setup.tolerance, view.length, dark=dark, height=height, camera=camera)
-        pieces.figure(fig, "surface", alt="The machined surface, to be turned with the mouse.")
+        key, make = scene(result, i, dark)
+        rendered.picture(PLACE, key, make, "The machined surface coloured by its signed error.", turnable)
     times = (
         "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
     )
     pieces.note(
         f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
-        f"± {format_si(result.setup.tolerance, 'um', 0)}."
+        f"± {format_si(tolerance, 'um', 0)}."
     )
 
 
@@ -79,36 +83,39 @@ def _extras() -> list[str]:
     return list(session.kept(WITH, ["plane"]))
 
 
-def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], SurfacePicture]:
-    """What is drawn, and the key it is kept under: all that it depends on."""
+def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], Callable[[], SurfacePicture]]:
+    """The key of what is drawn, which is all that it depends on, and what makes it (in any thread)."""
     view = session.project().view
     extras = frozenset(_extras())
     pair = session.kept(VIEW, "one") == "pair"
-    shown = cached.pictured(result.setup, view.exaggeration)
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
     camera: Any = view.camera
-    solids = posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras) if extras & STANDING and i >= 0 else ()
-    picture = surface_picture(
-        result,
-        so_far(result, shown, i) if "so_far" in extras else shown,
-        camera=camera,
-        dark=dark,
-        station=station if extras & {"plane", "away"} else None,
-        at=station,
-        size=SIZE,
-        layout="pair" if pair else "one",
-        cutaway="away" in extras,
-        ghost="ghost" in extras,
-        solids=solids,
-        whole="arm" in extras and bool(solids),
+
+    def make() -> SurfacePicture:
+        shown = cached.pictured(result.setup, view.exaggeration)
+        stand = extras & STANDING and i >= 0
+        solids = posed(result, i, tip_drawn(result, shown, i), arm="arm" in extras) if stand else ()
+        return surface_picture(
+            result,
+            so_far(result, shown, i) if "so_far" in extras else shown,
+            camera=camera,
+            dark=dark,
+            station=station if extras & {"plane", "away"} else None,
+            at=station,
+            size=SIZE,
+            layout="pair" if pair else "one",
+            cutaway="away" in extras,
+            ghost="ghost" in extras,
+            solids=solids,
+            whole="arm" in extras and bool(solids),
+        )
+
+    place = round(station, 6) if moves else None
+    return (
+        ("milling", result.setup.digest(), view.exaggeration, place, tuple(sorted(extras)), pair, camera, dark, SIZE),
+        make,
     )
-    key = (result.setup.digest(), view.exaggeration, round(station, 6) if moves else None, tuple(sorted(extras)), pair)
-    return ("milling", *key), picture
-
-
-def _rendered(result: SimulationResult, i: int, dark: bool) -> bytes | None:
-    return cached.picture(*scene(result, i, dark))
 
 
 def downloads(result: SimulationResult, i: int) -> None:
@@ -123,7 +130,11 @@ def downloads(result: SimulationResult, i: int) -> None:
             key="milling.get.deviation",
         )
         pieces.download(
-            "Picture PNG", lambda: _rendered(result, i, False) or b"", "groove.png", "image/png", key="milling.get.png"
+            "Picture PNG",
+            partial(rendered.now, PLACE, *scene(result, i, False)),
+            "groove.png",
+            "image/png",
+            key="milling.get.png",
         )
         for kind in FORMATS:
             pieces.download(

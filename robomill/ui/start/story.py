@@ -7,16 +7,16 @@ import html
 import numpy as np
 import streamlit as st
 
-from robomill.errors import RobomillError
 from robomill.io.samples import app_dir
 from robomill.report.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.ui import cached, evidence, pieces
+from robomill.ui import cached, evidence, pieces, rendered
 from robomill.ui.project import Project, View
 from robomill.units import format_percent, format_si, format_times
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
@@ -64,30 +64,23 @@ def cause(result: SimulationResult, unit: str) -> str:
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
     """The machined groove as a rendered picture, or turnable where nothing can be rendered."""
-    try:
-        shown = cached.pictured(result.setup, view.exaggeration)
-    except RobomillError as exc:
-        pieces.error(exc)
-        return
-    scene = surface_picture(
-        result,
-        shown,
-        camera="iso",
-        dark=dark,
-        size=(940, round(940 * height / 560)),
-        captions=(),
-    )
-    png = cached.picture((result.setup.digest(), view.exaggeration, "start"), scene)
+    setup, times = result.setup, view.exaggeration
+    size = (940, round(940 * height / 560))
     alt = "The machined groove coloured by its signed error against the ideal one."
-    if png is not None:
-        with st.container(key="picture-groove"):
-            st.image(png, width="stretch", alt=alt)
-    else:
-        figure = surface_figure(shown, result.setup.tolerance, view.length, dark=dark, height=height)
-        pieces.figure(figure, "start-surface", alt=alt)
+
+    def scene() -> SurfacePicture:
+        return surface_picture(result, cached.pictured(setup, times), camera="iso", dark=dark, size=size, captions=())
+
+    def turnable() -> None:
+        shown = pieces.attempt(cached.pictured, setup, times)
+        if shown is not None:
+            figure = surface_figure(shown, setup.tolerance, view.length, dark=dark, height=height)
+            pieces.figure(figure, "start-surface", alt=alt)
+
+    rendered.picture("start.groove", (setup.digest(), times, "start", dark, size), scene, alt, turnable)
     pieces.note(
-        f"The groove as milled, displacement shown {format_times(view.exaggeration, 6)}. Colours end at the tolerance, "
-        f"± {format_si(result.setup.tolerance, 'um', 0)}."
+        f"The groove as milled, displacement shown {format_times(times, 6)}. Colours end at the tolerance, "
+        f"± {format_si(setup.tolerance, 'um', 0)}."
     )
 
 

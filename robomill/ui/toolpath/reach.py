@@ -16,7 +16,7 @@ from robomill.units import from_si
 BOARD_CELLS = (80, 80)
 BOARD_HALF = 0.4
 
-path_reach = shared(12, by_setup)(reach.path_reach)
+path_reach = shared(by_setup)(reach.path_reach)
 
 
 def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] | None:
@@ -41,7 +41,7 @@ def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] |
     }
 
 
-@shared(24, lambda robot, *place: (robot.digest(), *place))
+@shared(lambda robot, *place: (robot.digest(), *place))
 def _board_runs(robot: Robot, T_MW: FloatArray, low: float, high: float, z: float) -> list[list[int]]:
     nx, ny = BOARD_CELLS
     x = low + (np.arange(nx) + 0.5) * (high - low) / nx

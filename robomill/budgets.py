@@ -1,0 +1,54 @@
+"""What this machine can hold: one statement of the memory there is, and of the shares of it that work may take.
+
+Work is estimated before it is done. What is above its share is refused in a sentence that names the size found, the
+bound and the value that would fit; ``ROBOMILL_MEMORY`` (in GiB) says how much memory there is where the system does
+not say it well.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+GIB = 1 << 30
+PLACE = "ROBOMILL_MEMORY"
+LEAST, MOST = GIB, 64 * GIB  # what is believed of the system
+ONE_RUN = 0.25  # share of the memory that a single run, map or film may take
+KEPT_RESULTS = 0.15  # share that results kept for all sessions may take
+
+
+@cache
+def memory() -> int:
+    """Bytes that this process may count on: what the machine, its container and its limits leave."""
+    with suppress(ValueError):
+        return int(float(os.environ.get(PLACE, "")) * GIB)
+    return int(min(max(min(_limits(), default=4 * GIB), LEAST), MOST))
+
+
+def one_run() -> int:
+    """Bytes that one run may take."""
+    return int(ONE_RUN * memory())
+
+
+def kept_results() -> int:
+    """Bytes that results kept for all sessions may take together."""
+    return int(KEPT_RESULTS * memory())
+
+
+def _limits() -> list[int]:
+    found = []
+    with suppress(OSError, ValueError, StopIteration):
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        found.append(1024 * int(next(line for line in lines if line.startswith("MemTotal:")).split()[1]))
+    for file in ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"):
+        with suppress(OSError, ValueError):  # "max" is no number
+            found.append(int(Path(file).read_text()))
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        soft = resource.getrlimit(resource.RLIMIT_AS)[0]
+        if soft != resource.RLIM_INFINITY:
+            found.append(soft)
+    return found

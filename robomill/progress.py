@@ -1,0 +1,71 @@
+"""How far long work has come, and whether anybody still wants it: said by the work, asked by whoever waits.
+
+    with watched(Progress(stop=event.is_set)):      # whoever waits
+        simulate(setup)
+
+    for some in each(slices, "steps cut"):           # the work, between slices of less than a tenth of a second
+        ...
+
+What is watched belongs to the thread that works, so that results which are made when they are first asked for
+(surfaces, gauges) can be stopped too. Unwatched, nothing of this does anything.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+Item = TypeVar("Item")
+
+
+class Cancelled(Exception):  # noqa: N818 - no error
+    """The work was given up by whoever had asked for it. No refusal: there is nothing to mend and nothing to say."""
+
+
+@dataclass(eq=False)
+class Progress:
+    """What is being done (``stage``) and the share of it (0 to 1) that is; ``stop`` says that it is wanted no more."""
+
+    stop: Callable[[], bool] = bool
+    say: Callable[[Progress], object] = bool
+    stage: str = ""
+    share: float = 0.0
+    began: float = field(default_factory=time.monotonic)
+
+    def reach(self, share: float, stage: str = "") -> None:
+        """Say how much of the stage is done. Raises Cancelled where it is wanted no more."""
+        self.share, self.stage = min(max(float(share), 0.0), 1.0), stage or self.stage
+        self.say(self)
+        if self.stop():
+            raise Cancelled
+
+
+_watching: ContextVar[Progress | None] = ContextVar("watching", default=None)
+
+
+@contextmanager
+def watched(progress: Progress | None) -> Iterator[None]:
+    """What is done meanwhile, in this thread, tells ``progress``."""
+    before = _watching.set(progress)
+    try:
+        yield
+    finally:
+        _watching.reset(before)
+
+
+def checkpoint(share: float = 0.0, stage: str = "") -> None:
+    """Say that ``share`` of ``stage`` is done. Raises Cancelled where it is wanted no more."""
+    progress = _watching.get()
+    if progress is not None:
+        progress.reach(share, stage)
+
+
+def each(items: Sequence[Item], stage: str) -> Iterator[Item]:
+    """``items`` one after the other, with a checkpoint before each."""
+    for i, item in enumerate(items):
+        checkpoint(i / len(items), stage)
+        yield item

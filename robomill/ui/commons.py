@@ -1,0 +1,111 @@
+"""Things kept for everyone on the server, bounded by the bytes they take: the longest unused make room for new ones."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import is_dataclass
+from typing import Any
+
+import numpy as np
+
+from robomill import budgets
+
+ENTRY = 1000  # bytes of an entry beside its value
+NOTHING = object()
+
+
+class Commons:
+    """Values by key, together no larger than ``most()`` bytes; the one last put always stays.
+
+    A result makes more of itself when it is looked at (surfaces, gauges), so what was taken is weighed again.
+    """
+
+    def __init__(self, most: Callable[[], int] = budgets.kept_results) -> None:
+        self._most = most
+        self._held: OrderedDict[Hashable, Any] = OrderedDict()
+        self._weights: dict[Hashable, int] = {}
+        self._taken: set[Hashable] = set()
+        self._making: dict[Hashable, threading.Lock] = {}
+        self._lock = threading.Lock()
+
+    def find(self, key: Hashable, otherwise: Any = None) -> Any:
+        """What is kept under ``key``."""
+        with self._lock:
+            if key not in self._held:
+                return otherwise
+            self._held.move_to_end(key)
+            self._taken.add(key)
+            return self._held[key]
+
+    def put(self, key: Hashable, value: Any) -> None:
+        """Keep ``value``; what was not used for longest goes where that is too much."""
+        with self._lock:
+            self._held[key] = value
+            self._held.move_to_end(key)
+            for each in self._taken | {key}:
+                self._weights[each] = ENTRY + weight(self._held[each])
+            self._taken = {key}
+            over = sum(self._weights.values()) - self._most()
+            while over > 0 and len(self._held) > 1:
+                oldest, _ = self._held.popitem(last=False)
+                over -= self._weights.pop(oldest)
+                self._taken.discard(oldest)
+
+    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What is kept under ``key``, or else what ``make`` makes: once, however many ask for it meanwhile. What it
+        raises is not kept."""
+        with self._lock:
+            mine = self._making.setdefault(key, threading.Lock())
+        with mine:
+            found = self.find(key, NOTHING)
+            if found is NOTHING:
+                found = make()
+                self.put(key, found)
+        with self._lock:
+            self._making.pop(key, None)
+        return found
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._held.clear()
+            self._weights.clear()
+            self._taken.clear()
+
+    @property
+    def bytes(self) -> int:
+        """So many are kept, as last weighed."""
+        return sum(self._weights.values())
+
+    def __len__(self) -> int:
+        return len(self._held)
+
+
+def weight(value: Any) -> int:
+    """Bytes of the arrays, texts and containers that ``value`` holds, in its fields, items and what it has made of
+    them since; each is counted once."""
+    seen: set[int] = set()
+    todo, total = [value], 0
+    while todo:
+        one = todo.pop()
+        while isinstance(one, np.ndarray) and isinstance(one.base, np.ndarray):
+            one = one.base
+        if one is None or isinstance(one, type | bool | int | float) or id(one) in seen:
+            continue
+        seen.add(id(one))
+        if isinstance(one, np.ndarray):
+            total += one.nbytes
+        elif isinstance(one, bytes | bytearray | str):
+            total += sys.getsizeof(one)
+        elif isinstance(one, Mapping):
+            total += sys.getsizeof(one)
+            todo += [*one.keys(), *one.values()]
+        elif isinstance(one, list | tuple | set | frozenset):
+            total += sys.getsizeof(one)
+            todo += one
+        elif is_dataclass(one) or hasattr(one, "to_plotly_json"):
+            todo += list(getattr(one, "__dict__", {}).values())
+    return total
