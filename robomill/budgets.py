@@ -15,7 +15,6 @@ from pathlib import Path
 GIB = 1 << 30
 PLACE = "ROBOMILL_MEMORY"
 LEAST, MOST = GIB, 64 * GIB  # what is believed of the system
-ONE_RUN = 0.25  # share of the memory that a single run, map or film may take
 KEPT_RESULTS = 0.15  # share that results kept for all sessions may take
 
 
@@ -25,11 +24,6 @@ def memory() -> int:
     with suppress(ValueError):
         return int(float(os.environ.get(PLACE, "")) * GIB)
     return int(min(max(min(_limits(), default=4 * GIB), LEAST), MOST))
-
-
-def one_run() -> int:
-    """Bytes that one run may take."""
-    return int(ONE_RUN * memory())
 
 
 def kept_results() -> int:

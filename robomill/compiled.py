@@ -29,7 +29,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache, cached_property, partial
 from importlib import import_module
@@ -41,13 +41,13 @@ import numpy as np
 
 from robomill import seals
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.seals import COMPLETE
 
 PACKAGE = Path(__file__).parent
 PATTERNS = ("*/**/kernels.py", "*/**/*_kernels.py")
 RULES = "*/**/*_rules.py"  # plain Python that kernels compile too
 IMPORTED = re.compile(r"^from robomill\.([\w.]+) import", re.MULTILINE)
 WORDS = "Preparing the kernels, once, up to a minute"
-COMPLETE = "complete"
 COMPILER = "numba"
 FEW = 8  # configurations or poses: some milliseconds of plain Python
 PLACE = "ROBOMILL_CACHE"
@@ -328,7 +328,7 @@ def missing() -> tuple[str, ...]:
     if folder is None or not _kept:
         return ()
     _heal(folder)
-    done = _done(folder)
+    done = seals.finished(folder)
     return tuple(name for name in modules() if name not in done)
 
 
@@ -337,22 +337,7 @@ def _heal(folder: Path) -> None:
     """Once: what is damaged is removed and counts as missing."""
     lost = seals.heal(folder)
     if lost:
-        _note(folder, [name for name in _done(folder) if not name.endswith(lost)])
-
-
-def _done(folder: Path) -> list[str]:
-    try:
-        return (folder / COMPLETE).read_text(errors="replace").split()
-    except OSError:
-        return []
-
-
-def _note(folder: Path, done: Sequence[str]) -> None:
-    """These modules are compiled."""
-    with suppress(OSError):
-        note = folder / f"{COMPLETE}.{os.getpid()}"
-        note.write_text("\n".join(done) + "\n")
-        note.replace(folder / COMPLETE)
+        seals.finish(folder, [name for name in seals.finished(folder) if not name.endswith(lost)])
 
 
 def build() -> None:
@@ -381,7 +366,7 @@ def compile_all() -> None:
             if isinstance(entry, Kernel):
                 entry.code  # noqa: B018
     if folder is not None:
-        _note(folder, modules())
+        seals.finish(folder, modules())
 
 
 def announce(say: Callable[[str], Any]) -> None:

@@ -3,8 +3,7 @@
     with watched(Progress(stop=event.is_set)):      # whoever waits
         simulate(setup)
 
-    for some in each(slices, "steps cut"):           # the work, between slices of less than a tenth of a second
-        ...
+    checkpoint(i / len(slices), "steps cut")        # the work, between slices of less than a tenth of a second
 
 What is watched belongs to the thread that works, so that results which are made when they are first asked for
 (surfaces, gauges) can be stopped too. Unwatched, nothing of this does anything.
@@ -13,13 +12,10 @@ What is watched belongs to the thread that works, so that results which are made
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from typing import TypeVar
-
-Item = TypeVar("Item")
 
 
 class Cancelled(Exception):  # noqa: N818 - no error
@@ -62,10 +58,3 @@ def checkpoint(share: float = 0.0, stage: str = "") -> None:
     progress = _watching.get()
     if progress is not None:
         progress.reach(share, stage)
-
-
-def each(items: Sequence[Item], stage: str) -> Iterator[Item]:
-    """``items`` one after the other, with a checkpoint before each."""
-    for i, item in enumerate(items):
-        checkpoint(i / len(items), stage)
-        yield item

@@ -9,12 +9,12 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-SEAL = ".seal"
+SEAL, COMPLETE = ".seal", "complete"
 
 
 def seal(folder: Path, function: Callable[..., Any]) -> None:
@@ -45,6 +45,22 @@ def heal(folder: Path) -> tuple[str, ...]:
             _remove(note.parent, base)
             found.add(f".{note.parent.name.rsplit('_', 1)[0]}.{base.split('.')[0]}")
     return tuple(sorted(found))
+
+
+def finished(folder: Path) -> list[str]:
+    """The kernel modules of which all code is in ``folder``."""
+    try:
+        return (folder / COMPLETE).read_text(errors="replace").split()
+    except OSError:
+        return []
+
+
+def finish(folder: Path, names: Sequence[str]) -> None:
+    """All code of these kernel modules is in ``folder``."""
+    with suppress(OSError):
+        note = folder / f"{COMPLETE}.{os.getpid()}"
+        note.write_text("\n".join(names) + "\n")
+        note.replace(folder / COMPLETE)
 
 
 def _base(function: Callable[..., Any]) -> str:

@@ -25,8 +25,15 @@ MOST_PARAMETERS = 6
 MANY_PARAMETERS = 12
 # Longer functions, to be cut. Whoever shortens one strikes it out here.
 LONG: set[str] = set()
-# What keeps a state while it runs: the session, and whoever reads a program line by line.
-RUNNING = ("robomill/ui/", "robomill/toolpath/gcode/", "robomill/toolpath/apt.py")
+# What keeps a state while it runs: the session, whoever reads a program line by line, long work, the drawing process.
+RUNNING = (
+    "robomill/ui/",
+    "robomill/toolpath/gcode/",
+    "robomill/toolpath/apt.py",
+    "robomill/progress.py",
+    "robomill/viz/render_queue.py",
+    "robomill/viz/worker.py",
+)
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
 UNUSED = {
     "__getattr__": "Python asks the package for a public name",
