@@ -6,17 +6,23 @@ tool axis that the first five leave open.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import LoadTestError
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, rotation_z, world_from_pose
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.units import format_many, format_si
+from robomill.units import format_many, format_si, to_si
 
+OTHER_UNITS = {  # what a length is times when its number was meant in the one unit and stands under the other
+    f"{meant} under a header in {said}": to_si(1.0, meant) / to_si(1.0, said)
+    for meant, said in (("in", "mm"), ("mm", "in"), ("m", "mm"), ("mm", "m"))
+}
 LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit
 
 
@@ -54,11 +60,22 @@ def solved(robot: Robot, x_M: FloatArray, rows: IntArray) -> tuple[FloatArray, F
         place = format_many(poses[k, :3], "mm", 1)
         raise LoadTestError(
             f"Row {row}: the pose X, Y, Z = {place} is not reached ({found.reason(k)}); "
-            "check the coordinates, the tool or the robot's limits.",
+            f"check the coordinates, the tool or the robot's limits{_other_unit(robot, poses, found.reached)}.",
             where=f"row {row}",
         )
     open_ones = _postures(robot, pose_of(poses)) > 1 if whole else np.zeros(len(poses), dtype=bool)
     return found.theta[back.ravel()], _taken(robot, whole, rows[open_ones[back.ravel()]])
+
+
+def _other_unit(robot: Robot, poses: FloatArray, reached: BoolArray) -> str:
+    """What the lengths of poses (k, 5 or 6) may have been meant in, where that would be reached far more often."""
+    spin: Literal["fixed", "least_motion"] = "fixed" if poses.shape[1] == 6 else "least_motion"
+    for slip, factor in OTHER_UNITS.items():
+        scaled = np.concatenate([poses[:, :3] * factor, poses[:, 3:]], axis=1)
+        share = inverse_kinematics(robot, pose_of(scaled), spin=spin).reached.mean()
+        if share > max(0.5, 2.0 * reached.mean()):
+            return f"; read as {slip}, {share:.0%} of the poses would be reached"
+    return ""
 
 
 def _postures(robot: Robot, T_MT: FloatArray) -> IntArray:
@@ -83,6 +100,12 @@ def _taken(robot: Robot, whole: bool, rows: IntArray) -> Finding:
             "allow; give joints if the robot stood otherwise, since its compliance depends on it."
         )
         return Finding("warning", 0, text, code="posture-open")
+    if whole and decoupled(robot) is None:
+        text = (
+            "A pose lets this arm stand in several ways, and its compliance depends on which: the one found near home "
+            "was taken; give joints where it stood otherwise."
+        )
+        return Finding("warning", 0, text, code="postures-open")
     if len(rows):
         text = (
             f"In {len(rows)} tests (row {rows[0]} is the first) the arm may also have stood with shoulder or elbow "

@@ -6,26 +6,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compliance.cartesian import cartesian_compliance
-from robomill.compliance.deflection import displacement
+from robomill.compliance.gravity import GRAVITY
+from robomill.errors import LoadTestError
+from robomill.identification.length_units import length_suspicions
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.models import Model
+from robomill.identification.system import build_system
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
+from robomill.units import to_si
 
-PLAUSIBLE = (1e-10, 1e-4)  # m/N: from a rigid machine tool to a robot one can push about by hand
-PLAUSIBLE_JOINT = (1e-10, 1e-2)  # rad/(N m)
+PLAUSIBLE = (5e-8, 1e-4)  # m/N at the tip: stiffer than any arm of joints, to one that can be pushed about by hand
+PLAUSIBLE_JOINT = (1e-8, 1e-3)  # rad/(N m): stiffer than the joints that lift a tonne, to those of a table-top arm
+FACTOR = 8.0  # against the robot's own compliances
+MOST = 200  # tests that are looked at; more are thinned evenly
+SLIPS = {"kilogram-force as N": -GRAVITY[2], "inches as mm": to_si(1.0, "in") / to_si(1.0, "mm"), "a wrong prefix": 1e3}
 
 
 def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
     """Findings on sign, unit and repeated rows.
 
     A compliance is positive definite, so a displacement *along* its own force is positive; against the force at most
-    tests means a flipped sign. A factor of 1000 against the plausible range, or against the robot's own values
-    where it has some, means a wrong unit.
+    tests means a flipped sign. ``FACTOR`` against the robot's own values, or where it has none a size that no arm has,
+    means a wrong unit; so do points and pulleys that explain far more in another.
     """
     if tests.single:
-        return _joint_suspicions(tests)
-    return (*_signs(tests), *_sizes(tests, robot), *_repeats(tests))
+        return _joint_suspicions(tests, robot)
+    lengths = () if robot is None or tests.theta is None else length_suspicions(robot, tests)
+    return (*_signs(tests), *_sizes(tests, robot), *lengths, *_repeats(tests))
 
 
 def _signs(tests: LoadTests) -> list[Finding]:
@@ -73,29 +81,48 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
                 code="no-displacement",
             )
         ]
-    expected = _expected(tests, robot)
-    if expected is not None and not 1 / 100 < given / expected < 100:
-        times, word = (given / expected, "larger") if given > expected else (expected / given, "smaller")
-        against = "than this robot's own compliances would give"
-    elif not PLAUSIBLE[0] < given < PLAUSIBLE[1]:
-        times, word = (given / 1e-6, "larger") if given > 1e-6 else (1e-6 / given, "smaller")
-        against = "than the 1 µm/N of a usual robot"
-    else:
+    found = _off(given, _expected(tests, robot), PLAUSIBLE)
+    if found is None:
         return []
-    text = f"The displacements are about {times:.3g} times {word} {against}: is their unit, or the forces', right?"
+    text = f"The displacements are about {found}: is their unit, or the forces', right?"
     return [Finding("suspicious", 0, text, code="unit")]
 
 
-def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
-    """Typical m/N of the tests by the robot's own joint compliances, where it has any."""
-    if robot is None or tests.theta is None or not np.any(robot.C_theta > 0):
+def _off(given: float, own: float | None, plausible: tuple[float, float]) -> str | None:
+    """By how much a compliance is too large or small, and what slip does that; None for one that may be."""
+    low, high = plausible if own is None else (own / FACTOR, own * FACTOR)
+    if low < given < high:
         return None
-    chosen = np.linspace(0, len(tests) - 1, min(len(tests), 200)).astype(int)
-    F = tests.wrench[chosen, :3]
-    moved = displacement(cartesian_compliance(robot, tests.theta[chosen]), F)
-    size = np.linalg.norm(F, axis=1)
-    ratio = np.linalg.norm(moved, axis=1)[size > 0] / size[size > 0]
-    return float(np.median(ratio)) if len(ratio) and np.median(ratio) > 0 else None
+    middle, word = float(np.sqrt(low * high)), "larger" if given >= high else "smaller"
+    times = max(given / middle, middle / given)
+    if own is None:
+        return f"{times:.3g} times {word} than those of a usual arm"
+    hint = "".join(f" ({slip} makes {factor:.3g})" for slip, factor in SLIPS.items() if 0.6 < times / factor < 1.6)
+    return f"{times:.3g} times {word} than this robot's own compliances would give{hint}"
+
+
+def _knows(robot: Robot | None) -> bool:
+    """Whether the compliances of all its joints are known rather than assumed."""
+    if robot is None or not np.all(robot.C_theta > 0):
+        return False
+    said = robot.provenance
+    source = said.get(f"compliance.{robot.compliance_set}", said.get("compliance"))
+    return source is None or source.kind != "assumed"
+
+
+def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
+    """Typical m/N of the readings by the robot's own joint compliances, where these are known."""
+    if robot is None or tests.theta is None or not _knows(robot):
+        return None
+    tests = tests.select(slice(None, None, -(-len(tests) // MOST)))
+    try:
+        system = build_system(robot, tests, Model("joints"))
+    except LoadTestError:
+        return None
+    size = np.linalg.norm(tests.wrench[:, :3], axis=1)
+    moved = np.bincount(system.test[system.linear], (system.A @ robot.C_theta)[system.linear] ** 2, len(tests))
+    ratio = np.sqrt(moved[size > 0]) / size[size > 0]
+    return float(np.median(ratio)) if np.median(ratio) > 0 else None
 
 
 def _repeats(tests: LoadTests) -> list[Finding]:
@@ -128,7 +155,7 @@ def _bytes(table: FloatArray) -> NDArray[np.void]:
     return whole.view(np.dtype((np.void, whole.strides[0]))).ravel()
 
 
-def _joint_suspicions(tests: JointTests) -> tuple[Finding, ...]:
+def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, ...]:
     found = []
     against = tests.angle * tests.torque < 0
     if against.mean() > 0.5:
@@ -136,8 +163,12 @@ def _joint_suspicions(tests: JointTests) -> tuple[Finding, ...]:
             f"The angle runs against the torque in {int(against.sum())} of {len(tests)} tests: is a sign turned round?"
         )
         found.append(Finding("suspicious", 0, text, code="sign"))
-    typical = float(np.median(np.abs(tests.angle / tests.torque)))
-    if not PLAUSIBLE_JOINT[0] < typical < PLAUSIBLE_JOINT[1]:
-        text = f"A typical joint gives {typical:.2g} rad/(N m), far from the 1e-7 to 1e-5 of robots: is the unit right?"
+    given, own = np.abs(tests.angle / tests.torque), None
+    if robot is not None and _knows(robot) and np.isin(tests.joint, robot.joint_numbers).all():
+        same = tests.joint[:, None] == np.array(robot.joint_numbers)
+        own = float(np.exp(np.median(np.log(robot.C_theta[same.argmax(axis=1)]))))
+    off = _off(float(np.median(given)), own, PLAUSIBLE_JOINT)
+    if off is not None:
+        text = f"The angles a newton metre makes are about {off}: is their unit, or the torques', right?"
         found.append(Finding("suspicious", 0, text, code="unit"))
     return tuple(found)

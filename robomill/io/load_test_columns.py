@@ -17,12 +17,16 @@ WORLD = ("x", "y", "z", "a", "b")
 _ANGLE, _LENGTH, _FORCE, _MOMENT = ("deg", "rad"), ("mm", "um", "m", "in"), ("N", "kN"), ("N m", "kN m")
 _ROTATION, _COMPLIANCE = ("mrad", "urad", "rad", "deg"), ("um/N", "mm/N", "m/N")
 GAUGES = ("1", "2", "3")
+ROTVEC = ("rotvec_x", "rotvec_y", "rotvec_z")
 UNIT_VECTOR = 0.02  # how far the length of a written direction may be from 1
 HEAD = {
     "provenance": KINDS,
     "frame": ("tool", "flange"),
-    "angles": ("kuka", "robomill"),
+    "angles": ("kuka", "robomill", "ur"),
 }
+
+
+POSTURE = ("s", "t", "status", "turn", "config", "conf")  # a controller's words on how the arm stood: not read
 
 
 def axes(name: str) -> tuple[str, str, str]:
@@ -37,7 +41,7 @@ def _all(names: Iterable[str], units: Sequence[str]) -> dict[str, Sequence[str]]
 _UNITS: dict[str, Sequence[str]] = {
     **{f"theta{joint}": (*_ANGLE, "mm", "m") for joint in range(1, 10)},
     **_all([""], _LENGTH),
-    **dict.fromkeys(("a", "b", "c", "w", "p", "r"), _ANGLE),
+    **dict.fromkeys(("a", "b", "c", "w", "p", "r", *ROTVEC), _ANGLE),
     **_all(("f", "f0"), _FORCE),
     **_all(("d", "d0", "fp", "mp", "pulley_", "hook_", "load_point_", "gauge_point_"), _LENGTH),
     **_all(("m",), _MOMENT),

@@ -5,6 +5,7 @@ these mean differs from maker to maker, so the file says it (``# angles:``, ``# 
 
 kuka        A, B, C: R = R_z(A) R_y(B) R_x(C) (KUKA System Software: A about Z, then B about Y', then C about X'')
 robomill    A, B, C: R = R_x(A) R_y(B) R_z(C), the A and B of X, Y, Z, A, B and the turn about the tool axis
+ur          rx, ry, rz: a rotation vector, about itself by its own length; rotvec_x, _y, _z are one unsaid
 W, P, R     as on FANUC: about the fixed X by W, Y by P, Z by R, so R = R_z(R) R_y(P) R_x(W)
 frame       whose pose it is: the ``flange``'s, or that of the ``tool`` {T} in the robot's file (z_T out of the part)
 
@@ -22,20 +23,20 @@ from robomill.arrays import FloatArray
 from robomill.identification.configurations import pose_of, world_of
 from robomill.identification.load_test import LoadTests
 from robomill.io.columns import Columns
-from robomill.io.load_test_columns import GAUGES, WORLD, axes, directions, group, head_of
-from robomill.kinematics.transforms import invert, rotation_x, rotation_y, rotation_z, transform
+from robomill.io.load_test_columns import GAUGES, ROTVEC, WORLD, axes, directions, group, head_of
+from robomill.kinematics.transforms import invert, rotation_about, rotation_x, rotation_y, rotation_z, transform
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
-FANUC = ("x", "y", "z", "w", "p", "r")
+ABC, WPR = ("a", "b", "c"), ("w", "p", "r")
 SCATTER = 5e-3  # m: how far hooks may lie apart in the tool before it is said
 
 
 def poses(table: Columns, robot: Robot | None) -> dict[str, Any]:
     """theta (m, n) or x_M (m, 5 or 6), whichever the columns give, and what is to be said of it as findings."""
     joints = sorted((int(key[5:]), key) for key in table.values if key.startswith("theta"))
-    world = [key for key in (*WORLD, "c", "w", "p", "r") if key in table]
+    world = [key for key in (*WORLD[:3], *ABC, *WPR, *ROTVEC) if key in table]
     if joints and world:
         raise table.place.refuse(
             f"poses are given twice, as {table.written(joints[0][1])} and {table.written(world[0])}; keep one."
@@ -45,36 +46,67 @@ def poses(table: Columns, robot: Robot | None) -> dict[str, Any]:
             if number != k:
                 raise table.place.refuse(f"found {table.written(key)} but no theta{k}_deg; number the joints from 1.")
         return {"theta": np.stack([table.values[key] for _, key in joints], axis=-1)}
-    if any(key in table for key in FANUC[3:]):
-        given = group(table, FANUC)
-        assert given is not None
-        return _by_controller(table, robot, given[:, :3], given[:, 5], given[:, 4], given[:, 3])
-    if "c" not in table:
+    turned = _turned(table)
+    if turned is None:
         x_M = group(table, WORLD)
         if x_M is None:
             raise table.place.refuse("no pose columns; give theta1_deg to thetaN_deg, or X_mm,Y_mm,Z_mm,A_deg,B_deg.")
         return {"x_M": x_M}
-    x_M = group(table, (*WORLD, "c"))
-    assert x_M is not None
+    (p, R), how = turned
+    return _of_frame(table, robot, transform(R, p), how)
+
+
+def _turned(table: Columns) -> tuple[tuple[FloatArray, FloatArray], str] | None:
+    """Places (m, 3) and rotations (m, 3, 3) of poses by three angles, and how these are read; None without them."""
+    vector = rotation_vector(table)
+    if vector is not None:
+        given = _six(table, vector)
+        return (given[:, :3], rotation_about(given[:, 3:])), "a rotation vector"
+    if any(key in table for key in WPR):
+        given = _six(table, WPR)
+        return (given[:, :3], _about_fixed(given[:, 3:])), "R = Rz(R) Ry(P) Rx(W)"
+    if "c" not in table:
+        return None
+    given = _six(table, ABC)
     meant = head_of(table).get("angles")
-    if meant is None:
-        raise table.place.refuse(
-            "A, B, C mean one thing on a KUKA and another beside X, Y, Z, A, B here; add a line '# angles: kuka' "
-            "(R = Rz(A) Ry(B) Rx(C)) or '# angles: robomill' (R = Rx(A) Ry(B) Rz(C)) above the header."
-        )
-    p, A, B, C = x_M[:, :3], x_M[:, 3], x_M[:, 4], x_M[:, 5]
     if meant == "kuka":
-        return _by_controller(table, robot, p, A, B, C)
-    return _of_frame(table, robot, pose_of(x_M), "R = Rx(A) Ry(B) Rz(C)")
+        return (given[:, :3], _about_fixed(given[:, :2:-1])), "R = Rz(A) Ry(B) Rx(C)"
+    if meant == "robomill":
+        return (given[:, :3], pose_of(given)[:, :3, :3]), "R = Rx(A) Ry(B) Rz(C)"
+    raise table.place.refuse(
+        "A, B, C mean one thing on a KUKA and another beside X, Y, Z, A, B here; add a line '# angles: kuka' "
+        "(R = Rz(A) Ry(B) Rx(C)) or '# angles: robomill' (R = Rx(A) Ry(B) Rz(C)) above the header."
+    )
 
 
-def _by_controller(
-    table: Columns, robot: Robot | None, p: FloatArray, z: FloatArray, y: FloatArray, x: FloatArray
-) -> dict[str, Any]:
-    """KUKA's A, B, C and FANUC's R, P, W alike: R = R_z(z) R_y(y) R_x(x)."""
-    letters = "A, B, C" if "c" in table else "R, P, W"
-    T = transform(rotation_z(z) @ rotation_y(y) @ rotation_x(x), p)
-    return _of_frame(table, robot, T, "R = Rz({}) Ry({}) Rx({})".format(*letters.split(", ")))
+def rotation_vector(table: Columns) -> tuple[str, str, str] | None:
+    """The columns that hold the rotation vector of poses; None where these are given another way.
+
+    Raises LoadTestError where rx, ry, rz may as well be a rotation that was measured.
+    """
+    if any(key in table for key in ROTVEC):
+        return ROTVEC
+    if head_of(table).get("angles") == "ur":
+        return axes("r")
+    if "x" in table and "rx" in table and not any(key in table for key in (*ABC, *WPR)):
+        raise table.place.refuse(
+            "X, Y, Z stand beside rx, ry, rz alone; if these are the pose's rotation vector, as on a UR, add a line "
+            "'# angles: ur' above the header; if they are rotations that were measured, add the pose's A_deg, B_deg."
+        )
+    return None
+
+
+def _six(table: Columns, names: tuple[str, str, str]) -> FloatArray:
+    """(m, 6) X, Y, Z and three angles, none of them missing."""
+    given = group(table, (*WORLD[:3], *names))
+    assert given is not None
+    return given
+
+
+def _about_fixed(turns: FloatArray) -> FloatArray:
+    """R = R_z R_y R_x (m, 3, 3) of the turns (m, 3) rad about x, y and z: FANUC's W, P, R, KUKA's C, B, A."""
+    x, y, z = turns.T
+    return np.asarray(rotation_z(z) @ rotation_y(y) @ rotation_x(x))
 
 
 def _of_frame(table: Columns, robot: Robot | None, T: FloatArray, how: str) -> dict[str, Any]:

@@ -7,7 +7,7 @@ semicolons or tabs separate; with the latter two, decimal commas are understood.
 Protocols, told apart by their columns (angles deg or rad; lengths mm, um, m, in; forces N, kN; moments Nm, kNm):
 
 displacements            a pose, Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm; the pose as theta1_deg ... thetaN_deg or
-                         X_mm,Y_mm,Z_mm with A_deg,B_deg, or with A,B,C or W,P,R (``load_test_poses``)
+                         X_mm,Y_mm,Z_mm with A_deg,B_deg, or A,B,C or W,P,R or rx,ry,rz (``load_test_poses``)
   optional               Mx_Nm.. rx_mrad..           moment on the tool and measured rotation
                          F0x_N.. d0x_mm..            force and reading at the preload; differences are used
                          FPx_mm.. MPx_mm..           force and measuring point from the tool tip, in {T}
@@ -31,13 +31,14 @@ from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
 from robomill.io.columns import Columns, read_columns
-from robomill.io.load_test_columns import LAYOUT, XYZ, axes, group, head_of, kind_of
-from robomill.io.load_test_poses import force_and_points, gauges, poses
+from robomill.io.load_test_columns import LAYOUT, POSTURE, XYZ, axes, group, head_of, kind_of
+from robomill.io.load_test_poses import ABC, WPR, force_and_points, gauges, poses, rotation_vector
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import from_si
 
 NOMINAL_LOAD = 250.0  # N, the paper's dead weight: residuals of measured compliances are stated for it
+JOINTS = tuple(f"theta{joint}" for joint in range(1, 10))
 COMPLIANCES = tuple(f"c{row}{column}" for row in XYZ for column in XYZ)
 
 
@@ -59,10 +60,15 @@ def _read(path_or_text: str | Path, robot: Robot | None) -> LoadTests | JointTes
     else:
         tests = _displacements(table, robot)
     head = table.place.head
+    postures = [column for column in table.passed_over if column.lower() in POSTURE and "x" in table]
     ignored = tuple(
         Finding("ignored", head, f"Column {column!r} is not one of ours and is passed over.", code="passed-over")
         for column in table.passed_over
+        if column not in postures
     )
+    if postures:
+        text = f"How the arm stood, said by {' and '.join(postures)}, is not read; give joints where it matters."
+        ignored += (Finding("warning", head, text, len(postures), code="posture-not-read"),)
     made = Provenance(kind_of(head_of(table)), f"{name or 'pasted cells'}\n{table.remarks}".strip())
     return replace(tests, provenance=made, findings=ignored + tests.findings + _pose_suspicions(table))
 
@@ -73,12 +79,20 @@ def read_findings(tests: LoadTests | JointTests, robot: Robot | None = None) -> 
 
 
 def _pose_suspicions(table: Columns) -> tuple[Finding, ...]:
-    """Angles that look like radians under deg, places that look like metres under mm."""
-    for start, unit, most, other in (("theta", "deg", 6.3, "rad"), ("x", "mm", 10.0, "m"), ("y", "mm", 10.0, "m")):
-        columns = [c for key, c in table.known.items() if key.startswith(start) and c.unit == unit]
+    """Angles that look like radians under deg or the reverse, places that look like metres under mm."""
+    vector = rotation_vector(table) or ()
+    for names, unit, least, most, other in (
+        (JOINTS, "deg", 6.3, np.inf, "rad"),
+        (("x",), "mm", 10.0, np.inf, "m"),
+        (("y",), "mm", 10.0, np.inf, "m"),
+        (vector, "deg", 6.3, np.inf, "rad"),
+        ((*vector, *ABC, *WPR), "rad", 0.0, 6.3, "deg"),
+    ):
+        columns = [c for key, c in table.known.items() if key in names and c.unit == unit]
         largest = max((float(np.abs(from_si(table.values[c.quantity], unit)).max()) for c in columns), default=0.0)
-        if 0.0 < largest < most:
-            text = f"No {columns[0].written} is larger than {largest:.3g}: are these poses in {other}?"
+        if largest > 0.0 and not least <= largest <= most:
+            beyond = f"No {columns[0].written} is larger than" if largest < least else f"{columns[0].written} reaches"
+            text = f"{beyond} {largest:.3g}: are these poses in {other}?"
             return (Finding("suspicious", 0, text, code="pose-unit"),)
     return ()
 
@@ -96,7 +110,8 @@ def _displacements(table: Columns, robot: Robot | None) -> LoadTests:
     F = cable if F is None else F
     if F is None and moment is None:
         raise table.place.refuse("no force columns; give Fx_N,Fy_N,Fz_N, or load_N with a cable's direction.")
-    read, turned, dials = group(table, axes("d")), group(table, axes("r")), gauges(table)
+    read, dials = group(table, axes("d")), gauges(table)
+    turned = None if rotation_vector(table) == axes("r") else group(table, axes("r"))
     if read is not None and dials is not None:
         raise table.place.refuse("displacements are given twice, by dx and by gauges; keep one.")
     moved, along = (read, None) if dials is None else dials

@@ -21,7 +21,8 @@ PARALLEL = 1e-9
 def read_urdf(path: str | Path, *, base: str | None = None, tip: str | None = None, name: str | None = None) -> Robot:
     """The serial arm from link ``base`` to link ``tip`` of a URDF file (defaults: the root and the only end link).
 
-    Frames {M} and {T} are those of the two links; joint senses, zeros and limits are the file's. Compliances are not in
+    Frames {M} and {T} are those of the two links, and the flange is the tip too, if that stands on the last axis with
+    its z along it, as makers' flanges do; joint senses, zeros and limits are the file's. Compliances are not in
     a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed. Raises RobotError for branches (name the tip), missing links or
     joints, closed loops, mimic and floating joints.
     """
@@ -129,12 +130,16 @@ def _robot(chain: list[Any], name: str, where: str) -> Robot:
     if not moving:
         raise RobotError(f"{where}: has no moving joints; a robot needs 2 to 7.")
     prismatic = np.array([joint.type == "prismatic" for joint in moving])
+    sign = np.ones(len(moving))
+    if float(axes[-1] @ T_M[:3, 2]) < PARALLEL - 1.0:  # the last joint turns about -z of the tip
+        axes[-1], sign[-1] = -axes[-1], -1.0
     table: dict[str, Any] = dict(dh_from_axes(np.array(axes), np.array(points), T_M))
     file = Provenance("user", f"URDF file {where}")
     return Robot(
         name=name,
         title=f"{name} (from URDF)",
         convention="modified",
+        sign=sign,
         prismatic=prismatic,
         limits_all=np.array([_limits(joint, where) for joint in moving]),
         C_theta_all=np.full(len(moving), DEFAULT_COMPLIANCE),
@@ -162,13 +167,16 @@ def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, Fl
     """Columns of a modified D-H table, T_base and T_tool, from the joint axes at zero: k (n, 3) unit, p (n, 3) m.
 
     Frame i has its z along axis i and its x along the common perpendicular from axis i to axis i + 1 (any where they
-    cross, as before where they are parallel). The base frame takes up where the first one stands.
+    cross, as before where they are parallel); the last one stands as near {T} as its axis allows. The base frame takes
+    up where the first one stands.
     """
     n = len(k)
     frames = []
     x = _any_square(k[0])
     for i in range(n):
-        x, origin = _common_perpendicular(k, p, i, x) if i + 1 < n else (_square_part(x, k[i]), p[i])
+        last = i + 1 == n
+        along = k[i] * (k[i] @ (T_MT[:3, 3] - p[i]))
+        x, origin = (_square_part(T_MT[:3, 0], k[i]), p[i] + along) if last else _common_perpendicular(k, p, i, x)
         T = np.eye(4)
         T[:3, :3] = np.column_stack([x, np.cross(k[i], x), k[i]])
         T[:3, 3] = origin

@@ -13,6 +13,7 @@ from robomill.kinematics.jacobian import pose_and_jacobian, task_rows
 from robomill.robot.model import Robot
 
 NEAR = 0.02  # of the largest |det(J)|: below it a singular configuration is near
+ROUNDING = 1e-12  # a |det(J)| below this is none, in m or m^3
 SAMPLES = 4096
 ROWS = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 FIVE_AXIS_ROWS = ("v_x", "v_y", "v_z", "omega_x'", "omega_y'")
@@ -90,8 +91,9 @@ def near_singular(robot: Robot, det: ArrayLike) -> BoolArray:
     """Where det(J) (...,) is so small that the arm is at a singular configuration or close to one; False for NaN.
 
     Closer than ``NEAR`` of the largest that this arm has: a rule that knows neither its size nor the unit, nor a grid.
+    An arm whose joints can nowhere do its task has nothing but rounding there.
     """
-    return np.asarray(np.abs(np.asarray(det, dtype=np.float64)) <= NEAR * largest_determinant(robot))
+    return np.asarray(np.abs(np.asarray(det, dtype=np.float64)) <= max(NEAR * largest_determinant(robot), ROUNDING))
 
 
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:

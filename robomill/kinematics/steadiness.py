@@ -96,6 +96,7 @@ def passages(ik: IKResult) -> list[Passage]:
     theta = ik.theta.reshape(-1, robot.n)
     det = dexterity.determinant(robot, theta)
     names = np.atleast_1d(ik.branch).reshape(-1)
+    det = np.where(np.abs(det) > dexterity.ROUNDING, det, 0.0)
     steps: IntArray = np.flatnonzero(det[1:] * det[:-1] < 0.0) + 1
     return [Passage(int(i), str(names[i - 1]), str(names[i])) for i in steps]
 

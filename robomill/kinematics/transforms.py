@@ -41,6 +41,16 @@ def rotation_z(angle: ArrayLike) -> FloatArray:
     return _rotation(angle, 0, 1)
 
 
+def rotation_about(vector: ArrayLike) -> FloatArray:
+    """Rotations (..., 3, 3) about vectors (..., 3) by their lengths in rad (Rodrigues' formula)."""
+    v = np.asarray(vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    K = np.cross(v[..., None, :], np.eye(3))  # rows v x e_i: the transpose of the cross product's matrix
+    K = np.swapaxes(K, -1, -2)
+    half = np.sinc(angle / (2 * np.pi))  # sin(angle / 2) / (angle / 2), 1 at zero
+    return np.asarray(np.eye(3) + np.sinc(angle / np.pi) * K + 0.5 * half**2 * (K @ K))
+
+
 def transform(R: ArrayLike, p: ArrayLike) -> FloatArray:
     """(..., 4, 4) from rotations R (..., 3, 3) and points p (..., 3) in m; leading axes broadcast."""
     R, p = as_floats(R, "R", (3, 3), error=KinematicsError), as_floats(p, "p", (3,), error=KinematicsError)

@@ -6,6 +6,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.unjudged import Unjudged
+from robomill.kinematics.decoupled import decoupled
 from robomill.provenance import Finding
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -59,6 +60,13 @@ def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     if setup.springs:
         text = "The measured map holds whatever gives; the springs beside the joints are shown, not added."
         notes.append(Finding("info", 0, text, code="springs-in-map"))
+    arm = decoupled(setup.robot)
+    if setup.robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis):
+        text = (
+            "The measured map holds for the turn about the tool axis it was taken with, which is not in it; on this "
+            "arm that turn changes the compliance: measure and mill with the same one."
+        )
+        notes.append(Finding("warning", 0, text, code="map-spin"))
     largest = float(turned(setup, path).max())
     if NOTICED < largest <= MOST_TURNED:
         off = format_si(largest, "deg", 1)

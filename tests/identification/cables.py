@@ -127,6 +127,7 @@ def as_robot(arm, name):
         a=arm.rows[:, 1],
         d=arm.rows[:, 2],
         theta_offset=arm.rows[:, 3],
+        sign=arm.sign,
         limits_all=arm.limits,
         C_theta_all=arm.C_theta,
         T_tool=arm.T_FT,

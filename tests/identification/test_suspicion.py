@@ -13,8 +13,8 @@ from robomill.identification.suspicion import suspicions
 from robomill.identification.synthesis import simulated_tests, three_directions
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
-PLAUSIBLE = (1e-10, 1e-4)  # m/N
-PLAUSIBLE_JOINT = (1e-10, 1e-2)  # rad/(N m)
+PLAUSIBLE = (5e-8, 1e-4)  # m/N
+PLAUSIBLE_JOINT = (1e-8, 1e-3)  # rad/(N m)
 THETA = np.random.default_rng(0).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (8, 5))
 SOUND = simulated_tests(ROBOT, *three_directions(THETA, 250.0), noise=4e-6)
 
@@ -106,9 +106,9 @@ def test_oblique_forces_are_judged_by_their_work(against, told):
     assert suspicions(LoadTests(F, d, theta=THETA[:4])) == ()  # work of half a displacement says nothing
 
 
-@pytest.mark.parametrize("factor", [1 / 1000, 1 / 110, 1 / 90, 90, 110, 1000])
-def test_a_wrong_unit_is_a_factor_of_a_hundred_against_the_robots_own(factor):
-    told = not 1 / 100 < factor < 100
+@pytest.mark.parametrize("factor", [1 / 1000, 1 / 25.4, 1 / 9, 1 / 7, 7, 9, 25.4, 1000])
+def test_a_wrong_unit_is_a_factor_against_the_robots_own(factor):
+    told = not 1 / 8 < factor < 8
     stiff = ROBOT.replace(C_theta=0.1 * ROBOT.C_theta)
     found = suspicions(moved(SOUND, 0.1 * factor * SOUND.displacement), stiff)
     assert [f.code for f in found] == (["unit"] if told else [])
@@ -131,7 +131,6 @@ def test_without_compliances_it_is_a_factor_against_what_any_robot_has(edge):
             found = suspicions(tests, robot)
             assert [f.code for f in found] == (["unit"] if told else [])
             if told:
-                assert f"{max(edge * factor / 1e-6, 1e-6 / (edge * factor)):.3g} times" in found[0].message
                 assert ("larger" in found[0].message) == (edge > 1e-6)
 
 
@@ -172,3 +171,10 @@ def test_a_joint_beyond_all_robots(edge):
     for factor, told in ((0.9, edge == PLAUSIBLE_JOINT[0]), (1.1, edge == PLAUSIBLE_JOINT[1])):
         tests = JointTests(np.array([1, 2, 3]), np.array([100.0, -50, 20]), np.array([100.0, -50, 20]) * edge * factor)
         assert [(f.code, f.line) for f in suspicions(tests)] == ([("unit", 0)] if told else [])
+
+
+@pytest.mark.parametrize(("factor", "told"), [(0.001, True), (0.2, False), (5.0, False), (1000.0, True)])
+def test_a_joint_against_the_robots_own(factor, told):
+    joint, torque = np.array([1, 2, 3]), np.array([100.0, -50, 20])
+    tests = JointTests(joint, torque, factor * ROBOT.C_theta[:3] * torque)
+    assert codes(tests) == (["unit"] if told else [])

@@ -173,9 +173,27 @@ def test_the_length_goes_from_axis_to_axis():
     """Two parallel, two crossing and two skew axes: a, alpha and d as the modified table defines them."""
     k = np.array([[0, 0, 1], [0, 0, 1], [0, 1, 0], [1, 0, 0]], dtype=float)
     p = np.array([[0, 0, 0], [0.5, 0, 0.2], [0.5, 0, 0.7], [0.5, 0.3, 1.1]])
-    table = dh_from_axes(k, p, np.eye(4))
+    tip = np.eye(4)
+    tip[:3, 3] = p[-1]
+    table = dh_from_axes(k, p, tip)
     np.testing.assert_allclose(table["a"], [0, 0.5, 0, 0.4], atol=1e-12)
     np.testing.assert_allclose(np.abs(table["alpha"]), [0, 0, np.pi / 2, np.pi / 2], atol=1e-12)
     np.testing.assert_allclose(table["d"], [0, 0.7, 0.3, 0], atol=1e-12)
     for T in (table["T_base"], table["T_tool"]):
         np.testing.assert_allclose(T[:3, :3] @ T[:3, :3].T, np.eye(3), atol=1e-15)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_flange_is_the_tip_on_the_last_axis(tmp_path, way):
+    """As robot makers draw it: the last joint turns about x or -x, and the flange's z is that x, 80 mm further out."""
+    last = _joint("2", "b", "c").replace("0 0 1", f"{way} 0 0")
+    tip = (
+        '<joint name="tip" type="fixed"><parent link="d"/><child link="e"/>'
+        '<origin xyz="0.08 0 0" rpy="3.141592653589793 -1.5707963267948966 0"/></joint>'
+    )
+    third = _joint("3", "c", "d").replace("0 0 1", f"{way} 0 0")
+    body = LINKS + '<link name="e"/>' + _joint("1", "a", "b") + last + third + tip
+    robot = read_urdf(_write(tmp_path, body))
+    np.testing.assert_allclose(robot.T_tool, np.eye(4), atol=1e-12)
+    J = rm.geometric_jacobian(robot, [0.3, 0.0, 0.0])
+    np.testing.assert_allclose(J[3:, 2], way * np.array([np.cos(0.3), np.sin(0.3), 0.0]), atol=1e-12)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.steadiness import hasty_turns, passages
 
@@ -83,3 +84,28 @@ def test_joints_of_a_planar_arm_near_its_stretch_run_away():
     assert haste.first == np.flatnonzero(fast)[0] + 1
     assert haste.last == 50
     assert haste.turn == pytest.approx(np.abs(np.diff(theta_2))[fast].sum(), rel=1e-6)
+
+
+def test_an_arm_that_nowhere_can_do_its_task_passes_nothing_by_rounding():
+    """Three slides and two turns, the second about the tool itself: its sixth part of a motion is nobody's."""
+    h = np.pi / 2
+    robot = rm.Robot(
+        name="gantry",
+        convention="modified",
+        alpha=np.array([0, -h, -h, 0, -h]),
+        a=np.zeros(5),
+        d=np.zeros(5),
+        theta_offset=np.array([0, -h, -h, 0, 0]),
+        prismatic=np.array([True, True, True, False, False]),
+        limits_all=np.array([[-2, 2], [-2, 2], [-2, 2], [-3.1, 3.1], [-3.1, 3.1]], dtype=float),
+        C_theta_all=np.full(5, 1e-7),
+    )
+    theta = np.random.default_rng(0).uniform(-1, 1, (60, 5))
+    for q in theta[:5]:
+        moved = [rm.tool_pose(robot, q + side * step)[:3, 2:] for step in 1e-6 * np.eye(5) for side in (1, -1)]
+        slopes = np.reshape(moved, (5, 2, 6)) / 2e-6
+        assert np.linalg.matrix_rank(slopes[:, 0] - slopes[:, 1], tol=1e-6) == 4, (
+            "one motion of tip and axis is missing"
+        )
+    assert passages(rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near="path")) == []
+    assert near_singular(robot, determinant(robot, theta)).all()

@@ -11,6 +11,7 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.io.samples import samples_dir
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.simulation.mapped import map_notes
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=5e-3)
@@ -65,3 +66,25 @@ def test_a_little_off_is_used_and_said():
     assert not run.not_judged.any()
     assert np.abs(run.delta - truth.delta)[run.judged].max() < 0.05 * truth.max_deviation
     assert any(note.code == "map-axis" and "1.0°" in note.message for note in run.notes)
+
+
+def by_turning_springs(robot, theta):
+    """(3, 3) m/N: each joint twisted in turn, by forward kinematics alone."""
+    J = np.stack([(tip(robot, theta + 1e-6 * e) - tip(robot, theta - 1e-6 * e)) / 2e-6 for e in np.eye(robot.n)], -1)
+    return (J * robot.C_theta) @ J.T
+
+
+def tip(robot, theta):
+    return rm.tool_pose(robot, theta)[:3, 3]
+
+
+@pytest.mark.parametrize(("name", "matters"), [("fanuc_r2000ic", True), ("kuka_kr270", False)])
+def test_a_map_says_that_it_holds_for_one_turn_about_the_tool_where_that_matters(name, matters):
+    robot = rm.load_robot(name)
+    x_M = np.array([1.8, 0.0, 0.9, 0.0, 0.0])
+    ways = [inverse_kinematics(robot, pose_from_world(x_M), spin=turn).theta for turn in (0.0, np.pi * 1.5)]
+    C = [by_turning_springs(robot, theta) for theta in ways]
+    assert (np.abs(C[0] - C[1]).max() > 0.2 * np.abs(C[0]).max()) == matters
+    field = MeasuredField(x_M[None, :3], C[0][None], np.zeros((1, 2)))
+    setup = SETUP.replace(robot=robot, measured_map=field)
+    assert ("map-spin" in [note.code for note in map_notes(setup, leaning(0.0, None).path)]) == matters
