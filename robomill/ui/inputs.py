@@ -14,10 +14,11 @@ from typing import Any, Literal
 import pandas as pd
 import streamlit as st
 
-from robomill.errors import ProjectError, RobomillError
+from robomill.errors import ProjectError
 from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
 from robomill.ui.project import read_field, with_field
+from robomill.ui.typed import accept, heard, own, seed, sentence, submit
 
 
 @dataclass(frozen=True)
@@ -88,23 +89,26 @@ def into_setup(path: str, label: str) -> Callable[[Any], None]:
 def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
     """A number box for any value in SI; ``write`` gets what was typed, in SI."""
     key = _key(name, box)
-    seed(key, box.shown(current))
+    shown = seed(key, box.shown(current))
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(box.typed(st.session_state[key])))
+
     # Its own default is what it shows: a box that moves to another column while a run is broken off comes up with its
     # default and answers with it. Only a box without one can be emptied.
-    default = None if box.optional else st.session_state[key]
     st.number_input(
         box.title,
-        value=default,
+        **{"value": None if box.optional else shown, **own(key, "value", shown)},
         key=key,
         step=1 if box.whole else box.step,
         format=box.form,
-        on_change=lambda: submit(key, st.session_state[key], lambda: write(box.typed(st.session_state[key]))),
+        on_change=take,
         help=box.hint,
         disabled=box.disabled,
         placeholder=box.placeholder,
         label_visibility="collapsed" if box.hidden else "visible",
     )
-    sentence(key)
+    heard(key, shown, take)
 
 
 def _key(name: str, box: NumberBox) -> str:
@@ -123,7 +127,8 @@ def choice(
 
     Stacked, none is chosen where ``current`` is None.
     """
-    seed(key, current)
+    shown = seed(key, current)
+    at = list(options).index(shown) if shown in options else None
 
     def take() -> None:
         picked = st.session_state[key]
@@ -139,12 +144,13 @@ def choice(
         "label_visibility": look.label_visibility,
     }
     if look.listed:
-        st.selectbox(label, list(options), **common)
+        st.selectbox(label, list(options), **common, **own(key, "index", at))
     elif look.stacked:
-        st.radio(label, list(options), index=None, **common)
+        st.radio(label, list(options), **{"index": None, **common, **own(key, "index", at)})
     else:
-        st.segmented_control(label, list(options), required=True, width="stretch", **common)
-    sentence(key)
+        more = own(key, "default", shown)
+        st.segmented_control(label, list(options), required=True, width="stretch", **common, **more)
+    heard(key, shown, take)
 
 
 def pick(label: str, key: str, options: Mapping[Any, str], otherwise: Any = None, look: Look = PLAIN) -> Any:
@@ -181,31 +187,35 @@ def several(
     look: Look = LISTED,
 ) -> None:
     """A choice of any number of options, as a list or in a row; ``write`` gets the list of those chosen."""
-    seed(key, list(current))
+    shown = seed(key, list(current))
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(list(st.session_state[key])))
+
     common: dict[str, Any] = {
         "key": key,
         "format_func": lambda k: options[k],
-        "on_change": lambda: submit(key, st.session_state[key], lambda: write(list(st.session_state[key]))),
+        "on_change": take,
         "label_visibility": look.label_visibility,
+        **own(key, "default", shown),
     }
     if look.listed:
         st.multiselect(label, list(options), max_selections=look.most, placeholder=look.placeholder, **common)
     else:
         st.pills(label, list(options), selection_mode="multi", **common)
-    sentence(key)
+    heard(key, shown, take)
 
 
 def switch(label: str, key: str, current: bool, write: Callable[[bool], None], look: Look = PLAIN) -> None:
     """An on/off switch; ``write`` gets the new state."""
-    seed(key, bool(current))
-    st.toggle(
-        label,
-        key=key,
-        help=look.hint,
-        disabled=look.disabled,
-        on_change=lambda: submit(key, st.session_state[key], lambda: write(bool(st.session_state[key]))),
-    )
-    sentence(key)
+    shown = seed(key, bool(current))
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(bool(st.session_state[key])))
+
+    more = own(key, "value", shown)
+    st.toggle(label, key=key, help=look.hint, disabled=look.disabled, on_change=take, **more)
+    heard(key, shown, take)
 
 
 def slider(
@@ -213,7 +223,11 @@ def slider(
 ) -> None:
     """A slider over a number of the view or the set-up, in display units."""
     low, high = float(span.low), float(span.high)
-    seed(key, float(min(max(current, low), high)))
+    shown = seed(key, float(min(max(current, low), high)))
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(float(st.session_state[key])))
+
     st.slider(
         label,
         low,
@@ -224,36 +238,37 @@ def slider(
         help=look.hint,
         disabled=look.disabled,
         label_visibility=look.label_visibility,
-        on_change=lambda: submit(key, st.session_state[key], lambda: write(float(st.session_state[key]))),
+        on_change=take,
+        **own(key, "value", shown),
     )
-    sentence(key)
+    heard(key, shown, take)
 
 
 def stops(label: str, key: str, options: Mapping[Any, str], current: Any, write: Callable[[Any], None]) -> None:
     """A slider over options that stand in an order but not at equal steps; ``write`` gets the chosen key."""
-    seed(key, current)
-    st.select_slider(
-        label,
-        list(options),
-        key=key,
-        format_func=lambda k: options[k],
-        on_change=lambda: submit(key, st.session_state[key], lambda: write(st.session_state[key])),
-    )
-    sentence(key)
-
-
-def text(label: str, key: str, current: str, write: Callable[[str], None], *, lines: int = 1, **shown: Any) -> None:
-    """A line of text, or several; ``write`` gets what was typed, ``shown`` goes to Streamlit."""
-    seed(key, current)
+    shown = seed(key, current)
 
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(st.session_state[key]))
 
+    more = own(key, "value", shown)
+    st.select_slider(label, list(options), key=key, format_func=lambda k: options[k], on_change=take, **more)
+    heard(key, shown, take)
+
+
+def text(label: str, key: str, current: str, write: Callable[[str], None], *, lines: int = 1, **shown: Any) -> None:
+    """A line of text, or several; ``write`` gets what was typed, ``shown`` goes to Streamlit."""
+    begun = seed(key, current)
+
+    def take() -> None:
+        submit(key, st.session_state[key], lambda: write(st.session_state[key]))
+
+    more = {**shown, **own(key, "value", begun)}
     if lines == 1:
-        st.text_input(label, key=key, on_change=take, **shown)
+        st.text_input(label, key=key, on_change=take, **more)
     else:
-        st.text_area(label, key=key, on_change=take, **shown)
-    sentence(key)
+        st.text_area(label, key=key, on_change=take, **more)
+    heard(key, begun, take)
 
 
 def button(label: str, key: str, icon: str, do: Callable[..., Any], *args: Any, **more: Any) -> None:
@@ -357,44 +372,3 @@ def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
 def empty(cell: Any) -> bool:
     """Whether a cell of an edited table holds nothing."""
     return cell is None or cell is pd.NA or (isinstance(cell, float) and cell != cell)
-
-
-def seed(key: str, current: Any) -> None:
-    """Show ``current`` in the widget ``key``, unless something refused is waiting there to be mended."""
-    held = session.store()
-    waiting = held.refused.get(key)
-    known = key in st.session_state and key in held.seeded
-    if waiting is not None and known:
-        return
-    shown = waiting[0] if waiting is not None else current
-    # Written only where it differs: a slider that is being dragged would jump otherwise.
-    if not known or st.session_state[key] != shown:
-        st.session_state[key] = shown
-        held.seeded.add(key)
-
-
-def sentence(key: str) -> None:
-    """The reason why the input at ``key`` was refused, if it was."""
-    waiting = session.store().refused.get(key)
-    if waiting is not None:
-        st.error(waiting[1], icon=":material/error:")
-
-
-def refuse(key: str, typed: Any, reason: str) -> None:
-    """Keep refused input and its reason, to be shown under the widget ``key``."""
-    session.store().refused[key] = (typed, reason)
-
-
-def accept(key: str) -> None:
-    """Forget an earlier refusal at ``key``."""
-    session.store().refused.pop(key, None)
-
-
-def submit(key: str, typed: Any, action: Callable[[], None]) -> None:
-    """Do ``action``; a refusal keeps ``typed`` and its sentence at ``key``, success forgets an earlier one."""
-    try:
-        action()
-    except RobomillError as exc:
-        refuse(key, typed, str(exc))
-    else:
-        accept(key)

@@ -7,6 +7,7 @@ file waiting to be read, the view of a panel) is kept by name: ``keep("milling.q
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import time
 from collections.abc import Callable
@@ -52,7 +53,9 @@ class Store:
 
     ``values`` are kept by name. ``revision`` counts changes that came from outside a table editor, so that editors
     start afresh then. ``seeded`` are the widgets of ``page`` that have been given their value: a widget that returns
-    with its page has lost it.
+    with its page has lost it. ``older`` are project files of an earlier session, to be gone back to after ``past``.
+    ``keeper`` is called after every change. ``returned``: the page was open before this session was (its server had
+    forgotten it), and what its widgets hold beside the project is the edit of that moment.
     """
 
     project: Project
@@ -66,6 +69,15 @@ class Store:
     last_time: float = 0.0
     page: str = ""
     seeded: set[str] = field(default_factory=set)
+    older: list[str] = field(default_factory=list)
+    keeper: Callable[[Store], None] | None = None
+    returned: bool = False
+
+    def put(self, project: Project) -> None:
+        """Put ``project`` in force, and have it kept."""
+        self.project = project
+        if self.keeper is not None:
+            self.keeper(self)
 
 
 def store() -> Store:
@@ -79,6 +91,7 @@ def enter(page: str) -> None:
     """Say which page is running, so that widgets shared by pages are seeded again after a page change."""
     held = store()
     if held.page != page:
+        held.returned = held.returned and not held.page
         held.page = page
         held.seeded.clear()
 
@@ -148,28 +161,29 @@ def replace(new: Project, label: str = "", from_editor: bool = False) -> None:
     now = time.monotonic()
     if not (label and label == held.last_label and held.past and now - held.last_time < ONE_GESTURE_S):
         held.past = [*held.past, held.project][-MAX_HISTORY:]
-    held.project, held.future, held.last_label, held.last_time = new, [], label, now
+    held.future, held.last_label, held.last_time = [], label, now
     if not from_editor:
         held.revision += 1
+    held.put(new)
 
 
 def look(**fields: Any) -> None:
     """Replace fields of the view; not part of the history."""
     held = store()
-    held.project = held.project.replace(view=dataclasses.replace(held.project.view, **fields))
+    held.put(held.project.replace(view=dataclasses.replace(held.project.view, **fields)))
 
 
 def see(**fields: Any) -> None:
     """Replace fields of what the maps look at; not part of the history."""
     held = store()
-    held.project = held.project.replace(maps=dataclasses.replace(maps(), **fields))
+    held.put(held.project.replace(maps=dataclasses.replace(maps(), **fields)))
 
 
 def know(found: Knowledge) -> None:
     """Say how sure the compliances in force are, where that has changed; undo leads back with the compliances."""
     held = store()
     setup = held.project.setup
-    held.project = held.project.replace(knowledge=found.held_by(setup.robot, setup.springs))
+    held.put(held.project.replace(knowledge=found.held_by(setup.robot, setup.springs)))
 
 
 def known(setup: SimulationSetup) -> Knowledge | None:
@@ -191,11 +205,20 @@ def redo() -> None:
 def _step(lists: Callable[[Store], tuple[list[Project], list[Project]]]) -> None:
     held = store()
     source, target = lists(held)
+    if source is held.past and not source:
+        _recall(held)
     if not source:
         return
     target.append(held.project)
-    held.project = source.pop().replace(view=held.project.view, maps=held.project.maps)
+    held.put(source.pop().replace(view=held.project.view, maps=held.project.maps))
     _forget(held)
+
+
+def _recall(held: Store) -> None:
+    """The last state of an earlier session into the past; one that this robomill no longer reads is passed over."""
+    while held.older and not held.past:
+        with contextlib.suppress(RobomillError):
+            held.past.append(project_from_toml(held.older.pop()))
 
 
 def open_preset(name: str) -> None:

@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
-from robomill.ui import inputs, rendered, session
+from robomill.ui import autosave, inputs, rendered, session
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
@@ -25,7 +25,8 @@ LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBo
 <text x="42" y="25" font-family="Source Sans, Source Sans Pro, Helvetica, Arial, sans-serif" font-size="22"
  font-weight="600" letter-spacing="-0.4" fill="{text}">robomill</text></svg>"""
 # What the page looks like is read off the page: the figures must match what is seen. A change asks for one rerun,
-# and the rerun carries the new theme. Nothing is sent while nothing changes.
+# and the rerun carries the new theme. Nothing is sent while nothing changes. A page that had lost its server asks for
+# one, too, before it takes an edit: the server may be another one that knows nothing of what the page shows.
 THEME_WATCH = """
 export default function (component) {
   const { setTriggerValue } = component;
@@ -37,7 +38,15 @@ export default function (component) {
     const now = look();
     if (now !== seen) { seen = now; setTriggerValue('changed', now); }
   }, 400);
-  return () => clearInterval(timer);
+  const state = () => page.getAttribute('data-test-connection-state');
+  let was = state();
+  const watch = new MutationObserver(() => {
+    const lost = was !== 'CONNECTED';
+    was = state();
+    if (lost && was === 'CONNECTED') setTriggerValue('changed', was);
+  });
+  watch.observe(page, { attributes: true, attributeFilter: ['data-test-connection-state'] });
+  return () => { clearInterval(timer); watch.disconnect(); };
 }
 """
 _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css="i { display: none }", js=THEME_WATCH)
@@ -55,10 +64,12 @@ def begin(title: str) -> Project:
     p = palette(dark())
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:
+        autosave.take_up()
         session.enter(title)
     except RobomillError as exc:
         error(exc)
         st.stop()
+    autosave.notices()
     with st.sidebar:
         _sidebar()
         _watch(key="theme.watch", on_changed_change=lambda: None, height=1)  # takes no room
@@ -73,7 +84,7 @@ def dark() -> bool:
 def _sidebar() -> None:
     held = session.store()
     with st.container(horizontal=True, gap="small"):
-        inputs.button("Undo", "undo", "undo", session.undo, disabled=not held.past, width="stretch")
+        inputs.button("Undo", "undo", "undo", session.undo, disabled=not held.past and not held.older, width="stretch")
         inputs.button("Redo", "redo", "redo", session.redo, disabled=not held.future, width="stretch")
     _preset(held.project)
     inputs.seen("Lengths", "view.units", UNIT_CHOICES)
@@ -117,6 +128,8 @@ def _files(held: session.Store) -> None:
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])
+    if said := autosave.trouble():
+        st.caption(said)
 
 
 def _open(data: bytes, name: str) -> None:

@@ -14,7 +14,7 @@ from robomill.provenance import Finding
 from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import inputs, pieces, session
+from robomill.ui import inputs, pieces, session, typed
 from robomill.ui.box import NumberBox
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
@@ -137,7 +137,7 @@ def _show_refused(refused: Refused, dark: bool) -> None:
 def _mend(refused: Refused) -> None:
     _leave()
     session.keep(MODE, "edit")
-    inputs.refuse(TEXT, refused.source.text, refused.reason)
+    typed.refuse(TEXT, refused.source.text, refused.reason)
 
 
 def _leave() -> None:

@@ -1,0 +1,38 @@
+// Holds the browser's key in a cookie and the tab's name in the tab, and says the name to the server.
+const YEAR = 365 * 24 * 3600;
+const SECURE = location.protocol === 'https:' ? '; Secure' : '';
+const held = (name) => document.cookie.split('; ').find((each) => each.startsWith(name + '='))?.slice(name.length + 1) ?? '';
+const hold = (name, value) => { document.cookie = `${name}=${value}; path=/; SameSite=Strict; max-age=${YEAR}${SECURE}`; };
+const made = () => Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, '0')).join('');
+const kept = (value, name = 'tab') => {  // the tab's own, through reloads; the page's where the browser forbids it
+  const key = `robomill.${name}`;
+  try {
+    if (value) sessionStorage.setItem(key, value);
+    return sessionStorage.getItem(key) ?? '';
+  } catch { return window[key] = value || window[key] || ''; }
+};
+
+export default function ({ data, parentElement, setStateValue }) {
+  let tab = kept() || made();
+  if (data.moved && data.moved[0] === `tab-${tab}`) tab = data.moved[1].slice(4);
+  kept(tab);
+  let said = tab;
+  if (data.key) {
+    const other = held('robomill_key');
+    const strange = /^[0-9a-f]{64}$/.test(other) && other !== data.key && !window.robomillMet;
+    // Two tabs that met the server at the same moment: the one that comes second begins again with the first one's key.
+    if (strange && kept('', 'again') !== 'once') { kept('once', 'again'); location.reload(); return; }
+    if (!strange) hold('robomill_key', data.key);
+    if (held('robomill_key') !== data.key) said = '';
+  }
+  window.robomillMet = true;
+  if (parentElement.robomillSaid !== said) {
+    parentElement.robomillSaid = said;
+    setStateValue('tab', said);
+  }
+  const front = () => { if (said && document.visibilityState === 'visible') hold('robomill_tab', tab); };
+  front();
+  addEventListener('focus', front);
+  document.addEventListener('visibilitychange', front);
+  return () => { removeEventListener('focus', front); document.removeEventListener('visibilitychange', front); };
+}

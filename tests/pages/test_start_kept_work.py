@@ -1,0 +1,207 @@
+"""Work that lives on beyond the page, told on the start page: sessions of one browser, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from conftest import ROOT, NoPictures, store, words
+from streamlit.testing.v1 import AppTest
+
+from robomill.ui import autosave, rendered
+from robomill.ui.keeping import Settings
+from robomill.ui.shelf import Shelf
+from robomill.ui.writer import Writer
+from robomill.viz.render_queue import RenderQueue
+
+KEY, TAB, OTHER = "a1" * 32, "0" * 16, "1" * 16
+Visit = Callable[..., AppTest]
+
+
+@pytest.fixture
+def writer(tmp_path: Path) -> Writer:
+    return Writer(Shelf(Settings(folder=tmp_path / "work")))
+
+
+@pytest.fixture
+def visit(monkeypatch: pytest.MonkeyPatch, writer: Writer) -> Visit:
+    """A new session of a browser that holds ``KEY``: a page that was loaded, and a moment later says its tab.
+
+    ``cut_off``: a page that was open before its session, and says its tab at once.
+    """
+    queue = RenderQueue(NoPictures())
+    monkeypatch.setattr(rendered, "queue", lambda: queue)
+    monkeypatch.setattr(autosave, "writer", lambda: writer)
+    said: dict[str, str | None] = {}
+    monkeypatch.setattr(autosave, "_page", lambda **_: SimpleNamespace(**said))
+    monkeypatch.setattr(autosave, "_cookie", lambda name: {"robomill_key": KEY}.get(name, ""))
+
+    def load(tab: str = TAB, *, cut_off: bool = False) -> AppTest:
+        assert writer.flush(20.0)
+        said["tab"] = tab if cut_off else None
+        app = AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()
+        said["tab"] = tab
+        app.run()
+        assert not app.exception
+        return app
+
+    return load
+
+
+def inches(app: AppTest) -> None:
+    app.button_group(key="view.units").set_value("in").run()
+
+
+def other_preset(app: AppTest) -> None:
+    app.selectbox(key="project.preset").set_value("pocket_arcs").run()
+
+
+def rename(app: AppTest, writer: Writer, name: str) -> None:
+    """An edit of the set-up that no preset has."""
+    held = store(app)
+    held.past = [*held.past, held.project]
+    held.put(held.project.replace(setup=held.project.setup.replace(name=name, tolerance=1e-4)))
+    assert writer.flush(20.0)
+
+
+def test_an_edit_is_back_after_a_reload_and_undo_leads_behind_it(visit: Visit, writer: Writer) -> None:
+    first = visit()
+    assert "is back" not in words(first)
+    before = store(first).project.digest()
+    rename(first, writer, "mine")
+    again = visit()
+    assert "is back" in words(again)
+    assert store(again).project.digest() == store(first).project.digest()
+    again.button(key="undo").click().run()
+    assert store(again).project.digest() == before
+    assert "is back" not in words(again)
+
+
+def test_an_untouched_preset_is_no_work_but_how_it_was_looked_at_stays(visit: Visit) -> None:
+    app = visit()
+    other_preset(app)
+    inches(app)
+    again = visit()
+    assert store(again).project.preset == "pocket_arcs"
+    assert store(again).project.view.units == "in"
+    assert "is back" not in words(again)
+
+
+def test_who_only_looks_around_leaves_nothing_on_the_server(visit: Visit, writer: Writer) -> None:
+    visit()
+    assert writer.flush(5.0)
+    assert not writer.shelf.settings.folder.exists()
+
+
+def test_what_came_back_can_be_discarded_and_had_again(visit: Visit, writer: Writer) -> None:
+    rename(visit(), writer, "mine")
+    app = visit()
+    app.button(key="autosave.delete").click().run()
+    assert store(app).project.setup.name != "mine"
+    assert "is back" not in words(app)
+    app.button(key="undo").click().run()
+    assert store(app).project.setup.name == "mine"
+
+
+def test_words_are_put_away_and_stay_away(visit: Visit, writer: Writer) -> None:
+    rename(visit(), writer, "mine")
+    app = visit()
+    app.button(key="autosave.check").click().run()
+    assert "is back" not in words(app.run())
+    assert store(app).project.setup.name == "mine"
+
+
+def test_a_new_tab_begins_with_the_last_work_and_each_keeps_its_own(visit: Visit, writer: Writer) -> None:
+    first = visit()
+    rename(first, writer, "of the first tab")
+    second = visit(OTHER)
+    assert "each goes its own way" in words(second)
+    rename(second, writer, "of the second tab")
+    rename(first, writer, "again of the first tab")
+    assert store(visit(OTHER)).project.setup.name == "of the second tab"
+    assert store(visit(TAB)).project.setup.name == "again of the first tab"
+
+
+def test_a_doubled_tab_is_told_and_can_take_either(visit: Visit, writer: Writer) -> None:
+    first, second = visit(), visit()
+    rename(first, writer, "first")
+    rename(second, writer, "second")
+    second.run()
+    assert "Another tab went on with this work" in words(second)
+    assert store(second).project.setup.name == "second"
+    second.button(key="autosave.swap_horiz").click().run()
+    assert store(second).project.setup.name == "first"
+    second.button(key="undo").click().run()
+    assert store(second).project.setup.name == "second"
+
+
+def test_a_page_whose_server_was_restarted_says_so_and_has_its_own_work(visit: Visit, writer: Writer) -> None:
+    rename(visit(), writer, "mine")
+    rename(visit(OTHER), writer, "of another tab")
+    app = visit(cut_off=True)
+    assert "was cut off from its server" in words(app)
+    assert store(app).project.setup.name == "mine"
+
+
+def test_a_page_that_was_cut_off_and_of_which_nothing_is_kept_does_not_take_another_tabs_work(
+    visit: Visit, writer: Writer
+) -> None:
+    rename(visit(), writer, "mine")
+    app = visit(OTHER, cut_off=True)
+    assert "Nothing was kept of it" in words(app)
+    assert store(app).project.setup.name != "mine"
+
+
+def test_a_damaged_entry_is_one_quiet_sentence_and_work_goes_on(visit: Visit, writer: Writer) -> None:
+    rename(visit(), writer, "mine")
+    (file,) = writer.shelf.settings.folder.rglob("*.toml")
+    file.write_bytes(file.read_bytes()[:-20])
+    app = visit()
+    assert "could not be opened" in words(app)
+    assert "is damaged" in words(app)
+    rename(app, writer, "new")
+    assert store(visit()).project.setup.name == "new"
+
+
+def test_what_this_robomill_does_not_read_is_said_handed_over_and_not_written_over(
+    visit: Visit, writer: Writer
+) -> None:
+    writer.shelf.put(KEY, f"tab-{TAB}", ("old", 0.0), ['format = "of another time"\n'])
+    app = visit()
+    assert "Your work could not be opened" in words(app)
+    assert app.get("download_button")
+    rename(app, writer, "new")
+    (aside,) = writer.shelf.settings.folder.rglob("*.aside")
+    assert "of another time" in aside.read_text()
+    assert store(visit()).project.setup.name == "new"
+
+
+def test_a_server_that_cannot_write_says_so_where_one_saves(visit: Visit, writer: Writer, tmp_path: Path) -> None:
+    (tmp_path / "work").write_text("a file where the folder should be")
+    app = visit()
+    rename(app, writer, "mine")
+    assert "could not be kept on the server" in words(app.run())
+    assert store(app).project.setup.name == "mine"
+
+
+def test_a_browser_without_cookies_is_told_where_one_saves(visit: Visit, writer: Writer) -> None:
+    app = visit("")
+    assert "takes no cookies" in words(app.run())
+    rename(app, writer, "mine")
+    assert not writer.shelf.settings.folder.exists()
+
+
+def test_a_server_that_keeps_nothing_says_so_where_one_saves(visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(autosave, "writer", lambda: None)
+    app = visit()
+    assert "keeps no work beyond the page" in words(app)
+    assert "was cut off" in words(visit(cut_off=True))
+
+
+def test_a_strange_key_is_replaced(visit: Visit, writer: Writer, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(autosave, "_cookie", lambda name: "../../etc/passwd")
+    rename(visit(), writer, "mine")
+    (file,) = writer.shelf.settings.folder.rglob("*.toml")
+    assert file.parent.parent == writer.shelf.settings.folder
