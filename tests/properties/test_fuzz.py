@@ -103,7 +103,7 @@ def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
         ("program.MAX_MOVES", 20_000),
         ("program.FLUSH", 512),
         ("arcs.MAX_POINTS", 200_000),
-        ("cycles.MAX_PECKS", 500),
+        ("cycle_rules.MAX_PECKS", 500),
         ("threads.MAX_PASSES", 300),
     ):
         monkeypatch.setattr(base + name, value)

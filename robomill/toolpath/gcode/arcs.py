@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.units import from_si
@@ -71,7 +71,16 @@ class Arcs:
         pace = np.hypot(r0, aside) + 4.0 * np.hypot(0.5 * (r0 + r1), aside) + np.hypot(r1, aside)
         return np.abs(self.sweep) * pace / 6.0
 
-    @property
+    def may_leave(self, lower: FloatArray, upper: FloatArray) -> BoolArray:
+        """(m,) True unless an arc's whole circle lies within ``lower`` and ``upper`` (3,), which hold its ends."""
+        rows, reach = np.arange(len(self)), np.maximum(*self._polar[1:])
+        leaves = np.zeros(len(self), dtype=bool)
+        for axis in axes(self.plane)[:2]:
+            middle = self.centre[rows, axis]
+            leaves |= (middle - reach < lower[axis]) | (middle + reach > upper[axis])
+        return leaves
+
+    @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest corner (m, 3) of each arc, its extreme points included.
 
@@ -117,7 +126,7 @@ def _peak(a: FloatArray, wider: FloatArray, rho: FloatArray, whole: FloatArray) 
     for _ in range(20):
         radius = np.maximum(wider - rho * psi, 1e-300)
         off = psi + np.arctan2(rho, radius) - a
-        better = np.clip(psi - off / (1.0 + rho**2 / (radius**2 + rho**2)), 0.0, whole)
+        better = np.clip(psi - off / (1.0 + (rho / np.hypot(radius, rho)) ** 2), 0.0, whole)
         moved, psi = np.abs(better - psi), better
         if moved.max(initial=0.0) < 1e-13:
             break

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.cycle_rules import is_cycle
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc
 from robomill.toolpath.gcode.words import Block
@@ -59,7 +60,6 @@ def check_words(block: Block) -> list[tuple[str, str]]:
     """Words without a use, as (letter, who would use it). Raises GCodeError for senseless combinations."""
     words, motion = block.words, block.motion
     non_modal = block.g.get(modal.NON_MODAL, -1)
-    is_cycle = motion in modal.CYCLES
     if non_modal == 40:
         if "p" not in words:
             raise block.refuse("G4 needs P, its dwell in seconds.")
@@ -69,7 +69,7 @@ def check_words(block: Block) -> list[tuple[str, str]]:
             raise block.refuse("G4 and an arc on one line both use P; put them on two lines.")
     if non_modal == 530 and motion not in (0, 10):
         raise block.refuse("G53 needs G0 or G1.")
-    if is_cycle:
+    if is_cycle(motion):
         for letter in "abc":
             if letter in words:
                 raise block.refuse(f"{g_name(motion)} takes no {letter.upper()}; turn the axis on a line before.")
@@ -94,7 +94,7 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
     non_modal, compensation = g.get(modal.NON_MODAL, -1), g.get(modal.COMPENSATION, -1)
     data = non_modal == 100
     arc, spline, thread = is_arc(motion), motion in (50, 51), motion == 760
-    cycle = motion in modal.CYCLES
+    cycle = is_cycle(motion)
     io, user, orient = m.get(modal.IO, -1), modal.USER in m, m.get(modal.SPINDLE) == 19
     return [
         ("d", compensation in _COMPENSATION_ON or g.get(modal.SPINDLE_MODE) == 960, "G41, G42 or G96"),

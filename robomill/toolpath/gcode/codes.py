@@ -5,9 +5,9 @@ G codes are ten times their number (G41.1 -> 411).
 
 from __future__ import annotations
 
-LETTERS = "xyzabcijkrfsp"
-"""The words of a line as the rules take them: values of these letters, NaN where not given,"""
-X, I, J, K, R, F, S, P = (LETTERS.index(letter) for letter in "xijkrfsp")  # noqa: E741
+LETTERS = "xyzabcijkrfspql@^"
+"""The words of a line as the rules take them: values of these letters (``@ ^``: polar), NaN where not given,"""
+X, _, Z, A, B, C, I, J, K, R, F, S, P, Q, L, RADIUS, ANGLE = range(len(LETTERS))  # noqa: E741
 G_GROUP, M_GROUP, WIDTH = len(LETTERS), len(LETTERS) + 16, len(LETTERS) + 27
 """then the G codes by modal group from ``G_GROUP`` on and the M codes by modal group from ``M_GROUP`` on."""
 
@@ -51,7 +51,6 @@ M_GROUPS: dict[int, int] = {
     for code in codes
 }
 
-CYCLES = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890})
 PROBES = frozenset({382, 383, 384, 385})
 NEEDS_AXES = frozenset({100, 280, 300, 520, 920})
 """Non-modal words that use the axis words of their line."""

@@ -6,11 +6,12 @@ import math
 from typing import Any
 
 from robomill.toolpath.gcode import codes as modal
-from robomill.toolpath.gcode import cycles, moves, offsets, splines, threads
+from robomill.toolpath.gcode import moves, offsets, splines, threads
 from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.cycle_rules import is_cycle
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.mode_rules import dwell, set_modes, set_plane, set_rates, switch
-from robomill.toolpath.gcode.motion_rules import MOST
+from robomill.toolpath.gcode.mode_rules import set_modes, set_plane, set_rates, switch
+from robomill.toolpath.gcode.motion_rules import MOST, dwell
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 
@@ -160,7 +161,7 @@ def _non_modal(machine: Machine, block: Block, code: int) -> None:
 
 def _move(machine: Machine, block: Block) -> None:
     code = block.motion
-    if code not in modal.CYCLES:
+    if not is_cycle(code):
         machine.initial_level = math.nan
     if code in (0, 10, 20, 30):
         moves.move(machine, block)
@@ -168,8 +169,8 @@ def _move(machine: Machine, block: Block) -> None:
         moves.in_step(machine, block)
     elif code == 800:
         machine.motion = 800
-    elif code in modal.CYCLES:
-        cycles.cycle(machine, block)
+    elif is_cycle(code):
+        moves.drill(machine, block)
     elif code in modal.PROBES:
         _probe(machine, block)
     elif code in (50, 51, 52):

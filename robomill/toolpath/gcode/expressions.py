@@ -8,6 +8,7 @@ import re
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import operator_rules as rules
 from robomill.toolpath.gcode import value_rules
+from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.parameters import COUNT, Parameters
 from robomill.toolpath.gcode.value_rules import MAX_DEPTH
 
@@ -19,7 +20,7 @@ SENTENCES = {
     rules.TOO_DEEP: f"brackets, signs or # are nested more than {MAX_DEPTH} deep; simplify the expression.",
     rules.NOT_CLOSED: "an expression is not closed; add ].",
     rules.NO_OPERATOR: "found {rest!r} in an expression; expected an operator or ].",
-    rules.NO_FUNCTION: "found {rest!r} where a number should be.",
+    rules.NO_FUNCTION: "found {rest!r} where a number should be; expected digits, [ ], a # or a function.",
     rules.NO_ARGUMENT: "{function} needs its argument in [ ].",
     rules.ONE_ARGUMENT: "ATAN needs two arguments: ATAN[y]/[x].",
     rules.EXISTS_OF_WHAT: "EXISTS needs a parameter: EXISTS[#<name>].",
@@ -44,8 +45,8 @@ class Reader:
     Every method raises GCodeError naming the line.
     """
 
-    def __init__(self, text: str, line: int, store: Parameters) -> None:
-        self.text = text
+    def __init__(self, text: str, line: int, store: Parameters, raw: str = "") -> None:
+        self.text, self.raw = text, raw or text
         self.line = line
         self.at = 0
         self.store = store
@@ -100,6 +101,9 @@ class Reader:
         return found[0][1:-1] if found is not None else ""
 
     def _refused(self, problem: int, at: int) -> GCodeError:
+        foreign = said_of(self.raw, self.text, at) if problem == rules.NO_FUNCTION else ""
+        if foreign:
+            return self.refuse(foreign)
         a, b, operator = self.store.arrays.figures
         number = _NUMBER.match(self.text, at) or ("", "", "")
         return self.refuse(

@@ -67,7 +67,7 @@ class Interpreter(OWords):
         if text[0] == "%":
             self._percent(index, text)
             return
-        reader = Reader(text, line, machine.store)
+        reader = Reader(text, line, machine.store, raw)
         if text[0] == "/":
             machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if text[0] in "/n":

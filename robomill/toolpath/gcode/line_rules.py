@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from robomill.toolpath.gcode import codes
-from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH, F, P, S
+from robomill.toolpath.gcode.codes import ANGLE, G_GROUP, LETTERS, M_GROUP, RADIUS, WIDTH, F, L, S
 from robomill.toolpath.gcode.operator_rules import whole
 from robomill.toolpath.gcode.parameters import MAX_SETTINGS
 from robomill.toolpath.gcode.value_rules import (
@@ -35,7 +35,7 @@ MAX_LINE = 100_000
 NOT_PLAIN = -1
 
 PLAIN_G = (
-    *(0, 10, 20, 30, 800),
+    *(0, 10, 20, 30, 730, 740, *range(800, 900, 10)),
     *(170, 180, 190, 200, 210, 400, 610, 611, 640, 900, 901, 910, 911, 930, 940, 950, 970, 980, 990),
     *(code for code, group in codes.G_GROUPS.items() if group == codes.COORDINATES),
 )
@@ -97,9 +97,11 @@ def _column(code, number: float):
         group = _M_GROUPS[near] if near >= 0 else -1
         return (M_GROUP + group if group >= 0 else -1), float(near)
     column = _COLUMNS[code]
-    if column == P:  # of dwells, which dialects count in their ways, and of arcs of several turns
+    if column in (RADIUS, ANGLE) or (number < 0.0 and column in (F, S, L)):
         return -1, number
-    return (-1 if number < 0.0 and column in (F, S) else column), number
+    if column == L:
+        number = whole(number)
+    return (-1 if math.isnan(number) else column), number
 
 
 def comment_end(text, at, end):

@@ -10,6 +10,7 @@ import math
 from typing import Any
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.codes import LETTERS
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
@@ -71,7 +72,7 @@ class Machine:
         self.length_of: Tool | None = None
         self.lifts: list[tuple[int, list[float]]] = []
         self.mist = self.flood = False
-        self.cycle: dict[str, float] = {}
+        self.cycle = [math.nan] * len(LETTERS)
         self.initial_level = math.nan
         self.compensation: Any = None
         self.arc_not_allowed = False

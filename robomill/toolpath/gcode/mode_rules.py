@@ -7,7 +7,8 @@ from __future__ import annotations
 import math
 
 from robomill.toolpath.gcode import codes
-from robomill.toolpath.gcode.codes import G_GROUP, M_GROUP, F, I, J, K, R, S, X
+from robomill.toolpath.gcode.codes import G_GROUP, M_GROUP, A, B, C, F, I, J, K, L, P, Q, R, S, X
+from robomill.toolpath.gcode.cycle_rules import cycle, is_cycle, pecks, takes_dwell
 from robomill.toolpath.gcode.line_rules import apply_settings, read_line
 from robomill.toolpath.gcode.motion_rules import (
     INVERSE_TIME,
@@ -69,13 +70,6 @@ def set_plane(m, w) -> None:
         m.plane = int(w[PLANE]) // 10
 
 
-def dwell(m, seconds: float) -> None:
-    """G4 and the dwells of cycles."""
-    m.dwells += 1
-    m.dwell_time += max(seconds, 0.0)
-    m.waited += max(seconds, 0.0)
-
-
 def system_code(system: int) -> int:
     """The G code of a coordinate system 1 to 9: G54 to G59.3."""
     return 530 + 10 * system if system < 7 else 584 + system
@@ -85,28 +79,43 @@ def run(m, s, text, first: int, count: int, rows) -> int:
     """How many of ``count`` lines from ``first`` on are made into ``rows``, of which ``m.moves`` are written.
 
     Up to the first line that is not plain, that is refused or that means more than these rules. That one has changed
-    nothing that doing it again would not; the interpreter reads it and says what is wrong. A line makes one move.
+    nothing that doing it again would not; the interpreter reads it and says what is wrong.
     """
     for i in range(first, first + count):
+        if m.moves == len(rows):
+            return i - first
         settings = read_line(s, text.codes, text.starts[i], text.starts[i + 1] - 1)
         if settings > 0:
             apply_settings(s, settings)
-        elif settings < 0 or not _line(m, s.words, s.end, rows[m.moves], i + 1):
+        elif settings < 0 or not _line(m, s.words, s.end, rows, i + 1):
             return i - first
     return count
 
 
-def _line(m, w, end, row, line: int) -> bool:
+def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
+    """True if a line has only words that its motion (-1: none) uses; cycles of which more is to be said are not."""
+    if is_cycle(motion):
+        turns = not (math.isnan(w[A]) and math.isnan(w[B]) and math.isnan(w[C]))
+        if turns or has_centre or motion in (740, 840, 870, 880):
+            return False
+        return has_axes and (takes_dwell(motion) or math.isnan(w[P])) and (pecks(motion) or math.isnan(w[Q]))
+    if not (math.isnan(w[P]) and math.isnan(w[Q]) and math.isnan(w[L])):
+        return False
+    if is_arc(motion):
+        return True
+    if has_centre or not math.isnan(w[R]):
+        return False
+    return motion in (RAPID, LINE) or (motion in (-1, NO_MOTION) and not has_axes)
+
+
+def _line(m, w, end, rows, line: int) -> bool:
     """Do a plain line; False if it is left to the interpreter."""
     has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
     has_axes = False
     for axis in range(6):
         has_axes = has_axes or not math.isnan(w[X + axis])
     motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[MOTION]) else int(w[MOTION])
-    arc, ends = is_arc(motion), motion == NO_MOTION and not has_axes
-    if not arc and (has_centre or not math.isnan(w[R]) or not (ends or motion in (-1, RAPID, LINE))):
-        return False
-    if motion == -1 and has_axes:  # words that no motion takes
+    if not _takes(w, motion, has_axes, has_centre):
         return False
     if not (math.isnan(w[UNITS]) or w[UNITS] == m.unit_code):
         return False
@@ -118,13 +127,15 @@ def _line(m, w, end, row, line: int) -> bool:
     switch(m, w)
     set_plane(m, w)
     set_modes(m, w)
-    if ends:
+    if motion == NO_MOTION:
         m.motion, m.initial_level = NO_MOTION, math.nan
-    if motion == -1 or ends:
+    if motion in (-1, NO_MOTION):
         return True
-    if check_move(m, w, motion, False) != 0:
+    if is_cycle(motion):
+        return cycle(m, w, motion, line, end, rows) == 0
+    if check_move(m, w, motion) != 0 or end_point(m, w, m.p, end) != 0:
         return False
-    end_point(m, w, m.p, end)
+    row = rows[m.moves]
     if make_move(m, w, motion, end, row) != 0:
         return False
     row.line = line

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from robomill.toolpath.gcode.codes import F, I, J, K, P, R, X
+from robomill.toolpath.gcode.codes import ANGLE, RADIUS, F, I, J, K, P, R, X
 from robomill.units import from_si, to_si
 
 RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE = 0, 10, 20, 30
@@ -55,7 +55,9 @@ _TURN = 2.0 * math.pi
     ARC_OFF_ITS_CIRCLE,
     RADIUS_TO_START,
     RADIUS_TOO_SMALL,
-) = range(1, 15)
+    NO_ANGLE,
+    NO_DIRECTION,
+) = range(1, 17)
 """Why a move is refused."""
 
 
@@ -122,14 +124,40 @@ def from_plane(plane: int, u: float, v: float, w: float):
     return (v, w, u) if plane == 18 else (w, u, v)
 
 
-def end_point(m, w, base, end) -> None:
-    """``end`` (6,): where the axis words lead from ``base``, in the current coordinate system."""
+def dwell(m, seconds: float) -> None:
+    """G4 and the dwells of cycles."""
+    m.dwells += 1
+    m.dwell_time += max(seconds, 0.0)
+    m.waited += max(seconds, 0.0)
+
+
+def end_point(m, w, base, end) -> int:
+    """``end`` (6,): where the words lead from ``base``, in the current coordinate system."""
     for axis in range(6):
         word = w[X + axis]
         if math.isnan(word):
             end[axis] = base[axis]
         else:
             end[axis] = word if m.absolute else base[axis] + word
+    return _polar(m, w, end) if is_polar(w) else 0
+
+
+def is_polar(w) -> bool:
+    """True for a line whose end is given by its distance ``@`` from the origin or its angle ``^``."""
+    return not (math.isnan(w[RADIUS]) and math.isnan(w[ANGLE]))
+
+
+def _polar(m, w, end) -> int:
+    """Polar words say where it ends, or what is added (G91); what is not given stays."""
+    if end[0] == 0.0 and end[1] == 0.0 and (math.isnan(w[ANGLE]) or not m.absolute):
+        return NO_ANGLE if m.absolute else NO_DIRECTION
+    radius, angle = math.hypot(end[0], end[1]), math.atan2(end[1], end[0])
+    if not math.isnan(w[RADIUS]):
+        radius = w[RADIUS] if m.absolute else radius + w[RADIUS]
+    if not math.isnan(w[ANGLE]):
+        angle = math.radians(w[ANGLE]) if m.absolute else angle + math.radians(w[ANGLE])
+    end[0], end[1] = radius * math.cos(angle), radius * math.sin(angle)
+    return 0
 
 
 def rotate(x: float, y: float, degrees: float):
@@ -287,11 +315,11 @@ def write_arc(m, end, middle, turn: int, v_f: float, row) -> None:
 
 
 # --- a line
-def check_move(m, w, motion: int, polar: bool) -> int:
-    """Whether the words of a line allow G0, G1, G2 or G3. ``polar``: its end is given in polar words."""
+def check_move(m, w, motion: int) -> int:
+    """Whether the words of a line allow G0, G1, G2 or G3."""
     if is_arc(motion):
         first, second, _ = axes(m.plane)
-        return check_arc(m, w, polar or not (math.isnan(w[X + first]) and math.isnan(w[X + second])))
+        return check_arc(m, w, is_polar(w) or not (math.isnan(w[X + first]) and math.isnan(w[X + second])))
     return check_feed(m, w) if motion == LINE else 0
 
 
@@ -304,11 +332,13 @@ def make_move(m, w, motion: int, end, row) -> int:
         if refusal != 0:
             return refusal
         turn = turns_of(w, motion)
-        inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
+        if m.feed_mode == INVERSE_TIME:
+            inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
         row.plane = m.plane
         write_arc(m, end, from_plane(m.plane, u, v, m.p[third]), turn, feed_speed(m), row)
     elif motion == LINE:
-        inverse_time(m, w, straight_length(m.p, end))
+        if m.feed_mode == INVERSE_TIME:
+            inverse_time(m, w, straight_length(m.p, end))
         write_straight(m, FEED, end, feed_speed(m), row)
     else:
         write_straight(m, TRAVERSE, end, 0.0, row)

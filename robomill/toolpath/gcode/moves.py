@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+from robomill.toolpath.gcode import cycle_rules as cycles
 from robomill.toolpath.gcode import motion_rules as rules
-from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, g_name
+from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, Q, g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.program import FEED, TAP, Move
+from robomill.toolpath.gcode.program import FEED, TAP, Move, Rows
 from robomill.toolpath.gcode.words import Block
 from robomill.units import format_si
 
@@ -27,8 +28,22 @@ SENTENCES = {
     "{figures[1]} at the end; they may differ by {figures[2]}.",
     rules.RADIUS_TO_START: "{name} with R ends where it starts; a full circle needs I, J or K.",
     rules.RADIUS_TOO_SMALL: "{name} cannot reach its end: R is {figures[0]}, half the distance is {figures[1]}.",
+    rules.NO_ANGLE: "@ at the origin needs an angle ^.",
+    rules.NO_DIRECTION: "incremental polar coordinates have no direction at the origin; move away first.",
+    cycles.CYCLE_IN_INVERSE_TIME: "{name} cannot be used in inverse time mode (G93); use G94 first.",
+    cycles.NO_CLEARANCE: "{name} needs R, its clearance plane.",
+    cycles.NO_BOTTOM: "{name} needs {third}, the bottom of the hole.",
+    cycles.REPEATS: f"{{name}} has L{{words[l]:g}}; expected 1 to {cycles.MAX_REPEATS} repeats.",
+    cycles.NO_DWELL: "{name} needs P, its dwell in seconds.",
+    cycles.NO_PECK: "{name} needs Q, its depth per peck.",
+    cycles.PECK_OF_NOTHING: "{name} has Q{words[q]:g}; the depth per peck must be above 0.",
+    cycles.BACK_BORE_INCOMPLETE: "{name} needs {missing}.",
+    cycles.SPINDLE_STANDS: "{name} needs a turning spindle; start it with M3 or M4.",
+    cycles.WRONG_SPINDLE: "{name} needs the spindle turning with {sense}.",
+    cycles.CLEARANCE_BELOW_BOTTOM: "{name}: R is below {third}, the bottom of the hole; R must not be below it.",
+    cycles.TOO_MANY_PECKS: f"Q{{peck:g}} would need more than {cycles.MAX_PECKS} pecks; give a larger Q.",
 }
-"""What is said for a code of ``motion_rules``."""
+"""What is said for a code of ``motion_rules`` or ``cycle_rules``."""
 
 
 def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
@@ -41,8 +56,12 @@ def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
             name=name or g_name(block.motion),
             plane=machine.plane,
             across="IJK"[third],
-            missing="IJK"[second] if "ijk"[first] in block.words else "IJK"[first],
+            third="XYZ"[third],
+            missing=next(("IJK"[a] for a in (first, second, third) if "ijk"[a] not in block.words), ""),
             ends=f"{'XYZ'[min(first, second)]} or {'XYZ'[max(first, second)]}",
+            words=block.words,
+            peck=machine.cycle[Q],
+            sense="M3" if block.motion == 840 else "M4",
             figures=[format_si(value * machine.factor, "mm", 4) for value in machine.figures],
         )
     )
@@ -66,23 +85,18 @@ def need_feed(machine: Machine, block: Block, name: str) -> None:
     demand(machine, block, rules.check_feed(machine, plain_words(block)), name)
 
 
-def _is_polar(block: Block) -> bool:
-    return "@" in block.words or "^" in block.words
-
-
 def find_end(machine: Machine, block: Block, words: list[float] | None = None) -> list[float]:
     """Where the line leads: (x, y, z, a, b, c) in the current coordinate system. ``words``: its plain words."""
+    words = words or plain_words(block)
     if block.g.get(NON_MODAL) == 530:
-        if _is_polar(block):
+        if rules.is_polar(words):
             raise block.refuse("polar coordinates cannot be used with G53.")
         return _machine_end(machine, block.words)
     base = machine.p
     if machine.compensation is not None and machine.compensation.programmed is not None:
         base = machine.compensation.programmed_point(machine)
     end = [0.0] * 6
-    rules.end_point(machine, words or plain_words(block), base, end)
-    if _is_polar(block):
-        end[0], end[1] = (polar if machine.absolute else polar_step)(block, end[0], end[1])
+    demand(machine, block, rules.end_point(machine, words, base, end))
     return end
 
 
@@ -100,29 +114,10 @@ def _machine_end(machine: Machine, words: dict[str, float]) -> list[float]:
     return end
 
 
-def polar(block: Block, x: float, y: float) -> tuple[float, float]:
-    """Absolute polar words ``@`` radius and ``^`` angle; what is not given stays."""
-    words = block.words
-    if "^" not in words and x == 0 and y == 0:
-        raise block.refuse("@ at the origin needs an angle ^.")
-    radius = words.get("@", math.hypot(x, y))
-    angle = math.radians(words["^"]) if "^" in words else math.atan2(y, x)
-    return radius * math.cos(angle), radius * math.sin(angle)
-
-
-def polar_step(block: Block, x: float, y: float) -> tuple[float, float]:
-    """Incremental polar words: ``@`` adds to the radius, ``^`` to the angle."""
-    if x == 0 and y == 0:
-        raise block.refuse("incremental polar coordinates have no direction at the origin; move away first.")
-    radius = math.hypot(x, y) + block.words.get("@", 0.0)
-    angle = math.atan2(y, x) + math.radians(block.words.get("^", 0.0))
-    return radius * math.cos(angle), radius * math.sin(angle)
-
-
 def move(machine: Machine, block: Block) -> None:
     """G0, G1, G2 and G3."""
     words = plain_words(block)
-    demand(machine, block, rules.check_move(machine, words, block.motion, _is_polar(block)))
+    demand(machine, block, rules.check_move(machine, words, block.motion))
     end = find_end(machine, block, words)
     compensation = machine.compensation
     is_arc = rules.is_arc(block.motion)
@@ -140,6 +135,22 @@ def move(machine: Machine, block: Block) -> None:
     row = Move(block.line)
     demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
     machine.recorder.add(row)
+
+
+def drill(machine: Machine, block: Block) -> None:
+    """G73, G74 and G81 to G89."""
+    machine.need_compensation_off(block, g_name(block.motion))
+    rows = Rows(machine)
+    refusal = cycles.cycle(machine, plain_words(block), block.motion, block.line, [0.0] * 6, rows)
+    rows.keep()
+    demand(machine, block, refusal)
+    if block.motion == 880:
+        machine.findings.add(
+            "manual-retract", "warning", block.line, "G88 stops for a retract by hand, which the path leaves out"
+        )
+    if cycles.is_tap(block.motion) and machine.plane != 17:
+        message = f"{g_name(block.motion)} outside of G17 taps along the wrong axes, as LinuxCNC does"
+        machine.findings.add("tap-axes", "warning", block.line, message)
 
 
 def centre_of_arc(

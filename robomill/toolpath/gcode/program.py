@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
 from functools import cached_property
 from operator import attrgetter
@@ -16,7 +17,7 @@ from robomill.toolpath.gcode import arcs
 from robomill.toolpath.gcode.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE
 from robomill.toolpath.gcode.records import MOVE
 
-__all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder"]
+__all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder", "Rows"]
 
 KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
@@ -108,13 +109,15 @@ class Program:
         at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
-        lower, upper = self.arcs_of(np.flatnonzero(self.kind == ARC)).extents
         lift = self.lift[at_feed]
-        points = [self.start[at_feed] + lift, self.end[at_feed] + lift, lower, upper]
-        return (
-            np.min([q.min(axis=0) for q in points if len(q)], axis=0),
-            np.max([q.max(axis=0) for q in points if len(q)], axis=0),
-        )
+        ends = np.concatenate([self.start[at_feed] + lift, self.end[at_feed] + lift]).T
+        lower, upper = ends.min(axis=1), ends.max(axis=1)
+        rows = np.flatnonzero(self.kind == ARC)
+        wide = self.arcs_of(rows[self.arcs_of(rows).may_leave(lower, upper)])
+        if len(wide):
+            lower = np.minimum(lower, wide.extents[0].min(axis=0))
+            upper = np.maximum(upper, wide.extents[1].max(axis=0))
+        return lower, upper
 
 
 class Move:
@@ -129,6 +132,27 @@ class Move:
         self.sweep = self.v_f = self.n_s = self.dwell = 0.0
         self.start, self.end, self.centre = [0.0] * 3, [0.0] * 3, [0.0] * 3
         self.rotary0, self.rotary = [0.0] * 3, [0.0] * 3
+
+
+class Rows:
+    """Rows for rules in plain Python, however many: one is recorded as soon as ``machine.moves`` counts it."""
+
+    def __init__(self, machine: Any) -> None:
+        self._machine, self._row, self._kept = machine, Move(), 0
+        machine.moves = 0
+
+    def __len__(self) -> int:
+        return sys.maxsize
+
+    def __getitem__(self, index: int) -> Move:
+        self.keep()
+        return self._row
+
+    def keep(self) -> None:
+        """Record what has been written."""
+        if self._machine.moves > self._kept:
+            self._machine.recorder.add(self._row)
+            self._kept += 1
 
 
 _row_of = attrgetter(*_COLUMNS)

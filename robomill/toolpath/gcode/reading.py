@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import ARC, FEED, PROBE, TRAVERSE, Program
+from robomill.toolpath.gcode.program import PROBE, TRAVERSE, Program
 from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
@@ -88,19 +89,19 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
     if not machine.unit_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
-    columns["lift"] = _lift(machine, columns)
-    _doubt_spindle(machine, columns)
-    _doubt_size(machine, columns)
-    return Program(
+    program = Program(
         **columns,
+        lift=_lift(machine, columns),
         units=machine.unit_said,
         dialect=dialect,
         lines=lines,
         dwells=machine.dwells,
         dwell_time=machine.dwell_time,
-        findings=machine.findings.freeze(),
         messages=tuple(machine.messages),
     )
+    _doubt_spindle(machine, program)
+    _doubt_size(machine, program)
+    return replace(program, findings=machine.findings.freeze())
 
 
 def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
@@ -121,31 +122,26 @@ def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
     return frozen(lift)
 
 
-def _doubt_spindle(machine: Machine, columns: dict[str, Any]) -> None:
+def _doubt_spindle(machine: Machine, program: Program) -> None:
     """Note cuts with a spindle that stands still, and tools that are chosen and never changed to."""
-    cuts = (columns["kind"] == FEED) | (columns["kind"] == ARC)
-    still = np.flatnonzero(cuts & (columns["n_s"] == 0.0))
-    if len(still) and columns["n_s"].any():
+    cuts = program.is_kind("feed") | program.is_kind("arc")
+    still = np.flatnonzero(cuts & (program.n_s == 0.0))
+    if len(still) and program.n_s.any():
         message = "cuts with the spindle stopped; start it with S and M3 or M4 before"
-        for line in columns["line"][still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
+        for line in program.line[still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
             machine.findings.add("spindle-stopped", "warning", int(line), message)
     elif len(still):
         machine.findings.add("no-spindle", "info", 0, "the spindle never turns: no S with M3 or M4")
-    if machine.selected and not columns["tool"].any() and cuts.any():
+    if machine.selected and not program.tool.any() and cuts.any():
         message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
         machine.findings.add("no-change", "warning", 0, message)
 
 
-def _doubt_size(machine: Machine, columns: dict[str, Any]) -> None:
+def _doubt_size(machine: Machine, program: Program) -> None:
     """Note a part that would have a likelier size in the other unit, 25.4 times off."""
-    at_feed = (columns["kind"] == FEED) | (columns["kind"] == ARC)
-    if not at_feed.any():
+    if program.extents is None:
         return
-    chosen = at_feed[:, None]
-    both = (columns["start"], columns["end"])
-    upper = np.max([np.max(q, axis=0, where=chosen, initial=-np.inf) for q in both], axis=0)
-    lower = np.min([np.min(q, axis=0, where=chosen, initial=np.inf) for q in both], axis=0)
-    size = float((upper - lower).max())
+    size = float(np.subtract(*program.extents[::-1]).max())
     inch = to_si(1.0, "in") / to_si(1.0, "mm")
     shown = format_si(size, "mm", 1)
     if machine.unit_said != "in" and 0.0 < size < LIKELY[0]:

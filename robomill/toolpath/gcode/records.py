@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from robomill.compiled import Axes, InInt1
+from robomill.toolpath.gcode.codes import LETTERS
 
 STATE = np.dtype(
     [
@@ -16,6 +17,7 @@ STATE = np.dtype(
         ("g92", "f8", 6),
         ("at", "f8", 3),
         ("turned", "f8", 3),
+        ("cycle", "f8", len(LETTERS)),
         ("figures", "f8", 3),
         ("rotation", "f8"),
         ("factor", "f8"),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.toolpath.gcode.codes import I, J
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import find_end, need_feed
 from robomill.toolpath.gcode.words import Block
@@ -39,9 +42,11 @@ def spline(machine: Machine, block: Block) -> None:
             raise block.refuse("G5 needs both I and J, or neither.")
         if "p" not in words or "q" not in words:
             raise block.refuse("G5 needs P and Q, its second control point.")
-        i, j = words.get("i", machine.cycle.get("i", 0.0)), words.get("j", machine.cycle.get("j", 0.0))
+        if "i" in words:
+            machine.cycle[I], machine.cycle[J] = words["i"], words["j"]
+        i, j = (0.0 if math.isnan(v) else v for v in (machine.cycle[I], machine.cycle[J]))
         points = [(x, y), (x + i, y + j), (end[0] + words["p"], end[1] + words["q"]), (end[0], end[1])]
-        machine.cycle["i"], machine.cycle["j"] = -words["p"], -words["q"]
+        machine.cycle[I], machine.cycle[J] = -words["p"], -words["q"]
     _run(machine, block, [(u, v, 1.0) for u, v in points], len(points))
 
 

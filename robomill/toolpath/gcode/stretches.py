@@ -12,7 +12,7 @@ import numpy as np
 
 from robomill.arrays import IntArray
 from robomill.toolpath.gcode import mode_rules
-from robomill.toolpath.gcode.program import Move
+from robomill.toolpath.gcode.program import Rows
 from robomill.toolpath.gcode.records import STATE, Text
 
 LONG = 20_000
@@ -58,7 +58,6 @@ class Stretches:
     def __init__(self, machine: Any) -> None:
         self._machine = machine
         self._state = np.zeros(1, STATE)
-        self._rows = [Move() for _ in range(CHUNK)]
         self._kernels: Any = None
 
     def run(self, lines: Lines, first: int, executed: int) -> tuple[int, bool]:
@@ -72,16 +71,16 @@ class Stretches:
 
             self._kernels = kernels
         if self._kernels is None:
-            machine.moves, count = 0, min(len(lines) - first, CHUNK)
-            done = mode_rules.run(machine, machine.store.arrays, lines.plain_text, first, count, self._rows)
-            for row in self._rows[: machine.moves]:
-                recorder.add(row)
+            count = min(len(lines) - first, CHUNK)
+            written = Rows(machine)
+            done = mode_rules.run(machine, machine.store.arrays, lines.plain_text, first, count, written)
+            written.keep()
             return done, done == count
         rows, machine.moves = recorder.free()
         self._state[0] = _state_of(machine)
-        count = min(len(lines) - first, len(rows) - machine.moves)
+        count = len(lines) - first
         done = self._kernels.run(self._state, machine.store.views(), lines.text, first, count, rows)
         for name, value in zip(_FIELDS, self._state[0].item()):
             setattr(machine, name, value.tolist() if STATE[name].shape else value)
         recorder.take(machine.moves)
-        return done, done == count
+        return done, done == count or machine.moves == len(rows)

@@ -142,7 +142,7 @@ def first_slot(text, at, end, slots: int) -> int:
     place = 0
     for i in range(at, end):
         if text[i] not in BLANKS:
-            place = (33 * place + lower(text[i])) % 1073741789
+            place = (33 * place + lower(text[i])) & 0xFFFFFFF
     return place % slots
 
 

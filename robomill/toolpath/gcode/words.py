@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.codes import G_GROUPS, M_GROUPS, g_name
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.motion_rules import MOST
 from robomill.toolpath.gcode.parameters import MAX_SETTINGS, Parameters
 
@@ -99,13 +100,14 @@ def read_words(reader: Reader, diameter_mode: bool = False) -> Block:
         elif letter == "#":
             _read_setting(reader, block)
         else:
-            raise reader.refuse(_bad_character(text, reader.at))
+            raise reader.refuse(_bad_character(reader))
     if diameter_mode and "x" in block.words:
         block.words["x"] /= 2.0
     return block
 
 
-def _bad_character(text: str, at: int) -> str:
+def _bad_character(reader: Reader) -> str:
+    text, at = reader.text, reader.at
     letter = text[at]
     if letter == "," and at and text[at - 1].isdigit():
         return f"{text[max(at - 6, 0) : at + 3]!r} has a decimal comma; write a point."
@@ -115,6 +117,10 @@ def _bad_character(text: str, at: int) -> str:
         return f"{text[max(at - 3, 0) : at + 3]!r} has a letter O among its digits; write the digit 0."
     if letter == "o":
         return "an O word is not at the start of the line; put it on a line of its own."
+    if letter == "=":
+        return said_of(reader.raw, text, at) or "found = without a parameter before it; expected #1= and a value."
+    if letter in "+-*":
+        return f"found {text[at : at + 20]!r} after a value; an expression stands in [ ], as in #1=[#2+1]."
     shown = letter if letter.isprintable() else f"\\x{ord(letter):02x}"
     return f"found {shown!r} where a word should start; expected a letter with a value."
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import interpret, stretches
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 
 AXES = {17: "XYZ", 18: "ZXY", 19: "YZX"}
@@ -142,3 +142,23 @@ def test_holes_on_a_circle_by_polar_words(mode):
         else [(5 + 3 * k) * np.exp(1j * np.radians(25 * k)) for k in (1, 2, 3)]
     )
     np.testing.assert_allclose(holes, [[z.real, z.imag, -1] for z in place], atol=1e-9)
+
+
+@pytest.mark.parametrize("code", [*CODES, "74 P0.5", "84", "87 I0.4 J-0.7 K1", "88 P1"])
+def test_compiled_code_drills_the_same(code, monkeypatch):
+    """Rows of holes longer than the rows that compiled code is given at once, refused in the end."""
+    spindle = 4 if code.startswith("74") else 3
+    holes = [f"X{k} Y{-k % 7} Z-{3 + k % 3} L{1 + k % 2}" for k in range(4000)]
+    first = [f"G21 G90 S900 M{spindle} F100 G98", "G0 Z9", f"G{code} X0 Z-2 R1"]
+    text = "\n".join([*first, *holes, "G91", "X1 L3", "R-99"])
+    read = []
+    for many in (10**9, 0):
+        monkeypatch.setattr(stretches, "LONG", many)
+        monkeypatch.setattr(stretches, "LOADED_LONG", many)
+        read.append(interpret(text + "\nM2\n", partial=True))
+    plain, compiled = read
+    assert len(plain) > 12_000
+    assert plain.findings == compiled.findings
+    for name in ("line", "kind", "start", "end", "v_f", "dwell"):
+        np.testing.assert_array_equal(getattr(plain, name), getattr(compiled, name))
+    assert plain.dwell_time == compiled.dwell_time

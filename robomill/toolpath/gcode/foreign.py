@@ -1,0 +1,47 @@
+"""Words of languages that are not read, so that a refusal can name the word and its language, and say what to do."""
+
+from __future__ import annotations
+
+import re
+
+_LEFT_OUT = re.compile(r"\([^()]*\)|;.*|<[^>]*>")
+_WORD = re.compile(r"([a-z_]{2,})\d*")
+_VARIABLE = re.compile(r"(?:\d*n\d+)?([a-z]+\d*)$")
+
+LANGUAGES = {
+    "Fanuc's Macro B": (
+        "if while goto then do end",
+        "write the moves out, or branches and loops as O words (O1 while [#1 LT 5])",
+    ),
+    "Heidenhain's dialogue": (
+        "begin tool cycl lbl blk call cc fmax",
+        "let the CAM system write G-code (DIN/ISO)",
+    ),
+    "Sinumerik": (
+        "trans atrans rot arot scale ascale mirror amirror if else endif while endwhile for endfor repeat until loop "
+        "endloop gotof gotob gotoc case call mcall extern proc ret def set cycle pocket slot holes longhole supa "
+        "workpiece transmit tracyl traori trafoof oriwks orimks stopre diamon diamof msg print",
+        "let the CAM system write the moves out, without frames, cycles, variables and jumps",
+    ),
+}
+"""Languages: their words, of which two may have the same, and what to do about them."""
+
+
+def said_of(raw: str, text: str, at: int) -> str:
+    """What to say of a word where a value should be, at ``text[at]`` or a letter before; ``""`` if it is none.
+
+    ``text`` is the line ``raw`` in lower case without blanks.
+    """
+    code = _LEFT_OUT.sub(" ", raw.lower())
+    variable = _VARIABLE.search(text[:at])
+    if text[at : at + 1] == "=" and variable is not None:
+        remedy = LANGUAGES["Sinumerik"][1]
+        return f"{variable[1].upper()}= is written as on a Sinumerik, with what is no number; {remedy}."
+    for word in _WORD.finditer(code):
+        if text.startswith(word[0], max(at - 1, 0)) or text.startswith(word[0], at):
+            known = [(name, remedy) for name, (words, remedy) in LANGUAGES.items() if word[1] in words.split()]
+            if known:  # of words that two languages have, the macro language's stand before brackets
+                name, remedy = known[0 if "[" in code or "#" in code else -1]
+                return f"{word[0].upper()} is a word of {name}, which is not read; {remedy}."
+            return f"{word[0].upper()} is a word that is not known; expected letters with numbers, such as X10."
+    return ""
