@@ -9,7 +9,7 @@ import streamlit as st
 from robomill import ui
 from robomill.ui.arm import arm
 from robomill.ui.robot import editors, pose
-from robomill.units import format_si
+from robomill.units import format_many, format_si
 from robomill.viz.arm import ArmScene
 
 project = ui.begin("Robot")
@@ -37,7 +37,7 @@ ui.tiles(
         ui.Tile(
             "Softest direction",
             format_si(now.principal[0][-1], "um/N", 3),
-            pose.direction_words(now),
+            f"along ({format_many(now.principal[1][:, -1], '1', 2)}) in {{M}}",
             format_si(old.principal[0][-1], "um/N", 3) if old else "",
         ),
         ui.Tile(
@@ -56,7 +56,8 @@ with left:
 with right:
     picture, numbers = ui.split([2.3, 1], "pose")
     with picture, st.container(border=True):
-        caption = f"{pose.tip_words(now, view.length)}. Foot and tube sizes are for the eye only."
+        tip = format_many(now.T_MT[:3, 3], view.length, 1, with_unit=False)
+        caption = f"Tip at ({tip}) {view.length} in {{M}}. Foot and tube sizes are for the eye only."
         scene = ArmScene(frames=now.frames, ghost=pose.ghost(now, old))
         arm(scene, "robot-arm", (caption, "The arm at the chosen joint angles."), 500, zoom=0.8)
     with numbers:

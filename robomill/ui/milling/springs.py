@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,19 +22,6 @@ from robomill.ui import declared, inputs, pieces, session
 from robomill.units import format_si, from_si, to_si, unit_label
 
 WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
-
-
-def title() -> str:
-    """What is switched on, in a few words."""
-    setup = session.project().setup
-    words = []
-    for kind in SPRINGS.values():
-        found = _find(kind)
-        if kind.each_joint and found:
-            words.append(f"{kind.title.lower()} ({len(found)})")
-        words += [spring.name for spring in found if not kind.each_joint]
-    words += ["weight"] if setup.links is not None else []
-    return ", ".join(words) or "joints only"
 
 
 def inputs_panel() -> None:
@@ -162,7 +150,8 @@ def _weight() -> None:
     setup = session.project().setup
     links = setup.links
     hint = "Sag under the masses of the links and the payload."
-    if not _table_open("Weight of the arm", "springs.weight", links is not None, _no_weight, hint):
+    nothing = partial(session.change, links=None, add_sag=False)
+    if not _table_open("Weight of the arm", "springs.weight", links is not None, nothing, hint):
         return
     inputs.table(
         "springs.weight",
@@ -180,10 +169,6 @@ def _weight() -> None:
         pieces.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
     declared.field("add_sag")
-
-
-def _no_weight() -> None:
-    session.change(links=None, add_sag=False)
 
 
 def _take_weight(frame: pd.DataFrame) -> None:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
 import pandas as pd
 import streamlit as st
 
@@ -26,42 +30,21 @@ def editors(project: Project) -> None:
     with compliance:
         _compliances(robot, project.view.joint_unit)
     with geometry:
-        inputs.table(
-            "geometry",
-            lambda: tables.geometry_frame(session.project().setup.robot),
-            _write_geometry,
-            inputs.Sheet(
-                columns={
-                    "joint": st.column_config.TextColumn("#", width=34),
-                    **{
-                        title: st.column_config.NumberColumn(title, format="%.6g", width=58)
-                        for title in map(tables.heading, tables.GEOMETRY.values())
-                    },
-                },
-                locked=("joint",),
-            ),
-        )
+        narrow = {
+            title: st.column_config.NumberColumn(title, format="%.6g", width=58) for title in tables.HEADINGS.values()
+        }
+        _table("geometry", "#", narrow, tables.geometry_frame, _with(tables.with_geometry))
         pieces.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
         _said(robot, "geometry")
         _said(robot, "lengths")
     with limits:
         slides = f" ({tables.LIMIT.sliding} where it slides)" if robot.prismatic.any() else ""
         unit = unit_label(tables.LIMIT.unit) + slides
-        inputs.table(
-            "limits",
-            lambda: tables.limits_frame(session.project().setup.robot),
-            _write_limits,
-            inputs.Sheet(
-                columns={
-                    "joint": st.column_config.TextColumn("Joint", width="small"),
-                    **{
-                        side: st.column_config.NumberColumn(f"{side.capitalize()}, {unit}", format="%.6g")
-                        for side in tables.LIMIT.axes
-                    },
-                },
-                locked=("joint",),
-            ),
-        )
+        sides = {
+            side: st.column_config.NumberColumn(f"{side.capitalize()}, {unit}", format="%.6g")
+            for side in tables.LIMIT.axes
+        }
+        _table("limits", "Joint", sides, tables.limits_frame, _with(tables.with_limits))
         _said(robot, "limits")
     with tool:
         _tool(robot)
@@ -104,18 +87,9 @@ def _compliances(robot: Robot, unit: str) -> None:
         )
     stiff = is_stiffness(unit)
     heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
-    inputs.table(
-        f"compliance:{unit}",
-        lambda: tables.compliance_frame(session.project().setup.robot, unit),
-        lambda frame: _write_compliance(frame, unit),
-        inputs.Sheet(
-            columns={
-                "joint": st.column_config.TextColumn("Joint", width="small"),
-                "value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS),
-            },
-            locked=("joint",),
-        ),
-    )
+    column = {"value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS)}
+    shown, write = partial(tables.compliance_frame, unit=unit), partial(_write_compliance, unit=unit)
+    _table(f"compliance:{unit}", "Joint", column, shown, write)
     if robot.compliance_set == USER_SET:
         pieces.note(f"{pieces.badge('user')} entered in the app")
     else:
@@ -129,14 +103,22 @@ def _write_compliance(frame: pd.DataFrame, unit: str) -> None:
     session.change(robot=robot, from_editor=not spelled)
 
 
-def _write_geometry(frame: pd.DataFrame) -> None:
-    robot = tables.with_geometry(session.project().setup.robot, frame)
-    session.change(robot=robot, from_editor=True)
+def _with(change: Callable[[Robot, pd.DataFrame], Robot]) -> Callable[[pd.DataFrame], None]:
+    """What puts a table that was edited into the robot."""
+    return lambda frame: session.change(robot=change(session.project().setup.robot, frame), from_editor=True)
 
 
-def _write_limits(frame: pd.DataFrame) -> None:
-    robot = tables.with_limits(session.project().setup.robot, frame)
-    session.change(robot=robot, from_editor=True)
+def _table(
+    name: str,
+    joint: str,
+    columns: Mapping[str, Any],
+    shown: Callable[[Robot], pd.DataFrame],
+    write: Callable[[pd.DataFrame], None],
+) -> None:
+    """A table with a row a joint, whose first column says which and is headed ``joint``."""
+    first = st.column_config.TextColumn(joint, width=34 if joint == "#" else "small")
+    sheet = inputs.Sheet({"joint": first, **columns}, ("joint",))
+    inputs.table(name, lambda: shown(session.project().setup.robot), write, sheet)
 
 
 def _tool(robot: Robot) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import streamlit as st
 
@@ -12,7 +14,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import Project
-from robomill.units import format_many, format_number, format_percent, format_si, from_si, to_si, unit_label
+from robomill.units import format_percent, format_si, from_si, to_si, unit_label
 from robomill.viz.theme import joint_colours
 
 
@@ -21,12 +23,7 @@ def configuration(project: Project, result: SimulationResult | None) -> FloatArr
     robot, chosen = project.setup.robot, project.view.theta
     if chosen is not None and len(chosen) == robot.n:
         return np.clip(np.array(chosen), robot.limits[:, 0], robot.limits[:, 1])
-    return at_cut(result) if result is not None and result.worst >= 0 else np.array(robot.home)
-
-
-def at_cut(result: SimulationResult) -> FloatArray:
-    """(n,) the configuration at the worst point of the cut."""
-    return np.array(result.theta[result.worst])
+    return np.array(result.theta[result.worst] if result is not None and result.worst >= 0 else robot.home)
 
 
 def compared(project: Project, theta: FloatArray) -> tuple[PoseReport, PoseReport | None]:
@@ -51,14 +48,13 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         st.markdown("**Joint angles**")
         idle = result is None or result.worst < 0
-        inputs.button("At the cut", "pose.cut", "my_location", _stand, None, type="tertiary", disabled=idle)
-        inputs.button("Home", "pose.home", "home", _stand, tuple(robot.home.tolist()), type="tertiary")
+        inputs.button(
+            "At the cut", "pose.cut", "my_location", partial(session.look, theta=None), type="tertiary", disabled=idle
+        )
+        home = partial(session.look, theta=tuple(robot.home.tolist()))
+        inputs.button("Home", "pose.home", "home", home, type="tertiary")
     for i, number in enumerate(robot.joint_numbers):
         _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
-
-
-def _stand(theta: tuple[float, ...] | None) -> None:
-    session.look(theta=theta)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
@@ -80,16 +76,6 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         inputs.value(
             f"pose.box.{i}", NumberBox(label, unit, 1.0, 2, low=low, high=high, hidden=True), to_si(shown, unit), turn
         )
-
-
-def tip_words(pose: PoseReport, unit: str) -> str:
-    """Where the tool tip is, in {M}."""
-    return f"Tip at ({format_many(pose.T_MT[:3, 3], unit, 1, with_unit=False)}) {unit} in {{M}}"
-
-
-def direction_words(pose: PoseReport) -> str:
-    """The softest direction as a unit vector in words."""
-    return "along (" + ", ".join(format_number(v, 2) for v in pose.principal[1][:, -1]) + ") in {M}"
 
 
 def det_value(pose: PoseReport | None) -> str:

@@ -22,6 +22,7 @@ from robomill.units import from_si, parse_number, to_si, unit_label
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
 DECLARED = quantities(Robot)
 GEOMETRY = {name: DECLARED[name] for name in ("alpha", "a", "d", "theta_offset", "sign")}
+HEADINGS = {name: ", ".join(filter(None, (said.label, unit_label(said.unit)))) for name, said in GEOMETRY.items()}
 LIMIT = DECLARED["limits_all"]
 RIGID = "∞"
 SI_BELOW = 1e-3
@@ -46,11 +47,6 @@ def with_tool_axis(robot: Robot, axis: str) -> Robot:
     T_tool[:3, :3] = R
     said = Provenance("user", "direction of the tool chosen in the app")
     return robot.replace(T_tool=T_tool, provenance={**robot.provenance, "tool": said})
-
-
-def heading(declared: Quantity) -> str:
-    """What a column is called, with its unit."""
-    return ", ".join(filter(None, (declared.label, unit_label(declared.unit))))
 
 
 def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
@@ -112,13 +108,13 @@ def geometry_frame(robot: Robot) -> pd.DataFrame:
     """The D-H table in mm and degrees, one row a joint."""
     columns: dict[str, Any] = {"joint": _names(robot)}
     for name, declared in GEOMETRY.items():
-        columns[heading(declared)] = _clean(getattr(robot, name), declared.unit)
+        columns[HEADINGS[name]] = _clean(getattr(robot, name), declared.unit)
     return pd.DataFrame(columns)
 
 
 def with_geometry(robot: Robot, frame: pd.DataFrame) -> Robot:
     """``robot`` with the table's D-H constants. Raises RobotError naming joint and column."""
-    columns = {name: _column(frame[heading(declared)], [declared] * robot.rows) for name, declared in GEOMETRY.items()}
+    columns = {name: _column(frame[HEADINGS[name]], [declared] * robot.rows) for name, declared in GEOMETRY.items()}
     return robot.replace(**columns)
 
 
