@@ -131,7 +131,8 @@ def run_simulate(arguments: Any) -> int:
     from robomill.io.projects import load_setup
     from robomill.io.results import json_text, write_files
     from robomill.report.plain import simulation_lines
-    from robomill.report.records import jsonable, simulation_record
+    from robomill.report.records import jsonable
+    from robomill.report.simulation_record import simulation_record
     from robomill.report.tables import csv_text, deviation_columns, section_columns
     from robomill.simulation.run import simulate
     from robomill.units import to_si

@@ -1,4 +1,4 @@
-"""Results as JSON-ready records in display units: what the command line prints and files carry."""
+"""Answers as JSON-ready records in display units: what the command line prints; a run's is ``simulation_record``."""
 
 from __future__ import annotations
 
@@ -12,18 +12,10 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
-from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.robot.model import Robot
-from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import alloy_spread, peak_force
-from robomill.simulation.stations import nearest_feed
-from robomill.simulation.tooth import LEFT_OUT, tooth
-from robomill.surface.groove import GrooveSection
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
 from robomill.workspace.fields import Field
-
-COMPONENTS = ("feed", "feed_normal", "axial")
 
 
 def jsonable(value: Any) -> Any:
@@ -107,147 +99,6 @@ def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
     }
 
 
-def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str, Any]:
-    """A section's dimensions, and the deviation and force at the path's sample nearest to it."""
-    i = nearest_feed(result, section.station)
-    return {
-        "station_mm": float(from_si(section.station, "mm")),
-        "width_mm": float(from_si(section.width, "mm")),
-        "depth_mm": float(from_si(section.depth, "mm")),
-        "centre_offset_mm": float(from_si(section.centre_offset, "mm")),
-        "floor_error_mm": float(from_si(section.floor_error, "mm")),
-        "block": section.block,
-        "deviation_mm": shown(result.delta[i], "mm"),
-        "force_N": shown(result.F[i], "N"),
-        "force_share_mm": {name: shown(result.delta_component[i, c], "mm") for c, name in enumerate(COMPONENTS)},
-        "note": section.note,
-    }
-
-
-def simulation_record(result: SimulationResult) -> dict[str, Any]:
-    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}."""
-    i, nan3 = result.worst, np.full(3, np.nan)
-    n = result.setup.robot.n
-    verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
-    missed = sorted(set(result.path.block[~result.reached].tolist()))
-    return {
-        "name": result.setup.name,
-        "robot": result.setup.robot.name,
-        "compliance_set": result.setup.robot.compliance_set,
-        "max_deviation_mm": float(from_si(result.max_deviation, "mm")),
-        "rms_deviation_mm": float(from_si(result.rms_deviation, "mm")),
-        "deviation_mm": shown(result.delta[i] if i >= 0 else nan3, "mm"),
-        "joint_share_mm": shown(result.delta_joint[i] if i >= 0 else np.full((n, 3), np.nan), "mm"),
-        "spring_share_mm": {
-            spring.name: shown(result.delta_spring[i, k] if i >= 0 else nan3, "mm")
-            for k, spring in enumerate(result.setup.springs)
-        },
-        "force_N": shown(result.F[i] if i >= 0 else nan3, "N"),
-        "force_component_N": dict(zip(COMPONENTS, shown(result.force_components[i] if i >= 0 else nan3, "N"))),
-        "force_share_mm": {
-            name: shown(result.delta_component[i, c] if i >= 0 else nan3, "mm") for c, name in enumerate(COMPONENTS)
-        },
-        "joint_shares_add_up": result.setup.measured_map is None,
-        **_uncertain(result, i),
-        "over_lengths": lengths_record(result, i),
-        "station_mm": float(from_si(result.path.s[i], "mm")) if i >= 0 else None,
-        "worst_block": result.worst_block,
-        "reached": {
-            "count": int(result.reached.sum()),
-            "of": len(result.reached),
-            "unreached_blocks": missed,
-            "reason": _first_reason(result),
-        },
-        "groove": [groove_record(result, section) for section in result.sections],
-        "surface": surface_record(result),
-        "verdict": verdict.level,
-        "verdict_sentence": verdict.sentence,
-        **judged_record(result),
-        "tolerance_mm": float(from_si(result.setup.tolerance, "mm")),
-        "notes": [note.sentence for note in noticed],
-        "findings": [finding.record() for finding in (*result.setup.toolpath.findings, *noticed)],
-        "digest": result.setup.digest(),
-    }
-
-
-def lengths_record(result: SimulationResult, i: int) -> dict[str, Any] | None:
-    """Least and largest deflection at the worst point with all lengths that the paper allows; None for other arms."""
-    found = over_lengths(result, i) if i >= 0 else None
-    if found is None:
-        return None
-    ends = [shown(found.min(axis=0), "mm"), shown(found.max(axis=0), "mm")]
-    named = {f"{name}_mm": [low, high] for name, low, high in zip(COMPONENTS, *ends, strict=True)}
-    return {"geometries": len(found), "tried": TRIED, **named}
-
-
-def judged_record(result: SimulationResult) -> dict[str, Any]:
-    """What a gauge would read, each quantity against its tolerance, and what is not judged and why."""
-    verdict, path = result.verdict, result.path
-    readings = {"wall": verdict.wall, "floor": verdict.floor, "feed": verdict.feed, "end": verdict.end}
-    lost = result.not_judged
-    return {
-        **{
-            name: {
-                "value_mm": float(from_si(reading.value, "mm")),
-                "tolerance_mm": float(from_si(reading.tolerance, "mm")),
-                "share": reading.share,
-                "length_out_of_tolerance_share": reading.share_out,
-                "judged": name in ("wall", "floor") or (name == "end" and result.setup.feed_tolerance is not None),
-                "line": int(path.block[reading.worst]) if reading.worst >= 0 else None,
-                "station_mm": float(from_si(path.s[reading.worst], "mm")) if reading.worst >= 0 else None,
-            }
-            for name, reading in readings.items()
-        },
-        "tooth": _tooth(result),
-        "left_out": list(LEFT_OUT),
-        "not_judged": {
-            "count": int(lost.sum()),
-            "of": int(path.cutting.sum()),
-            "blocks": sorted(set(path.block[lost].tolist())),
-            "rapids": list(result.rapids),
-            "reasons": [
-                {"code": each.code, "why": each.why, "count": int((each.where & lost).sum())}
-                for each in result.unjudged
-            ],
-        },
-    }
-
-
-def _tooth(result: SimulationResult) -> dict[str, Any] | None:
-    """At the worst wall and floor: the deviation by the mean force, and its extremes as teeth come by."""
-    turn, verdict = tooth(result), result.verdict
-    if turn is None:
-        return None
-    places = {"wall": (verdict.wall.worst, 1), "floor": (verdict.floor.worst, 2)}
-    return {
-        name: {end: float(from_si(getattr(turn, end)[i, axis], "mm")) for end in ("mean", "low", "high")}
-        | {"unit": "mm"}
-        for name, (i, axis) in places.items()
-        if i >= 0
-    }
-
-
-def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
-    """Peak of a revolution and the range of the alloy's coefficient sets, where the force comes from a material."""
-    peak, spread = peak_force(result), alloy_spread(result)
-    if peak is None or spread is None or i < 0:
-        return {}
-    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
-    return {
-        "force_peak_N": {"low": shown(peak.low[i], "N"), "high": shown(peak.high[i], "N"), "frame": list(COMPONENTS)},
-        "alloy_spread": [
-            {
-                "material": title,
-                "max_deviation_mm": float(from_si(float(value), "mm")),
-                "force_N": shown(F[i], "N"),
-                "deviation_mm": shown(delta[i], "mm"),
-                "axial_known": known,
-            }
-            for title, known, value, F, delta in zip(spread.titles, spread.axial, largest, spread.F, spread.delta)
-        ],
-    }
-
-
 def map_record(fields: Sequence[Field]) -> dict[str, Any]:
     """Maps over one grid: the axes in mm, each quantity's values (nx, ny, nz) in its unit, null where not reached."""
     grid = fields[0].grid
@@ -275,21 +126,6 @@ def _extreme(field: Field, which: Any) -> float:
     return float(from_si(which.reduce(field.values, axis=None), field.quantity.unit))
 
 
-def surface_record(result: SimulationResult) -> dict[str, Any]:
-    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance: seen from above, and walls by
-    their length and height."""
-    error, walls, verdict = result.error, result.gauge.walls, result.verdict
-    out, wall = error.area_out(verdict.floor.tolerance)[0] + walls.area(verdict.wall.tolerance), walls.area()
-    return {
-        "removed_volume_mm3": float(from_si(result.machined.removed_volume, "mm3")),
-        "ideal_volume_mm3": float(from_si(result.ideal.removed_volume, "mm3")),
-        "excess_volume_mm3": float(from_si(error.excess_volume, "mm3")),
-        "gouge_volume_mm3": float(from_si(error.gouge_volume, "mm3")),
-        "area_out_of_tolerance_share": out / (error.cut_area + wall) if error.cut_area + wall else 0.0,
-        "cells": int(result.machined.z.size),
-    }
-
-
 def path_record(path: Toolpath) -> dict[str, Any]:
     """A toolpath without canonical moves (APT-CL) in the shape of ``gcode_report``."""
     moved = path.step_length > 0
@@ -303,8 +139,3 @@ def path_record(path: Toolpath) -> dict[str, Any]:
         "findings": [finding.record() for finding in path.findings],
         "ok": all(finding.level != "error" for finding in path.findings),
     }
-
-
-def _first_reason(result: SimulationResult) -> str:
-    missed = np.flatnonzero(~result.reached)
-    return result.ik.reason(int(missed[0])) if len(missed) else ""

@@ -11,6 +11,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 
 Columns = dict[str, FloatArray]
+MEASURED = ("station", "width", "depth", "centre_offset", "floor_error")  # of each section of the groove
 
 
 def deviation_columns(result: SimulationResult) -> Columns:
@@ -50,8 +51,7 @@ def _vectors(name: str, values: FloatArray, unit: str, axes: Sequence[str] = "xy
 def section_columns(result: SimulationResult) -> Columns:
     """The groove's dimensions at the default stations."""
     sections = result.sections
-    names = ("station", "width", "depth", "centre_offset", "floor_error")
-    return {f"{name}_mm": from_si(np.array([getattr(s, name) for s in sections]), "mm") for name in names}
+    return {f"{name}_mm": from_si(np.array([getattr(s, name) for s in sections]), "mm") for name in MEASURED}
 
 
 def csv_text(columns: Columns) -> str:

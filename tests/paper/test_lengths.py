@@ -7,7 +7,7 @@ import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.report.paper import SLOT, TABLES
 from robomill.report.paper_lengths import OURS, TRIED, are_assumed, lengths, over_lengths
-from robomill.report.records import lengths_record
+from robomill.report.simulation_record import lengths_record
 from tests.paper import arm
 from tests.paper.lengths import C_THETA, LONG, SHORT, X, Y, as_good, search, with_lengths
 

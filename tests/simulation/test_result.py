@@ -14,7 +14,7 @@ from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
 from robomill.io.workpiece import part_frame
-from robomill.report.records import simulation_record
+from robomill.report.simulation_record import simulation_record
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=4e-4)

@@ -12,7 +12,7 @@ from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.io.samples import samples_dir
-from robomill.report.records import simulation_record
+from robomill.report.simulation_record import simulation_record
 from robomill.simulation.tooth import tooth
 
 STRAIGHT = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml")

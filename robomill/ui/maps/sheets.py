@@ -86,24 +86,15 @@ class Cut:
         )
 
 
-@dataclass(frozen=True)
-class Words:
-    """What is said of a picture: its name in files, the line beneath it, and what it shows for who cannot see it."""
-
-    key: str
-    caption: str
-    alt: str
-
-
-def draw(cut: Cut, drawn: MapSheet, words: Words, table: Callable[[], Any]) -> None:
-    """Show a sheet; a click in it makes its cell the point in hand and runs the page again."""
+def draw(cut: Cut, drawn: MapSheet, key: str, caption: str, alt: str, table: Callable[[], Any]) -> None:
+    """Show a sheet, ``key`` in its file's name; a click makes its cell the point in hand and runs the page again."""
     ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
     most = {1: 400, 2: 240}.get(len(drawn.rows), 165)
     least = 88 if len(drawn.scales) == 1 else 130  # the title of a colour bar stands along it
     panel = int(min(max(700 / max(len(drawn.rows[0]), 2) * ratio, least), most))
-    revision = f"{words.key}-{cut.normal}"
+    revision = f"{key}-{cut.normal}"
     fig = sheet_figure(drawn, dark=shell.dark(), panel_height=panel, revision=revision, gap_x=0.03, gap_y=34)
-    widget = f"sheet-{words.key}"
+    widget = f"sheet-{key}"
 
     def take(point: Mapping[str, Any]) -> None:
         found = picked_point(drawn.u, drawn.v, float(point["x"]), float(point["y"]))
@@ -112,9 +103,9 @@ def draw(cut: Cut, drawn: MapSheet, words: Words, table: Callable[[], Any]) -> N
     pieces.figure(
         fig,
         widget,
-        name=f"compliance-{words.key}",
-        caption=words.caption,
-        alt=words.alt,
+        name=f"compliance-{key}",
+        caption=caption,
+        alt=alt,
         table=table,
         on_pick=take,
         lazy=True,
@@ -171,11 +162,9 @@ def _nine(cut: Cut) -> None:
     draw(
         cut,
         cut.sheet(rows, scales),
-        Words(
-            "nine",
-            f"{about} Click a cell for the report of that pose.",
-            "The nine components of the compliance matrix over the plane.",
-        ),
+        "nine",
+        f"{about} Click a cell for the report of that pose.",
+        "The nine components of the compliance matrix over the plane.",
         lambda: _columns(now, [f"C_{c}" for c in COMPONENTS]),
     )
 
@@ -219,12 +208,9 @@ def _shares(cut: Cut) -> None:
     draw(
         cut,
         cut.sheet(rows, {"main": scale}),
-        Words(
-            f"shares-{kind}",
-            f"Each joint's summand of eq. (16), mean beside its name; one scale, {how}. Joints in a row add up to "
-            f"the map.",
-            "Shares of each joint in the compliance over the plane.",
-        ),
+        f"shares-{kind}",
+        f"Each joint's summand of eq. (16), mean beside its name; one scale, {how}. Joints in a row add up to the map.",
+        "Shares of each joint in the compliance over the plane.",
         lambda: _columns(now, [f"C_{c}_{j}" for c in ROWS[kind] for j in range(1, robot.n + 1)]),
     )
 
@@ -250,12 +236,10 @@ def _dominant(cut: Cut) -> None:
     draw(
         cut,
         cut.sheet(rows, {"main": scale}),
-        Words(
-            "dominant",
-            "The joint with the largest share: where to stiffen first. Parts of cross terms have two signs and cancel: "
-            "there the largest by size is shown, and without it the term may grow.",
-            "The joint that gives most, over the plane.",
-        ),
+        "dominant",
+        "The joint with the largest share: where to stiffen first. Parts of cross terms have two signs and cancel: "
+        "there the largest by size is shown, and without it the term may grow.",
+        "The joint that gives most, over the plane.",
         lambda: _columns(now, ["dominant", *(f"dominant_C_{c}" for c in COMPONENTS)]),
     )
 
@@ -275,7 +259,9 @@ def _one(cut: Cut) -> None:
         cut.sheet(
             [[Map(title, shown, unit=unit_label(what.unit))]], {"main": Scale.of(what, whole, robot.joint_numbers)}
         ),
-        Words("one", f"{what.meaning} One scale over the region.", f"{what.title} over the plane."),
+        "one",
+        f"{what.meaning} One scale over the region.",
+        f"{what.title} over the plane.",
         lambda: _columns(now, [chosen]),
     )
 
@@ -287,11 +273,9 @@ def _compare(cut: Cut) -> None:
     draw(
         cut,
         cut.sheet(rows, scales),
-        Words(
-            "compare",
-            "The compared ones on one scale; the difference to the first on its own, centred on zero.",
-            "The same compliance of up to three robots or compliance sets, and the differences.",
-        ),
+        "compare",
+        "The compared ones on one scale; the difference to the first on its own, centred on zero.",
+        "The same compliance of up to three robots or compliance sets, and the differences.",
         lambda: columns,
     )
     pieces.facts(rows_of_text)

@@ -1,0 +1,175 @@
+"""A run as a JSON-ready record in display units: what the command line prints and files carry."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.report.paper_lengths import TRIED, over_lengths
+from robomill.report.records import shown
+from robomill.report.tables import MEASURED
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.spread import alloy_spread, peak_force
+from robomill.simulation.stations import nearest_feed
+from robomill.simulation.tooth import LEFT_OUT, tooth
+from robomill.surface.groove import GrooveSection
+
+COMPONENTS = ("feed", "feed_normal", "axial")
+
+
+def simulation_record(result: SimulationResult) -> dict[str, Any]:
+    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}."""
+    i = result.worst
+
+    def there(values: FloatArray, unit: str) -> Any:
+        return shown(values[i] if i >= 0 else np.full(values.shape[1:], np.nan), unit)
+
+    verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
+    missed = sorted(set(result.path.block[~result.reached].tolist()))
+    return {
+        "name": result.setup.name,
+        "robot": result.setup.robot.name,
+        "compliance_set": result.setup.robot.compliance_set,
+        "max_deviation_mm": shown(result.max_deviation, "mm"),
+        "rms_deviation_mm": shown(result.rms_deviation, "mm"),
+        "deviation_mm": there(result.delta, "mm"),
+        "joint_share_mm": there(result.delta_joint, "mm"),
+        "spring_share_mm": {
+            spring.name: there(result.delta_spring[:, k], "mm") for k, spring in enumerate(result.setup.springs)
+        },
+        "force_N": there(result.F, "N"),
+        "force_component_N": dict(zip(COMPONENTS, there(result.force_components, "N"))),
+        "force_share_mm": {name: there(result.delta_component[:, c], "mm") for c, name in enumerate(COMPONENTS)},
+        "joint_shares_add_up": result.setup.measured_map is None,
+        **_uncertain(result, i),
+        "over_lengths": lengths_record(result, i),
+        "station_mm": shown(result.path.s[i], "mm") if i >= 0 else None,
+        "worst_block": result.worst_block,
+        "reached": {
+            "count": int(result.reached.sum()),
+            "of": len(result.reached),
+            "unreached_blocks": missed,
+            "reason": _first_reason(result),
+        },
+        "groove": [groove_record(result, section) for section in result.sections],
+        "surface": surface_record(result),
+        "verdict": verdict.level,
+        "verdict_sentence": verdict.sentence,
+        **judged_record(result),
+        "tolerance_mm": shown(result.setup.tolerance, "mm"),
+        "notes": [note.sentence for note in noticed],
+        "findings": [finding.record() for finding in (*result.setup.toolpath.findings, *noticed)],
+        "digest": result.setup.digest(),
+    }
+
+
+def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str, Any]:
+    """A section's dimensions, and the deviation and force at the path's sample nearest to it."""
+    i = nearest_feed(result, section.station)
+    return {
+        **{f"{name}_mm": shown(getattr(section, name), "mm") for name in MEASURED},
+        "block": section.block,
+        "deviation_mm": shown(result.delta[i], "mm"),
+        "force_N": shown(result.F[i], "N"),
+        "force_share_mm": {name: shown(result.delta_component[i, c], "mm") for c, name in enumerate(COMPONENTS)},
+        "note": section.note,
+    }
+
+
+def lengths_record(result: SimulationResult, i: int) -> dict[str, Any] | None:
+    """Least and largest deflection at the worst point with all lengths that the paper allows; None for other arms."""
+    found = over_lengths(result, i) if i >= 0 else None
+    if found is None:
+        return None
+    ends = [shown(found.min(axis=0), "mm"), shown(found.max(axis=0), "mm")]
+    named = {f"{name}_mm": [low, high] for name, low, high in zip(COMPONENTS, *ends, strict=True)}
+    return {"geometries": len(found), "tried": TRIED, **named}
+
+
+def judged_record(result: SimulationResult) -> dict[str, Any]:
+    """What a gauge would read, each quantity against its tolerance, and what is not judged and why."""
+    verdict, path = result.verdict, result.path
+    readings = {"wall": verdict.wall, "floor": verdict.floor, "feed": verdict.feed, "end": verdict.end}
+    lost = result.not_judged
+    return {
+        **{
+            name: {
+                "value_mm": shown(reading.value, "mm"),
+                "tolerance_mm": shown(reading.tolerance, "mm"),
+                "share": reading.share,
+                "length_out_of_tolerance_share": reading.share_out,
+                "judged": name in ("wall", "floor") or (name == "end" and result.setup.feed_tolerance is not None),
+                "line": int(path.block[reading.worst]) if reading.worst >= 0 else None,
+                "station_mm": shown(path.s[reading.worst], "mm") if reading.worst >= 0 else None,
+            }
+            for name, reading in readings.items()
+        },
+        "tooth": _tooth(result),
+        "left_out": list(LEFT_OUT),
+        "not_judged": {
+            "count": int(lost.sum()),
+            "of": int(path.cutting.sum()),
+            "blocks": sorted(set(path.block[lost].tolist())),
+            "rapids": list(result.rapids),
+            "reasons": [
+                {"code": each.code, "why": each.why, "count": int((each.where & lost).sum())}
+                for each in result.unjudged
+            ],
+        },
+    }
+
+
+def _tooth(result: SimulationResult) -> dict[str, Any] | None:
+    """At the worst wall and floor: the deviation by the mean force, and its extremes as teeth come by."""
+    turn, verdict = tooth(result), result.verdict
+    if turn is None:
+        return None
+    places = {"wall": (verdict.wall.worst, 1), "floor": (verdict.floor.worst, 2)}
+    return {
+        name: {end: shown(getattr(turn, end)[i, axis], "mm") for end in ("mean", "low", "high")} | {"unit": "mm"}
+        for name, (i, axis) in places.items()
+        if i >= 0
+    }
+
+
+def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
+    """Peak of a revolution and the range of the alloy's coefficient sets, where the force comes from a material."""
+    peak, spread = peak_force(result), alloy_spread(result)
+    if peak is None or spread is None or i < 0:
+        return {}
+    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
+    return {
+        "force_peak_N": {"low": shown(peak.low[i], "N"), "high": shown(peak.high[i], "N"), "frame": list(COMPONENTS)},
+        "alloy_spread": [
+            {
+                "material": title,
+                "max_deviation_mm": shown(value, "mm"),
+                "force_N": shown(F[i], "N"),
+                "deviation_mm": shown(delta[i], "mm"),
+                "axial_known": known,
+            }
+            for title, known, value, F, delta in zip(spread.titles, spread.axial, largest, spread.F, spread.delta)
+        ],
+    }
+
+
+def surface_record(result: SimulationResult) -> dict[str, Any]:
+    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance: seen from above, and walls by
+    their length and height."""
+    error, walls, verdict = result.error, result.gauge.walls, result.verdict
+    out, wall = error.area_out(verdict.floor.tolerance)[0] + walls.area(verdict.wall.tolerance), walls.area()
+    return {
+        "removed_volume_mm3": shown(result.machined.removed_volume, "mm3"),
+        "ideal_volume_mm3": shown(result.ideal.removed_volume, "mm3"),
+        "excess_volume_mm3": shown(error.excess_volume, "mm3"),
+        "gouge_volume_mm3": shown(error.gouge_volume, "mm3"),
+        "area_out_of_tolerance_share": out / (error.cut_area + wall) if error.cut_area + wall else 0.0,
+        "cells": int(result.machined.z.size),
+    }
+
+
+def _first_reason(result: SimulationResult) -> str:
+    missed = np.flatnonzero(~result.reached)
+    return result.ik.reason(int(missed[0])) if len(missed) else ""
