@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 Value = TypeVar("Value")
-Columns = Mapping[str, Any]
 SHOWN_ROWS = 1500
 
 
@@ -167,7 +166,7 @@ def figure(
     fig: go.Figure,
     key: str,
     *,
-    table: Callable[[], Columns] | None = None,
+    table: Callable[[], Mapping[str, Any]] | None = None,
     name: str = "",
     caption: str = "",
     alt: str = "",
@@ -218,7 +217,7 @@ def _picked(key: str, take: Callable[[Mapping[str, Any]], None]) -> None:
         take(points[0])
 
 
-def table_twin(table: Callable[[], Columns], name: str, asked: str = "") -> None:
+def table_twin(table: Callable[[], Mapping[str, Any]], name: str, asked: str = "") -> None:
     """The numbers behind a figure, to read and to take away as CSV; made when opened where ``asked`` names a key."""
     more: dict[str, Any] = {"key": f"table-of-{asked}", "on_change": "rerun"} if asked else {}
     popover = st.popover("Table", icon=":material/table:", type="tertiary", **more)

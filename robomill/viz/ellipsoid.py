@@ -12,24 +12,14 @@ from robomill.viz import solids
 from robomill.viz.theme import palette
 
 
-def ellipsoid_mesh(C: FloatArray, centre: FloatArray, times: float) -> solids.Mesh:
+def ellipsoid_mesh(C: FloatArray, centre: FloatArray, times: float) -> solids.Triangles:
     """Points centre + times * C u for unit vectors u: the ellipsoid with the principal compliances as half axes.
 
     C (3, 3) m/N, centre (3,) m, ``times`` m per m/N.
     """
-    count = 28
-    v = np.linspace(0.0, np.pi, count)
-    u = np.linspace(0.0, 2.0 * np.pi, 2 * count, endpoint=False)
-    sphere = np.stack(
-        [np.outer(np.sin(v), np.cos(u)), np.outer(np.sin(v), np.sin(u)), np.outer(np.cos(v), np.ones_like(u))], axis=-1
-    )
-    points = np.asarray(centre) + times * sphere.reshape(-1, 3) @ np.asarray(C).T
-    columns = 2 * count
-    i, j = np.meshgrid(np.arange(count - 1), np.arange(columns), indexing="ij")
-    a, b = i * columns + j, i * columns + (j + 1) % columns
-    c, d = a + columns, b + columns
-    faces = np.concatenate([np.stack([a, c, b], axis=-1).reshape(-1, 3), np.stack([b, c, d], axis=-1).reshape(-1, 3)])
-    return points, faces.astype(float)
+    v = np.linspace(0.0, np.pi, 28)
+    sphere, faces = solids.revolution(np.sin(v), -np.cos(v), np.zeros(3), np.array([0.0, 0.0, 1.0]), sides=56)
+    return np.asarray(centre) + times * sphere @ np.asarray(C).T, faces
 
 
 def ellipsoid_scale(C: FloatArray, size: float) -> float:

@@ -56,9 +56,9 @@ def posed(result: SimulationResult, index: int, tip: FloatArray, *, arm: bool) -
     return (*found, *(arm_solids(result, index) if arm else []))
 
 
-def _solid(mesh: solids.Mesh, role: Role) -> Solid:
+def _solid(mesh: solids.Triangles, role: Role) -> Solid:
     return Solid(from_si(mesh[0], "mm"), mesh[1], role)
 
 
-def _turned(radius: FloatArray, height: FloatArray, tip: FloatArray, k: FloatArray) -> solids.Mesh:
+def _turned(radius: FloatArray, height: FloatArray, tip: FloatArray, k: FloatArray) -> solids.Triangles:
     return solids.revolution(radius, height, tip, k, SIDES)

@@ -16,13 +16,23 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.viz.theme import axis_colours
 
-Mesh = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
-Painted = tuple[Mesh, str]  # a mesh in its colour
+Triangles = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
+Painted = tuple[Triangles, str]  # a mesh in its colour
 Said = tuple[FloatArray, str, str]  # where (3,), the word, its colour
+# The corners of a box, and its six faces: axis, side, and the corners of the face in the order of a rectangle.
+CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+FACES = {
+    (0, 0): (0, 1, 3, 2),
+    (0, 1): (4, 6, 7, 5),
+    (1, 0): (0, 4, 5, 1),
+    (1, 1): (2, 3, 7, 6),
+    (2, 0): (0, 2, 6, 4),
+    (2, 1): (1, 5, 7, 3),
+}
 LIGHTING = {"ambient": 0.74, "diffuse": 0.55, "specular": 0.18, "roughness": 0.55, "fresnel": 0.08}
 
 
-def revolution(radius: FloatArray, height: FloatArray, base: FloatArray, axis: FloatArray, sides: int) -> Mesh:
+def revolution(radius: FloatArray, height: FloatArray, base: FloatArray, axis: FloatArray, sides: int) -> Triangles:
     """A closed solid of revolution from its outline, radius (q,) over height (q,) above ``base`` along ``axis``."""
     helper = np.array([0.0, 0.0, 1.0]) if abs(axis[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
     u = np.cross(axis, helper)
@@ -41,7 +51,9 @@ def revolution(radius: FloatArray, height: FloatArray, base: FloatArray, axis: F
     return np.vstack([points.reshape(-1, 3), ends]), np.vstack(faces).astype(float)
 
 
-def tube(start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | None = None, sides: int = 22) -> Mesh:
+def tube(
+    start: ArrayLike, end: ArrayLike, radius: float, end_radius: float | None = None, sides: int = 22
+) -> Triangles:
     """A closed tube (a cone where the radii differ) between two points."""
     a, axis = np.asarray(start, dtype=float), np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
     length = float(np.linalg.norm(axis))
@@ -55,7 +67,7 @@ def yardstick(frames: FloatArray) -> float:
     return max(float(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1).sum()), 1e-3)
 
 
-def limbs(frames: FloatArray) -> tuple[list[Mesh], list[Mesh]]:
+def limbs(frames: FloatArray) -> tuple[list[Triangles], list[Triangles]]:
     """(links, joints) of an arm: a link first runs along its joint's axis, then across to the next joint."""
     size, n = yardstick(frames), len(frames) - 1
     links, joints = [], []
@@ -72,27 +84,12 @@ def limbs(frames: FloatArray) -> tuple[list[Mesh], list[Mesh]]:
     return links, joints
 
 
-def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Mesh:
+def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Triangles:
     """A box between two corners, moved by T (4, 4)."""
-    corners = np.array([lower, upper], dtype=float)
-    points = np.array([[corners[i, 0], corners[j, 1], corners[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    points = np.where(CORNERS == 1, np.asarray(upper, dtype=float), np.asarray(lower, dtype=float))
     if T is not None:
         points = points @ T[:3, :3].T + T[:3, 3]
-    faces = [
-        (0, 1, 3),
-        (0, 3, 2),
-        (4, 6, 7),
-        (4, 7, 5),
-        (0, 4, 5),
-        (0, 5, 1),
-        (2, 3, 7),
-        (2, 7, 6),
-        (0, 2, 6),
-        (0, 6, 4),
-        (1, 5, 7),
-        (1, 7, 3),
-    ]
-    return points, np.array(faces, dtype=float)
+    return points, np.array([half for a, b, c, d in FACES.values() for half in ((a, b, c), (a, c, d))], dtype=float)
 
 
 def painted(solids: Sequence[Painted]) -> go.Mesh3d:
@@ -101,7 +98,7 @@ def painted(solids: Sequence[Painted]) -> go.Mesh3d:
     return trace([mesh for mesh, _ in solids], None, "arm", facecolor=colours)
 
 
-def trace(meshes: Sequence[Mesh], colour: str | None, name: str, **more: Any) -> go.Mesh3d:
+def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: Any) -> go.Mesh3d:
     """One Mesh3d trace of several meshes in one colour."""
     points = np.vstack([m[0] for m in meshes])
     shift = np.cumsum([0, *[len(m[0]) for m in meshes[:-1]]])

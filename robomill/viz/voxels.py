@@ -9,19 +9,8 @@ import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.viz.maps import Scale
-from robomill.viz.solids import LIGHTING, words
+from robomill.viz.solids import CORNERS, FACES, LIGHTING, words
 from robomill.viz.theme import colour_bar, palette
-
-# The six faces of a cell: axis, side, and the corners of the face in the order of a rectangle.
-_CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-_FACES = {
-    (0, 0): (0, 1, 3, 2),
-    (0, 1): (4, 6, 7, 5),
-    (1, 0): (0, 4, 5, 1),
-    (1, 1): (2, 3, 7, 6),
-    (2, 0): (0, 2, 6, 4),
-    (2, 1): (1, 5, 7, 3),
-}
 
 
 def outer_faces(mask: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -31,11 +20,11 @@ def outer_faces(mask: BoolArray) -> tuple[FloatArray, FloatArray]:
     """
     padded = np.pad(mask, 1)
     cells, corners = [], []
-    for (axis, side), order in _FACES.items():
+    for (axis, side), order in FACES.items():
         neighbour = np.roll(padded, -1 if side else 1, axis=axis)
         found = np.argwhere((padded & ~neighbour)[1:-1, 1:-1, 1:-1]).astype(float)
         cells.append(found)
-        corners.append(found[:, None, :] + _CORNERS[list(order)][None] - 0.5)
+        corners.append(found[:, None, :] + CORNERS[list(order)][None] - 0.5)
     return np.concatenate(cells), np.concatenate(corners)
 
 
@@ -81,8 +70,8 @@ def voxel_trace(
 
 def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash: str = "solid") -> list[go.Scatter3d]:
     """The edges of a box (m) with a word at its highest corner."""
-    c = np.where(_CORNERS.astype(bool), upper, lower)
-    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(_CORNERS[a] - _CORNERS[b]).sum() == 1]
+    c = np.where(CORNERS.astype(bool), upper, lower)
+    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
     gap = np.full(3, np.nan)
     line = np.array([point for a, b in edges for point in (c[a], c[b], gap)])
     return [

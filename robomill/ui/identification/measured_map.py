@@ -40,7 +40,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     except RobomillError as exc:
         refusal = exc
     if field is not None:
-        check, cut = MapCheck.of(field, robot), Cut.of(field, robot)
+        check, cut = MapCheck.of(field, robot), CutByBoth.of(field, robot)
         sentence = title(check)
     with top:
         pieces.headline(f"Measured map · {bench.map_name}", sentence)
@@ -93,7 +93,7 @@ def title(check: MapCheck) -> str:
     return f"Measured and calculated compliances differ by {far} on average; the measured ones are {word}."
 
 
-def tiles(field: MeasuredField, check: MapCheck, cut: Cut, unit: str) -> list[pieces.Tile]:
+def tiles(field: MeasuredField, check: MapCheck, cut: CutByBoth, unit: str) -> list[pieces.Tile]:
     """Points, difference to the joint model, symmetry, and the cut by both methods."""
     lines = field.lines
     shape = " × ".join(str(len(line)) for line in lines) + " grid" if lines is not None else "scattered"
@@ -112,14 +112,14 @@ def tiles(field: MeasuredField, check: MapCheck, cut: Cut, unit: str) -> list[pi
 
 
 @dataclass(frozen=True)
-class Cut:
+class CutByBoth:
     """The project's cut by the map and by the joint model; None where that cannot be simulated."""
 
     by_map: SimulationResult | None
     by_joints: SimulationResult | None
 
     @classmethod
-    def of(cls, field: MeasuredField, robot: Robot) -> Cut:
+    def of(cls, field: MeasuredField, robot: Robot) -> CutByBoth:
         """Both, as the simulation would have them in force."""
         return cls(_simulated(robot, field), _simulated(robot, None))
 
@@ -214,7 +214,7 @@ def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, A
     }
 
 
-def _cut(field: MeasuredField, cut: Cut, unit: str, dark: bool) -> None:
+def _cut(field: MeasuredField, cut: CutByBoth, unit: str, dark: bool) -> None:
     """The project's cut by both methods: along the path, and its worst point."""
     by_map, by_joints = cut.by_map, cut.by_joints
     if by_joints is None or by_joints.worst < 0:

@@ -50,11 +50,11 @@ def _show(region: Region) -> None:
     if sheet != "compare" and not known.reached.any():
         st.info("No cell of this plane is reached: move the slider, change the tilt or the region.")
         return
-    _SHEETS[sheet](Cut(region, normal, at, known))
+    _SHEETS[sheet](Slice(region, normal, at, known))
 
 
 @dataclass(frozen=True, eq=False)
-class Cut:
+class Slice:
     """The plane of a picture: where it cuts the region, and what is known over it with the joints as they are."""
 
     region: Region
@@ -86,7 +86,7 @@ class Cut:
         )
 
 
-def draw(cut: Cut, drawn: MapSheet, key: str, caption: str, alt: str, table: Callable[[], Any]) -> None:
+def draw(cut: Slice, drawn: MapSheet, key: str, caption: str, alt: str, table: Callable[[], Any]) -> None:
     """Show a sheet, ``key`` in its file's name; a click makes its cell the point in hand and runs the page again."""
     ratio = float(np.ptp(drawn.v) / max(np.ptp(drawn.u), 1e-9)) if len(drawn.u) > 1 and len(drawn.v) > 1 else 0.6
     most = {1: 400, 2: 240}.get(len(drawn.rows), 165)
@@ -131,7 +131,7 @@ def _columns(known: ComplianceField, names: list[str]) -> Any:
     return map_columns([known.field(name) for name in names])
 
 
-def _nine(cut: Cut) -> None:
+def _nine(cut: Slice) -> None:
     view, known, now = cut.region.view, cut.known, cut.stiffer()
     whole = from_si(cut.region.overview().total, UM)
     direct, cross = whole[..., :3], whole[..., 3:]
@@ -182,7 +182,7 @@ def _moved(change: FloatArray) -> str:
     return f"  <i>({format_number(np.nanmean(change), 2, sign=True)} mean)</i>"
 
 
-def _shares(cut: Cut) -> None:
+def _shares(cut: Slice) -> None:
     robot = cut.region.robot
     kind = inputs.seen("Components", "maps.shares", SHARES, inputs.HIDDEN)
     now = cut.stiffer()
@@ -219,7 +219,7 @@ def _mean(values: FloatArray) -> str:
     return format_number(np.nanmean(values), 2) if np.isfinite(values).any() else "none"
 
 
-def _dominant(cut: Cut) -> None:
+def _dominant(cut: Slice) -> None:
     now = cut.stiffer()
 
     def panel(title: str, name: str) -> Map:
@@ -244,7 +244,7 @@ def _dominant(cut: Cut) -> None:
     )
 
 
-def _one(cut: Cut) -> None:
+def _one(cut: Slice) -> None:
     """Any quantity that rests on the joints' compliance, found by asking for them."""
     robot = cut.region.robot
     known = map_quantities(robot, "compliance")
@@ -266,7 +266,7 @@ def _one(cut: Cut) -> None:
     )
 
 
-def _compare(cut: Cut) -> None:
+def _compare(cut: Slice) -> None:
     robot = cut.region.robot
     compare.controls(robot, cut.region.view)
     rows, scales, rows_of_text, columns = compare.panels(robot, session.maps(), cut.known, cut.normal)

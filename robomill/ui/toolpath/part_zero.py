@@ -33,11 +33,12 @@ def part_zero() -> None:
 def _by_numbers() -> None:
     unit, T_MW = session.project().view.length, session.project().setup.T_MW
     step = 10.0 if unit == "mm" else 1.0
-    left, right = st.columns(2)
-    for i, (column, axis) in enumerate(zip((left, right, left), "XYZ", strict=True)):
+    # In rows, so that a telephone, which has one column, keeps their order.
+    (x, y), (z, turned) = st.columns(2), st.columns(2)
+    for i, (column, axis) in enumerate(zip((x, y, z), "XYZ", strict=True)):
         with column:
             inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=decimals(unit, 2))
-    with right:
+    with turned:
         turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
         inputs.value("toolpath.turn", NumberBox("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)
     tilt = tilt_of(T_MW)
