@@ -168,8 +168,7 @@ class _Lines:
 def lines_of_pull(robot: Robot, tests: LoadTests) -> LinesOfPull:
     """Where the force lines meet, and the load point with which they meet best. The tests' joints must be known."""
     tests = tests.select(~tests.aimed) if not tests.aimed.all() else tests
-    if len(tests) > MOST:
-        tests = tests.select(slice(None, None, -(-len(tests) // MOST)))
+    tests = tests.thinned(MOST)
     m = len(tests)
     unknown = np.full(m, np.nan)
     nothing = LinesOfPull("parallel", tests.row, np.empty((0, 3)), np.full(m, -1), unknown, unknown)

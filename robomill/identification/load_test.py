@@ -39,6 +39,10 @@ class _Rows:
         index = np.arange(len(self))[chosen if isinstance(chosen, slice) else np.asarray(chosen)]
         return self._with({name: value[index] for name, value in self._arrays().items()})
 
+    def thinned(self, most: int) -> Self:
+        """No more than ``most`` of the tests, taken evenly."""
+        return self.select(slice(None, None, -(-len(self) // most)))
+
     def without(self, rows: Iterable[int]) -> Self:
         """The tests without those of the named rows."""
         return self.select(~np.isin(self.row, list(rows)))
@@ -254,16 +258,13 @@ def _default(value: ArrayLike | None, m: int, name: str) -> FloatArray:
 
 
 def _refuse_empty(wrench: FloatArray, displacement: FloatArray, row: IntArray) -> None:
-    idle = ~wrench.any(axis=1)
-    if idle.any():
-        where = int(row[np.argmax(idle)])
-        raise LoadTestError(
-            f"Row {where}: the force is zero, so nothing can be learned from it; enter the force or delete the row.",
-            where=f"row {where}",
-        )
-    blind = np.isnan(displacement).all(axis=1)
-    if blind.any():
-        where = int(row[np.argmax(blind)])
-        raise LoadTestError(
-            f"Row {where}: no displacement was measured; enter it or delete the row.", where=f"row {where}"
-        )
+    for empty, why in (
+        (
+            ~wrench.any(axis=1),
+            "the force is zero, so nothing can be learned from it; enter the force or delete the row",
+        ),
+        (np.isnan(displacement).all(axis=1), "no displacement was measured; enter it or delete the row"),
+    ):
+        if empty.any():
+            where = f"row {int(row[np.argmax(empty)])}"
+            raise LoadTestError(f"{where.capitalize()}: {why}.", where=where)

@@ -31,8 +31,7 @@ def offer_of(robot: Robot, tests: LoadTests, choice: Model, treatment: Treatment
     """What fitting points would bring under this model; None where it does not pay or cannot be judged."""
     if treatment.freed or not choice.has("joint"):
         return None
-    if len(tests) > MOST:
-        tests = tests.select(slice(None, None, -(-len(tests) // MOST)))
+    tests = tests.thinned(MOST)
     if not _asked_for(robot, tests, choice):
         return None
     fold = folds_of(treatment.leave_out, tests.pose_index(), tests.theta)

@@ -32,8 +32,8 @@ MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 PRIOR = 1e-10  # information, scaled, that stands in where the tests have none
 
 
-class PathLoad(NamedTuple):
-    """A machining path to be certain of: configurations theta (m, n) and forces F (m, 3) N in {M}."""
+class Loads(NamedTuple):
+    """Tests one could do, or a machining path to be certain of: theta (m, n) and forces F (m, 3) N in {M}."""
 
     theta: FloatArray
     F: FloatArray
@@ -91,14 +91,6 @@ class Plan:
         return text + "."
 
 
-@dataclass(frozen=True, eq=False)
-class PossibleTests:
-    """Tests one could do: theta (k, n), F (k, 3) N."""
-
-    theta: FloatArray
-    F: FloatArray
-
-
 def box_candidates(
     robot: Robot,
     lower: FloatArray,
@@ -108,7 +100,7 @@ def box_candidates(
     load: float = 250.0,
     poses: int = 300,
     seed: int = 1,
-) -> PossibleTests:
+) -> Loads:
     """Poses spread over a box in {M} (corners in m) with the tool tilted by up to ``tilt`` rad, within the limits.
 
     Each is loaded by ``load`` N along +X, +Y and +Z. Raises LoadTestError where nothing in the box is reached.
@@ -123,10 +115,10 @@ def box_candidates(
     theta = solved.theta[solved.reached]
     if len(theta) == 0:
         raise LoadTestError("Plan: no pose in the box is reached within the joint limits; move the box or tilt less.")
-    return PossibleTests(*three_directions(theta, load))
+    return Loads(*three_directions(theta, load))
 
 
-def candidates_around(robot: Robot, tests: LoadTests, *, tilt: float = np.pi / 6, load: float = 250.0) -> PossibleTests:
+def candidates_around(robot: Robot, tests: LoadTests, *, tilt: float = np.pi / 6, load: float = 250.0) -> Loads:
     """Poses within ``MARGIN`` of those that were measured."""
     tips = tests.with_joints(robot).tool_poses(robot)[:, :3, 3]
     return box_candidates(robot, tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN, tilt=tilt, load=load)
@@ -144,12 +136,12 @@ def next_best(
     robot: Robot,
     tests: LoadTests | JointTests,
     result: IdentificationResult,
-    candidates: PossibleTests | None = None,
+    candidates: Loads | None = None,
     *,
     count: int = 3,
-    goal: str | int | PathLoad = "all",
+    goal: str | int | Loads = "all",
 ) -> Plan:
-    """The ``count`` candidates to measure next for a goal: "all", a joint number, or a PathLoad.
+    """The ``count`` candidates to measure next for a goal: "all", a joint number, or a Loads.
 
     ``candidates`` are those around what was measured unless given. A reading is taken to be as noisy as the residuals
     say. Raises LoadTestError where there are none to judge by.
@@ -208,8 +200,8 @@ def _best(P: FloatArray, blocks: FloatArray, weight: FloatArray | None, picked: 
     return int(np.argmax(gain))
 
 
-def _aim(robot: Robot, result: IdentificationResult, goal: str | int | PathLoad) -> _Aim:
-    if isinstance(goal, PathLoad):
+def _aim(robot: Robot, result: IdentificationResult, goal: str | int | Loads) -> _Aim:
+    if isinstance(goal, Loads):
         D = result.choice.tip_regressor(robot, goal.theta, goal.F)
         D = D[np.isfinite(D).all(axis=(-1, -2))]
         if len(D) == 0:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robomill.arrays import FloatArray
 from robomill.compliance.gravity import GRAVITY
 from robomill.errors import LoadTestError
 from robomill.identification.length_units import length_suspicions
@@ -73,14 +71,8 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
         return []
     given = float(np.median(np.sqrt(np.nansum(moved[loaded] ** 2, axis=1)) / size[loaded]))
     if given == 0.0:
-        return [
-            Finding(
-                "suspicious",
-                0,
-                "Most displacements are zero: was the gauge read, and to enough digits?",
-                code="no-displacement",
-            )
-        ]
+        text = "Most displacements are zero: was the gauge read, and to enough digits?"
+        return [Finding("suspicious", 0, text, code="no-displacement")]
     found = _off(given, _expected(tests, robot), PLAUSIBLE)
     if found is None:
         return []
@@ -114,7 +106,7 @@ def _expected(tests: LoadTests, robot: Robot | None) -> float | None:
     """Typical m/N of the readings by the robot's own joint compliances, where these are known."""
     if robot is None or tests.theta is None or not _knows(robot):
         return None
-    tests = tests.select(slice(None, None, -(-len(tests) // MOST)))
+    tests = tests.thinned(MOST)
     try:
         system = build_system(robot, tests, Model("joints"))
     except LoadTestError:
@@ -129,30 +121,18 @@ def _repeats(tests: LoadTests) -> list[Finding]:
     poses = tests.theta if tests.theta is not None else tests.x_M
     assert poses is not None
     table = np.concatenate([poses, tests.wrench, np.nan_to_num(tests.displacement)], axis=1)
-    first, again = _first_repeat(table)
-    if again is None or first is None:
+    _, first, back = np.unique(table + 0.0, axis=0, return_index=True, return_inverse=True)
+    original = first[back.ravel()]
+    copies = np.flatnonzero(original != np.arange(len(table)))
+    if len(copies) == 0:
         return []
-    copies = len(table) - len(np.unique(_bytes(table)))
-    others = f" (and {copies - 1} more)" if copies > 1 else ""
+    again = int(tests.row[copies[0]])
+    others = f" (and {len(copies) - 1} more)" if len(copies) > 1 else ""
     text = (
-        f"Row {tests.row[again]} repeats row {tests.row[first]} to the last digit{others}; both are used: "
+        f"Row {again} repeats row {tests.row[original[copies[0]]]} to the last digit{others}; both are used: "
         "delete the copy unless it was measured twice."
     )
-    return [Finding("warning", int(tests.row[again]), text, copies, code="repeat")]
-
-
-def _first_repeat(table: FloatArray) -> tuple[int | None, int | None]:
-    keys = _bytes(table)
-    _, index, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    original = index[inverse]
-    copies = np.flatnonzero(original != np.arange(len(table)))
-    return (None, None) if len(copies) == 0 else (int(original[copies[0]]), int(copies[0]))
-
-
-def _bytes(table: FloatArray) -> NDArray[np.void]:
-    """Each row as one value, its bytes: equal where every number is equal."""
-    whole = np.ascontiguousarray(table + 0.0)  # no minus zeros
-    return whole.view(np.dtype((np.void, whole.strides[0]))).ravel()
+    return [Finding("warning", again, text, len(copies), code="repeat")]
 
 
 def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, ...]:

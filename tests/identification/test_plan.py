@@ -11,7 +11,7 @@ from scipy import stats
 import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
-from robomill.identification.plan import PathLoad, _best, box_candidates, next_best
+from robomill.identification.plan import Loads, _best, box_candidates, next_best
 from robomill.identification.synthesis import simulated_tests
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
@@ -73,7 +73,7 @@ def test_the_first_pick_has_the_largest_determinant():
 def test_a_path_is_made_more_certain_than_by_the_general_plan():
     x_M = np.stack([np.linspace(-0.1, 0.1, 11), np.full(11, -1.3), *np.zeros((3, 11))], axis=-1)
     theta = rm.inverse_kinematics(ROBOT, rm.pose_from_world(x_M)).theta
-    path = PathLoad(theta, np.tile([0.0, 100.0, 0.0], (11, 1)))
+    path = Loads(theta, np.tile([0.0, 100.0, 0.0], (11, 1)))
     candidates = box_candidates(ROBOT, *BOX)
     aimed = next_best(ROBOT, TESTS, RESULT, candidates, goal=path)
     general = next_best(ROBOT, TESTS, RESULT, candidates, goal=4)
@@ -146,7 +146,7 @@ def brute(candidates, result, goodness, count):
 
 
 PATH_THETA = rm.inverse_kinematics(ROBOT, rm.pose_from_world([[x, -1.3, 0, 0.1, 0] for x in (-0.2, 0.0, 0.2)])).theta
-PATH = PathLoad(PATH_THETA, np.array([[0, 100.0, 0], [20.0, 80.0, -10], [0, 100.0, 30.0]]))
+PATH = Loads(PATH_THETA, np.array([[0, 100.0, 0], [20.0, 80.0, -10], [0, 100.0, 30.0]]))
 
 
 def path_variance(P):
@@ -241,7 +241,7 @@ def test_noise_and_what_is_counted_with_another_shape_a_plan():
     live = np.arange(len(rich.labels)) != k
     assert (planned.after[live] < planned.before[live]).all()
     with pytest.raises(LoadTestError, match="no point of the path"):
-        next_best(ROBOT, TESTS, RESULT, candidates, goal=PathLoad(np.full((2, 5), np.nan), PATH.F[:2]))
-    holes = PathLoad(np.vstack([PATH.theta, np.full((1, 5), np.nan)]), np.vstack([PATH.F, PATH.F[:1]]))
+        next_best(ROBOT, TESTS, RESULT, candidates, goal=Loads(np.full((2, 5), np.nan), PATH.F[:2]))
+    holes = Loads(np.vstack([PATH.theta, np.full((1, 5), np.nan)]), np.vstack([PATH.F, PATH.F[:1]]))
     with_holes, whole = (next_best(ROBOT, TESTS, RESULT, candidates, goal=g) for g in (holes, PATH))
     assert with_holes.path_after == whole.path_after

@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.identification.plan import MARGIN, PathLoad, Plan, candidates_around, next_best
+from robomill.identification.plan import MARGIN, Loads, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
@@ -107,12 +107,12 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     """The tests of the tool to do next. Raises LoadTestError where nothing can be planned."""
     tests = tests_of(bench, robot)
     assert not tests.single
-    goal: str | int | PathLoad = bench.goal
+    goal: str | int | Loads = bench.goal
     if goal == "joint":
         goal = _joint(bench, robot, result)
     elif goal == "path":
         cut = cut_of(robot)
-        goal = PathLoad(cut.theta[cut.judged], cut.F[cut.judged])
+        goal = Loads(cut.theta[cut.judged], cut.F[cut.judged])
     setup = session.project().setup.digest()
     key = ("plan", id(result), bench.goal, bench.goal_joint, setup, bench.count, bench.load, bench.tilt)
 
