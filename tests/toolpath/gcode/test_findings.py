@@ -6,6 +6,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
+from robomill.toolpath.tools import Tool
 
 
 def said(text: str) -> set[str]:
@@ -67,3 +68,69 @@ def test_smoothing_of_fanuc_and_haas_moves_nothing() -> None:
 def test_numbers_that_no_machine_has_are_refused(text: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         interpret(text.replace("P1e1", "P1") + "\n")
+
+
+def found(text: str, code: str, **more):
+    return [f for f in interpret(text, **more).findings if f.code == code]
+
+
+@pytest.mark.parametrize(
+    ("mm", "said_unit", "other"),
+    [
+        (7.9, "G21\n", "200.7 mm"),
+        (8.0, "G21\n", ""),
+        (7.9, "", "200.7 mm"),
+        (7.9, "G20\n", ""),
+        (3000.0, "G21\n", ""),
+        (3001.0, "G21\n", "118.1 mm"),
+        (3001.0, "G20\n", "118.1 mm"),
+    ],
+)
+def test_a_part_of_an_unlikely_size_is_doubted(mm: float, said_unit: str, other: str) -> None:
+    """Measured along its longest side, by the moves at feed."""
+    size = mm / 25.4 if said_unit == "G20\n" else mm
+    text = f"{said_unit}F100\nG0 X-9000 Y0\nX0\nG1 Y{size} X{0.5 * size}\nG0 Z9000\nM2\n"
+    doubts = found(text, "size-doubt")
+    assert [f.line for f in doubts] == [0] * bool(other)
+    if other:
+        assert other in doubts[0].message
+
+
+def test_a_part_of_no_size_is_not_doubted() -> None:
+    assert found("G21 F9\nG1 X0\nM2\n", "size-doubt") == []
+    assert found("G21 F9\nG0 X1\nM2\n", "size-doubt") == []
+
+
+def test_what_is_of_no_line_stands_at_line_0() -> None:
+    text = "G21 T3\nG1 X99 F1\nM2\n"
+    assert [f.line for code in ("no-spindle", "no-change") for f in found(text, code)] == [0, 0]
+    assert [f.line for f in found("G0 X=1\nM2\n", "dialect-guessed")] == [0]
+    assert found("G0 X=1\nM2\n", "dialect-guessed", dialect="sinumerik") == []
+    assert found("G0 X1\nM2\n", "dialect-guessed") == []
+    assert [f.line for f in found("G0 X1\nM2\n", "no-units")] == [0]
+    assert found("M2\n", "no-units") == []
+
+
+def test_cuts_with_another_tools_length_are_warned_of_once_a_tool_at_their_first_line() -> None:
+    tools = {n: Tool(n, 6e-3, offset=(0.0, 0.0, 0.01 * n)) for n in (1, 2, 3)}
+    text = (
+        "G21 F9 S9 M3\nT1 M6\nG43 H2\nG0 X1\nG1 X9\nX10\nT2 M6\nM3\nG43 H2\nX11\nT3 M6\nM3\nX12\nG38.3 X13\nM2\n"
+    )
+    doubts = found(text, "wrong-length", tools=tools)
+    assert [f.line for f in doubts] == [5, 13]
+    assert "tool 1 cuts with the length of another tool (G43): its tip goes 10.000 mm higher" in doubts[0].message
+    assert "tool 3" in doubts[1].message
+    assert "10.000 mm lower" in doubts[1].message
+    assert found(text.replace("G1 X9\nX10", "G38.3 X9\nG0 X10").replace("X12\n", ""), "wrong-length", tools=tools) == []
+
+
+@pytest.mark.parametrize(("end", "lines"), [("M2", 3), ("M2\n", 3), ("M2\n\n", 4)])
+def test_lines_are_counted_without_an_empty_last_one(end: str, lines: int) -> None:
+    assert interpret(f"G21\nG0 X1\n{end}").lines == lines
+
+
+def test_a_place_too_far_off_names_its_line() -> None:
+    far = "1" + "0" * 308
+    with pytest.raises(GCodeError, match="Line 4: a coordinate is too large") as refused:
+        interpret(f"G21 G91\nG0 X1\nX{far}\nX{far}\nM2\n")
+    assert refused.value.line == 4
