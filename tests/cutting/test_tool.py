@@ -7,6 +7,7 @@ import pytest
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
+from robomill.quantities import quantities
 from robomill.units import to_si
 
 FLAT = Cutter("flat", 8e-3, flutes=3)
@@ -105,3 +106,45 @@ def test_refusals(fields, sentence):
     assert sentence in str(refusal.value)
     assert refusal.value.where is not None
     assert str(refusal.value).count("\n") == 0
+
+
+def test_what_nobody_said_of_a_cutter():
+    plain = Cutter("flat", 8e-3)
+    assert (plain.corner_radius, plain.flutes, plain.helix, plain.hand) == (0.0, 2, "right", "right")
+    assert math.degrees(plain.helix_angle) == pytest.approx(30.0)
+    assert (plain.flute_length, plain.stick_out, plain.tip_angle, plain.tip_diameter) == (None, None, None, 0.0)
+
+
+def test_a_click_on_a_box_is_a_shops_step():
+    """Whole millimetres of what is bought so, quarters of what is ground, 5 degrees; lengths in hand to a tenth."""
+    boxes = {name: (each.step, each.digits) for name, each in quantities(Cutter).items() if each.step}
+    assert boxes == {
+        "diameter": (1.0, None),
+        "corner_radius": (0.25, None),
+        "flutes": (1.0, 0),
+        "helix_angle": (5.0, 1),
+        "flute_length": (1.0, 1),
+        "stick_out": (1.0, 1),
+        "tip_angle": (5.0, None),
+        "tip_diameter": (0.25, None),
+    }
+
+
+def test_limits_are_part_of_what_is_allowed():
+    """Flutes as long as the stick-out, a corner as large as the radius, no helix; a cone without a flat at its tip."""
+    assert Cutter("flat", 8e-3, flute_length=20e-3, stick_out=20e-3).flute_length == 20e-3
+    assert Cutter("bull", 8e-3, corner_radius=4e-3).flat_radius == 0.0
+    assert Cutter("flat", 8e-3, helix_angle=0.0).pull == 0
+    assert Cutter("chamfer", 8e-3, tip_angle=1.0).nose_height == pytest.approx(4e-3 / math.tan(0.5))
+    assert Cutter("flat", 8e-3, flutes=1).title == "8.00 mm flat end mill, 1 flute"
+    # The radius of a ball may be off by rounding, and is then the cutter's.
+    assert Cutter("ball", 8e-3, corner_radius=4e-3 * (1 + 1e-12)).corner_radius == 4e-3
+
+
+@pytest.mark.parametrize("cutter", ALL, ids=lambda c: c.kind)
+def test_below_its_tip_a_cutter_has_no_radius_and_above_its_nose_the_full_one(cutter):
+    assert np.isnan(cutter.radius_at(-1e-9))
+    assert cutter.radius_at(0.0) == pytest.approx(cutter.flat_radius)
+    assert cutter.radius_at([cutter.nose_height, 1.0]) == pytest.approx([cutter.radius] * 2)
+    assert np.isfinite(cutter.profile([0.0, cutter.radius])).all()
+    assert np.isposinf(cutter.profile([-1e-12, cutter.radius * (1 + 1e-12)])).all()

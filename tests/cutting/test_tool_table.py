@@ -8,6 +8,7 @@ from robomill.arrays import digest
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
+from robomill.quantities import quantities
 
 SIX, EIGHT = Cutter("flat", 6e-3), Cutter("ball", 8e-3)
 
@@ -36,6 +37,7 @@ def test_what_is_assumed_is_said_of_the_tools_that_cut() -> None:
     (note,) = table.notes([2, 1, 1])
     assert note.message.startswith("Tool 1:")
     assert "flutes 2" in note.message
+    assert (note.line, note.code) == (0, "tool-assumed")
     assert table.notes([2, 3, 9]) == ()
 
 
@@ -51,3 +53,20 @@ def test_a_tool_is_called_by_what_the_table_says() -> None:
     table = ToolTable((TableTool(1, SIX), TableTool(2, EIGHT, name="finisher"), TableTool(3)))
     assert [table.called(n) for n in (2, 3, 9)] == ["T2 · finisher, 8.00 mm", "T3", "T9"]
     assert table.called(1).startswith("T1 · 6.00 mm flat")
+
+
+def test_a_number_that_stands_there_twice_is_found_anywhere() -> None:
+    for numbers in ((5, 1, 5), (1, 2, 2), (0, 0)):
+        with pytest.raises(CuttingError, match=f"tool {max(set(numbers), key=numbers.count)} is there twice"):
+            ToolTable(tuple(TableTool(n, SIX) for n in numbers))
+    assert len(ToolTable(tuple(TableTool(n, SIX) for n in (3, 2, 1)))) == 3
+
+
+def test_what_nobody_said_of_a_tool() -> None:
+    plain = TableTool(4)
+    assert (plain.cutter, plain.length, plain.orientation, plain.compensates) == (None, 0.0, 0, None)
+    assert quantities(TableTool)["length"].step == 1.0
+    assert TableTool(0, orientation=9).number == 0
+    for wrong in ({"number": -1}, {"number": 1, "orientation": 10}, {"number": 1, "assumed": ("colour",)}):
+        with pytest.raises(CuttingError):
+            TableTool(**wrong)  # type: ignore[arg-type]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robomill.cutting.engaged import PANELS, sector_edges
+from robomill.cutting.engaged import MOMENTS, PANELS, full_slot, sector_edges
 from robomill.cutting.tool import DISH, Cutter
 from robomill.surface import engagement_kernels as kernels
 from robomill.surface.engagement_kernels import (
@@ -19,6 +19,7 @@ from robomill.surface.engagement_kernels import (
     SUMS,
     Ray,
     Room,
+    add_part,
     divide,
     follow_jumps,
     half_turn,
@@ -221,3 +222,81 @@ def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch
     assert row[kernels.WIDEST] / MM == pytest.approx(radius, abs=2e-3)
     assert row[kernels.FACE] == 0.0
     assert row[SUMS + 3] / MM == pytest.approx(length, abs=2e-3)  # of exponent 0: the length by itself
+
+
+def met(cutter, depth, along=0.0, low=-1.0, high=1.0):
+    """What a step along X meets in a block from ``low`` to ``high`` (m) in Y, 10 mm thick: row and sectors."""
+    world = block_world()
+    world = world._replace(block=world.block._replace(y_low=low, y_high=high))
+    halves = 2 if along < -1e-6 else 1
+    total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
+    add_part(room_for(halves), world, cutter_shape(cutter), step_at(depth, along), total, sectors)
+    return total[: 2 * MOMENTS].reshape(2, MOMENTS), total[2 * MOMENTS :], sectors.reshape(-1, 4)
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("along", [0.0, 0.3, -0.004, -0.5])
+@pytest.mark.parametrize("depth", [0.7 * MM, 6 * MM])
+def test_in_the_midst_of_a_block_a_full_slot_is_met(name, along, depth):
+    cutter = CUTTERS[name]
+    moments, rest, sectors = met(cutter, depth, along)
+    expected = full_slot(cutter, (1.0, 0.0), np.array([depth]), np.array([along])).moments[0]
+    for n in range(2):
+        np.testing.assert_allclose(moments[n], expected[n], atol=8e-3 * np.abs(expected[n]).max())
+    if along > 0.0:  # drawn out: less than a half turn of a nose faces the feed
+        return
+    phi_st, phi_ex, a_p, a_e, reach, size = rest[:6]
+    assert (phi_st, phi_ex) == pytest.approx((0.0, np.pi), abs=2e-3)
+    assert a_p == pytest.approx(depth, rel=2e-3)
+    assert reach == pytest.approx(depth, rel=1e-6)
+    assert a_e == pytest.approx(2 * float(cutter.radius_at(depth)), rel=2e-3)
+    ahead = sectors[: 4 * PANELS]
+    np.testing.assert_allclose(ahead[:, 0], depth, rtol=2e-2)
+    np.testing.assert_allclose(ahead[:, 1], 0.0, atol=2e-2 * depth)
+    np.testing.assert_allclose(ahead[:, 2], depth, rtol=1e-5)
+    face = cutter.flat_radius if -along > DISH else 0.0
+    np.testing.assert_allclose(sectors[:, 3], face, rtol=2e-2)
+    turns = np.pi * (depth - cutter.nose_height) if depth > cutter.nose_height else 0.0
+    assert size >= turns
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("share", [0.07, 0.5, -0.5])
+def test_beside_a_face_of_the_block_the_arc_ends_at_it(side, share):
+    """The face stands at ``share`` of the radius to the left: material to its left (+1) or to its right (-1)."""
+    R, depth = 4 * MM, 2 * MM
+    low, high = (share * R, 1.0) if side > 0 else (-1.0, share * R)
+    moments, rest, sectors = met(CUTTERS["flat"], depth, 0.0, low, high)
+    edge = math.acos(share)  # from the left
+    first, last = (0.0, edge) if side > 0 else (edge, math.pi)
+    assert rest[:2] == pytest.approx([first, last], abs=3e-3)
+    assert rest[2] == pytest.approx(depth, rel=5e-3)
+    assert rest[3] == pytest.approx(R - share * R if side > 0 else R + share * R, rel=5e-3)
+    assert rest[5] == pytest.approx(depth * (last - first), rel=5e-3)
+
+    def integral(f):
+        """Of f over the arc, by its antiderivative's values: (sine, -cosine, squares)."""
+        return f(last) - f(first)
+
+    sine2, cosine2 = integral(lambda q: 0.5 * q - 0.25 * math.sin(2 * q)), integral(lambda q: 0.5 * math.sin(q) ** 2)
+    chip = depth * np.array([cosine2, sine2, sine2, cosine2, 0, 0, 0, integral(lambda q: -math.cos(q))])
+    sine, one = integral(lambda q: -math.cos(q)), last - first
+    edge_sums = depth * np.array([integral(math.sin), sine, sine, integral(math.sin), 0, 0, 0, one])
+    np.testing.assert_allclose(moments, [chip, edge_sums], atol=1e-2 * depth)
+    middles = 0.5 * (sector_edges(48)[1:] + sector_edges(48)[:-1])
+    inside = (middles > first) & (middles < last)
+    near = np.abs(middles - edge) < 0.05
+    np.testing.assert_allclose(sectors[inside & ~near, 0], depth, rtol=5e-3)
+    np.testing.assert_allclose(sectors[~inside & ~near], 0.0, atol=1e-9)
+
+
+def test_above_a_block_and_below_it_nothing_is_met():
+    for depth in (-1 * MM, 0.0):
+        moments, rest, sectors = met(CUTTERS["flat"], depth)
+        assert not moments.any()
+        assert not rest.any()
+        assert not sectors.any()
+    # Deeper than the block is thick: as much of the flank as stands in it.
+    _, rest, sectors = met(CUTTERS["flat"], 14 * MM)
+    assert rest[2] == pytest.approx(10 * MM, rel=2e-3)
+    np.testing.assert_allclose(sectors[:, :3], [[10 * MM, 4 * MM, 14 * MM]] * 48, rtol=1e-5)

@@ -211,6 +211,13 @@ def test_a_run_follows_the_one_that_left_off_at_its_start_with_its_tool():
         assert not follows(runs, 0)
 
 
+@pytest.mark.parametrize(("one", "other"), [((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8)), ((0.0, 0.6, 0.8), (0.0, -0.6, 0.8))])
+def test_a_run_of_another_axis_does_not_follow(one, other):
+    for second, same in ((one, True), (other, False)):
+        runs = world_of([(FLAT, (1, 1, -1), (5, 1, -2), one), (FLAT, (5, 1, -2), (9, 1, -2), second)]).runs
+        assert follows(runs, 1) == same
+
+
 def test_a_run_grows_by_the_end_of_each_step():
     run = np.zeros(RUN)
     go_on(run, np.array([1.0, 2, 3, 4, 5, 6]), True)

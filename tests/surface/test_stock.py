@@ -6,6 +6,7 @@ import shapely
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
+from robomill.quantities import quantities
 from robomill.surface.stock import Stock, fitting_cell, stock_grid, stock_span
 from robomill.surface.zmap import cut
 
@@ -99,3 +100,30 @@ def test_stock_refusals_and_defaults():
     np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
     assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(CUTTER)[0].code == "wide-cutter"
     assert not STOCK.warnings(CUTTER)
+
+
+def test_corners_are_told_in_whole_millimetres_and_shown_to_a_hundredth():
+    assert [(each.step, each.digits) for each in quantities(Stock).values()] == [(1.0, 2)] * 2
+
+
+def test_odd_sizes_are_said_from_two_millimetres_and_five_metres_on():
+    for longest, odd in ((2e-3, False), (1.99e-3, True), (5.0, False), (5.01, True)):
+        found = Stock((0, 0, 0), (longest, longest, 1e-3)).warnings(Cutter("flat", 1e-3))
+        assert [(each.code, each.line) for each in found] == [("stock-unit", 0)] * odd
+    (found,) = Stock((0, 0, 0), (1, 0.0079, 1)).warnings(CUTTER)
+    assert (found.code, found.line) == ("wide-cutter", 0)
+    assert Stock((0, 0, 0), (1, 0.008, 1)).warnings(CUTTER) == ()
+
+
+def test_part_zero_is_on_top_where_the_path_cuts_below_zero():
+    """By more than a nanometre; else the top is a millimetre above the highest point, or where it is said."""
+    for z, top in ((-1e-3, 0.0), (-2e-9, 0.0), (-0.5e-9, 1e-3), (0.0, 1e-3), (2e-3, 3e-3)):
+        path = np.array([[0.0, 0.0, z], [0.01, 0.0, z]])
+        stock = Stock.from_path(path, CUTTER)
+        assert stock.upper[2] == pytest.approx(top, abs=2e-6)
+        assert stock.lower[2] == pytest.approx(z - 5e-3)
+        np.testing.assert_allclose(stock.lower[:2], [-6e-3, -6e-3])
+    flat = Stock.from_path(path, CUTTER, top=-1.0, below=0.0)
+    assert flat.upper[2] - flat.lower[2] == pytest.approx(1e-6)
+    with pytest.raises(SurfaceError, match="found no feed move"):
+        Stock.from_path(path, CUTTER, [False, False])

@@ -7,6 +7,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.errors import CuttingError
+from robomill.quantities import quantities
 
 T = np.arange(0.0, 4.0, 1e-3)
 
@@ -152,7 +153,7 @@ def test_a_rate_of_twice_the_cut_off_is_too_few_and_rounded_instants_do_not_help
                 record(np.ones(40), x).low_pass(50.0)
 
 
-@pytest.mark.parametrize(("last", "longer"), [(2.0, False), (2.499, False), (2.502, True), (10.0, True)])
+@pytest.mark.parametrize(("last", "longer"), [(2.0, False), (2.5, False), (2.502, True), (10.0, True)])
 def test_a_record_that_goes_on_by_a_fifth_of_its_time_is_suspected(last, longer):
     """The cut ends 2 s after its begin, which is at 0.5 s of a record that begins at 0.5 s."""
     x = np.linspace(0.5, 0.5 + last, 5)
@@ -164,7 +165,7 @@ def test_a_record_that_goes_on_by_a_fifth_of_its_time_is_suspected(last, longer)
     found = force.findings(conditions)
     begin = found[0]
     assert (begin.code, begin.line, "begin at 0.500 s" in begin.message) == ("record-start", 4, True)
-    assert [each.code for each in found[1:]] == (["record-longer"] if longer else [])
+    assert [(each.code, each.line) for each in found[1:]] == [("record-longer", 0)] * longer
     if longer:
         assert f"goes on to {x[-1]:.3f} s, the last cut ends at 2.500 s" in found[1].message
 
@@ -173,7 +174,7 @@ def test_only_a_record_over_time_laid_on_a_cut_has_a_begin():
     air = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, False])
     cut = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True])
     noted = record(1.0, notes=("read with care",))
-    assert [each.code for each in MeasuredForce(noted).findings(air)] == ["force-note"]
+    assert [(each.code, each.line) for each in MeasuredForce(noted).findings(air)] == [("force-note", 0)]
     assert [each.code for each in MeasuredForce(noted).findings(cut)][:2] == ["force-note", "record-start"]
     by_length = record(1.0, axis="path", notes=("read with care",))
     assert [each.code for each in MeasuredForce(by_length).findings(cut)] == ["force-note"]
@@ -202,3 +203,9 @@ def test_a_record_over_length_is_filtered_at_the_median_feed_of_the_cut():
     expected = MeasuredForce(record(wave)).record.low_pass(50.0)
     found = MeasuredForce(by_length).components(conditions)[1:, 1]
     np.testing.assert_allclose(found, np.interp(np.linspace(1.0, 3.0, 6)[1:], expected.x, expected.F[:, 1]), atol=1e-6)
+
+
+def test_no_filter_is_written_as_a_cut_off_of_nothing():
+    assert quantities(MeasuredForce)["cutoff"].written_none == 0.0
+    assert MeasuredForce(record(1.0)).cutoff == 50.0
+    assert MeasuredForce(record(1.0)).start == 0.0

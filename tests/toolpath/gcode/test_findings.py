@@ -113,9 +113,7 @@ def test_what_is_of_no_line_stands_at_line_0() -> None:
 
 def test_cuts_with_another_tools_length_are_warned_of_once_a_tool_at_their_first_line() -> None:
     tools = {n: Tool(n, 6e-3, offset=(0.0, 0.0, 0.01 * n)) for n in (1, 2, 3)}
-    text = (
-        "G21 F9 S9 M3\nT1 M6\nG43 H2\nG0 X1\nG1 X9\nX10\nT2 M6\nM3\nG43 H2\nX11\nT3 M6\nM3\nX12\nG38.3 X13\nM2\n"
-    )
+    text = "G21 F9 S9 M3\nT1 M6\nG43 H2\nG0 X1\nG1 X9\nX10\nT2 M6\nM3\nG43 H2\nX11\nT3 M6\nM3\nX12\nG38.3 X13\nM2\n"
     doubts = found(text, "wrong-length", tools=tools)
     assert [f.line for f in doubts] == [5, 13]
     assert "tool 1 cuts with the length of another tool (G43): its tip goes 10.000 mm higher" in doubts[0].message
