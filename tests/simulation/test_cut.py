@@ -1,0 +1,91 @@
+"""What goes into a run beside its laws: depths as told, where a moved path goes, what of a force is suspected."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
+from robomill.simulation.cut import SUSPECTED, cut_notes, moved_points, suspicions, told_conditions
+from robomill.toolpath.path import Toolpath
+
+SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+PROCESS = load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
+
+
+def path_of(p, cutting, **changes):
+    m = len(p)
+    given = {"k": (0.0, 0.0, 1.0), "v_f": 0.03, "block": np.arange(1, m + 1), "n_s": 200.0, "tool": 0, **changes}
+    return Toolpath(p=np.array(p, float), cutting=np.array(cutting, bool), **given)
+
+
+def recorded(frame="path"):
+    return MeasuredForce(ForceRecord(np.arange(4.0), np.ones((4, 3)), frame=frame))
+
+
+def test_a_slot_is_told_as_deep_as_the_tip_stands_below_the_top():
+    top = SETUP.stock_block.upper[2]
+    path = path_of([[0, 0, top + 5e-3], [0, 0, top - 2e-3], [0.01, 0, top - 2e-3], [0.02, 0, top]], [0, 1, 1, 1])
+    told = told_conditions(SETUP, path, np.array([True, True, False, True]))
+    np.testing.assert_allclose(told.a_p, [0.0, 2e-3, 2e-3, 0.0], atol=1e-15)
+    np.testing.assert_array_equal(told.cutting, [False, True, False, True])
+    np.testing.assert_allclose(told.along[1:3], [-1.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(told.across[1:3], [0.0, 1.0], atol=1e-12)
+    np.testing.assert_array_equal(told.block, path.block)
+
+
+def test_a_rapid_arrives_where_the_cut_after_it_begins_and_what_is_not_reached_stays():
+    turn = Rotation.from_rotvec([0.3, -0.2, 1.0]).as_matrix()
+    T_MW = np.eye(4)
+    T_MW[:3, :3], T_MW[:3, 3] = turn, [1.0, 2.0, 3.0]
+    path = path_of(np.arange(18).reshape(6, 3) * 1e-2, [0, 1, 1, 0, 0, 1])
+    delta = np.random.default_rng(0).normal(size=(6, 3)) * 1e-4
+    delta[2] = np.nan
+    reached = np.array([True, True, False, True, True, True])
+    moved = (moved_points(T_MW, path, reached, delta) - path.p) @ turn.T
+    np.testing.assert_allclose(moved, np.nan_to_num(delta)[[1, 1, 2, 3, 5, 5]], atol=1e-15)
+    np.testing.assert_array_equal(moved_points(T_MW, path, np.zeros(6, bool), np.ones((6, 3))), path.p)
+
+
+@pytest.mark.parametrize(("along", "suspected"), [(-20.0, False), (0.0, False), (9.0, False), (13.0, True)])
+def test_a_measured_force_that_pulls_along_the_feed_is_suspected(along, suspected):
+    """By more than a tenth of its mean size, about 100 N."""
+    pull = np.array([[along, 100.0, 0.0], [along, -100.0, 0.0]])
+    found = suspicions(SETUP.replace(force=recorded()), pull)
+    assert [(each.code, each.line) for each in found] == [("force-pulls", 0)] * suspected
+    assert suspicions(SETUP, pull) == ()  # a stated force is a person's
+    assert suspicions(SETUP.replace(force=recorded()), pull[:0]) == ()
+    assert SUSPECTED == 0.1
+
+
+@pytest.mark.parametrize(("frame", "turned", "suspected"), [("M", True, True), ("M", False, False), ("W", True, False)])
+def test_axes_of_a_sensor_that_may_have_turned_with_the_part_are_asked_for(frame, turned, suspected):
+    T_MW = np.array(SETUP.T_MW)
+    T_MW[:3, :3] = Rotation.from_euler("z", 0.5 if turned else 0.0).as_matrix()
+    found = suspicions(SETUP.replace(force=recorded(frame), T_MW=T_MW), np.array([[-1.0, 100.0, 0.0]]))
+    assert [(each.code, each.line) for each in found] == [("force-axes", 0)] * suspected
+
+
+def test_a_full_slot_everywhere_is_said_of_forces_that_follow_the_cut():
+    path = path_of([[0, 0, -2e-3], [0.01, 0, -2e-3]], [0, 1])
+    for setup, engagement, said in ((PROCESS, False, True), (PROCESS, True, False), (SETUP, False, False)):
+        chosen = setup.replace(engagement=engagement)
+        told = told_conditions(chosen, path, np.ones(2, bool))
+        notes = cut_notes(chosen, told, np.ones(2, bool))
+        assert [(each.code, each.line) for each in notes if each.code == "full-slot"] == [("full-slot", 0)] * said
+        assert all(each.line >= 0 for each in notes)
+
+
+def test_notes_of_the_cutter_are_of_what_is_engaged():
+    short = SETUP.replace(cutter=SETUP.cutter.replace(flute_length=1e-3))
+    top = short.stock_block.upper[2]
+    path = path_of([[0, 0, top - 2e-3], [0.01, 0, top - 2e-3]], [0, 1])
+    told = told_conditions(short, path, np.ones(2, bool))
+    assert "beyond-flutes" in {each.code for each in cut_notes(short, told, np.ones(2, bool))}
+    air = replace(told, a_p=np.zeros(2))
+    assert "beyond-flutes" not in {each.code for each in cut_notes(short, air, np.ones(2, bool))}
