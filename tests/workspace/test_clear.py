@@ -1,14 +1,16 @@
 """Boxes without a singular configuration: det(J) minimised inside, singular places put between grid points."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
 import robomill as rm
-from robomill.workspace.clear import _wrapped, clear_cells, largest_clear_box
+from robomill.workspace.clear import SWING, _cell_of, _finer, _wrapped, clear_cells, largest_clear_box
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
+from robomill.workspace.reach import Box
 from robomill.workspace.region import largest_region
 from tests.kinematics.oracles import numeric_jacobian, pose
 
@@ -124,3 +126,69 @@ def test_cells_lie_between_points(points):
 def test_a_turn_is_the_shortest_of_those_that_end_alike():
     turn = np.random.default_rng(0).uniform(-9, 9, (4, 50))
     np.testing.assert_allclose(_wrapped(turn), np.angle(np.exp(1j * turn)), atol=1e-12)
+
+
+def short(turn):
+    return np.angle(np.exp(1j * turn))
+
+
+def clear_by_hand(shape, able, branch, det, theta):
+    """Cell by cell: corners, edges (one branch, one sign, a quarter turn at most), faces (no turn left on a round)."""
+    wide = [axis for axis in range(3) if shape[axis] > 1]
+    found = np.zeros([max(n - 1, 1) for n in shape], dtype=bool)
+    steps = [(0, 1) if axis in wide else (0,) for axis in range(3)]
+    for cell in np.ndindex(*found.shape):
+        corners = [tuple(np.add(cell, step)) for step in itertools.product(*steps)]
+        edges = [(p, q) for p in corners for q in corners if sum(np.abs(np.subtract(q, p))) == 1 and q > p]
+        clear = all(able[p] for p in corners)
+        for p, q in edges:
+            clear &= branch[p] == branch[q] and det[p] * det[q] > 0.0
+            clear &= bool((np.abs(short(theta[q] - theta[p])) < SWING).all())
+        for p, one, other in itertools.product(corners, wide, wide):
+            if one < other:
+                e, f = np.eye(3, dtype=int)[[one, other]]
+                loop = [p, tuple(p + e), tuple(p + e + f), tuple(p + f), p]
+                if all(q in corners for q in loop):
+                    left = sum(short(theta[b] - theta[a]) for a, b in itertools.pairwise(loop))
+                    clear &= bool((np.abs(left) < SWING).all())
+        found[cell] = clear
+    return found
+
+
+@pytest.mark.parametrize("shape", [(4, 3, 3), (6, 5, 1), (1, 4, 5), (7, 1, 1)])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_cell_is_clear_by_its_corners_edges_and_faces(monkeypatch, shape, seed):
+    """Joints, branches and det(J) made up: a vortex that turns a joint once around a line, and a few odd places."""
+    rng = np.random.default_rng(seed)
+    grid = Grid(*(np.arange(n) * 0.1 for n in shape))
+    at = grid.points() - rng.uniform(0.0, 0.1 * np.array(shape))
+    vortex = np.arctan2(at[..., seed % 3], at[..., (seed + 1) % 3])
+    theta = np.stack([vortex, 5.0 * at.sum(axis=-1), 0.0 * vortex], axis=-1) + rng.uniform(-0.3, 0.3, (*shape, 3))
+    branch = (rng.random(shape) < 0.06).astype(int)
+    det = rng.uniform(0.5, 2.0, shape) * np.where(rng.random(shape) < 0.06, -1.0, 1.0)
+    det.flat[0] = 1e-12
+    reached = rng.random(shape) > 0.03
+    theta[~reached] = np.nan
+    robot = SimpleNamespace(n=3, chain=SimpleNamespace(prismatic=np.array([False, False, True])))
+    theta[..., 2] += rng.uniform(-9, 9, shape)  # slides may go anywhere
+    ik = SimpleNamespace(theta=theta, reached=reached, branch_index=branch)
+    monkeypatch.setattr("robomill.workspace.clear.inverse_kinematics", lambda robot, poses: ik)
+    monkeypatch.setattr("robomill.workspace.clear.determinant", lambda robot, angles: det[reached])
+    monkeypatch.setattr("robomill.workspace.clear.near_singular", lambda robot, values: ~(np.abs(values) > 1e-6))
+    able = reached & (np.abs(det) > 1e-6)
+    expected = clear_by_hand(shape, able, branch, det, theta[..., :2])
+    np.testing.assert_array_equal(clear_cells(robot, grid), expected)
+    robot.n = 7  # one of many postures: its corners alone
+    by_corners = clear_by_hand(shape, able, 0 * branch, 0 * det + 1.0, 0 * np.nan_to_num(theta))
+    np.testing.assert_array_equal(clear_cells(robot, grid), by_corners)
+
+
+def test_a_finer_grid_divides_every_step_in_three_and_knows_its_cells():
+    grid = Grid([0.0, 1.0, 3.0, 6.0], [0.0, 2.0], [5.0])
+    fine = _finer(grid, Box(np.array([1.0, 0.0, 5.0]), np.array([6.0, 2.0, 5.0])))
+    np.testing.assert_allclose(fine.x, [1, 5 / 3, 7 / 3, 3, 4, 5, 6])
+    np.testing.assert_allclose(fine.y, [0, 2 / 3, 4 / 3, 2])
+    np.testing.assert_array_equal(fine.z, [5.0])
+    cells = np.array([[i, j, 0] for i in range(6) for j in range(3)])
+    expected = np.array([[1 + i // 3, 0, 0] for i in range(6) for j in range(3)])
+    np.testing.assert_array_equal(_cell_of(cells, fine, grid), expected)

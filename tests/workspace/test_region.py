@@ -8,7 +8,15 @@ import pytest
 import robomill as rm
 from robomill.workspace.grid import PAPER_BOX_SIZE
 from robomill.workspace.reach import reach
-from robomill.workspace.region import coarse_grid, flat_axis, holds_paper_box, largest_region, reach_extent
+from robomill.workspace.region import (
+    FLAT,
+    coarse_cells,
+    coarse_grid,
+    flat_axis,
+    holds_paper_box,
+    largest_region,
+    reach_extent,
+)
 
 
 def test_planar_arms_lie_in_a_plane_and_others_do_not() -> None:
@@ -80,3 +88,37 @@ def test_the_region_of_a_planar_arm_turns_with_its_plane(flat: int) -> None:
     assert turned is not None
     np.testing.assert_allclose(turned.size[flat], 0.0, atol=1e-12)
     np.testing.assert_allclose(np.prod(np.delete(turned.size, flat)), np.prod(level.size[:2]), rtol=0.05)
+
+
+def test_an_arm_that_is_solved_numerically_is_looked_at_in_fewer_places() -> None:
+    assert coarse_cells(rm.load_robot("slavkovic_5r")) > 10 * coarse_cells(rm.load_robot("planar_3r"))
+
+
+@pytest.mark.parametrize("flat", [(), (0,), (1, 2), (0, 1, 2)])
+def test_a_coarse_grid_has_cells_of_equal_edges_and_one_place_along_what_is_flat(flat: tuple[int, ...]) -> None:
+    low, span = np.array([-0.5, 1.0, 0.2]), np.array([1.2, 0.6, 0.9])
+    low[[*flat]], span[[*flat]] = 0.0, FLAT
+    grid = coarse_grid(rm.load_robot("slavkovic_5r"), low, low + span, 600)
+    steps = []
+    for i, axis in enumerate((grid.x, grid.y, grid.z)):
+        assert axis[0] == low[i]
+        if i in flat:
+            assert len(axis) == 1
+            continue
+        assert axis[-1] == pytest.approx(low[i] + span[i])
+        steps += np.diff(axis).tolist()
+    assert not steps or max(steps) < 1.25 * min(steps)
+    cells = np.prod([max(n - 1, 1) for n in grid.shape])
+    assert len(flat) == 3 or 450 < cells < 800
+
+
+def test_what_is_in_reach_lies_within_the_extent_and_a_cell_of_it_does_not() -> None:
+    """Looked at on a grid of its own; the extent is a cell wider than the outermost places on either side."""
+    robot = rm.load_robot("slavkovic_5r")
+    extent = reach_extent(robot)
+    assert extent is not None
+    grid = coarse_grid(robot, extent.lower, extent.upper, 9000)
+    found = grid.points()[reach(robot, grid)]
+    step = max(np.diff(axis).max() for axis in (grid.x, grid.y, grid.z))
+    assert (found.min(axis=0) - extent.lower < 2.5 * step).all()
+    assert (extent.upper - found.max(axis=0) < 2.5 * step).all()
