@@ -7,7 +7,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.surface.engagement import engage
 from robomill.surface.march import March
-from robomill.surface.stock import Stock
+from robomill.surface.stock import Stock, stock_grid
 from robomill.surface.zmap import cut
 
 R = 0.004
@@ -96,3 +96,81 @@ def test_a_pass_far_off_with_another_axis_changes_nothing():
     for name in ("a_p", "a_e", "phi_st", "phi_ex"):
         np.testing.assert_allclose(getattr(found, name)[n:], getattr(truth, name), atol=1e-9, err_msg=name)
     assert np.nanmax(truth.a_e[len(alone) // 2 + 2 :]) > 1e-4
+
+
+def turned(lengths, angles, slopes=None):
+    """A path of steps (mm) that turn by so many radians from one to the next, in plan or down along slopes."""
+    heading = np.cumsum(angles)
+    down = np.zeros(len(heading)) if slopes is None else np.asarray(slopes)
+    way = np.column_stack([np.cos(heading) * np.cos(down), np.sin(heading) * np.cos(down), -np.sin(down)])
+    return np.vstack([np.zeros(3), np.cumsum(np.asarray(lengths)[:, None] * 1e-3 * way, axis=0)])
+
+
+def test_where_on_its_way_a_step_is_looked_at():
+    """On straight: almost at its end; before a corner or a stop: half way; on a curve: in the middle of its chord."""
+    bends = [0.0, 0.0, 0.009, 0.011, 0.59, 0.0, 0.61, 0.0, -0.5, 0.0]
+    p = turned(np.ones(10), bends)
+    expected = [0.99, 0.99, 0.5, 0.5, 0.5, 0.5, 0.99, 0.5, 0.5, 0.5]
+    np.testing.assert_allclose(March(STOCK, 1e-4, TOOLS["flat"], p)._at, expected)
+    # A step that is not at feed, or goes nowhere, parts those beside it.
+    cutting = np.array([True, True, True, False, True, True, True])
+    straight = turned(np.ones(6), np.zeros(6))
+    march = March(STOCK, 1e-4, TOOLS["flat"], straight, None, cutting)
+    np.testing.assert_array_equal(march.steps, [1, 2, 4, 5, 6])
+    np.testing.assert_allclose(march._at, [0.99, 0.5, 0.99, 0.99, 0.5])
+    np.testing.assert_array_equal(march._begins, [True, False, True, False, False])
+
+
+def test_a_plunge_is_looked_at_shortly_before_its_bottom():
+    """Half a cell of it, of a long one; half of a short one; a ramp of less than 30 degrees is no plunge."""
+    for length, slope, at in ((1.0, np.pi / 2, 0.95), (0.08, np.pi / 2, 0.5), (1.0, 0.53, 0.95), (1.0, 0.52, 0.5)):
+        p = turned([length], [0.0], [slope])
+        assert March(STOCK, 1e-4, TOOLS["flat"], p)._at == pytest.approx([at])
+
+
+def test_runs_end_where_the_way_bends_the_tool_or_its_axis_changes():
+    p = turned(np.ones(7), [0, 0, 1e-9, 0, np.pi, 0, 0])
+    march = March(STOCK, 1e-4, TOOLS["flat"], p)
+    np.testing.assert_array_equal(march._begins, [True, False, True, False, True, False, False])
+    tooling = Tooling((TOOLS["flat"], TOOLS["ball"]), [0, 0, 0, 1, 1, 0, 0, 0])
+    straight = turned(np.ones(7), np.zeros(7))
+    march = March(STOCK, 1e-4, tooling, straight)
+    np.testing.assert_array_equal(march._begins, [True, False, True, False, True, False, False])
+    k = np.tile([0.0, 0.0, 1.0], (8, 1))
+    k[5:] = 0.0, 0.6, 0.8
+    march = March(STOCK, 1e-4, TOOLS["flat"], straight, k)
+    np.testing.assert_array_equal(march._begins, [True, False, False, False, True, True, False])
+    np.testing.assert_allclose(march._axes[4], np.array([0.0, 0.6, 1.8]) / np.hypot(0.6, 1.8))
+
+
+def test_steps_are_those_at_feed_that_move_and_whose_ends_are_known():
+    p = turned(np.ones(8), np.zeros(8))
+    p[4] = p[3]
+    really = p + np.array([0.0, 1e-4, 0.0])
+    really[6] = np.nan
+    cutting = np.array([True, True, False, True, True, True, True, True, True])
+    march = March(STOCK, 1e-4, TOOLS["flat"], p, None, cutting, really=really)
+    np.testing.assert_array_equal(march.steps, [1, 3, 5, 8])
+    np.testing.assert_allclose(march._ends[:, [1, 4]], 1e-4)
+    np.testing.assert_allclose(march._length, np.linalg.norm(np.diff(p, axis=0), axis=1)[[0, 2, 4, 7]])
+    np.testing.assert_allclose(march._feed, [[1.0, 0.0, 0.0]] * 4, atol=1e-12)
+    np.testing.assert_array_equal(march._number[[1, 2, 3, 4, 5]], [0, -1, 1, -1, 2])
+    assert len(March(STOCK, 1e-4, TOOLS["flat"], p, None, np.zeros(9, bool)).steps) == 0
+
+
+@pytest.mark.parametrize(
+    ("cutters", "layered", "slack"),
+    [
+        ((TOOLS["flat"],), False, 0.01 * 2e-4),
+        ((TOOLS["flat"], TOOLS["ball"]), False, (2e-4) ** 2 / R),
+        ((Cutter("bull", 2 * R, corner_radius=1e-3), TOOLS["ball"]), False, (2e-4) ** 2 / 1e-3),
+        ((Cutter("chamfer", 2 * R, tip_angle=np.radians(60)),), False, 1e-4 / np.tan(np.radians(30))),
+        ((Cutter("chamfer", 2 * R, tip_angle=np.radians(60)),), True, 1e-4),
+    ],
+)
+def test_between_cells_heights_differ_by_what_the_sharpest_nose_leaves_there(cutters, layered, slack):
+    tooling = Tooling(cutters, np.zeros(2, dtype=int))
+    march = March(STOCK, 2e-4, tooling, np.zeros((2, 3)))
+    assert march._slack(stock_grid(STOCK, 2e-4), layered) == pytest.approx(slack, rel=1e-6)
+    wide = stock_grid(Stock((0, 0, -1), (0.01, 0.013, 0)), 4e-3)._replace(dx=1e-4, dy=2e-4)
+    assert march._slack(wide, layered) == pytest.approx(slack, rel=1e-6)
