@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from robomill import __version__, compiled
+from robomill.cli.serve import run_serve, serve_options, start_app
 from robomill.cli.verbs import run_gcode, run_identify, run_ik, run_map, run_pose, run_robots, run_simulate
 from robomill.errors import RobomillError
 
@@ -99,6 +99,11 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")
     run.add_argument("--out", metavar="DIR", help="write the result there: CSV tables, JSON, STL")
+
+    text = "Serve the app to others: no error details for visitors, work kept within bounds."
+    serve = verbs.add_parser("serve", help=text, description=text)
+    serve_options(serve)
+    serve.set_defaults(run=run_serve, json=False)
     return top
 
 
@@ -122,17 +127,3 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     fit.add_argument("--out", metavar="ROBOT.toml", help="write the robot with these compliances there")
     fit.add_argument("--sheet", metavar="SHEET.csv", help="write the tests to do next there, to be filled in")
     fit.add_argument("--next", type=int, default=3, metavar="TESTS", help="how many tests to do next (default 3)")
-
-
-def start_app(words: Sequence[str] = ()) -> int:
-    """Serve the app on this machine only and open it; further words go to Streamlit."""
-    from robomill.io.samples import app_dir
-
-    folder = app_dir()
-    command = [sys.executable, "-m", "streamlit", "run", str(folder / "app.py")]
-    if not any(word.startswith("--server.address") for word in words):
-        command += ["--server.address=127.0.0.1"]
-    try:
-        return subprocess.call([*command, "--browser.gatherUsageStats=false", *words])
-    except KeyboardInterrupt:
-        return 130

@@ -300,7 +300,8 @@ def upload(
         else:
             submit(key, None, lambda: take(file.getvalue(), file.name))
 
-    st.file_uploader(label, key=box, max_upload_size=most_MB, on_change=taken, help=look.hint)
+    most = min(most_MB, int(st.get_option("server.maxUploadSize")))
+    st.file_uploader(label, key=box, max_upload_size=most, on_change=taken, help=look.hint)
     sentence(key)
 
 

@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robomill.cli import main
+from robomill.cli import main, serve
 from robomill.io.samples import samples_dir
+from robomill.ui.keeping import Settings
 
 FLUTE = samples_dir() / "paper_flute"
 
@@ -302,6 +303,55 @@ def test_an_interrupted_app_exits_with_130(monkeypatch) -> None:
 
     monkeypatch.setattr(subprocess, "call", interrupted)
     assert main([]) == 130
+
+
+@pytest.fixture
+def served(monkeypatch) -> list[tuple[list[str], dict[str, str]]]:
+    """What ``robomill serve`` would have become."""
+    became: list[tuple[list[str], dict[str, str]]] = []
+    monkeypatch.setattr(serve, "_become", lambda command, environment: became.append((command, environment)) or 0)
+    return became
+
+
+def test_a_server_for_others_shows_no_code_and_listens_on_this_machine_unless_told(served) -> None:
+    assert main(["serve"]) == 0
+    ((command, environment),) = served
+    options = dict(word.split("=", 1) for word in command[5:])
+    assert options["--server.address"] == "127.0.0.1"
+    assert options["--client.showErrorDetails"] == "none"
+    assert options["--server.enableXsrfProtection"] == options["--server.enableCORS"] == "true"
+    assert options["--browser.gatherUsageStats"] == "false"
+    assert Settings.of(environment) == Settings.of(dict(os.environ))
+
+
+def test_every_setting_of_a_server_reaches_it(served) -> None:
+    said = "--address 0.0.0.0 --port 80 --host-name robomill.example.org --base-path /robomill/ --max-upload-mb 5"
+    kept = "--autosave off --autosave-folder /srv/work --autosave-mb 50 --autosave-days 7"
+    assert main(["serve", *said.split(), *kept.split()]) == 0
+    ((command, environment),) = served
+    for word in (
+        "--server.address=0.0.0.0",
+        "--server.port=80",
+        "--browser.serverAddress=robomill.example.org",
+        "--server.baseUrlPath=robomill",
+        "--server.maxUploadSize=5",
+    ):
+        assert word in command
+    settings = Settings.of(environment)
+    assert (settings.on, settings.folder, settings.all_MB, settings.days) == (False, Path("/srv/work"), 50.0, 7.0)
+
+
+@pytest.mark.parametrize(
+    "words", ["--port 0", "--port 1e3", "--max-upload-mb -1", "--autosave-days never", "--autosave-mb 0"]
+)
+def test_a_setting_that_cannot_be_is_refused_before_anything_is_served(served, capsys, words) -> None:
+    try:
+        code = main(["serve", *words.split()])
+    except SystemExit as left:  # argparse's own refusal
+        code = left.code
+    assert code == 2
+    assert "expected" in capsys.readouterr().err
+    assert served == []
 
 
 def test_version_and_help_are_no_apps(capsys) -> None:

@@ -1,0 +1,93 @@
+"""Serving the app: on this machine for whoever sits at it, or for others, with what that asks for."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+LOOPBACK = "127.0.0.1"
+# What a server for others has: no file or line of the code is shown to visitors (its owner's log has them), forms and
+# sockets of other sites are refused, and nothing is watched or opened on the machine that serves.
+SHARED = (
+    "--server.headless=true",
+    "--server.fileWatcherType=none",
+    "--server.enableXsrfProtection=true",
+    "--server.enableCORS=true",
+    "--client.showErrorDetails=none",
+    "--browser.gatherUsageStats=false",
+)
+
+
+def start_app(words: Sequence[str] = ()) -> int:
+    """Serve the app on this machine only and open it; further words go to Streamlit."""
+    own = () if any(word.startswith("--server.address") for word in words) else (f"--server.address={LOOPBACK}",)
+    try:
+        return subprocess.call(_command(*own, "--browser.gatherUsageStats=false", *words))
+    except KeyboardInterrupt:
+        return 130
+
+
+def serve_options(serve: argparse.ArgumentParser) -> None:
+    """The options of ``robomill serve``."""
+    serve.add_argument("--address", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine)")
+    serve.add_argument("--port", type=_port, default=8501, help="port to listen on (default 8501)")
+    serve.add_argument("--host-name", metavar="NAME", help="name by which browsers reach it, behind a reverse proxy")
+    serve.add_argument("--base-path", metavar="PATH", help="path under which a reverse proxy offers it")
+    serve.add_argument("--max-upload-mb", type=_megabytes, default=100, metavar="MB", help="largest file (default 100)")
+    serve.add_argument("--autosave", choices=("on", "off"), help="keep people's work beyond the page (default on)")
+    serve.add_argument("--autosave-folder", metavar="DIR", help="where, in a folder that nobody else can read")
+    serve.add_argument("--autosave-mb", metavar="MB", help="of all together (default 1000); the oldest goes first")
+    serve.add_argument("--autosave-days", metavar="DAYS", help="after which it goes (default 30)")
+
+
+def run_serve(arguments: Any) -> int:
+    """Serve until told to stop. Raises RobomillError where a bound of what is kept is none."""
+    from robomill.ui.keeping import PREFIX, Settings
+
+    environment = dict(os.environ)
+    for option, name in (("", ""), ("_folder", "_FOLDER"), ("_mb", "_ALL_MB"), ("_days", "_DAYS")):
+        said = getattr(arguments, f"autosave{option}")
+        if said is not None:
+            environment[f"{PREFIX}{name}"] = said
+    Settings.of(environment)
+    words = [
+        f"--server.address={arguments.address}",
+        f"--server.port={arguments.port}",
+        f"--server.maxUploadSize={arguments.max_upload_mb}",
+    ]
+    if arguments.host_name:
+        words.append(f"--browser.serverAddress={arguments.host_name}")
+    if arguments.base_path:
+        words.append(f"--server.baseUrlPath={arguments.base_path.strip('/')}")
+    return _become(_command(*SHARED, *words), environment)
+
+
+def _command(*words: str) -> list[str]:
+    from robomill.io.samples import app_dir
+
+    return [sys.executable, "-m", "streamlit", "run", str(app_dir() / "app.py"), *words]
+
+
+def _become(command: list[str], environment: dict[str, str]) -> int:
+    """Be the server rather than its parent: what stops this process stops the server."""
+    if os.name != "nt":
+        os.execve(command[0], command, environment)
+    return subprocess.call(command, env=environment)
+
+
+def _port(text: str) -> int:
+    return _whole(text, 65535)
+
+
+def _megabytes(text: str) -> int:
+    return _whole(text, 100_000)
+
+
+def _whole(text: str, most: int) -> int:
+    if not (text.isascii() and text.isdecimal() and len(text) < 9 and 0 < int(text) <= most):
+        raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {most}, found {text!r:.40}")
+    return int(text)
