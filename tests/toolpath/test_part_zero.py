@@ -70,3 +70,11 @@ def test_the_stated_tilt_bounds_what_touching_errors_do():
 def test_points_that_define_no_frame_are_refused(points, words):
     with pytest.raises(ToolpathError, match=words):
         frame_from_points(*np.array(points, dtype=float))
+
+
+def test_the_stated_tilt_is_reached_by_the_worst_errors():
+    """Zero up, the two others down by e: z turns by 2 e over the base about y and by 2 e over the lever about x."""
+    e = 1e-5
+    points = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.08, 0]])
+    z = frame_from_points(*(points + np.outer([e, -e, -e], [0, 0, 1]))).T_MW[:3, 2]
+    assert frame_from_points(*points).tilt(e) == pytest.approx(np.arctan2(np.hypot(z[0], z[1]), z[2]), rel=1e-3)

@@ -26,7 +26,7 @@ _HALF = math.pi / 2.0
 
 
 @dataclass
-class Held:
+class HeldMove:
     """A move that waits for its successor. ``turn`` is 0 for straight moves."""
 
     line: int
@@ -50,7 +50,7 @@ class Compensation:
         self.plane = plane
         self.axes = axes(plane)
         self.programmed: tuple[float, float, float] | None = None
-        self.held: list[Held] = []
+        self.held: list[HeldMove] = []
         self.corner: tuple[float, float] | None = None
 
     # --- frames
@@ -84,7 +84,7 @@ class Compensation:
     ) -> None:
         rapid = block.motion == 0
         self.held.append(
-            Held(
+            HeldMove(
                 block.line,
                 rapid,
                 end,

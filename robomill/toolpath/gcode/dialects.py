@@ -65,9 +65,11 @@ class Dialect:
     name: str
     guessed: bool = True
 
-    def line(self, raw: str, number: int, findings: Findings) -> str:
+    def line(self, raw: str, number: int, machine: Machine) -> str:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
+        findings = machine.findings
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
+            _check_absolute(raw, number, machine)
             return _from_sinumerik(raw, number, findings)
         if self.name == "fanuc":
             if _TIP.search(raw):
@@ -148,6 +150,19 @@ _DWELL_MS = re.compile(r"(\bG0?4\s*)P(\d+)(?![\d.])", re.IGNORECASE)
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
+
+
+def _check_absolute(raw: str, number: int, machine: Machine) -> None:
+    """AC( ) says a place, whatever mode is in force: read where the mode says the same, and refused elsewhere."""
+    code = raw.partition(";")[0]
+    modes = re.findall(r"\bG9[01]\b(?!\.)", code, re.IGNORECASE)
+    absolute = machine.absolute if not modes else modes[-1].upper() == "G90"
+    for letter in re.findall(r"\b([XYZABCIJK])\s*=\s*AC\(", code, re.IGNORECASE):
+        centre = letter in "IJKijk"
+        if not (machine.arc_absolute if centre else absolute):
+            wanted = "G90.1" if centre else "G90"
+            message = f"{letter}=AC( ) is a place where steps count; write the step, or {wanted} before it."
+            raise GCodeError(f"Line {number}: {message}", line=number)
 
 
 def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:

@@ -61,7 +61,7 @@ class Interpreter(OWords):
         line = machine.line = index + 1
         if len(raw) > MAX_LINE:
             raise GCodeError(f"Line {line}: {len(raw)} characters long; at most {MAX_LINE} can be read.", line=line)
-        text = normalise(self.dialect.line(raw, line, machine.findings), line)
+        text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
         if text[0] == "%":
@@ -91,7 +91,7 @@ class Interpreter(OWords):
         apply_settings(block, machine.store)
         if block.comment:
             self._comment(block)
-        if execute(machine, block, self.frames[-1].saved):
+        if execute(machine, block, self.calls[-1].saved):
             self.ended = True
             self._left_over_lines()
 
@@ -142,7 +142,7 @@ class Interpreter(OWords):
 
     def _left_over_lines(self) -> None:
         """Say where the program goes on behind its end, other than with subprograms."""
-        if self.file is not self.main or len(self.frames) > 1:
+        if self.file is not self.main or len(self.calls) > 1:
             return
         for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
             text = self.main.lines[index].strip()
@@ -156,8 +156,8 @@ class Interpreter(OWords):
 
     def _end_of_file(self) -> None:
         last = len(self.file.lines)
-        if len(self.frames) > 1:
-            label = self.frames[-1].label
+        if len(self.calls) > 1:
+            label = self.calls[-1].label
             raise GCodeError(f"Line {last}: the file ends inside O{label}; close it with endsub or M99.", line=last)
         self.machine.findings.add("no-end", "warning", last, "the program ends without M2, M30 or %")
         self.finish(last)

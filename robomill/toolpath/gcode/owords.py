@@ -40,7 +40,7 @@ class File:
 
 
 @dataclass
-class Frame:
+class Call:
     """A subroutine being executed: where it returns to, and what it put aside."""
 
     sub: flow.Node | None
@@ -54,14 +54,14 @@ class Frame:
 
 
 class OWords:
-    """Follows O words and M98/M99. ``file`` and ``pc`` are the line that comes next, ``frames`` the calls."""
+    """Follows O words and M98/M99. ``file`` and ``pc`` are the line that comes next, ``calls`` the open calls."""
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         self.machine = machine
         self.main = self.file = file
         self.dialect = dialect
         self.pc = 0
-        self.frames = [Frame(None, "", -1, file)]
+        self.calls = [Call(None, "", -1, file)]
         self.ended = False
         self.others: dict[str, File] = {}
         self.broke = self.continued = False
@@ -112,7 +112,7 @@ class OWords:
             raise argument.refuse(f"found {argument.rest()!r} after O{entry.label}; expected sub, call, if and so on.")
 
     def _do_sub(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        if self.frames[-1].sub is not entry.node:
+        if self.calls[-1].sub is not entry.node:
             self._nothing_after(entry, argument)
             self.pc = self._end_of(entry, argument) + 1
 
@@ -124,7 +124,7 @@ class OWords:
 
     def _do_return(self, entry: flow.OLine, argument: Reader, index: int) -> None:
         machine = self.machine
-        if len(self.frames) == 1:
+        if len(self.calls) == 1:
             raise argument.refuse(f"O{entry.label} {entry.keyword} is outside of a subroutine.")
         value = argument.value() if argument.text[:1] == "[" else None
         self._nothing_after(entry, argument)
@@ -182,7 +182,7 @@ class OWords:
         self._nothing_after(entry, argument)
 
     def _do_repeat(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        counters = self.frames[-1].counters
+        counters = self.calls[-1].counters
         if index not in counters:
             counters[index] = round(min(self._condition(entry, argument), 2.0**31))
         if counters[index] <= 0:
@@ -201,7 +201,7 @@ class OWords:
     def _do_break(self, entry: flow.OLine, argument: Reader, index: int) -> None:
         assert entry.node is not None
         end = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
-        self.frames[-1].counters.pop(entry.node.start, None)
+        self.calls[-1].counters.pop(entry.node.start, None)
         self.pc = end + 1
         if entry.node.kind == "while":
             self.broke = True
@@ -236,27 +236,27 @@ class OWords:
             raise argument.refuse(f"O{label} is called with {len(values)} arguments; at most {ARGUMENTS} are passed.")
         file, node = self._find_sub(label, argument)
         store = self.machine.store
-        frame = Frame(node, label, self.pc, self.file, store.values(1, ARGUMENTS))
-        self._enter(frame, argument)
+        call = Call(node, label, self.pc, self.file, store.values(1, ARGUMENTS))
+        self._enter(call, argument)
         store.put(1, values + [0.0] * (ARGUMENTS - len(values)))
         store.set("n_args", float(len(values)))
         self.file, self.pc = file, node.start + 1
 
-    def _enter(self, frame: Frame, reader: Reader) -> None:
-        if len(self.frames) >= LEVELS:
+    def _enter(self, call: Call, reader: Reader) -> None:
+        if len(self.calls) >= LEVELS:
             raise reader.refuse(f"subroutines call one another more than {LEVELS - 1} levels deep.")
-        self.frames.append(frame)
+        self.calls.append(call)
         self.machine.store.enter()
 
     def _leave(self) -> None:
-        frame = self.frames.pop()
+        call = self.calls.pop()
         store = self.machine.store
         store.leave()
-        if frame.arguments is not None:
-            store.put(1, frame.arguments)
-        self.file, self.pc = frame.back_file, frame.back_to
-        if frame.saved.get("automatic"):
-            restore_modes(self.machine, Block(self.machine.line), frame.saved)
+        if call.arguments is not None:
+            store.put(1, call.arguments)
+        self.file, self.pc = call.back_file, call.back_to
+        if call.saved.get("automatic"):
+            restore_modes(self.machine, Block(self.machine.line), call.saved)
 
     def _find_sub(self, label: str, reader: Reader) -> tuple[File, flow.Node]:
         for file in (self.file, self.main):
@@ -289,7 +289,7 @@ class OWords:
             return False
         reader = Reader("", block.line, self.machine.store)
         if code == 99:
-            if len(self.frames) == 1:
+            if len(self.calls) == 1:
                 self.machine.findings.add("m99-ends", "info", block.line, "M99 in the main program is taken as its end")
                 self.finish(block.line)
                 self.ended = True
@@ -303,14 +303,14 @@ class OWords:
         if target is None:
             raise block.refuse(f"M98 calls O{number}, but there is no O{number} in the program.")
         if repeats > 0:
-            self._enter(Frame(None, str(number), self.pc, self.file, None, repeats=repeats), reader)
+            self._enter(Call(None, str(number), self.pc, self.file, None, repeats=repeats), reader)
             self.file, self.pc = self.main, target + 1
         return True
 
     def _repeat_or_leave(self) -> None:
-        frame = self.frames[-1]
-        frame.repeats -= 1
-        if frame.repeats > 0:
-            self.pc = self.main.o_words().bare[frame.label] + 1
+        call = self.calls[-1]
+        call.repeats -= 1
+        if call.repeats > 0:
+            self.pc = self.main.o_words().bare[call.label] + 1
         else:
             self._leave()

@@ -30,3 +30,23 @@ def test_endless_loop_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_there_are_many() -> None:
     assert len(FILES) > 140
+
+
+@pytest.mark.parametrize(
+    ("line", "x"),
+    [
+        ("G90 G0 X=AC(4)", 4.0),
+        ("G91\nG90 X=AC(4)", 4.0),
+        ("G91 X=AC(4)", None),
+        ("G91\nX=AC(4) ; G90", None),
+        ("G1 F100\nG2 X3 I=AC(2) J0", None),
+        ("G1 F100 G90.1\nG2 X3 I=AC(2) J=AC(0)", 3.0),
+    ],
+)
+def test_a_place_where_steps_count_is_refused_on_a_sinumerik(line, x):
+    program = f"G21 G90 G0 X1 Y0\n{line}\nM2\n"
+    if x is None:
+        with pytest.raises(GCodeError, match=r"Line \d: [XI]=AC"):
+            interpret(program, dialect="sinumerik")
+    else:
+        assert interpret(program, dialect="sinumerik").end[-1, 0] == pytest.approx(x * 1e-3)

@@ -216,3 +216,9 @@ def test_a_part_is_as_large_as_its_arcs(radius, doubted):
     program = interpret(f"G21 S900 M3 F100\nG0 X3 Y4\nG2 I{radius}\nM2\n")
     np.testing.assert_allclose(np.subtract(*program.extents[::-1]), [2e-3 * radius, 2e-3 * radius, 0], atol=1e-12)
     assert ("size-doubt" in {f.code for f in program.findings}) is doubted
+
+
+def test_turned_axes_are_written_where_one_of_them_turns(tmp_path: Path) -> None:
+    write_moves_jsonl(interpret("G21 G0 X1\nB30\nM2\n"), tmp_path / "moves.jsonl")
+    rows = [json.loads(row) for row in (tmp_path / "moves.jsonl").read_text().splitlines()]
+    np.testing.assert_allclose([row["rotary_deg"] for row in rows], [[0, 0, 0], [0, 30, 0]], atol=1e-12)

@@ -7,6 +7,7 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.special import comb
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 
 START = np.array([1.0, -2.0])
@@ -69,3 +70,9 @@ def test_nurbs_is_a_rational_b_spline(order, first_weight):
     assert off(found, curve) < 2e-5
     np.testing.assert_allclose(found[-1], [15, 2], atol=1e-9)
     assert np.linalg.norm(np.diff(found, axis=0), axis=1).max() < 1.5
+
+
+def test_after_a_nurbs_no_motion_is_in_force():
+    with pytest.raises(GCodeError) as caught:
+        interpret("F100\nG5.2 X1 Y3 P1\nX4 Y4 P1\nX8 Y0 P1\nG5.3\nX9\nM2\n")
+    assert caught.value.line == 6
