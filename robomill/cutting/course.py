@@ -52,26 +52,30 @@ class Course:
         """Some of the cuts."""
         return Course(self.c[index], self.feed[index], self.arc[index], self.sectors[index])
 
-    def alike(self, mean: FloatArray) -> tuple[IntArray, IntArray]:
-        """One cut of each kind, and the kind (k,) of every cut; alike are those within a thousandth of the largest, in
-        their mean force (k, 3) too."""
-        each = (self.c[:, None], self.feed, self.arc, self.sectors.reshape(len(self.c), -1), mean)
-        numbers = np.concatenate(each, axis=1)
-        scale = np.max(np.abs(numbers), axis=0) * 1e-3
-        rounded = np.round(numbers / np.where(scale > 0.0, scale, np.inf))
-        _, first, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-        return first, inverse.ravel()
+    def kinds(self) -> tuple[Course, IntArray]:
+        """One cut of each kind, and the kind (k,) of every cut: alike are those of which each number is the same to a
+        thousandth of the largest of its own cut."""
+        split = np.cumsum([1, 2, 2])
+        each = (self.c[:, None], self.feed, self.arc, self.sectors.reshape(len(self.c), -1))
+        numbers, kind = np.unique(np.concatenate([_to_ten_bits(x) for x in each], axis=1), axis=0, return_inverse=True)
+        c, feed, arc, sectors = np.split(numbers, split, axis=1)
+        return Course(c[:, 0], feed, arc, sectors.reshape(-1, *self.sectors.shape[1:])), kind.ravel()
 
-    def slices(self, cutter: Cutter) -> Iterator[tuple[FloatArray, FloatArray, float, FloatArray]]:
+    def slices(self, cutter: Cutter) -> Iterator[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
         """The cutter from its tip up, in slices of the nose and of the flank: where each begins and ends along the axis
         (k, 1) m, the angle of its normal from the axis, and its length along the profile (k, 1) m."""
-        one = np.ones((len(self.c), 1))
         top, end = self.sectors[..., 2].max(axis=1)[:, None], cutter.nose_height
-        for low, high, kappa, ds in zip(*nose_pieces(cutter, min(end, float(top.max()))), strict=True):
-            yield low * one, high * one, float(kappa), ds * one
+        yield from zip(*nose_pieces(cutter, top), strict=True)
         step = np.maximum(top - end, 0.0) / SLICES
         for i in range(SLICES if step.any() else 0):
-            yield end + i * step, end + (i + 1) * step, 0.5 * np.pi, step
+            yield end + i * step, end + (i + 1) * step, np.full(step.shape, 0.5 * np.pi), step
+
+
+def _to_ten_bits(rows: FloatArray) -> FloatArray:
+    """Every number of a row (k, n) to ten bits of the largest of that row."""
+    largest = np.abs(rows).max(axis=1, keepdims=True)
+    quantum = np.exp2(np.floor(np.log2(np.where(largest > 0.0, largest, 1.0))) - 9.0)
+    return np.asarray(np.round(rows / quantum) * quantum)
 
 
 def _within(sectors: FloatArray, arc: FloatArray) -> FloatArray:
@@ -103,11 +107,12 @@ def force_over_pitch(
     share = np.divide(sectors[..., 0], thick, out=np.zeros(thick.shape), where=thick > 0.0)
     edges = sector_edges(sectors.shape[1])
 
-    def add(phi: FloatArray, sector: IntArray, kappa: float, engaged: FloatArray) -> None:
-        """A slice whose normal leans kappa, so much of which (k, teeth instants) m is engaged as teeth stand at phi."""
+    def add(phi: FloatArray, sector: IntArray, kappa: FloatArray, engaged: FloatArray) -> None:
+        """A slice whose normal leans kappa (k, 1), so much of which (k, teeth instants) m is engaged as teeth stand at
+        phi."""
         inside = (sector < sectors.shape[1]) & (phi > np.pi)
         inside |= (phi >= course.arc[:, :1]) & (phi <= course.arc[:, 1:])
-        sine, cosine, s, t = np.sin(phi), np.cos(phi), math.sin(kappa), math.cos(kappa)
+        sine, cosine, s, t = np.sin(phi), np.cos(phi), np.sin(kappa), np.cos(kappa)
         facing = course.feed[:, :1] * sine * s - course.feed[:, 1:] * t
         engaged = np.where(inside & (facing > FACING), engaged, 0.0)
         h = course.c[:, None] * np.maximum(facing, FACING)
@@ -133,5 +138,5 @@ def force_over_pitch(
     if sectors[..., 3].any():
         phi, sector = seen(np.zeros((len(course.c), 1)))
         here = np.minimum(sector, sectors.shape[1] - 1)
-        add(phi, sector, 0.0, np.take_along_axis(sectors[..., 3], here, axis=1))
+        add(phi, sector, np.zeros((len(course.c), 1)), np.take_along_axis(sectors[..., 3], here, axis=1))
     return force

@@ -17,7 +17,6 @@ Budak 2007 (5-axis ball-end milling).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -118,7 +117,7 @@ def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatAr
     phi = (np.arange(ANGLES) + 0.5) * (2.0 * np.pi / ANGLES)
     sine, cosine = np.sin(phi)[:, None], np.cos(phi)[:, None]
     face = cutter.flat_radius if along < -DISH else 0.0
-    nose = nose_pieces(cutter, min(a_p, cutter.nose_height))
+    nose = nose_pieces(cutter, a_p)
     kappa = np.concatenate([[0.0], nose.kappa, [0.5 * np.pi]])
     ds = np.concatenate([[face], nose.ds, [max(a_p - cutter.nose_height, 0.0)]])
     facing = np.sqrt(max(1.0 - along * along, 0.0)) * sine * np.sin(kappa) - along * np.cos(kappa)
@@ -130,7 +129,7 @@ def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatAr
 
 class NosePieces(NamedTuple):
     """Pieces of the profile between the end face and the flank: heights where each begins and ends, its angle from
-    the axis and its length, (q,) each."""
+    the axis and its length, (q, ...) each."""
 
     low: FloatArray
     high: FloatArray
@@ -138,15 +137,17 @@ class NosePieces(NamedTuple):
     ds: FloatArray
 
 
-def nose_pieces(cutter: Cutter, top: float) -> NosePieces:
-    """The nose up to a height ``top`` (m) in equal pieces: of a cone or an arc; none of a flat mill."""
-    if top <= 0.0:
-        return NosePieces(*np.zeros((4, 0)))
+def nose_pieces(cutter: Cutter, top: ArrayLike) -> NosePieces:
+    """The nose up to heights ``top`` (...) m, its own at most, in equal pieces: of a cone or an arc; none of a flat
+    mill."""
+    high = np.clip(top, 0.0, cutter.nose_height)
+    if cutter.nose_height == 0.0:
+        return NosePieces(*np.zeros((4, 0, *high.shape)))
     if cutter.conical:
-        edges = np.linspace(0.0, top, PIECES + 1, dtype=np.float64)
-        kappa = np.full(PIECES, 0.5 * np.pi - cutter.half_angle)
-        return NosePieces(edges[:-1], edges[1:], kappa, np.diff(edges) / np.sin(kappa))
+        edges = np.linspace(0.0, high, PIECES + 1, dtype=np.float64)
+        kappa = np.full(edges[1:].shape, 0.5 * np.pi - cutter.half_angle)
+        return NosePieces(edges[:-1], edges[1:], kappa, np.diff(edges, axis=0) / np.sin(kappa))
     rho = cutter.corner_radius
-    edges = np.linspace(0.0, math.acos(1.0 - top / rho), PIECES + 1, dtype=np.float64)
+    edges = np.linspace(0.0, np.arccos(1.0 - high / rho), PIECES + 1, dtype=np.float64)
     height = np.asarray(rho * (1.0 - np.cos(edges)), dtype=np.float64)
-    return NosePieces(height[:-1], height[1:], 0.5 * (edges[:-1] + edges[1:]), np.diff(edges) * rho)
+    return NosePieces(height[:-1], height[1:], 0.5 * (edges[:-1] + edges[1:]), np.diff(edges, axis=0) * rho)

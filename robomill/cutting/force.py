@@ -150,39 +150,37 @@ class ForceModel:
         return []
 
 
-def feed_share(p: ArrayLike, k: ArrayLike) -> FloatArray:
-    """Share (m,) of every move that lies across the tool axis: 1 on the level, 0 in a plunge, 1 where nothing moves.
+def feed_share(way: ArrayLike, k: ArrayLike) -> FloatArray:
+    """Share (m,) of every way that lies across the tool axis: 1 on the level, 0 in a plunge, 1 where nothing moves.
 
-    ``p`` (m, 3) m tips, ``k`` (m, 3) unit tool axes, both in one frame; entry i is the move p[i-1] -> p[i].
+    ``way`` (m, 3) is where the tip goes (a vector of any length, 0 where it stands), ``k`` (m, 3) the tool axis, both
+    in one frame.
     """
-    step, across = _moves(p, k)
+    step, axis = _ways(way, k)
     length = np.linalg.norm(step, axis=1)
-    return np.divide(np.linalg.norm(across, axis=1), length, out=np.ones(len(length)), where=length > 0.0)
+    across = np.linalg.norm(_across(step, axis), axis=1)
+    return np.divide(across, length, out=np.ones(len(length)), where=length > 0.0)
 
 
-def feed_along(p: ArrayLike, k: ArrayLike) -> FloatArray:
-    """Part (m,) of every unit move along the tool axis: 0 on the level, -1 straight down, 0 where nothing moves.
-
-    ``p`` (m, 3) m tips, ``k`` (m, 3) unit tool axes, both in one frame; entry i is the move p[i-1] -> p[i].
-    """
-    step, across = _moves(p, k)
+def feed_along(way: ArrayLike, k: ArrayLike) -> FloatArray:
+    """Part (m,) of every way, as a unit vector, along the tool axis: 0 on the level, -1 straight down, 0 where nothing
+    moves; ``way`` and ``k`` (m, 3) as above."""
+    step, axis = _ways(way, k)
     length = np.linalg.norm(step, axis=1)
-    along = np.sum((step - across) * as_floats(k, "tool axis", (None, 3), error=CuttingError), axis=1)
-    return np.divide(along, length, out=np.zeros(len(length)), where=length > 0.0)
+    return np.divide(np.sum(step * axis, axis=1), length, out=np.zeros(len(length)), where=length > 0.0)
 
 
-def feed_frame(p: ArrayLike, k: ArrayLike) -> FloatArray:
-    """Feed frames R (m, 3, 3) in the frame of ``p`` and ``k``; columns feed, feed-normal, axial.
+def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
+    """Feed frames R (m, 3, 3) in the frame of ``way`` and ``k`` (m, 3); columns feed, feed-normal, axial.
 
-    Orthonormal and right-handed. Feed is the part of the move p[i-1] -> p[i] across the tool axis k[i].
-    Where a move has none (plunge, retract, standstill) the last direction that had one is kept, and before the first
-    such move the next one is used; a path without any takes the x axis (or y where the tool lies along x).
+    Orthonormal and right-handed. Feed is the part of the way across the tool axis.
+    Where a way has none (plunge, retract, standstill) the last direction that had one is kept, and before the first
+    such way the next one is used; a path without any takes the x axis (or y where the tool lies along x).
     Raises CuttingError for shapes that differ.
     """
-    _, across = _moves(p, k)
-    axis = as_floats(k, "tool axis", (None, 3), error=CuttingError)
-    axis = axis / np.linalg.norm(axis, axis=1, keepdims=True)
-    moving = feed_share(p, k) > PLUNGE
+    step, axis = _ways(way, k)
+    across = _across(step, axis)
+    moving = feed_share(step, axis) > PLUNGE
     moving &= np.linalg.norm(across, axis=1) > 0.0
     x, y, _ = np.eye(3)
     fallback = np.where(np.abs(axis[:, :1]) > 0.9, y, x)
@@ -194,20 +192,23 @@ def feed_frame(p: ArrayLike, k: ArrayLike) -> FloatArray:
         # A direction carried over to a step whose axis has turned need not lie across that axis, or may lie along it.
         lying = np.linalg.norm(np.cross(feed, axis), axis=1, keepdims=True)
         feed = np.where(lying > PLUNGE * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
-    feed = feed - np.sum(feed * axis, axis=1, keepdims=True) * axis
+    feed = _across(feed, axis)
     feed = feed / np.linalg.norm(feed, axis=1, keepdims=True)
     return np.stack([feed, np.cross(axis, feed), axis], axis=-1)
 
 
-def _moves(p: ArrayLike, k: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """The moves (m, 3), first one zero, and their parts across the tool axis."""
-    points = as_floats(p, "path points", (None, 3), error=CuttingError)
+def _ways(way: ArrayLike, k: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Ways (m, 3) and unit axes (m, 3), checked."""
+    step = as_floats(way, "ways", (None, 3), error=CuttingError)
     axis = as_floats(k, "tool axis", (None, 3), error=CuttingError)
-    if points.ndim != 2 or points.shape != axis.shape:
-        raise CuttingError(f"Feed frame: path points {points.shape} and tool axes {axis.shape} should both be (m, 3).")
-    axis = axis / np.linalg.norm(axis, axis=1, keepdims=True)
-    step = np.diff(points, axis=0, prepend=points[:1])
-    return step, step - np.sum(step * axis, axis=1, keepdims=True) * axis
+    if step.ndim != 2 or step.shape != axis.shape:
+        raise CuttingError(f"Feed frame: ways {step.shape} and tool axes {axis.shape} should both be (m, 3).")
+    return step, axis / np.linalg.norm(axis, axis=1, keepdims=True)
+
+
+def _across(step: FloatArray, axis: FloatArray) -> FloatArray:
+    """The part (m, 3) of a step across a unit axis."""
+    return np.asarray(step - np.sum(step * axis, axis=1, keepdims=True) * axis)
 
 
 def force_on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike) -> FloatArray:

@@ -117,8 +117,8 @@ class ProcessForce(ForceModel):
     def peak(self, conditions: CutConditions) -> ForceSpread:
         """Extremes over a revolution, with the lag of the helix (teeth alike, no run-out); 0 where ``components`` is.
 
-        The course is that of the engaged part sector by sector, about the mean force. Steps that cut alike (within a
-        thousandth of the largest) are computed once.
+        The course is that of the engaged part sector by sector, about the mean force. Steps that cut alike (their
+        numbers are the same to ten bits) are computed once.
         """
         zeros = np.zeros((len(conditions), 3))
         spread = ForceSpread(zeros.copy(), zeros.copy(), zeros.copy())
@@ -127,19 +127,21 @@ class ProcessForce(ForceModel):
             index = np.flatnonzero(made & np.isfinite(mean).all(axis=1) & conditions.engaged)
             if not index.size:
                 continue
-            course = Course.of(conditions, cutter, index)
-            first, inverse = course.alike(mean[index])
-            for start in range(0, len(first), CASES):
-                cases = first[start : start + CASES]
+            course, kind = Course.of(conditions, cutter, index).kinds()
+            order = np.argsort(kind, kind="stable")
+            for start in range(0, len(course.c), CASES):
+                cases = np.arange(start, min(start + CASES, len(course.c)))
                 turns = force_over_pitch(edge_terms(self.material, cutter), cutter, course.at(cases))
                 turns[..., 2] *= self.axial
-                turns += (mean[index[cases]] - turns.mean(axis=-2))[:, None]
-                rows = np.flatnonzero((inverse >= start) & (inverse < start + len(cases)))
-                case = inverse[rows] - start
-                largest = np.argmax(np.linalg.norm(turns, axis=-1), axis=-1)
-                spread.low[index[rows]] = turns.min(-2)[case]
-                spread.high[index[rows]] = turns.max(-2)[case]
-                spread.at_peak[index[rows]] = turns[case, largest[case]]
+                turns -= turns.mean(axis=-2, keepdims=True)
+                rows = order[slice(*np.searchsorted(kind[order], [start, start + len(cases)]))]
+                for some in np.array_split(rows, len(rows) // CASES + 1):
+                    about, case = mean[index[some]], kind[some] - start
+                    spread.low[index[some]] = about + turns.min(-2)[case]
+                    spread.high[index[some]] = about + turns.max(-2)[case]
+                    course_of = about[:, None] + turns[case]
+                    largest = np.argmax(np.linalg.norm(course_of, axis=-1), axis=-1)
+                    spread.at_peak[index[some]] = course_of[np.arange(len(some)), largest]
         return spread
 
     def _tooling(self, conditions: CutConditions) -> Tooling:

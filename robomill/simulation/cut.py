@@ -9,11 +9,10 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
-from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.force import feed_along, feed_share
 from robomill.errors import SetupError
 from robomill.provenance import Finding
-from robomill.simulation.samples import at_starts, clock
+from robomill.simulation.samples import clock, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
 from robomill.surface.engagement import Engagement, engage
@@ -27,7 +26,7 @@ SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
 
 def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> CutConditions:
     """What the program alone says of every sample: feeds, speeds, tools, and a full slot as deep as the tip stands."""
-    a_p = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0)
+    a_p, way = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0), ways(path)
     told = CutConditions.steady(
         path.v_f,
         path.n_s,
@@ -35,8 +34,8 @@ def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) 
         s=path.s,
         t=record_time(setup, path) if setup.force.in_time else path.t,
         cutting=path.cutting & reached,
-        across=at_starts(path, feed_share(path.p, path.k)),
-        along=at_starts(path, feed_along(path.p, path.k)),
+        across=feed_share(way, path.k),
+        along=feed_along(way, path.k),
         ccw=path.ccw,
         block=path.block,
     )
@@ -45,21 +44,20 @@ def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) 
 
 def cut_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> CutConditions:
     """What is told, with what each step meets where the tool goes as it is told."""
-    return met_conditions(path, told, engage(through_stock(setup, path, told)))
+    return met_conditions(told, engage(through_stock(setup, path, told)))
 
 
 def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> March:
     """The path through its stock, ready to be marched."""
     assert told.tooling is not None
     exponents = setup.force.exponents or (0.0,)
-    return March(setup.stock_block, setup.cell, told.tooling, path.p, path.k, told.cutting, exponents)
+    return March(setup.stock_block, setup.cell, told.tooling, path.p, path.k, told.cutting, exponents, way=ways(path))
 
 
-def met_conditions(path: Toolpath, told: CutConditions, found: Engagement) -> CutConditions:
-    """What was told, with what each step really meets; a step of no length takes that of the step it begins."""
-    arc: dict[str, Any] = {name: at_starts(path, getattr(found, name)) for name in ("a_p", "phi_st", "phi_ex", "reach")}
-    sums = (at_starts(path, each) for each in (found.part.moments, found.part.sectors))
-    return replace(told, **arc, part=EngagedPart(found.part.exponents, *sums))
+def met_conditions(told: CutConditions, found: Engagement) -> CutConditions:
+    """What was told, with what each step really meets."""
+    arc: dict[str, Any] = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
+    return replace(told, **arc)
 
 
 def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -63,7 +63,7 @@ def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
     walk = _Walk(bent, march, np.zeros((len(path), 3)))
     rows, sectors, settled = walk.every_step()
     found = engagement(march.exponents, rows, sectors)
-    conditions = met_conditions(path, told, found)
+    conditions = met_conditions(told, found)
     F = bent.force(conditions, bent.R_MF)
     open_ = np.zeros(len(path), dtype=bool)
     for i, each in settled.items():
@@ -105,9 +105,8 @@ class _Walk:
             return self.march.meet(i, p[i - 1] + shift, p[i] + shift)
 
         def pushed(row: FloatArray, sectors: FloatArray) -> FloatArray:
-            found = engagement(self.march.exponents, row[None], sectors[None])
-            arc = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
-            return bent.force(replace(told, **arc), bent.R_MF[i : i + 1])[0]
+            met = met_conditions(told, engagement(self.march.exponents, row[None], sectors[None]))
+            return bent.force(met, bent.R_MF[i : i + 1])[0]
 
         def bends(delta: FloatArray) -> FloatArray:
             return np.asarray(bent.C[i] @ pushed(*meets(delta)) + bent.offset[i])
@@ -115,24 +114,11 @@ class _Walk:
         found = settle(bends, self.moved[i - 1], np.nan_to_num(bent.offset[i]))
         met = [meets(place) for place, _ in found.mix]
         row = sum((weight * row for (_, weight), (row, _) in zip(found.mix, met)), start=np.zeros(len(met[0][0])))
-        self._move(i, pushed(row, met[0][1]))
+        self.moved[i] = np.nan_to_num(displacement(bent.C[i], pushed(row, met[0][1])) + bent.offset[i])
+        if not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
+            self.moved[i - 1] = self.moved[i]
         self.march.cut(i, p[i - 1] + self.moved[i - 1] @ to_W, p[i] + self.moved[i] @ to_W)
         return found, row, met[0][1]
-
-    def _move(self, i: int, F: FloatArray) -> None:
-        """Put sample i where F (3,) N bends it to, with samples of no length that begin the step; a rapid before them
-        arrives there."""
-        path = self.bent.path
-        self.moved[i] = self._bent(i, F)
-        j = i - 1
-        while j > 0 and path.cutting[j] and path.step_length[j] == 0.0:
-            self.moved[j] = self._bent(j, F)
-            j -= 1
-        if not path.cutting[j]:
-            self.moved[j] = self.moved[j + 1]
-
-    def _bent(self, i: int, F: FloatArray) -> FloatArray:
-        return np.nan_to_num(displacement(self.bent.C[i], F) + self.bent.offset[i])
 
 
 def _only(conditions: CutConditions, i: int) -> CutConditions:

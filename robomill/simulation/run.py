@@ -25,7 +25,7 @@ from robomill.simulation.cut import cut_conditions, told_conditions
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.samples import at_starts, sampled
+from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import farther, held
 from robomill.toolpath.path import Toolpath
@@ -146,4 +146,4 @@ def tool_frames(path: Toolpath, back: FloatArray | float = 0.0) -> FloatArray:
 
 def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m, 3, 3) R_MF, columns feed, feed-normal, axial in {M}."""
-    return setup.T_MW[:3, :3] @ at_starts(path, feed_frame(path.p, path.k))
+    return setup.T_MW[:3, :3] @ feed_frame(ways(path), path.k)

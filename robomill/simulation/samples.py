@@ -1,4 +1,4 @@
-"""The path as a run evaluates it: what does not move left out, feed moves in short steps, values at their starts."""
+"""The path as a run evaluates it: what does not move left out, feed moves in short steps, the way at every sample."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.surface.passes import moves_of
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.sampling import resample
+from robomill.toolpath.sampling import CORNER, resample
 
 STILL = 1e-7  # m: a block that goes no further, and does not turn the tool, is none
 
@@ -56,16 +57,28 @@ def _chosen(path: Toolpath, keep: np.ndarray) -> Toolpath:
     return replace(path, **arrays)
 
 
-def at_starts(path: Toolpath, values: FloatArray) -> FloatArray:
-    """``values`` (m, ...) where a step of no length takes those of the next step of its cut that has one.
+def ways(path: Toolpath) -> FloatArray:
+    """(m, 3) unit vectors: which way the tool goes through every sample; 0 where nothing moves.
 
-    Such a step begins a cut, or turns the tool on the spot.
+    That of the move that ends there; of the next one where a step of no length begins a cut or turns the tool on the
+    spot; and where moves of one block are the chords of a curve, that of the curve: between two chords their mean, at
+    its ends as much on the other side of the chord (as on a circle).
     """
-    out = np.array(values)
-    still = path.cutting & (path.step_length == 0.0)
-    moved = np.where(still, len(path), np.arange(len(path)))
-    then = np.minimum.accumulate(moved[::-1])[::-1]
-    n = np.flatnonzero(still & (then < len(path)))
-    n = n[path.cutting[then[n]]]
-    out[n] = out[then[n]]
-    return out
+    length, d = path.step_length[:, None], np.diff(path.p, axis=0, prepend=path.p[:1])
+    d = np.divide(d, length, out=np.zeros_like(d), where=length > 0.0)
+    move = moves_of(path.step_length == 0.0, path.cutting)
+    at_feed = path.cutting & (path.step_length > 0.0)
+    on = at_feed[:-1] & at_feed[1:] & (path.block[:-1] == path.block[1:])
+    on = np.append(on & (np.einsum("mi,mi->m", d[:-1], d[1:]) > np.cos(CORNER)), False)
+    way = np.where(on[:, None], d + np.roll(d, -1, axis=0), d)
+    way /= np.where(on, np.linalg.norm(way, axis=1), 1.0)[:, None]
+    end = np.flatnonzero(~on & np.append(False, on[:-1]))
+    way[end] = _mirrored(way[end - 1], d[end])
+    start = np.flatnonzero((move != np.arange(len(move))) & (move >= 0))
+    way[start] = _mirrored(way[move[start]], d[move[start]])
+    return way
+
+
+def _mirrored(way: FloatArray, d: FloatArray) -> FloatArray:
+    """Directions (n, 3) as far on the other side of unit vectors d (n, 3)."""
+    return np.asarray(2.0 * np.einsum("ni,ni->n", way, d)[:, None] * d - way)

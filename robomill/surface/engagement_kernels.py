@@ -21,8 +21,8 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import Shape
-from robomill.surface.material_kernels import FAR, World, standing, top_over
+from robomill.surface.envelope_kernels import Shape, radius_at
+from robomill.surface.material_kernels import FAR, NOBODY, World, cell_of, standing, top_over
 from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, piece_between, stretch_ends
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
@@ -39,7 +39,9 @@ PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # where it begins and ends along the axis, its largest radius, how much of the end face; then sums for each exponent
 PHI, SINE, COSINE, LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, FACE, SUMS = range(10)
 BEGIN, STOP, PIECES, FIRST = range(4)  # of a stretch of the profile: where, in how many pieces, its first place
-ROWS = 2 * ANGLES + 6 * PANELS * HALVINGS  # angles looked at in a turn, at most
+HIDDEN = 2 * PANELS  # ribs and gaps of material between those angles that are found, at most
+GAPS = 6 * PANELS + HIDDEN
+ROWS = 2 * ANGLES + HIDDEN + GAPS * HALVINGS  # angles looked at in a turn, at most
 
 
 class Ray(NamedTuple):
@@ -49,6 +51,15 @@ class Ray(NamedTuple):
     x: float
     y: float
     z: float
+
+
+class Walk(NamedTuple):
+    """Steps along the rim of the cutter: its radius where the material ends (m), and the angle of a step (rad)."""
+
+    radius: float
+    pitch: float
+    sine: float
+    cosine: float
 
 
 class Room(NamedTuple):
@@ -218,29 +229,93 @@ def note(pieces: FloatArray, count: int, row: float, middle: float, width: float
     return count + 1
 
 
-@part
-def divide(room: Room, halves: int) -> tuple[int, int]:
-    """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both."""
-    rows, count, gaps = room.rows, 0, 0
+@called
+def divide(room: Room, world: World, shape: Shape, step: Step, halves: int) -> tuple[int, int, int]:
+    """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
+    how many angles between were looked at for ribs and gaps of material that its panels pass over."""
+    rows, count, gaps, hidden, walk = room.rows, 0, 0, 0, walk_on(world, shape, step)
     for panel in range(PANELS * halves):
         first = 3 * panel + panel // PANELS
+        begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
         rough = False
         for n in range(3):
-            rough = rough or jumps(rows[first + n, LENGTH], rows[first + n + 1, LENGTH])
-        start, end = panel_end(panel), panel_end(panel + 1)
+            left, right = first + n, first + n + 1
+            a = start if n == 0 else rows[left, PHI]
+            b = end if n == 2 else rows[right, PHI]
+            phi = rows[left, PHI]
+            while hidden < HIDDEN:
+                phi = next_change(world, step, walk, phi, rows[right, PHI])
+                if phi >= rows[right, PHI]:
+                    break
+                between = 2 * ANGLES + hidden
+                look(room, world, shape, step, between, phi)
+                if jumps(rows[left, LENGTH], rows[between, LENGTH]) and jumps(
+                    rows[between, LENGTH], rows[right, LENGTH]
+                ):
+                    gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
+                    left, a, rough, hidden = between, phi, True, hidden + 1
+            rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
+            gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         if not rough:
+            gaps = begun
             for n in range(1, 3):
                 middle = rows[first + n, PHI]
                 count = note(room.pieces, count, first + n, middle, 0.5 * (end - start), 4 * panel + 3 * (n - 1))
-            continue
-        for n in range(3):
-            gap = room.gaps[gaps]
-            gap[0], gap[1] = first + n, first + n + 1
-            gap[2] = start if n == 0 else rows[first + n, PHI]
-            gap[3] = end if n == 2 else rows[first + n + 1, PHI]
-            gap[4], gap[5], gap[6] = panel, start, 4.0 / (end - start)
-            gaps += 1
-    return count, gaps
+    return count, gaps, hidden
+
+
+@part
+def note_gap(
+    room: Room, gaps: int, rows: tuple[int, int], ends: tuple[float, float], panel: tuple[int, float, float]
+) -> int:
+    """Note a gap between two rows, from an angle to another; ``panel``: number, beginning, end. Returns how many."""
+    gap = room.gaps[gaps]
+    gap[0], gap[1], gap[2], gap[3] = rows[0], rows[1], ends[0], ends[1]
+    gap[4], gap[5], gap[6] = panel[0], panel[1], 4.0 / (panel[2] - panel[1])
+    return gaps + 1
+
+
+@part
+def look(room: Room, world: World, shape: Shape, step: Step, n: int, phi: float) -> None:
+    """Measure what is engaged at an angle, into a row."""
+    row = room.rows[n]
+    row[PHI], row[SINE], row[COSINE] = phi, math.sin(phi), math.cos(phi)
+    measure(room, world, shape, step, n, n + 1)
+
+
+@part
+def walk_on(world: World, shape: Shape, step: Step) -> Walk:
+    """Half a cell along the rim of an upright tool in one layer of material; none for others."""
+    columns, height = world.columns, world.block.z_high - step.z
+    if height <= 0.0 or not is_plain(world, step):
+        return Walk(0.0, 7.0, 0.0, 1.0)
+    radius = radius_at(shape, height)
+    pitch = 0.5 * min(columns.dx, columns.dy) / radius
+    return Walk(radius, pitch, math.sin(pitch), math.cos(pitch))
+
+
+@called
+def next_change(world: World, step: Step, walk: Walk, phi: float, end: float) -> float:
+    """The next angle at which the columns along the rim change from one to the next, or ``end``: how high the material
+    stands in them, or which side is noted in them."""
+    if phi + walk.pitch >= end:
+        return end
+    columns, block = world.columns, world.block
+    before, noted, first = -1.0, NOBODY, True
+    sine, cosine = math.sin(phi), math.cos(phi)
+    while phi < end:
+        x = step.x + walk.radius * (sine * step.fx + cosine * step.lx)
+        y = step.y + walk.radius * (sine * step.fy + cosine * step.ly)
+        top, name = 0.0, NOBODY
+        if block.x_low <= x <= block.x_high and block.y_low <= y <= block.y_high:
+            i, j = cell_of(columns, x, y)
+            top, name = max(columns.heights[i, j, 0] - step.z, 0.0), columns.names[i, j, 0]
+        if not first and (name != noted or jumps(top, before)):
+            return phi
+        before, noted, first = top, name, False
+        phi += walk.pitch
+        sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
+    return end
 
 
 @part
@@ -250,10 +325,10 @@ def panel_end(n: int) -> float:
 
 
 @part
-def follow_jumps(room: Room, world: World, shape: Shape, step: Step, counts: tuple[int, int]) -> int:
+def follow_jumps(room: Room, world: World, shape: Shape, step: Step, counts: tuple[int, int, int]) -> int:
     """Halve the gaps between angles while the engaged length jumps across them; returns how many pieces there are."""
-    rows, (count, gaps) = room.rows, counts
-    first = 2 * ANGLES
+    rows, (count, gaps, hidden) = room.rows, counts
+    first = 2 * ANGLES + hidden
     for halving in range(HALVINGS + 1):
         kept = 0
         for n in range(gaps):
@@ -264,16 +339,13 @@ def follow_jumps(room: Room, world: World, shape: Shape, step: Step, counts: tup
                 for row, middle in ((left, a + 0.5 * half), (right, b - 0.5 * half)):
                     count = note(room.pieces, count, row, middle, half, sector_of(gap, middle))
                 continue
-            phi = 0.5 * (a + b)
-            middle = rows[first + kept]
-            middle[PHI], middle[SINE], middle[COSINE] = phi, math.sin(phi), math.cos(phi)
+            look(room, world, shape, step, first + kept, 0.5 * (a + b))
             for q in range(7):
                 room.gaps[kept, q] = gap[q]
             kept += 1
         gaps = kept
         if gaps == 0:
             break
-        measure(room, world, shape, step, first, first + gaps)
         for n in range(gaps):
             count = halve(room, n, first + n, count)
         first += gaps
@@ -352,7 +424,7 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     lay_out(room, shape, step, world)
     halves = 2 if step.along < -FACING else 1
     measure(room, world, shape, step, 0, ANGLES * halves)
-    count = follow_jumps(room, world, shape, step, divide(room, halves))
+    count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, halves))
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]

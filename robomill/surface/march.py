@@ -14,15 +14,12 @@ from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
-from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, tool_axes
+from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, moves_of, tool_axes
 from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 
 AT_ONCE = 8192  # steps: what they meet is kept in half precision where it serves only the course over a revolution
-CURVE = 0.01, 0.6  # rad: a path that bends by so much a step is a curve in chords; by less straight, by more a corner
-JUST_BEFORE = 0.99  # of its way: where a step ends on a face of the stock it has not met what is behind it
-DIVE = 0.5  # of its way: a move that goes down so much is a plunge
-BEFORE_STOP = 0.5  # cells: nearer to its bottom a plunge may find again the floor that an earlier one left there
+JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
 
@@ -31,9 +28,11 @@ class March:
     """A path p (m, 3) m through a stock: ``meet`` says what a step meets, ``cut`` cuts it, ``run`` does both for all.
 
     The path gives feeds, axes and tools: entry i is the move p[i-1] -> p[i], k (3,) or (m, 3) unit tool axis (None:
-    upright), cutting (m,) bool. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays
-    that of the feed it is told. Steps that are not finite, not at feed or do not move cut nothing. Steps are cut in
-    the order of the path; ``meet`` and ``cut`` take their ends anew, ``run`` knows straight runs of them as one move.
+    upright), cutting (m,) bool, ``way`` (m, 3) the unit feed at its end (None: that of the move). A step is met where
+    it ends, in what was left before it; a step of no length that begins a cut at that place, ahead of which the next
+    one goes. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays that of the feed it
+    is told. Steps that are not finite or not at feed cut nothing. Steps are cut in the order of the path; ``meet`` and
+    ``cut`` take their ends anew, ``run`` knows straight runs of them as one move.
     Raises SurfaceError for a cell size that does not fit and a tool axis too close to level.
     """
 
@@ -45,6 +44,7 @@ class March:
     cutting: ArrayLike | None = None
     exponents: tuple[float, ...] = (1.0, 0.0)
     really: ArrayLike | None = None
+    way: ArrayLike | None = None
 
     @cached_property
     def points(self) -> FloatArray:
@@ -64,13 +64,22 @@ class March:
 
     @cached_property
     def steps(self) -> IntArray:
-        """(n,) entries of the path that cut."""
+        """(n,) entries of the path that cut, and those of no length that begin a cut."""
         used = moves_at_feed(self.points, self.cutting)
+        known = np.asarray(np.isfinite(self.points).all(axis=1) & np.isfinite(self.tips).all(axis=1))
+        used &= known & np.append(False, known[:-1])
+        return np.flatnonzero(used & (self._move >= 0) & used[self._move])
+
+    @cached_property
+    def _move(self) -> IntArray:
+        """(m,) the move that an entry is a part of: itself, or the next one where it has no length; -1 for none."""
         span = np.diff(self.points, axis=0, prepend=self.points[:1])
-        with np.errstate(invalid="ignore"):
-            used &= np.isfinite(span).all(axis=1) & (np.linalg.norm(span, axis=1) > 0.0)
-        known = np.asarray(np.isfinite(self.tips).all(axis=1))
-        return np.flatnonzero(used & known & np.append(False, known[:-1]))
+        return moves_of((span == 0.0).all(axis=1), moves_at_feed(self.points, self.cutting))
+
+    @cached_property
+    def _at_start(self) -> BoolArray:
+        """(n,) which of ``steps`` only begin a move."""
+        return np.asarray(self._move[self.steps] != self.steps)
 
     @cached_property
     def _ends(self) -> FloatArray:
@@ -78,54 +87,48 @@ class March:
 
     @cached_property
     def _feed(self) -> FloatArray:
-        return np.asarray((self.points[self.steps] - self.points[self.steps - 1]) / self._length[:, None])
+        if self.way is not None:
+            return as_floats(self.way, "feed", (len(self.points), 3), error=SurfaceError)[self.steps]
+        move = self._move[self.steps]
+        span = self.points[move] - self.points[move - 1]
+        return np.asarray(span / np.linalg.norm(span, axis=1, keepdims=True))
 
     @cached_property
-    def _length(self) -> FloatArray:
-        """(n,) m, as told."""
-        return np.linalg.norm(self.points[self.steps] - self.points[self.steps - 1], axis=1)
+    def _ahead(self) -> FloatArray:
+        """(n, 3) m from where a step ends to where the tool is when it is looked at."""
+        move = self._move[self.steps]
+        length = np.linalg.norm(self.points[move] - self.points[move - 1], axis=1)
+        just = np.minimum(JUST, 0.5 * length)
+        return np.asarray(np.where(self._at_start, just, -just)[:, None] * self._feed)
 
     @cached_property
-    def _axes(self) -> FloatArray:
-        axes = tool_axes(self.k, len(self.points))
-        middle = axes[self.steps - 1] + axes[self.steps]
+    def _axes(self) -> tuple[FloatArray, FloatArray]:
+        """(n, 3) tool axes at the ends of steps, and the middle ones under which they are cut."""
+        axes, move = tool_axes(self.k, len(self.points)), self._move[self.steps]
+        middle = axes[move - 1] + axes[move]
         middle /= np.linalg.norm(middle, axis=1, keepdims=True)
-        check_rise(middle)
-        middle[~leaning(middle)] = 0.0, 0.0, 1.0
-        return middle
+        found = axes[self.steps], middle
+        for each in found:
+            check_rise(each)
+            each[~leaning(each)] = 0.0, 0.0, 1.0
+        return found
 
     @cached_property
     def _begins(self) -> BoolArray:
         """(n,) bool: steps that do not go straight on from the one before, with the same tool and axis."""
-        n, ends, axes = self.steps, self._ends, self._axes
+        n, move, ends, axes = self.steps, self._move[self.steps], self._ends, self._axes[1]
         begins = np.ones(len(n), dtype=bool)
         if len(n) > 1:
-            tool = self.tooling.of_step[n]
-            feed = ends[:, 3:] - ends[:, :3]
-            feed = feed / np.maximum(np.linalg.norm(feed, axis=1, keepdims=True), 1e-15)
+            tool, span = self.tooling.of_step[n], ends[:, 3:] - ends[:, :3]
+            feed = span / np.maximum(np.linalg.norm(span, axis=1, keepdims=True), 1e-15)
             begins[1:] = (
                 (ends[:-1, 3:] != ends[1:, :3]).any(axis=1)
                 | (np.linalg.norm(np.cross(feed[:-1], feed[1:]), axis=1) > STRAIGHT)
                 | (np.einsum("ni,ni->n", feed[:-1], feed[1:]) <= 0.0)
                 | (axes[:-1] != axes[1:]).any(axis=1)
                 | (tool[:-1] != tool[1:])
-            )
+            ) & (move[:-1] != move[1:])
         return begins
-
-    @cached_property
-    def _at(self) -> FloatArray:
-        """(n,) which share of its way the tool has gone where a step is looked at.
-
-        Almost all of it where it goes straight on, for what it meets belongs to its sample; down to shortly before the
-        bottom of a plunge; half of it before a stop or a corner, where walls of earlier passes often end too, and on
-        the chord of a curve, which has the curve's direction there.
-        """
-        onward = np.einsum("ni,ni->n", self._feed[:-1], self._feed[1:]) * (np.diff(self.steps) == 1)
-        bends = np.r_[False, (np.cos(CURVE[1]) < onward) & (onward < np.cos(CURVE[0])), False]
-        stops = np.append(onward < np.cos(CURVE[1]), True)
-        dives = np.einsum("ni,ni->n", self._feed, self._axes) < -DIVE
-        before = np.where(dives, np.minimum(0.5, BEFORE_STOP * self.cell / self._length), 0.5)
-        return np.where(bends[:-1] | bends[1:], 0.5, np.where(stops, 1.0 - before, JUST_BEFORE))
 
     @cached_property
     def _stepwise(self) -> tuple[Any, Any]:
@@ -139,14 +142,16 @@ class March:
         from robomill.surface.material_kernels import AXIS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
 
         cells = stock_grid(self.stock, self.cell)
-        heights, mesh = stock_layers(self.stock, cells, SPARE_LAYERS if leaning(self._axes).any() else 0)
+        heights, mesh = stock_layers(
+            self.stock, cells, SPARE_LAYERS if leaning(np.concatenate(self._axes)).any() else 0
+        )
         names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
         columns = Columns(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
         shapes = np.array([[float(n) for n in cutter_shape(cutter)] for cutter in self.tooling.cutters])
         runs = np.zeros((int(first.sum()), RUN))
         runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
-        runs[:, AXIS:MOVE] = self._axes[first]
+        runs[:, AXIS:MOVE] = self._axes[1][first]
         world = World(columns, runs, Block(*map(float, (*self.stock.lower, *self.stock.upper))), mesh)
         return world, self._room()
 
@@ -154,20 +159,19 @@ class March:
         from robomill.surface import engagement_kernels as kernels
 
         places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
-        gaps = 6 * kernels.PANELS
         rows = np.zeros((kernels.ROWS, kernels.SUMS + 3 * len(self.exponents)))
         for half in range(2):
             phi = half * np.pi + kernels.half_turn()
             main = rows[half * kernels.ANGLES : (half + 1) * kernels.ANGLES]
             main[:, : kernels.LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
-        down = (np.einsum("ni,ni->n", self._feed, self._axes) < -FACING).any()
+        down = (np.einsum("ni,ni->n", self._feed, self._axes[0]) < -FACING).any()
         return kernels.Room(
             np.array(self.exponents, dtype=float),
             np.zeros((3, 4)),
             np.zeros((places, 4)),
             rows,
-            np.zeros((gaps, 7)),
-            np.zeros((gaps * (2 * kernels.HALVINGS + 2), 4)),
+            np.zeros((kernels.GAPS, 7)),
+            np.zeros((kernels.GAPS * (2 * kernels.HALVINGS + 2), 4)),
             np.zeros((4 * PANELS * (2 if down else 1), 5)),
         )
 
@@ -231,6 +235,9 @@ class March:
         world, room = state
         found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
-        steps = Steps(np.ascontiguousarray(ends), self._feed[n], self._at[n], runs[0], runs[1].astype(np.int64))
+        tips = ends[:, 3:] + self._ahead[n]
+        steps = Steps(
+            np.ascontiguousarray(ends), tips, self._feed[n], self._axes[0][n], runs[0], runs[1].astype(np.int64)
+        )
         march(world, room, steps, found, sectors, do)
         return found, sectors.reshape(len(n), len(room.sectors), 4)

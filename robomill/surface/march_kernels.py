@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Axes, Out1, Out2, OutInt1, called, kernel, part
+from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import Room, add_part
@@ -37,19 +37,21 @@ from robomill.surface.material_kernels import (
     is_upright,
     see_move,
 )
-from robomill.surface.step_kernels import step_between
+from robomill.surface.step_kernels import step_at
 from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
 
+ONWARD = math.cos(math.radians(10.0))  # between two steps of which the second one covers the first one's front
 Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
 
 
 class Steps(NamedTuple):
-    """Steps of a path: ends (n, 6) m, the unit feed each was told (n, 3), which share of the way the tool has gone
-    where it is looked at (n,), the run it belongs to (n,) and whether it begins it (n,)."""
+    """Steps of a path: ends (n, 6) m, then the tip (m), unit feed and axis of the tool where each is looked at (n, 3),
+    the run it belongs to (n,) and whether it begins it (n,)."""
 
     ends: Out2
+    tip: Out2
     feed: Out2
-    at: Out1
+    axis: Out2
     run: OutInt1
     begins: OutInt1
 
@@ -63,15 +65,15 @@ def go_on(run: FloatArray, ends: FloatArray, begins: bool) -> None:
 
 
 @part
-def cut_run(world: World, r: int) -> None:
-    """Cut a run into the columns, as far as it goes."""
+def cut_run(world: World, r: int, stops: bool) -> None:
+    """Cut a run into the columns, as far as it goes. ``stops``: nothing goes on from there."""
     run = world.runs[r]
     shape, move = shape_of(run), see_move(run)
     if not is_upright(run):
         cut_leaning(world, shape, move, r)
     else:
         cut_upright(world, shape, move, r, follows(world.runs, r))
-    note_sides(world, shape, r)
+    note_rim(world, shape, r, stops)
 
 
 @part
@@ -206,8 +208,8 @@ def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: fl
 
 
 @part
-def note_sides(world: World, shape: Shape, r: int) -> None:
-    """Note a run in the cells that the two sides of its step pass through, where no noted run reaches further."""
+def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
+    """Note a run in the cells that the two sides of its step pass through, and where it stops its front."""
     columns, ends, k = world.columns, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
     vx, vy, vz = ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]
     lx, ly, lz = k[1] * vz - k[2] * vy, k[2] * vx - k[0] * vz, k[0] * vy - k[1] * vx
@@ -215,21 +217,46 @@ def note_sides(world: World, shape: Shape, r: int) -> None:
     length = math.sqrt(vx * vx + vy * vy + vz * vz)
     if size <= FACING * length:
         return
-    nose = profile(shape, shape.R)
-    pieces = 2 * int(length / min(columns.dx, columns.dy)) + 2
-    for side in (-1.0, 1.0):
-        out = side * (shape.R - 10.0 * SKIN) / size
-        for n in range(pieces + 1):
-            share = n / pieces
-            x = ends[0] + share * vx + out * lx + nose * k[0]
-            y = ends[1] + share * vy + out * ly + nose * k[1]
-            z = ends[2] + share * vz + out * lz + nose * k[2] + 10.0 * SKIN
-            if z > world.block.z_high:
-                continue
-            i, j = cell_of(columns, x, y)
-            noted = columns.names[i, j, 0]
-            if noted == NOBODY or height_of_run(world.runs, noted, x, y, z) <= SKIN:
-                columns.names[i, j, 0] = r
+    lx, ly, lz = lx / size, ly / size, lz / size
+    fx, fy, fz = ly * k[2] - lz * k[1], lz * k[0] - lx * k[2], lx * k[1] - ly * k[0]
+    nose, out = profile(shape, shape.R), shape.R - 10.0 * SKIN
+    up = (nose * k[0], nose * k[1], nose * k[2] + 10.0 * SKIN)
+    cell = min(columns.dx, columns.dy)
+    pieces = 2 * int(length / cell) + 2
+    for n in range(pieces + 1):
+        x, y, z = ends[0] + n / pieces * vx, ends[1] + n / pieces * vy, ends[2] + n / pieces * vz
+        for side in (-out, out):
+            note_place(world, r, (x + side * lx + up[0], y + side * ly + up[1], z + side * lz + up[2]))
+    pieces = int(2.0 * math.pi * shape.R / cell) if stops else 0
+    for n in range(1, pieces):
+        phi = math.pi * n / pieces
+        f, side = out * math.sin(phi), out * math.cos(phi)
+        x, y, z = f * fx + side * lx + up[0], f * fy + side * ly + up[1], f * fz + side * lz + up[2]
+        note_place(world, r, (ends[3] + x, ends[4] + y, ends[5] + z))
+
+
+@called
+def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
+    """Note a run in the cell of a place on its rim (m), unless a noted run reaches further there."""
+    x, y, z = place
+    if z > world.block.z_high:
+        return
+    i, j = cell_of(world.columns, x, y)
+    noted = world.columns.names[i, j, 0]
+    if noted == NOBODY or height_of_run(world.runs, noted, x, y, z) <= SKIN:
+        world.columns.names[i, j, 0] = r
+
+
+@part
+def goes_on(steps: Steps, n: int) -> bool:
+    """Whether the step after the n-th one goes on where that ends, round a corner of 10 degrees at most."""
+    if n + 1 == len(steps.ends):
+        return False
+    onward, there = 0.0, True
+    for q in range(3):
+        there = there and steps.ends[n + 1, q] == steps.ends[n, q + 3]
+        onward += steps.feed[n, q] * steps.feed[n + 1, q]
+    return there and onward > ONWARD
 
 
 @kernel
@@ -239,9 +266,9 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
         if do[0]:
-            step = step_between(ends, world.runs[r, AXIS:MOVE], steps.feed[n], steps.at[n], r)
+            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], r)
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
         if do[1]:
             go_on(world.runs[r], ends, steps.begins[n] == 1)
             if n + 1 == len(steps.ends) or steps.begins[n + 1] == 1:
-                cut_run(world, r)
+                cut_run(world, r, not goes_on(steps, n))

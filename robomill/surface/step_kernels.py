@@ -54,8 +54,8 @@ class Piece(NamedTuple):
 
 
 @part
-def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, at: float, run: int) -> Step:
-    """A tool along k (3,) on its step ``ends`` (6,) m, the share ``at`` of the way gone, fed along a unit v (3,)."""
+def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
+    """A tool along k (3,) with its ``tip`` (3,) m, fed along a unit v (3,)."""
     along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
     fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
     across = math.sqrt(fx * fx + fy * fy + fz * fz)
@@ -65,9 +65,9 @@ def step_between(ends: FloatArray, k: FloatArray, v: FloatArray, at: float, run:
     size = math.sqrt(fx * fx + fy * fy + fz * fz)
     fx, fy, fz = fx / size, fy / size, fz / size
     return Step(
-        ends[0] + at * (ends[3] - ends[0]),
-        ends[1] + at * (ends[4] - ends[1]),
-        ends[2] + at * (ends[5] - ends[2]),
+        tip[0],
+        tip[1],
+        tip[2],
         fx,
         fy,
         fz,

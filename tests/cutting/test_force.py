@@ -18,42 +18,47 @@ from robomill.io.materials import load_material
 UP = np.array([0.0, 0.0, 1.0])
 
 
+def moves(p):
+    """Of a path (m, 3): the move to each point, the first one none."""
+    return np.diff(p, axis=0, prepend=p[:1])
+
+
 def steady(m, **changes):
     return CutConditions.steady(**{"v_f": 0.03, "n_s": 200.0, "a_p": 2e-3, "cutting": np.arange(m) > 0, **changes})
 
 
 def test_feed_normal_is_the_left_of_the_feed():
     p = np.array([[0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 2, 0]], float)
-    frames = feed_frame(p, np.tile(UP, (4, 1)))
+    frames = feed_frame(moves(p), np.tile(UP, (4, 1)))
     np.testing.assert_allclose(frames[:, :, 1], [[0, 1, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], atol=1e-15)
     np.testing.assert_allclose(frames[:, :, 2], np.tile(UP, (4, 1)))
 
 
 def test_plunges_and_standstill_keep_the_last_direction_and_the_first_takes_the_next():
     p = np.array([[0, 0, 5], [0, 0, 0], [0, 3, 0], [0, 3, 4], [0, 3, 4], [1, 3, 4]], float)
-    frames = feed_frame(p, np.tile(UP, (6, 1)))
+    frames = feed_frame(moves(p), np.tile(UP, (6, 1)))
     np.testing.assert_allclose(frames[:, :, 0], [[0, 1, 0]] * 5 + [[1, 0, 0]], atol=1e-15)
-    np.testing.assert_allclose(feed_share(p, np.tile(UP, (6, 1))), [1, 0, 1, 0, 1, 1])
+    np.testing.assert_allclose(feed_share(moves(p), np.tile(UP, (6, 1))), [1, 0, 1, 0, 1, 1])
 
 
 def test_a_path_without_any_level_move_takes_a_fixed_axis():
     p = np.array([[0, 0, 1], [0, 0, 0]], float)
-    np.testing.assert_allclose(feed_frame(p, [UP, UP])[1], np.eye(3))
-    along_x = feed_frame(p[:, ::-1], [[1.0, 0, 0]] * 2)[1]
+    np.testing.assert_allclose(feed_frame(moves(p), [UP, UP])[1], np.eye(3))
+    along_x = feed_frame(moves(p)[:, ::-1], [[1.0, 0, 0]] * 2)[1]
     np.testing.assert_allclose(along_x[:, 0], [0, 1, 0])
 
 
 def test_a_direction_carried_to_a_turned_axis_stays_a_frame():
     # Feed along x, then the tool turns to lie along x and plunges: no direction is left to carry.
     p = np.array([[0, 0, 0], [1, 0, 0], [0.5, 0, 0]], float)
-    frames = feed_frame(p, [UP, UP, [1.0, 0, 0]])
+    frames = feed_frame(moves(p), [UP, UP, [1.0, 0, 0]])
     np.testing.assert_allclose(np.swapaxes(frames, 1, 2) @ frames, np.tile(np.eye(3), (3, 1, 1)), atol=1e-12)
 
 
 def test_ramp_uses_the_level_part_of_its_feed():
     p = np.array([[0, 0, 0], [3, 0, -4]], float)
-    np.testing.assert_allclose(feed_frame(p, [UP, UP])[1], np.eye(3), atol=1e-15)
-    assert feed_share(p, [UP, UP])[1] == pytest.approx(0.6)
+    np.testing.assert_allclose(feed_frame(moves(p), [UP, UP])[1], np.eye(3), atol=1e-15)
+    assert feed_share(moves(p), [UP, UP])[1] == pytest.approx(0.6)
 
 
 @settings(max_examples=50, deadline=None)
@@ -64,16 +69,16 @@ def test_frames_are_rotations_and_turn_with_the_scene(seed):
     k /= np.linalg.norm(k, axis=1, keepdims=True)
     p[3] = p[2]
     p[5] = p[4] + k[5]
-    frames = feed_frame(p, k)
+    frames = feed_frame(moves(p), k)
     np.testing.assert_allclose(np.swapaxes(frames, 1, 2) @ frames, np.tile(np.eye(3), (7, 1, 1)), atol=1e-9)
     np.testing.assert_allclose(np.linalg.det(frames), 1.0, atol=1e-9)
     turn = Rotation.random(random_state=seed).as_matrix()
-    np.testing.assert_allclose(feed_frame(p @ turn.T, k @ turn.T), turn @ frames, atol=1e-7)
+    np.testing.assert_allclose(feed_frame(moves(p) @ turn.T, k @ turn.T), turn @ frames, atol=1e-7)
 
 
 def test_force_on_tool_is_zero_on_rapids_and_turns_with_the_path():
     p = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0]], float)
-    frames = feed_frame(p, np.tile(UP, (4, 1)))
+    frames = feed_frame(moves(p), np.tile(UP, (4, 1)))
     conditions = steady(4, cutting=[False, True, True, False])
     along = force_on_tool(PathForce(feed=-1.0, feed_normal=100.0, axial=-20.0), conditions, frames)
     np.testing.assert_allclose(along, [[0, 0, 0], [-1, 100, -20], [-100, -1, -20], [0, 0, 0]], atol=1e-12)
@@ -84,7 +89,7 @@ def test_force_on_tool_is_zero_on_rapids_and_turns_with_the_path():
 def test_process_force_in_the_robot_frame():
     p = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0]], float)
     model = MechanisticForce(Cutter("flat", 8e-3, flutes=3), load_material("al7075_t6_carbide_ref190"))
-    F = force_on_tool(model, steady(3), feed_frame(p, np.tile(UP, (3, 1))))
+    F = force_on_tool(model, steady(3), feed_frame(moves(p), np.tile(UP, (3, 1))))
     np.testing.assert_allclose(F, [[0, 0, 0], [-63.46, 110.43, -23.30], [-110.43, -63.46, -23.30]], atol=0.01)
 
 
@@ -119,8 +124,8 @@ def test_tool_axes_of_any_length_give_the_same_frames():
     p = np.array([[0, 0, 0], [1.0, 0.2, 0.3], [1.0, 2.0, 0.1], [1.5, 2.0, 0.1]])
     k = np.array([[0, 0, 1.0], [0.1, 0, 1.0], [0.0, 0.3, 1.0], [0.2, 0.2, 1.0]])
     unit = k / np.linalg.norm(k, axis=1, keepdims=True)
-    np.testing.assert_allclose(feed_frame(p, 3.0 * k), feed_frame(p, unit), atol=1e-14)
-    np.testing.assert_allclose(feed_share(p, 0.2 * k), feed_share(p, unit), atol=1e-14)
+    np.testing.assert_allclose(feed_frame(moves(p), 3.0 * k), feed_frame(moves(p), unit), atol=1e-14)
+    np.testing.assert_allclose(feed_share(moves(p), 0.2 * k), feed_share(moves(p), unit), atol=1e-14)
     step = p[1] - p[0]
     along = (step @ unit[1]) / np.linalg.norm(step)
-    assert feed_share(p, 5.0 * k)[1] == pytest.approx(np.sqrt(1.0 - along**2))
+    assert feed_share(moves(p), 5.0 * k)[1] == pytest.approx(np.sqrt(1.0 - along**2))

@@ -18,7 +18,7 @@ MILL = Cutter("flat", 8e-3, flutes=3)
 REF190 = load_material("al7075_t6_carbide_ref190")
 #: Mid-slot: feed +X, tool vertical, in the robot's frame.
 CONDITIONS = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True])
-R_MF = feed_frame([[0, -1.3, 0], [1e-3, -1.3, 0]], [[0, 0, 1.0]] * 2)
+R_MF = feed_frame([[0, 0, 0], [1.0, 0, 0]], [[0, 0, 1.0]] * 2)
 
 
 def compliance(table):

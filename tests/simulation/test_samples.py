@@ -7,7 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.samples import STILL, at_starts, clock, moving
+from robomill.simulation.samples import STILL, clock, moving, sampled, ways
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 
@@ -79,12 +79,29 @@ def test_creeping_is_moving():
     assert kept.p[-1, 0] > p[-1, 0] - 1.01 * STILL
 
 
-def test_turning_on_the_spot_is_kept_and_takes_the_step_after_it():
+def test_turning_on_the_spot_is_kept_and_goes_the_way_of_the_step_after_it():
     k = np.array([[0, 0, 1.0], [0, 0, 1.0], [0, np.sin(0.1), np.cos(0.1)], [0, np.sin(0.2), np.cos(0.2)], [0, 0, 1.0]])
-    p = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]]) * 1e-2
+    p = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 2, 0]]) * 1e-2
     path = toolpath(p, k)
     assert len(moving(path)) == 5
-    assert at_starts(path, np.arange(5.0)).tolist() == [0, 1, 4, 4, 4]
+    np.testing.assert_allclose(ways(path), [[0, 0, 0], [1, 0, 0], *[[0, 1, 0]] * 3], atol=1e-15)
+
+
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+def test_the_way_through_the_samples_of_an_arc_is_the_arcs(turn):
+    """A line, a corner, an arc of its own line, then a line at 5 degrees to it: tangents of the circle at its samples,
+    where it begins and ends too; on lines, and at a bend between two of them, the way that ends there."""
+    arc = f"G{2.5 + 0.5 * turn:.0f} X10 Y{12 * turn} I0 J{6 * turn}"
+    code = ["G21 G90 G17 F100", f"G1 X10 Y{-5 * turn}", "X10 Y0", arc, f"G1 X0 Y{13 * turn}", "X0 Y0", ""]
+    path = sampled(rm.read_gcode("\n".join(code)), 0.5e-3)
+    way, x = ways(path), (path.p - [10e-3, turn * 6e-3, 0.0]) / 6e-3
+    on = path.block == 4
+    tangent = turn * np.column_stack([-x[:, 1], x[:, 0], 0.0 * x[:, 0]])
+    whole = on & (np.abs(np.linalg.norm(x, axis=1) - 1.0) < 1e-9)
+    assert whole.sum() > 50
+    np.testing.assert_allclose(way[whole], tangent[whole], atol=1e-6)
+    line = path.block == 5
+    np.testing.assert_allclose(way[line], np.tile([-10.0, turn, 0.0] / np.hypot(10.0, 1.0), (line.sum(), 1)), atol=1e-9)
 
 
 def test_the_clock_starts_with_the_first_cut():

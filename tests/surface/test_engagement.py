@@ -143,15 +143,6 @@ def in_material(material, stock, points):
     )
 
 
-def looked_at(p):
-    """Where a level walk is looked at: just before the ends of steps, half-way before a corner and beside a bend."""
-    way = np.diff(p, axis=0) / np.linalg.norm(np.diff(p, axis=0), axis=1, keepdims=True)
-    turn = np.append(np.arccos(np.clip((way[:-1] * way[1:]).sum(axis=1), -1.0, 1.0)), np.pi)
-    half = turn > 0.01
-    half[1:] |= (turn[:-1] > 0.01) & (turn[:-1] < 0.6)
-    return p[:-1] + np.where(half, 0.5, 0.99)[:, None] * np.diff(p, axis=0)
-
-
 def test_engaged_width_against_shapes():
     """A flat mill on a level walk: what stands ahead of its rim is the block less the capsules of the steps before."""
     rng = np.random.default_rng(6)
@@ -162,11 +153,11 @@ def test_engaged_width_against_shapes():
     found = engage(STOCK, cell, FLAT, p)
     material = shapely.box(*STOCK.lower[:2], *STOCK.upper[:2])
     phi = (np.arange(3600) + 0.5) * np.pi / 3600
-    widths, depths, plain, places = [], [], [], looked_at(p[:, :2])
+    widths, depths, plain = [], [], []
     for a, b in pairwise(p[:, :2]):
         feed = (b - a) / np.linalg.norm(b - a)
         left = np.array([-feed[1], feed[0]])
-        rim = places[len(widths)] + (R + 1e-6) * (np.sin(phi)[:, None] * feed + np.cos(phi)[:, None] * left)
+        rim = b - 1e-6 * feed + (R + 1e-6) * (np.sin(phi)[:, None] * feed + np.cos(phi)[:, None] * left)
         touched = in_material(material, STOCK, rim)
         widths.append(R * np.sin(phi)[touched].sum() * np.pi / 3600)
         parts = np.diff(np.flatnonzero(np.diff(touched, prepend=~touched[0], append=~touched[-1])))

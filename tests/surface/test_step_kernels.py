@@ -15,7 +15,7 @@ from robomill.surface.step_kernels import (
     edge_sums,
     on_profile,
     piece_between,
-    step_between,
+    step_at,
     stretch_ends,
 )
 
@@ -87,12 +87,11 @@ def test_an_edge_adds_up_to_its_integral(name, exponent):
 def test_a_step_has_its_place_and_a_frame_on_the_axis():
     rng = np.random.default_rng(4)
     for _ in range(20):
-        ends, k, v = rng.normal(size=6), rng.normal(size=3), rng.normal(size=3)
+        tip, k, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
         k, v = k / np.linalg.norm(k), v / np.linalg.norm(v)
-        at = rng.random()
-        step = step_between(ends, k, v, at, 5)
+        step = step_at(tip, k, v, 5)
         feed, left, axis = np.array(step[3:6]), np.array(step[6:9]), np.array(step[9:12])
-        np.testing.assert_allclose(step[:3], (1.0 - at) * ends[:3] + at * ends[3:])
+        np.testing.assert_allclose(step[:3], tip)
         np.testing.assert_allclose(axis, k)
         np.testing.assert_allclose(
             np.column_stack([feed, left, axis]).T @ np.column_stack([feed, left, axis]), np.eye(3), atol=1e-12
@@ -106,7 +105,7 @@ def test_a_step_has_its_place_and_a_frame_on_the_axis():
 @pytest.mark.parametrize("k", [[0.0, 0, 1], [1.0, 0, 0], [0, 0.6, -0.8], [-0.96, 0.28, 0]])
 def test_straight_along_the_axis_any_direction_across_it_is_the_feed(k):
     k = np.array(k)
-    step = step_between(np.zeros(6), k, -k, 0.5, 0)
+    step = step_at(np.zeros(3), k, -k, 0)
     assert (step.across, step.along) == pytest.approx((0.0, -1.0))
     frame = np.column_stack([step[3:6], step[6:9], k])
     np.testing.assert_allclose(frame.T @ frame, np.eye(3), atol=1e-12)

@@ -92,8 +92,7 @@ def test_laid_on_the_path_by_time_and_by_length():
 
 
 def test_in_the_robot_frame_or_along_the_path():
-    p = np.array([[0, 0, 0], [0, 1, 0]], float)
-    frames = feed_frame(p, [[0, 0, 1.0]] * 2)
+    frames = feed_frame([[0, 0, 0], [0, 1.0, 0]], [[0, 0, 1.0]] * 2)
     conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True], t=[0.0, 1.0])
     for frame, expected in (("M", [0, 100, 0]), ("path", [-100, 0, 0])):
         F = force_on_tool(MeasuredForce(record(100.0, frame=frame)), conditions, frames)
