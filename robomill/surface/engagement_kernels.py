@@ -21,13 +21,13 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import Shape, radius_at
-from robomill.surface.material_kernels import FAR, NOBODY, World, cell_of, standing, top_over
+from robomill.surface.envelope_kernels import Shape
+from robomill.surface.material_kernels import FAR, World, standing, top_over
+from robomill.surface.rib_kernels import COSINE, PHI, SINE, Walk, is_plain, jumps, next_change, walk_on
 from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, piece_between, stretch_ends
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 HALVINGS = 8  # of the angle across which the engaged length jumps
-JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
 ENDS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
@@ -37,9 +37,9 @@ INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is known of an angle: itself, its sine and cosine; then what is engaged at it: length, height along the axis,
 # where it begins and ends along the axis, its largest radius, how much of the end face; then sums for each exponent
-PHI, SINE, COSINE, LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, FACE, SUMS = range(10)
+LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, FACE, SUMS = range(3, 10)
 BEGIN, STOP, PIECES, FIRST = range(4)  # of a stretch of the profile: where, in how many pieces, its first place
-HIDDEN = 2 * PANELS  # ribs and gaps of material between those angles that are found, at most
+HIDDEN = 2 * PANELS  # looks at such, at most
 GAPS = 6 * PANELS + HIDDEN
 ROWS = 2 * ANGLES + HIDDEN + GAPS * HALVINGS  # angles looked at in a turn, at most
 
@@ -51,15 +51,6 @@ class Ray(NamedTuple):
     x: float
     y: float
     z: float
-
-
-class Walk(NamedTuple):
-    """Steps along the rim of the cutter: its radius where the material ends (m), and the angle of a step (rad)."""
-
-    radius: float
-    pitch: float
-    sine: float
-    cosine: float
 
 
 class Room(NamedTuple):
@@ -139,12 +130,6 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
             first += 1
 
 
-@part
-def is_plain(world: World, step: Step) -> bool:
-    """Whether the material ends but once over every place, and the tool stands upright in it."""
-    return world.columns.heights.shape[2] == 1 and step.kx == 0.0 and step.ky == 0.0
-
-
 @called
 def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end: int) -> None:
     """What is engaged at the angles of some rows."""
@@ -208,12 +193,6 @@ def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape
         since = cuts
 
 
-@part
-def jumps(a: float, b: float) -> bool:
-    """Whether two engaged lengths at neighbouring angles differ by more than what is smooth."""
-    return abs(a - b) > JUMP * max(a, b)
-
-
 def half_turn() -> FloatArray:
     """(``ANGLES``,) rad: the angles looked at in the half turn ahead."""
     ends = np.array([panel_end(n) for n in range(PANELS)] + [math.pi])
@@ -230,10 +209,10 @@ def note(pieces: FloatArray, count: int, row: float, middle: float, width: float
 
 
 @called
-def divide(room: Room, world: World, shape: Shape, step: Step, halves: int) -> tuple[int, int, int]:
+def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halves: int) -> tuple[int, int, int]:
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
     how many angles between were looked at for ribs and gaps of material that its panels pass over."""
-    rows, count, gaps, hidden, walk = room.rows, 0, 0, 0, walk_on(world, shape, step)
+    rows, count, gaps, looked = room.rows, 0, 0, 0
     for panel in range(PANELS * halves):
         first = 3 * panel + panel // PANELS
         begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
@@ -242,18 +221,19 @@ def divide(room: Room, world: World, shape: Shape, step: Step, halves: int) -> t
             left, right = first + n, first + n + 1
             a = start if n == 0 else rows[left, PHI]
             b = end if n == 2 else rows[right, PHI]
-            phi = rows[left, PHI]
-            while hidden < HIDDEN:
-                phi = next_change(world, step, walk, phi, rows[right, PHI])
+            since = left
+            while walk.radius > 0.0 and looked < HIDDEN:
+                phi = next_change(world, step, walk, rows[since], rows[left], rows[right])
                 if phi >= rows[right, PHI]:
                     break
-                between = 2 * ANGLES + hidden
+                since = between = 2 * ANGLES + looked
                 look(room, world, shape, step, between, phi)
+                looked += 1
                 if jumps(rows[left, LENGTH], rows[between, LENGTH]) and jumps(
                     rows[between, LENGTH], rows[right, LENGTH]
                 ):
                     gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
-                    left, a, rough, hidden = between, phi, True, hidden + 1
+                    left, a, rough = between, phi, True
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         if not rough:
@@ -261,7 +241,7 @@ def divide(room: Room, world: World, shape: Shape, step: Step, halves: int) -> t
             for n in range(1, 3):
                 middle = rows[first + n, PHI]
                 count = note(room.pieces, count, first + n, middle, 0.5 * (end - start), 4 * panel + 3 * (n - 1))
-    return count, gaps, hidden
+    return count, gaps, looked
 
 
 @part
@@ -281,41 +261,6 @@ def look(room: Room, world: World, shape: Shape, step: Step, n: int, phi: float)
     row = room.rows[n]
     row[PHI], row[SINE], row[COSINE] = phi, math.sin(phi), math.cos(phi)
     measure(room, world, shape, step, n, n + 1)
-
-
-@part
-def walk_on(world: World, shape: Shape, step: Step) -> Walk:
-    """Half a cell along the rim of an upright tool in one layer of material; none for others."""
-    columns, height = world.columns, world.block.z_high - step.z
-    if height <= 0.0 or not is_plain(world, step):
-        return Walk(0.0, 7.0, 0.0, 1.0)
-    radius = radius_at(shape, height)
-    pitch = 0.5 * min(columns.dx, columns.dy) / radius
-    return Walk(radius, pitch, math.sin(pitch), math.cos(pitch))
-
-
-@called
-def next_change(world: World, step: Step, walk: Walk, phi: float, end: float) -> float:
-    """The next angle at which the columns along the rim change from one to the next, or ``end``: how high the material
-    stands in them, or which side is noted in them."""
-    if phi + walk.pitch >= end:
-        return end
-    columns, block = world.columns, world.block
-    before, noted, first = -1.0, NOBODY, True
-    sine, cosine = math.sin(phi), math.cos(phi)
-    while phi < end:
-        x = step.x + walk.radius * (sine * step.fx + cosine * step.lx)
-        y = step.y + walk.radius * (sine * step.fy + cosine * step.ly)
-        top, name = 0.0, NOBODY
-        if block.x_low <= x <= block.x_high and block.y_low <= y <= block.y_high:
-            i, j = cell_of(columns, x, y)
-            top, name = max(columns.heights[i, j, 0] - step.z, 0.0), columns.names[i, j, 0]
-        if not first and (name != noted or jumps(top, before)):
-            return phi
-        before, noted, first = top, name, False
-        phi += walk.pitch
-        sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
-    return end
 
 
 @part
@@ -424,7 +369,9 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     lay_out(room, shape, step, world)
     halves = 2 if step.along < -FACING else 1
     measure(room, world, shape, step, 0, ANGLES * halves)
-    count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, halves))
+    count = follow_jumps(
+        room, world, shape, step, divide(room, world, shape, step, walk_on(world, shape, step), halves)
+    )
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]

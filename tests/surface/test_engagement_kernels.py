@@ -23,16 +23,17 @@ from robomill.surface.engagement_kernels import (
     divide,
     follow_jumps,
     half_turn,
-    jumps,
     lay_out,
     measure_stretch,
     panel_end,
 )
 from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.material_kernels import Block, Columns, Mesh, World
-from robomill.surface.step_kernels import END, FLANK, NOSE, on_profile, step_between, stretch_ends
+from robomill.surface.rib_kernels import Walk, jumps
+from robomill.surface.step_kernels import END, FLANK, NOSE, on_profile, step_at, stretch_ends
 
 MM = 1e-3
+NO_WALK = Walk(0.0, 0.0, 0.0, 1.0)
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
     "ball": Cutter("ball", 8 * MM),
@@ -96,7 +97,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
     monkeypatch.setattr(kernels, "measure", made_up)
     room = room_for(halves)
     made_up(room, None, None, None, 0, ANGLES * halves)
-    count = follow_jumps(room, None, None, None, divide(room, halves))
+    count = follow_jumps(room, None, None, None, divide(room, None, None, None, NO_WALK, halves))
     row, middle, width, sector = room.pieces[:count].T
     order = np.argsort(middle)
     low, high = (middle - 0.5 * width)[order], (middle + 0.5 * width)[order]
@@ -125,7 +126,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
 def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
     room = room_for()
     room.rows[:, LENGTH] = 1.0 + 0.1 * np.cos(room.rows[:, PHI])
-    count, gaps = divide(room, 1)
+    count, gaps, _ = divide(room, None, None, None, NO_WALK, 1)
     assert (count, gaps) == (2 * PANELS, 0)
     row, middle, width, sector = room.pieces[:count].T
     np.testing.assert_allclose(middle, room.rows[row.astype(int), PHI])
@@ -143,9 +144,9 @@ def block_world(layers=1, dx=0.5 * MM):
     return World(columns, np.zeros((1, 21)), block, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
 
 
-def step_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
+def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
     v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
-    return step_between(np.array([0, 0, -depth] * 2), np.array(axis), v, 1.0, 0)
+    return step_at(np.array([0, 0, -depth]), np.array(axis), v, 0)
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -154,7 +155,7 @@ def step_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
 def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth):
     """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it."""
     cutter, room, world = CUTTERS[name], room_for(), block_world(layers=6)
-    shape, step = cutter_shape(cutter), step_at(depth, along)
+    shape, step = cutter_shape(cutter), fed_at(depth, along)
     lay_out(room, shape, step, world)
     first = 0
     for stretch, most in ((END, 8), (NOSE, 9), (FLANK, 96)):
@@ -178,9 +179,9 @@ def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth)
 
 def test_the_flank_of_an_upright_tool_in_one_layer_is_not_looked_at_in_places():
     room = room_for()
-    lay_out(room, cutter_shape(CUTTERS["flat"]), step_at(2 * MM), block_world())
+    lay_out(room, cutter_shape(CUTTERS["flat"]), fed_at(2 * MM), block_world())
     assert not room.places.any()
-    lay_out(room, cutter_shape(CUTTERS["flat"]), step_at(2 * MM, axis=(0.0, 0.6, 0.8)), block_world())
+    lay_out(room, cutter_shape(CUTTERS["flat"]), fed_at(2 * MM, axis=(0.0, 0.6, 0.8)), block_world())
     assert room.places.any()
     reach = (2 * MM + 4 * MM * 0.6) / 0.8  # the rim that leans towards the material meets its top from further down
     assert room.stretches[FLANK, 1] == pytest.approx(reach)
@@ -194,7 +195,7 @@ SPANS = [[(0.4, 1.3)], [(0.0, 0.7), (1.9, 2.6)], [(0.9, 9.9)], [(-1.0, 9.9)], [(
 def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch, spans):
     """Material in layers of known heights along the axis (mm), as deep as the nearest end of its layer."""
     cutter, depth = CUTTERS["ball" if stretch == NOSE else "flat"], 3 * MM
-    shape, step = cutter_shape(cutter), step_at(depth)
+    shape, step = cutter_shape(cutter), fed_at(depth)
     room, world = room_for(), block_world(layers=6, dx=0.25 * MM)
     lay_out(room, shape, step, world)
 

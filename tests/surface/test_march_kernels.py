@@ -9,7 +9,7 @@ import pytest
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.envelope_kernels import cutter_shape
-from robomill.surface.march_kernels import cut_run, follows, go_on, note_sides, take_out
+from robomill.surface.march_kernels import cut_run, follows, go_on, note_rim, take_out
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -93,7 +93,7 @@ def test_columns_are_left_by_the_lowest_stamp_and_know_the_run_that_made_them(ki
     moves = walk(kind, points)
     world = world_of(moves)
     for r in range(len(moves)):
-        cut_run(world, r)
+        cut_run(world, r, False)
     columns = world.columns
     x, y = centres(columns)
     left = [stamped(move, x, y) for move in moves]
@@ -115,7 +115,7 @@ def test_a_leaning_run_takes_its_body_out_of_the_columns(kind, lean):
     k /= np.linalg.norm(k)
     cutter, start, end = CUTTERS[kind], np.array([7.0, 6.0, -4.0]), np.array([12.0, 8.0, -5.0])
     world = world_of([(cutter, start, end, k)], layers=3, cells=(25, 17))
-    cut_run(world, 0)
+    cut_run(world, 0, False)
     columns = world.columns
     x, y = centres(columns)
     z = np.linspace(-9.98, -0.02, 84) * MM
@@ -237,7 +237,7 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
     """Where a line on either side of the body at the height of its full radius passes over the plan."""
     start, end = np.array([6.0, 6.0, -5.0]), np.array([17.0, 9.0, -5.5])
     world = world_of([(cutter, start, end, axis)])
-    note_sides(world, cutter_shape(cutter), 0)
+    note_rim(world, cutter_shape(cutter), 0, False)
     way = end - start
     side = np.cross(axis, way) / np.linalg.norm(np.cross(axis, way))
     share = np.linspace(0.0, 1.0, 4001)[:, None]
@@ -261,7 +261,7 @@ def test_the_side_that_reaches_further_is_noted():
         world = world_of(moves, cells=(12, 8))
         for r in range(2):
             see_move(world.runs[r])
-            note_sides(world, cutter_shape(moves[r][0]), r)
+            note_rim(world, cutter_shape(moves[r][0]), r, False)
         names = noted(world)
         np.testing.assert_array_equal(np.flatnonzero(names[6] != NOBODY), [2, 5])
         np.testing.assert_array_equal(names[2:10, [2, 5]], moves.index(wide_move))
@@ -270,7 +270,7 @@ def test_the_side_that_reaches_further_is_noted():
 def test_nothing_is_noted_above_the_stock_or_of_a_plunge():
     for start, end in (((5, 8, 1), (15, 8, 1)), ((5, 8, 0), (5, 8, -5))):
         world = world_of([(FLAT, start, end, UP)])
-        note_sides(world, cutter_shape(FLAT), 0)
+        note_rim(world, cutter_shape(FLAT), 0, False)
         assert (noted(world) == NOBODY).all()
 
 
@@ -283,7 +283,7 @@ def test_points_of_what_is_left_stand_as_deep_as_the_nearest_wall():
     ]
     world = world_of(moves)
     for r in range(len(moves)):
-        cut_run(world, r)
+        cut_run(world, r, False)
     points = np.random.default_rng(8).uniform([-1 * MM, -1 * MM, -11 * MM], [25 * MM, 17 * MM, 1 * MM], (600, 3))
     x, y, z = points.T
     floor = np.min([stamped(move, x, y, 601) for move in moves], axis=0)
