@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
-from robomill.ui import autosave, inputs, rendered, session
+from robomill.ui import autosave, inputs, rendered, session, snapshots
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
@@ -125,6 +125,8 @@ def _files(held: session.Store) -> None:
             width="stretch",
             key="save",
         )
+    if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
+        snapshots.show()
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])

@@ -12,7 +12,7 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.ui import autosave, rendered
 from robomill.ui.keeping import Settings
-from robomill.ui.shelf import Shelf
+from robomill.ui.shelf import Shelf, place_of
 from robomill.ui.writer import Writer
 from robomill.viz.render_queue import RenderQueue
 
@@ -205,3 +205,64 @@ def test_a_strange_key_is_replaced(visit: Visit, writer: Writer, monkeypatch: py
     rename(visit(), writer, "mine")
     (file,) = writer.shelf.settings.folder.rglob("*.toml")
     assert file.parent.parent == writer.shelf.settings.folder
+
+
+def dialog(app: AppTest) -> AppTest:
+    """The list of kept projects, opened."""
+    return app.button(key="snapshots").click().run()
+
+
+def kept_as(app: AppTest, name: str) -> None:
+    dialog(app).text_input(key="snapshots.name").set_value(name).run()
+    dialog(app).button(key="snapshots.keep").click().run()
+    assert not app.exception
+
+
+def test_a_project_is_kept_under_a_name_opened_again_and_deleted(visit: Visit, writer: Writer) -> None:
+    app = visit()
+    rename(app, writer, "mine")
+    kept_as(app, "first try")
+    rename(app, writer, "other")
+    again = dialog(visit())
+    assert "first try" in "\n".join(each.value for each in again.text)
+    (opens,) = [each for each in again.button if each.key.startswith("snapshots.open.name")]
+    opens.click().run()
+    assert store(again).project.setup.name == "mine"
+    again.button(key="undo").click().run()
+    assert store(again).project.setup.name == "other"
+    dialog(again)
+    (deletes,) = [each for each in again.button if each.key.startswith("snapshots.delete")]
+    deletes.click().run()
+    assert "first try" not in "\n".join(each.value for each in dialog(again).text)
+    again.button(key="snapshots.back").click().run()
+    assert "first try" in "\n".join(each.value for each in dialog(again).text)
+
+
+def test_a_kept_project_is_put_beside_the_one_in_force(visit: Visit, writer: Writer) -> None:
+    app = visit()
+    kept_as(app, "<b>as it came</b>")
+    rename(app, writer, "mine")
+    dialog(app)
+    choice = app.button_group(key="snapshots.chosen")
+    choice.set_value([place_of("<b>as it came</b>")]).run()
+    assert not app.exception
+    text = words(dialog(app))
+    for word in ("In force", "&lt;b&gt;as it came", "Wall error", "Floor error", "Tolerance", "0.3 mm", "0.1 mm"):
+        assert word in text
+    assert "<b>as it came" not in text
+
+
+def test_a_name_is_needed_and_no_more_are_kept_than_fit(visit: Visit, writer: Writer) -> None:
+    app = visit()
+    dialog(app).button(key="snapshots.keep").click().run()
+    assert [e for e in dialog(app).error if "name" in e.value]
+
+
+def test_work_of_another_tab_can_be_opened_here(visit: Visit, writer: Writer) -> None:
+    rename(visit(), writer, "of the first tab")
+    second = visit(OTHER)
+    rename(second, writer, "of the second tab")
+    dialog(second)
+    (opens,) = [each for each in second.button if each.key == f"snapshots.open.tab-{TAB}"]
+    opens.click().run()
+    assert store(second).project.setup.name == "of the first tab"
