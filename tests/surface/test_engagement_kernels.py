@@ -225,13 +225,20 @@ def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch
     assert row[SUMS + 3] / MM == pytest.approx(length, abs=2e-3)  # of exponent 0: the length by itself
 
 
-def met(cutter, depth, along=0.0, low=-1.0, high=1.0):
-    """What a step along X meets in a block from ``low`` to ``high`` (m) in Y, 10 mm thick: row and sectors."""
+def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
+    """What a step along X meets in a block from ``low`` to ``high`` (m) in Y, 10 mm thick: row and sectors; ``turn``
+    turns step and block by so many right angles."""
+    way = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][turn])
+    v = np.append(math.sqrt(1.0 - along**2) * way, along)
+    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, 0)
+    if turn in (1, 2):  # the left of Y is -X, that of -X is -Y
+        low, high = -high, -low
+    limits = {"x_low": low, "x_high": high} if turn % 2 else {"y_low": low, "y_high": high}
     world = block_world()
-    world = world._replace(block=world.block._replace(y_low=low, y_high=high))
+    world = world._replace(block=world.block._replace(**limits))
     halves = 2 if along < -1e-6 else 1
     total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
-    add_part(room_for(halves), world, cutter_shape(cutter), step_at(depth, along), total, sectors)
+    add_part(room_for(halves), world, cutter_shape(cutter), step, total, sectors)
     return total[: 2 * MOMENTS].reshape(2, MOMENTS), total[2 * MOMENTS :], sectors.reshape(-1, 4)
 
 
@@ -301,3 +308,14 @@ def test_above_a_block_and_below_it_nothing_is_met():
     _, rest, sectors = met(CUTTERS["flat"], 14 * MM)
     assert rest[2] == pytest.approx(10 * MM, rel=2e-3)
     np.testing.assert_allclose(sectors[:, :3], [[10 * MM, 4 * MM, 14 * MM]] * 48, rtol=1e-5)
+
+
+@pytest.mark.parametrize("turn", [1, 2, 3])
+@pytest.mark.parametrize(("name", "along"), [("flat", 0.0), ("ball", 0.0), ("bull", -0.4)])
+def test_a_scene_that_is_turned_meets_the_same(turn, name, along):
+    """Material from half a radius to the left of the tool on; step and block by right angles about the axis."""
+    place = 2 * MM
+    here = met(CUTTERS[name], 3 * MM, along, place, 1.0)
+    there = met(CUTTERS[name], 3 * MM, along, place, 1.0, turn)
+    for found, expected in zip(there, here, strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
