@@ -59,10 +59,7 @@ def arm_figure(
     if scene.force is not None:
         vector = _sized(scene.force, 0.20 * reach)
         opaque += solids.arrow(tip - vector, vector * 0.96, p.accent, width)
-        # Over a level arrow, not before it: a narrow window cuts off what stands out at the side.
-        level = abs(vector[2]) < 0.5 * np.linalg.norm(vector)
-        over = tip - 0.7 * vector + [0.0, 0.0, 0.05 * reach] if level else tip - 1.12 * vector
-        said.append((over, scene.force_label, p.accent))
+        said.append((tip - 1.12 * vector, scene.force_label, p.accent))
     if scene.displacement is not None:
         vector = _sized(scene.displacement, 0.17 * reach)
         opaque += solids.arrow(tip, vector, p.warm, width)

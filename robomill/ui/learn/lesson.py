@@ -24,7 +24,7 @@ KEPT = "learn.lesson"
 ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
-    "center": {"x": 0, "y": 0, "z": -0.04},
+    "center": {"x": 0, "y": -0.13, "z": -0.04},
     "projection": {"type": "orthographic"},
 }
 
@@ -161,4 +161,4 @@ def _push(pose: PoseReport, revealed: bool) -> None:
     drawn = format_times(displacement_scale(delta, pose.frames))
     caption = f"Seen from the side. Displacement shown {drawn}." if revealed else "Seen from the side: 100 N along Y."
     alt = "The arm seen from the side with a force of 100 N along Y on the tool."
-    arm(scene, "learn-push", (caption, alt), 520, 1.1, (None, lambda fig, _: fig.update_layout(scene_camera=SIDE)))
+    arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.update_layout(scene_camera=SIDE)))

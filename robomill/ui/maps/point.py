@@ -78,7 +78,8 @@ def _posture_note(pose: PoseReport, component: str) -> None:
     """Over what the component ranges where the arm can hold the tool there in many postures."""
     C = fields.postures(pose.robot, pose.T_MT)
     if len(C):
-        values = C[:, "xyz".index(component[0]), "xyz".index(component[1])]
+        a, b = ("xyz".index(axis) for axis in component)
+        values = np.append(C[:, a, b], pose.C[a, b])  # the one that is shown is one of them
         pieces.note(
             f"What stands here holds for one posture. Over {len(C)} postures that hold the tool here, C<sub>{component}"
             f"</sub> ranges from {format_many((values.min(), values.max()), 'um/N', between=' to ')}."

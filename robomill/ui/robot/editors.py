@@ -31,7 +31,8 @@ def editors(project: Project) -> None:
         _compliances(robot, project.view.joint_unit)
     with geometry:
         narrow = {
-            title: st.column_config.NumberColumn(title, format="%.6g", width=58) for title in tables.HEADINGS.values()
+            tables.HEADINGS[name]: st.column_config.NumberColumn(format="%.6g", width=64 if said.unit == "mm" else 54)
+            for name, said in tables.GEOMETRY.items()
         }
         _table("geometry", "#", narrow, tables.geometry_frame, _with(tables.with_geometry))
         pieces.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
