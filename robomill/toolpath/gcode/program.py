@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import product
 from operator import attrgetter
 from typing import Any
 
@@ -109,9 +110,10 @@ class Program:
         at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
         if not at_feed.any():
             return None
-        lift = self.lift[at_feed]
-        ends = np.concatenate([self.start[at_feed] + lift, self.end[at_feed] + lift]).T
-        lower, upper = ends.min(axis=1), ends.max(axis=1)
+        lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
+        for points, axis in product((self.start, self.end), range(3)):  # one after the other, for little memory
+            along = points[at_feed, axis] + self.lift[at_feed, axis]
+            lower[axis], upper[axis] = min(lower[axis], along.min()), max(upper[axis], along.max())
         rows = np.flatnonzero(self.kind == ARC)
         wide = self.arcs_of(rows[self.arcs_of(rows).may_leave(lower, upper)])
         if len(wide):
