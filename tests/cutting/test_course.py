@@ -193,20 +193,16 @@ def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_
     np.testing.assert_allclose(course.c, 0.03 / 200.0 / 3)
 
 
-def test_cuts_within_a_thousandth_of_the_largest_are_one():
+def test_cuts_alike_to_a_thousandth_are_one_kind():
     depth = 1e-3 * np.array([2.0, 2.0005, 1.0, 1.9, 2.0])
     course = Course.of(CutConditions.steady(0.03, 200.0, depth), MILL, np.arange(5))
-    mean = np.zeros((5, 3))
-    first, kind = course.alike(mean)
-    assert len(first) == 3
+    one_of_each, kind = course.kinds()
+    assert len(one_of_each.c) == 3
     assert kind[0] == kind[1] == kind[4]
     assert len({kind[0], kind[2], kind[3]}) == 3
-    np.testing.assert_array_equal(kind[first], range(3))
-    mean[4] = 100.0, 0.0, 0.0
-    mean[3] = 0.0, 1000.0, 0.0
-    _, kind = course.alike(mean)
-    assert kind[0] == kind[1] != kind[4]
-    np.testing.assert_allclose(course.at(np.array([2])).sectors[0, 0], [1e-3, 0.0, 1e-3, 0.0])
+    for name in ("c", "feed", "arc", "sectors"):
+        np.testing.assert_allclose(getattr(one_of_each, name)[kind], getattr(course, name), rtol=1e-3)
+    np.testing.assert_array_equal(course.at(np.array([2])).sectors, course.sectors[[2]])
 
 
 def test_the_range_is_about_the_mean_of_the_part():

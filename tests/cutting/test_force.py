@@ -106,18 +106,17 @@ def test_refusals():
         PathForce(feed_normal="much")
 
 
-def test_the_part_of_a_move_along_the_axis_is_its_cosine_and_nothing_where_nothing_moves():
+def test_the_part_of_a_way_along_the_axis_is_its_cosine_and_nothing_where_nothing_moves():
     rng = np.random.default_rng(4)
-    p, k = rng.normal(size=(9, 3)), rng.normal(size=(9, 3))
+    way, k = rng.normal(size=(9, 3)), rng.normal(size=(9, 3))
     k /= np.linalg.norm(k, axis=1, keepdims=True)
-    p[4] = p[3]
-    found = feed_along(p, k)
+    way[[0, 4]] = 0.0
+    found, moves = feed_along(way, k), [1, 2, 3, 5, 6, 7, 8]
     assert (found[0], found[4]) == (0.0, 0.0)
-    for i in (1, 2, 3, 5, 6, 7, 8):
-        move = p[i] - p[i - 1]
-        assert found[i] == pytest.approx(move @ k[i] / np.linalg.norm(move))
-    np.testing.assert_allclose(np.hypot(found, feed_share(p, k))[[1, 2, 3, 5, 6, 7, 8]], 1.0)
-    np.testing.assert_allclose(feed_along([[0, 0, 2], [0, 0, 1], [0, 0, 3], [1, 0, 3]], [UP] * 4), [0, -1, 1, 0])
+    for i in moves:
+        assert found[i] == pytest.approx(way[i] @ k[i] / np.linalg.norm(way[i]))
+    np.testing.assert_allclose(np.hypot(found, feed_share(way, k))[moves], 1.0)
+    np.testing.assert_allclose(feed_along([[0, 0, 0], [0, 0, -1], [0, 0, 2], [1, 0, 0]], [UP] * 4), [0, -1, 1, 0])
 
 
 def test_tool_axes_of_any_length_give_the_same_frames():
