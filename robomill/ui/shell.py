@@ -24,6 +24,12 @@ LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBo
 <path d="M25.6 20 h4.8 v7 l-2.4 3 -2.4 -3 z"/></g>
 <text x="42" y="25" font-family="Source Sans, Source Sans Pro, Helvetica, Arial, sans-serif" font-size="22"
  font-weight="600" letter-spacing="-0.4" fill="{text}">robomill</text></svg>"""
+# Our own: a symbol of Streamlit's is fetched by every browser from a foreign host.
+ICON = """<svg xmlns="http://www.w3.org/2000/svg" width="36" height="36" viewBox="0 0 36 36">
+<g fill="none" stroke="#0A84B5" stroke-width="3.6" stroke-linecap="round" stroke-linejoin="round">
+<path d="M6 32 L10 11 L25 8 L28 20"/></g>
+<g fill="#0A84B5"><circle cx="10" cy="11" r="4.2"/><circle cx="25" cy="8" r="3.8"/>
+<path d="M24.6 20 h6.8 v8 l-3.4 4 -3.4 -4 z"/></g></svg>"""
 # What the page looks like is read off the page: the figures must match what is seen. A change asks for one rerun,
 # and the rerun carries the new theme. Nothing is sent while nothing changes. A page that had lost its server asks for
 # one, too, before it takes an edit: the server may be another one that knows nothing of what the page shows.
@@ -55,7 +61,7 @@ JOINT_UNITS = {"1e-7 rad/(N m)": "×10⁻⁷ rad/(N m)", "kN m/rad": "kN m/rad"}
 
 def begin(title: str) -> Project:
     """Start a page: the first call of every page. Returns the project of this session."""
-    st.set_page_config(page_title=f"{title} · robomill", page_icon=":material/precision_manufacturing:", layout="wide")
+    st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide")
     st.html(CSS)
     rendered.queue().worker.start()
     if compiled.missing():
