@@ -47,16 +47,11 @@ def axis(text: str, option: str) -> Any:
 
 def program(name: str) -> Path | bytes:
     """The file of a program; where that is a stream, which can be read once, what comes out of it (``-``: stdin)."""
-    from robomill.toolpath.text import MAX_BYTES
+    from robomill.errors import GCodeError
+    from robomill.files import PROGRAM, read_file
 
     file = Path("/dev/stdin" if name == "-" else name)
-    try:
-        if file.is_file() or file.is_dir() or not file.exists():
-            return file
-        with file.open("rb") as stream:
-            return stream.read(MAX_BYTES + 1)
-    except OSError:
-        return file  # the interpreter says what is wrong with it
+    return file if file.is_file() else read_file(file, PROGRAM, GCodeError)
 
 
 def reads_as_apt(source: Path | bytes) -> bool:

@@ -100,6 +100,7 @@ def run_identify(arguments: Any) -> int:
     from robomill.identification.treatment import Treatment
     from robomill.io.load_test_sheets import measuring_sheet
     from robomill.io.load_tests import read_load_tests
+    from robomill.io.results import write_file
     from robomill.io.robots import load_robot, robot_to_toml
     from robomill.report.plain import identification_lines
 
@@ -118,11 +119,11 @@ def run_identify(arguments: Any) -> int:
     record, findings = identification_record(robot, tests, result)
     record["findings"] = [finding.record() for finding in findings]
     if arguments.out:
-        Path(arguments.out).write_text(robot_to_toml(result.applied_to(robot)), encoding="utf-8")
+        write_file(arguments.out, robot_to_toml(result.applied_to(robot)))
     if arguments.sheet:
         plan = next_best(robot, tests, result, count=arguments.next)
         record["next"] = plan.rows()
-        Path(arguments.sheet).write_text(measuring_sheet(plan, Path(arguments.tests).name), encoding="utf-8")
+        write_file(arguments.sheet, measuring_sheet(plan, Path(arguments.tests).name))
     return say(arguments, record, identification_lines(record))
 
 
@@ -137,7 +138,7 @@ def run_simulate(arguments: Any) -> int:
     from robomill.simulation.run import simulate
     from robomill.units import to_si
 
-    setup = load_setup(arguments.setup)
+    setup = load_setup(arguments.setup, arguments.allow_outside)
     if arguments.program:
         setup = setup.replace(source=read_program(arguments.program))
     if arguments.tol is not None:

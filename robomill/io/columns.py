@@ -18,8 +18,12 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import RobomillError
+from robomill.files import TABLE
 from robomill.io.texts import read_text
 from robomill.units import to_si
+
+MOST_COLUMNS = 300
+LONGEST_NAME = 100  # characters of a column's name; a longer one is none that is known
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,7 @@ def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> t
 
     Raises the layout's error with file, row and column.
     """
-    text, name = read_text(given, layout.error, "a CSV table", name)
+    text, name = read_text(given, layout.error, TABLE, name)
     body, remarks = _body(text, layout, name)
     known, passed_over = _known(body.names, layout, body.place)
     if len(body.lines) < layout.fewest:
@@ -136,7 +140,9 @@ def _body(text: str, layout: Layout, name: str) -> tuple[_Body, str]:
         raise layout.error(f"{subject}: the file is empty; give a header ({layout.example}) and the numbers below it.")
     (head, header), below = kept[0], kept[1:]
     mark = next((mark for mark in "\t;" if mark in header), ",")
-    names = [cell.strip() for cell in _cells(header, mark)]
+    names = [cell.strip()[: LONGEST_NAME + 1] for cell in _cells(header, mark)]
+    if len(names) > MOST_COLUMNS:
+        raise Place(name, head, layout.error).refuse(f"found {len(names):,} columns, expected {MOST_COLUMNS} at most.")
     row = np.array([k for k, _ in below])
     return _Body([line for _, line in below], row, names, mark, Place(name, head, layout.error)), remarks
 
@@ -182,6 +188,8 @@ def _known(names: list[str], layout: Layout, place: Place) -> tuple[dict[str, Co
 
 def _stem_and_unit(written: str, layout: Layout) -> tuple[str, str]:
     """The longest name that is known and the unit behind it; two empty texts where none is."""
+    if len(written) > LONGEST_NAME:
+        return "", ""
     plain = written.replace("µ", "u").replace("μ", "u").replace("°", "deg")
     bracketed = re.fullmatch(r"(.*?)[\s_]*[\[(](.*)[\])]", plain)
     if bracketed:
@@ -244,7 +252,12 @@ def _check_width(body: _Body, k: int) -> None:
 
 
 def _cells(line: str, mark: str) -> list[str]:
-    return line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark), [""])
+    if '"' not in line:
+        return line.split(mark)
+    try:
+        return next(csv.reader([line], delimiter=mark), [""])
+    except csv.Error:  # a cell that is longer than any
+        return line.split(mark)
 
 
 def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> float:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from robomill.errors import RobomillError
+from robomill.io.beside import ALONE, Beside
 from robomill.io.tables import Table, shown
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, declared_types, quantities
@@ -23,9 +23,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Around:
-    """What a codec may need beside its own keys: the folder of the file, and the fields known so far."""
+    """What a codec may need beside its own keys: the files that may be named, and the fields known so far."""
 
-    folder: Path | None = None
+    beside: Beside = ALONE
     known: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -63,7 +63,7 @@ def from_table(
     *,
     given: Mapping[str, Any] | None = None,
     codecs: Mapping[Any, Codec] = CODECS,
-    folder: Path | None = None,
+    beside: Beside = ALONE,
 ) -> T:
     """A value of ``cls`` from ``table``; refuses keys that are not its own. ``given`` are fields from elsewhere."""
     known = dict(given or {})
@@ -77,7 +77,7 @@ def from_table(
             continue
         keys = codec.keys_of(name)
         if not keys or name not in absent or any(table.has(key) for key in keys):
-            known[name] = codec.read(table, name, Around(folder, known))
+            known[name] = codec.read(table, name, Around(beside, known))
         table.asked.update(keys)
     table.finish()
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,18 +11,21 @@ from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.measured import ForceRecord
 from robomill.cutting.materials import Material, alternatives
 from robomill.cutting.tool import Cutter
+from robomill.files import MATERIAL, TABLE
+from robomill.io.beside import ALONE, Beside
 from robomill.io.declared import CODECS, Around, Codec, from_table, to_table
 from robomill.io.forces import read_forces
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
 from robomill.io.tables import Table
+from robomill.io.texts import read_text
 from robomill.quantities import declared_types
 
 
-def force_from_table(table: Table, cutter: Cutter, folder: Path | None = None) -> ForceModel:
-    """The model that [force] names by ``kind``; files are looked for in ``folder``."""
+def force_from_table(table: Table, cutter: Cutter, beside: Beside = ALONE) -> ForceModel:
+    """The model that [force] names by ``kind``; ``beside`` holds the files it may name."""
     model = FORCES[table.choice("kind", tuple(FORCES))]
     given = {name: cutter for name, kind in declared_types(model).items() if kind is Cutter}
-    return from_table(table, model, given=given, codecs=FORCE_CODECS, folder=folder)
+    return from_table(table, model, given=given, codecs=FORCE_CODECS, beside=beside)
 
 
 def force_to_table(force: ForceModel) -> dict[str, Any]:
@@ -35,9 +37,13 @@ def _read_material(table: Table, name: str, around: Around) -> Material:
     """A sample, a file beside the set-up, or the row itself as text."""
     if table.has("material_definition"):
         return material_from_toml(table.text("material_definition"), f"{table.where}, material_definition")
-    known = table.text("material")
-    beside = around.folder / known if around.folder is not None else None
-    return load_material(beside if beside is not None and beside.is_file() else known)
+    if table.text("material") in material_names():
+        return load_material(table.text("material"))
+    if not table.text("material").endswith(".toml"):
+        known = ", ".join(material_names())
+        raise table.refuse("material", f"{table.text('material')!r:.80} is not known; known are {known}.")
+    data, file = around.beside.read(table, "material", MATERIAL)
+    return material_from_toml(*read_text(data, table.error, MATERIAL, file))
 
 
 def _write_material(name: str, material: Material) -> dict[str, Any]:
@@ -49,10 +55,10 @@ def _write_material(name: str, material: Material) -> dict[str, Any]:
 def _read_record(table: Table, name: str, around: Around) -> ForceRecord:
     """A CSV file beside the set-up, or the record itself."""
     if table.has("file"):
-        file = table.text("file")
         side: Any = table.choice("force_on", ("tool", "part"), "tool")
         turns: Any = table.choice("force_axes", ("robot", "part"), "robot")
-        return read_forces((around.folder or Path()) / file, on=side, turns_with=turns, source=file)
+        data, file = around.beside.read(table, "file", TABLE)
+        return read_forces(data, on=side, turns_with=turns, source=file)
     inner = table.table("record")
     axis: Any = inner.text("axis")
     frame: Any = inner.text("frame")

@@ -51,8 +51,8 @@ def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> Loa
     return tests if tests.single or robot is None else tests.with_joints(robot)
 
 
-def _read(path_or_text: str | Path, robot: Robot | None) -> LoadTests | JointTests:
-    table, name = read_columns(path_or_text, LAYOUT)
+def _read(given: str | Path | bytes, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
+    table, name = read_columns(given, LAYOUT, name)
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)
     elif "torque" in table or "joint" in table:
@@ -188,9 +188,9 @@ def _compliances(table: Columns, robot: Robot | None) -> LoadTests:
     )
 
 
-def read_measured_map(path_or_text: str | Path, robot: Robot) -> MeasuredField:
+def read_measured_map(given: str | Path | bytes, robot: Robot, name: str = "") -> MeasuredField:
     """The paper's second method: a grid of measured compliances (or displacements in three directions) as a map."""
-    tests = _read(path_or_text, robot)
+    tests = _read(given, robot, name)
     if tests.single:
         raise LoadTestError("Measured map: found tests of single joints; give compliances Cxx_um_N ... at poses.")
     return MeasuredField.from_tests(robot, tests)

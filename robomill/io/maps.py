@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
+from robomill.files import written
 from robomill.units import from_si
 from robomill.workspace.fields import Field
 from robomill.workspace.grid import Grid
@@ -30,15 +31,13 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
         raise WorkspaceError("Map: the quantities of one file must share one grid.")
     if suffix not in SUFFIXES:
         raise WorkspaceError(f"Map: {path.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")
-    try:
+    with written(path, WorkspaceError) as place:
         if suffix == ".vti":
-            _write_vti(path, fields)
+            _write_vti(place, fields)
         elif suffix == ".parquet":
-            _write_parquet(path, map_columns(fields))
+            _write_parquet(place, map_columns(fields))
         else:
-            path.write_text(map_csv(fields), encoding="utf-8")
-    except OSError as exc:
-        raise WorkspaceError(f"Map: cannot write {path}: {exc.strerror or exc}.") from None
+            place.write_text(map_csv(fields), encoding="utf-8")
     return path
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
+from robomill.files import MATERIAL
 from robomill.io.declared import read_quantity, write_quantity
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, toml_value
@@ -30,11 +31,11 @@ def load_material(name_or_path: str | Path) -> Material:
     """A sample by name, or a TOML file. Raises CuttingError naming the file and the key."""
     path = Path(name_or_path)
     if path.suffix != ".toml":
-        path = samples_dir() / "materials" / f"{name_or_path}.toml"
-        if not path.is_file():
+        if str(name_or_path) not in material_names():
             known = ", ".join(material_names())
-            raise CuttingError(f"Material {str(name_or_path)!r} is not known: give a .toml file or one of {known}.")
-    return material_from_toml(*read_text(path, CuttingError, "a material row (.toml)"))
+            raise CuttingError(f"Material {str(name_or_path)!r:.80} is not known: give a .toml file or one of {known}.")
+        path = samples_dir() / "materials" / f"{name_or_path}.toml"
+    return material_from_toml(*read_text(path, CuttingError, MATERIAL))
 
 
 def material_from_toml(text: str, where: str = "material") -> Material:

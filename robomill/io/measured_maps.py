@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from robomill.files import TABLE
 from robomill.identification.measured_field import MeasuredField
+from robomill.io.beside import Beside
 from robomill.io.load_tests import read_measured_map
 from robomill.io.tables import Table, shown
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 
 
-def map_from_table(table: Table, robot: Robot, folder: Path | None) -> MeasuredField:
+def map_from_table(table: Table, robot: Robot, beside: Beside) -> MeasuredField:
     """A map from its ``file`` of measurements, or from the points and matrices in the table itself."""
     if table.has("file"):
-        field = read_measured_map((folder or Path()) / table.text("file"), robot)
+        data, name = beside.read(table, "file", TABLE)
+        field = read_measured_map(data, robot, name)
     else:
         p = table.rows("p_mm", 3, "mm")
         C = table.rows("C_m_N", 9, "m/N").reshape(-1, 3, 3)

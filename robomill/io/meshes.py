@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import SurfaceError
+from robomill.files import STL, check_size, read_file
 from robomill.provenance import Finding
 from robomill.surface.mesh import Mesh, kept_cells, to_mesh
 from robomill.surface.stock import Stock
@@ -68,10 +69,8 @@ def read_stl_stock(
     import trimesh
 
     label = name or (Path(source).name if isinstance(source, str | Path) else "STL")
-    try:
-        data = source if isinstance(source, bytes) else Path(source).read_bytes()
-    except OSError as exc:
-        raise SurfaceError(f"{label}: cannot be opened ({exc.strerror}); expected a stock as STL.") from None
+    data = source if isinstance(source, bytes) else read_file(source, STL, SurfaceError, said=label)
+    check_size(len(data), STL, SurfaceError, label)
     if unit not in UNITS_OF_STL:
         raise SurfaceError(f"{label}: the unit is {unit!r}; expected one of {', '.join(UNITS_OF_STL)}.")
     if not data.strip():

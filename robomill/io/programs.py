@@ -5,26 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from robomill.errors import ProjectError
+from robomill.files import PROGRAM, check_size, read_file
 from robomill.toolpath.source import GCodeSource
-
-MAX_PROGRAM_BYTES = 100_000_000
 
 
 def read_program(path: str | Path, dialect: str = "auto") -> GCodeSource:
     """A program's file as a source; refused where it is missing, too large or not text."""
-    file = Path(path)
-    try:
-        if file.stat().st_size > MAX_PROGRAM_BYTES:
-            raise ProjectError(f"{file.name}: larger than {MAX_PROGRAM_BYTES // 10**6} MB; split the program.")
-        return program_from_bytes(file.read_bytes(), file.name, dialect)
-    except FileNotFoundError:
-        raise ProjectError(f"{file}: there is no such program; check the name.") from None
-    except OSError as exc:
-        raise ProjectError(f"{file}: cannot be read ({exc.strerror}).") from None
+    return program_from_bytes(read_file(path, PROGRAM, ProjectError), Path(path).name, dialect)
 
 
 def program_from_bytes(data: bytes, name: str, dialect: str = "auto") -> GCodeSource:
     """What a person dropped or named, as a source (UTF-8, UTF-16 with its mark, else Latin-1)."""
+    check_size(len(data), PROGRAM, ProjectError, name)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return GCodeSource(data.decode("utf-16", errors="replace"), name, dialect)
     if b"\0" in data[:4096]:

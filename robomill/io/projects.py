@@ -12,12 +12,14 @@ from robomill.compliance.gravity import LinkMasses
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
+from robomill.files import PROGRAM, ROBOT, SETUP
+from robomill.io.beside import ALONE, Beside
 from robomill.io.declared import from_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
-from robomill.io.programs import read_program
+from robomill.io.programs import program_from_bytes
 from robomill.io.robot_reader import ANGLE
-from robomill.io.robots import load_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
 from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
@@ -43,8 +45,8 @@ NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numeric
 PROGRAMS = (".nc", ".ngc", ".tap", ".gcode", ".cnc")
 
 
-def load_setup(path: str | Path) -> SimulationSetup:
-    """A set-up from its TOML file; files it names are looked for beside it.
+def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup:
+    """A set-up from its TOML file; the files it names lie beside it or below, elsewhere only with ``allow_outside``.
 
     Raises ProjectError (or the error of the part that is wrong) with the file and the key.
     """
@@ -56,37 +58,42 @@ def load_setup(path: str | Path) -> SimulationSetup:
             f"{file}: this is a program, not a set-up; read it with 'robomill gcode', or cut it with "
             "'robomill simulate SETUP.toml --program'."
         )
-    text, _ = read_text(file, ProjectError, "a set-up (.toml)")
-    return setup_from_toml(text, where=file.name, folder=file.parent)
+    text, _ = read_text(file, ProjectError, SETUP)
+    return setup_from_toml(text, file.name, Beside(file.parent, allow_outside))
 
 
-def setup_from_toml(text: str, where: str = "set-up", folder: Path | None = None) -> SimulationSetup:
-    """A set-up from TOML text. Without a ``folder`` everything must be in the text itself."""
-    top = Table(parse_toml(text, where), where)
+def setup_from_toml(text: str, where: str = "set-up", beside: Beside = ALONE) -> SimulationSetup:
+    """A set-up from TOML text; ``beside`` are the files it may name: none, unless told otherwise."""
+    return setup_from_table(parse_toml(text, where), where, beside)
+
+
+def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -> SimulationSetup:
+    """A set-up from what ``parse_toml`` made of its file."""
+    top = Table(data, where)
     found = top.text("format", "")
     if found != FORMAT:
         raise top.refuse("format", f"expected {FORMAT!r}, found {found!r}; this is not a robomill set-up.")
     version = top.whole("version")
     if version != VERSION:
         raise top.refuse("version", f"this file is version {version}; this robomill reads version {VERSION}.")
-    robot = _robot(top.table("robot"), folder)
-    tools = tools_from_table(top, folder)
+    robot = _robot(top.table("robot"), beside)
+    tools = tools_from_table(top, beside)
     cutter = _cutter(top, tools)
     setup = SimulationSetup(
         name=top.text("name"),
         description=top.text("description", ""),
         **_tolerances(top),
         robot=robot,
-        source=_source(top.table("path"), folder),
+        source=_source(top.table("path"), beside),
         T_MW=part_from_table(top.table("part", {})),
         cutter=cutter,
         tools=tools,
         spin=_spin(top),
-        stock=stock_from_table(top.table("stock"), folder) if top.has("stock") else None,
-        force=force_from_table(top.table("force"), cutter, folder),
+        stock=stock_from_table(top.table("stock"), beside) if top.has("stock") else None,
+        force=force_from_table(top.table("force"), cutter, beside),
         provenance=_provenance(top.table("provenance", {})),
         springs=tuple(spring_from_table(entry) for entry in top.tables("springs")),
-        measured_map=map_from_table(top.table("measured_map"), robot, folder) if top.has("measured_map") else None,
+        measured_map=map_from_table(top.table("measured_map"), robot, beside) if top.has("measured_map") else None,
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
@@ -113,20 +120,22 @@ def _cutter(top: Table, tools: ToolTable) -> Cutter:
     return from_table(top.table("cutter"), Cutter)
 
 
-def _robot(table: Table, folder: Path | None) -> Robot:
+def _robot(table: Table, beside: Beside) -> Robot:
     if table.has("definition"):
         robot = robot_from_toml(table.text("definition"), f"{table.where}, definition")
+    elif (name := table.text("name")) in robot_names():
+        robot = load_robot(name)
+    elif "." not in name:
+        raise table.refuse("name", f"there is no robot {name!r:.80}; the presets are {', '.join(robot_names())}.")
     else:
-        name = table.text("name")
-        beside = folder / name if folder else None
-        robot = load_robot(beside if beside is not None and beside.is_file() else name)
+        robot = read_robot(*beside.read(table, "name", ROBOT))
     chosen = table.text("compliance_set", "")
     table.asked.update(("name", "definition"))
     table.finish()
     return robot.with_compliance_set(chosen) if chosen and chosen != robot.compliance_set else robot
 
 
-def _source(table: Table, folder: Path | None) -> PathSource:
+def _source(table: Table, beside: Beside) -> PathSource:
     kinds = [key for key in ("program", "program_text", "lines_mm", "sketch") if table.has(key)]
     if len(kinds) != 1:
         raise table.refuse(
@@ -140,8 +149,7 @@ def _source(table: Table, folder: Path | None) -> PathSource:
     elif kinds == ["sketch"]:
         source = SketchSource(sketch_from_table(table.table("sketch")))
     elif kinds == ["program"]:
-        name = table.text("program")
-        source = read_program((folder or Path()) / name, table.text("dialect", "auto"))
+        source = program_from_bytes(*beside.read(table, "program", PROGRAM), table.text("dialect", "auto"))
     else:
         source = GCodeSource(
             table.text("program_text"), table.text("program_name", "program.nc"), table.text("dialect", "auto")
@@ -243,10 +251,10 @@ def _source_table(source: PathSource) -> dict[str, Any]:
     }
 
 
-def open_project(text: str, where: str) -> SimulationSetup:
-    """Open a person's saved project: every refusal is a ProjectError that names the file."""
+def open_project(data: dict[str, Any], where: str) -> SimulationSetup:
+    """The set-up of a person's saved project: every refusal is a ProjectError that names the file."""
     try:
-        return setup_from_toml(text, where)
+        return setup_from_table(data, where)
     except ProjectError:
         raise
     except RobomillError as exc:

@@ -4,19 +4,29 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 
 from robomill.errors import ProjectError
+from robomill.files import written
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write named files into ``folder``, made if need be; ProjectError where that cannot be done."""
+    """Write named files into ``folder``, made if need be: all of them, or none and a ProjectError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in files.items():
-            (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     except OSError as exc:
         raise ProjectError(f"{folder}: cannot write there ({exc.strerror}); give another --out folder.") from None
+    with ExitStack() as every:
+        for name, content in files.items():
+            place = every.enter_context(written(folder / name, ProjectError))
+            place.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def write_file(path: str | Path, content: str) -> None:
+    """Write one file whole, or not at all and a ProjectError."""
+    with written(path, ProjectError) as place:
+        place.write_text(content, encoding="utf-8")
 
 
 def json_text(record: object) -> str:

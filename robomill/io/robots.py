@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from robomill.errors import RobotError
+from robomill.files import ROBOT, read_file
 from robomill.io.robot_reader import robot_from_toml
 from robomill.io.robot_writer import robot_to_toml
 from robomill.io.samples import samples_dir
@@ -12,7 +13,7 @@ from robomill.io.texts import read_text
 from robomill.io.urdf import read_urdf
 from robomill.robot.model import Robot
 
-__all__ = ["load_robot", "read_urdf", "robot_folder", "robot_from_toml", "robot_names", "robot_to_toml"]
+__all__ = ["load_robot", "read_robot", "read_urdf", "robot_folder", "robot_from_toml", "robot_names", "robot_to_toml"]
 
 
 def robot_folder() -> Path:
@@ -28,15 +29,15 @@ def robot_names() -> list[str]:
 def load_robot(name_or_path: str | Path) -> Robot:
     """A robot by the name of a preset, or from a ``.toml`` or ``.urdf`` file. Raises RobotError."""
     text = str(name_or_path)
-    if text in robot_names():
-        path = robot_folder() / f"{text}.toml"
-    else:
-        path = Path(name_or_path)
-        if not path.is_file():
-            raise RobotError(
-                f"Robot {text!r}: no such preset or file; the presets are {', '.join(robot_names())}.", where=text
-            )
-    if path.suffix.lower() in (".urdf", ".xml"):
-        return read_urdf(path)
-    text, name = read_text(path, RobotError, "a robot as TOML")
-    return robot_from_toml(text, name)
+    path = robot_folder() / f"{text}.toml" if text in robot_names() else Path(name_or_path)
+    if not path.exists():
+        presets = ", ".join(robot_names())
+        raise RobotError(f"Robot {text!r:.80}: no such preset or file; the presets are {presets}.", where=text)
+    return read_robot(read_file(path, ROBOT, RobotError), path.name)
+
+
+def read_robot(data: bytes, name: str) -> Robot:
+    """The robot of a file's bytes: URDF or TOML, as its ``name`` ends. Raises RobotError."""
+    if Path(name).suffix.lower() in (".urdf", ".xml"):
+        return read_urdf(data, where=name)
+    return robot_from_toml(*read_text(data, RobotError, ROBOT, name))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,14 +17,41 @@ from robomill.provenance import KINDS, Provenance
 from robomill.units import from_si, to_si
 
 MISSING: Any = object()  # a key without a default has to be there
+DEEPEST = 12  # tables and lists within one another; what is written here has six
+LARGEST = 2**63  # TOML's own bound of whole numbers
+_DOTTED = re.compile(r"""(?<![\w-])(?>(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
 
 
 def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError) -> dict[str, Any]:
-    """The document, or a refusal naming the line that is not TOML."""
+    """The document, or a refusal naming the line that is not TOML, or the key that is too deep or too large."""
     try:
-        return tomllib.loads(text)
+        if _DOTTED.search(text):  # reading one takes as long as the square of its parts
+            raise ValueError
+        data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as exc:
         raise error(f"{where}: this is not a readable TOML file: {exc}.", where=where) from None
+    except (RecursionError, ValueError):
+        raise error(
+            f"{where}: this is not a readable TOML file: a number is too long, or lists stand too deep in one another.",
+            where=where,
+        ) from None
+    _check_values(data, where, error)
+    return data
+
+
+def _check_values(data: dict[str, Any], where: str, error: type[RobomillError]) -> None:
+    """Refuse what no key can hold, before anything is made of it."""
+    level: list[tuple[str, Any]] = list(data.items())
+    for _ in range(DEEPEST):
+        for key, value in level:
+            if type(value) is int and not -LARGEST <= value < LARGEST:
+                raise error(f"{where}, {key:.60}: a whole number is too large; expected fewer digits.", where=where)
+        lists = ((key, item) for key, value in level if isinstance(value, list) for item in value)
+        tables = (pair for _, value in level if isinstance(value, dict) for pair in value.items())
+        level = [*lists, *tables]
+        if not level:
+            return
+    raise error(f"{where}, {level[0][0]:.60}: tables and lists stand more than {DEEPEST} deep.", where=where)
 
 
 def exactly(value: float, unit: str) -> float | None:
@@ -179,7 +207,10 @@ class Table:
             raise self.refuse(key, f"expected a number{label}, found {value!r:.40}.")
         if not math.isfinite(value):
             raise self.refuse(key, f"expected a finite number{label}, found {value}.")
-        return float(to_si(float(value), unit))
+        converted = float(to_si(float(value), unit))
+        if not math.isfinite(converted):
+            raise self.refuse(key, f"expected a number{label} of ordinary size, found {value}.")
+        return converted
 
     def finish(self) -> None:
         """Refuse keys nobody asked for: a misspelt key must not be silently ignored."""

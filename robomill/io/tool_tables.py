@@ -19,6 +19,8 @@ from typing import Any
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError
+from robomill.files import TOOLS
+from robomill.io.beside import ALONE, Beside
 from robomill.io.columns import Layout, read_cells
 from robomill.io.declared import from_table, to_table
 from robomill.io.tables import Table, parse_toml
@@ -31,6 +33,7 @@ UNITS = ("mm", "in")
 LAYOUT = Layout("Tool table", CuttingError, {}, "tool,kind,diameter_mm,flutes,length_mm")
 NAMES = {"tool": "number", "t": "number"}
 ASSUMED_KIND = "flat"
+LONGEST_LINE = 500  # characters of a tool in a .tbl
 SMALL = 1.6e-3
 """m: a table whose largest cutter is smaller than this may count in inches."""
 
@@ -45,7 +48,7 @@ def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = 
 
     Raises CuttingError naming the file and the line or tool.
     """
-    text, name = read_text(given, CuttingError, "a tool table (.tbl, .csv or .toml)", name)
+    text, name = read_text(given, CuttingError, TOOLS, name)
     place = name or "Tool table"
     if unit not in UNITS:
         raise CuttingError(f"{place}: the unit is {unit!r}; expected one of {', '.join(UNITS)}.")
@@ -62,14 +65,15 @@ def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = 
     return _whole(tools, place, *[Finding("ignored", 0, left_out, code="column-left-out")] * bool(passed_over))
 
 
-def tools_from_table(top: Table, folder: Path | None = None) -> ToolTable:
-    """The ``tools`` of a document: [[tools]] entries, or the name of a tool table's file in ``folder``; empty without.
+def tools_from_table(top: Table, beside: Beside = ALONE) -> ToolTable:
+    """The ``tools`` of a document: [[tools]] entries, or the name of a tool table's file; empty without.
 
     A ``.tbl`` counts in mm unless ``tools_unit`` says "in".
     """
     unit = top.choice("tools_unit", UNITS, "mm")
     if isinstance(top.data.get("tools"), str):
-        return read_tool_table((folder or Path()) / top.text("tools"), unit=unit)
+        data, name = beside.read(top, "tools", TOOLS)
+        return read_tool_table(data, unit=unit, name=name)
     return _whole([_tool(entry) for entry in top.tables("tools")], top.where)
 
 
@@ -110,6 +114,8 @@ def _from_tbl(text: str, place: str, unit: str) -> list[TableTool]:
         if not code.strip():
             continue
         where = f"{place}, line {line}"
+        if len(code) > LONGEST_LINE:
+            raise CuttingError(f"{where}: it has {len(code):,} characters; expected words such as 'T1 P1 D3.0 Z12.5'.")
         if not re.fullmatch(rf"(?:{_WORD.pattern})+", code.strip()):
             raise CuttingError(f"{where}: found {code.strip()[:40]!r}; expected words such as 'T1 P1 D3.0 Z12.5'.")
         words = {letter.upper(): float(value) for letter, value in _WORD.findall(code.strip())}

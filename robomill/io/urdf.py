@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobotError
+from robomill.files import ROBOT
+from robomill.io.texts import read_text
+from robomill.kinematics.transforms import rotation_x, rotation_y, rotation_z, transform
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 
@@ -16,82 +22,155 @@ MOVING = ("revolute", "continuous", "prismatic")
 # A URDF holds no compliances: 1 um/N at a metre for every joint, marked assumed, until the user gives better ones.
 DEFAULT_COMPLIANCE = 1e-6
 PARALLEL = 1e-9
+MOST_JOINTS = 20  # before a D-H table is made of them; the robot says how many it may have
 
 
-def read_urdf(path: str | Path, *, base: str | None = None, tip: str | None = None, name: str | None = None) -> Robot:
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """One <joint>: T (4, 4) of its frame in its parent's, axis (3,) in its own, limits (lower, upper) or None."""
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    T: FloatArray
+    axis: FloatArray
+    limits: tuple[float, float] | None
+    mimics: bool
+
+
+def read_urdf(
+    given: str | Path | bytes,
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    name: str | None = None,
+    where: str = "",
+) -> Robot:
     """The serial arm from link ``base`` to link ``tip`` of a URDF file (defaults: the root and the only end link).
 
-    Frames {M} and {T} are those of the two links, and the flange is the tip too, if that stands on the last axis with
-    its z along it, as makers' flanges do; joint senses, zeros and limits are the file's. Compliances are not in
-    a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed. Raises RobotError for branches (name the tip), missing links or
-    joints, closed loops, mimic and floating joints.
+    ``given`` is its path or its bytes, ``where`` the file's name then. Frames {M} and {T} are those of the two links, and
+    the flange is the tip too, if that stands on the last axis with its z along it, as makers' flanges do; joint senses,
+    zeros and limits are the file's. Compliances are not in a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed. Raises
+    RobotError for branches (name the tip), missing links or joints, closed loops, mimic and floating joints. Meshes are
+    not looked at, and a file that declares entities is refused: no other file is ever opened.
     """
-    from yourdfpy import URDF
+    text, where = read_text(given, RobotError, ROBOT, where)
+    root = _root(text, where)
+    links = [link.get("name", "") for link in root.findall("link")]
+    chain = _serial_chain([_joint(each, where) for each in root.findall("joint")], links, base, tip, where)
+    return _robot(chain, name or root.get("name") or Path(where).stem, where)
 
-    path = Path(path)
-    where = path.name
-    if not path.is_file():
-        raise RobotError(f"{where}: no such file.", where=str(path))
+
+def _root(text: str, where: str) -> ElementTree.Element:
+    """The <robot> of a file."""
+    if "<!DOCTYPE" in text:
+        raise RobotError(f"{where}: a URDF has no <!DOCTYPE> and no entities; take them out.")
     try:
-        urdf = URDF.load(str(path), load_meshes=False, build_scene_graph=False, load_collision_meshes=False)
-        joints = list(urdf.robot.joints)
-        links = [link.name for link in urdf.robot.links]
-    except Exception as exc:  # the parser raises whatever XML or numpy raise
-        raise RobotError(
-            f"{where}: this is not a URDF that can be read ({str(exc).strip()[:80] or type(exc).__name__})."
-        ) from None
-    chain = _serial_chain(joints, links, base, tip, where)
-    return _robot(chain, name or urdf.robot.name or path.stem, where)
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError) as exc:
+        raise RobotError(f"{where}: this is not a URDF that can be read ({str(exc)[:80]}).") from None
+    if root.tag != "robot":
+        raise RobotError(f"{where}: this is not a URDF: found <{root.tag[:40]}>, expected <robot>.")
+    return root
 
 
-def _serial_chain(joints: list[Any], links: list[str], base: str | None, tip: str | None, where: str) -> list[Any]:
+def _joint(element: ElementTree.Element, where: str) -> Joint:
+    name = element.get("name", "")
+
+    def inside(tag: str, key: str, default: str = "") -> str:
+        found = element.find(tag)
+        return default if found is None else found.get(key, default)
+
+    def numbers(tag: str, key: str, default: str, count: int = 3) -> FloatArray:
+        said = inside(tag, key, default)
+        try:
+            values = np.array([float(word) for word in said.split()])
+        except ValueError:
+            values = np.array([np.nan])
+        if len(values) != count or not np.isfinite(values).all():
+            expected = "a number" if count == 1 else f"{count} numbers"
+            raise RobotError(f"{where}: joint {name!r:.60} has {tag} {key}={said!r:.60}; expected {expected}.")
+        return values
+
+    xyz, rpy = numbers("origin", "xyz", "0 0 0"), numbers("origin", "rpy", "0 0 0")
+    axis = numbers("axis", "xyz", "1 0 0")
+    size = float(np.linalg.norm(axis))
+    if not 0 < size < np.inf:
+        raise RobotError(f"{where}: joint {name!r:.60} has a zero axis.")
+    limited = element.find("limit") is not None and bool(inside("limit", "lower") and inside("limit", "upper"))
+    return Joint(
+        name,
+        element.get("type", ""),
+        inside("parent", "link"),
+        inside("child", "link"),
+        transform(rotation_z(rpy[2]) @ rotation_y(rpy[1]) @ rotation_x(rpy[0]), xyz),
+        axis / size,
+        (numbers("limit", "lower", "", 1)[0], numbers("limit", "upper", "", 1)[0]) if limited else None,
+        element.find("mimic") is not None,
+    )
+
+
+def _serial_chain(joints: list[Joint], links: list[str], base: str | None, tip: str | None, where: str) -> list[Joint]:
     """Joints from base to tip, in order."""
-    children: dict[str, list[Any]] = {}
-    parents: dict[str, Any] = {}
+    children: dict[str, list[Joint]] = {}
+    parents: dict[str, Joint] = {}
+    there = set(links)
     for joint in joints:
         for end, link in (("parent", joint.parent), ("child", joint.child)):
-            if link not in links:
-                raise RobotError(
-                    f"{where}: joint {joint.name!r} names the {end} link {link!r}, which the file does not have."
-                )
+            if link not in there:
+                named = f"joint {joint.name!r:.60} names the {end} link {link!r:.60}"
+                raise RobotError(f"{where}: {named}, which the file does not have.")
         if joint.child in parents:
             raise RobotError(
-                f"{where}: link {joint.child!r} hangs on two joints, a closed loop; only a serial arm can be read."
+                f"{where}: link {joint.child!r:.60} hangs on two joints, a closed loop; only a serial arm can be read."
             )
         parents[joint.child] = joint
         children.setdefault(joint.parent, []).append(joint)
     if tip is not None:
-        if tip not in links:
-            raise RobotError(f"{where}: has no link {tip!r}; its links are {', '.join(links)}.")
+        if tip not in there:
+            raise RobotError(f"{where}: has no link {tip!r}; its links are {_listed(links)}.")
         return _walk_up(parents, tip, base, where)
     roots = [link for link in links if link not in parents]
     if base is None and len(roots) != 1:
         raise RobotError(
-            f"{where}: {len(roots)} links ({', '.join(roots)}) have no parent joint; a joint between them is missing."
+            f"{where}: {len(roots)} links ({_listed(roots)}) have no parent joint; a joint between them is missing."
         )
     link = base if base is not None else roots[0]
-    if link not in links:
-        raise RobotError(f"{where}: has no link {link!r}; its links are {', '.join(links)}.")
-    chain: list[Any] = []
-    while children.get(link):
-        moving = [j for j in children[link] if _moves_below(j, children)]
-        options = moving or children[link][:1]
+    if link not in there:
+        raise RobotError(f"{where}: has no link {link!r}; its links are {_listed(links)}.")
+    moving = _above_what_moves(parents)
+    chain: list[Joint] = []
+    while children.get(link) and len(chain) <= len(parents):
+        options = [j for j in children[link] if j.child in moving] or children[link][:1]
         if len(options) > 1:
-            ends = ", ".join(repr(joint.child) for joint in options)
+            ends = _listed(repr(joint.child) for joint in options)
             raise RobotError(
-                f"{where}: the arm branches at link {link!r} into {ends}; name the tip link of the branch you want."
+                f"{where}: the arm branches at link {link!r:.60} into {ends}; name the tip link of the branch you want."
             )
         chain.append(options[0])
         link = options[0].child
     return chain
 
 
-def _moves_below(joint: Any, children: dict[str, list[Any]]) -> bool:
-    return joint.type != "fixed" or any(_moves_below(j, children) for j in children.get(joint.child, []))
+def _listed(names: Iterable[str]) -> str:
+    every = list(names)
+    return f"{', '.join(every[:12]):.300}" + (" and more" if len(every) > 12 else "")
 
 
-def _walk_up(parents: dict[str, Any], tip: str, base: str | None, where: str) -> list[Any]:
-    chain: list[Any] = []
+def _above_what_moves(parents: dict[str, Joint]) -> set[str]:
+    """Links that hang on a joint that is not fixed, or from which such a joint hangs."""
+    moving: set[str] = set()
+    for joint in parents.values():
+        link = joint.child
+        while joint.type != "fixed" and link in parents and link not in moving:
+            moving.add(link)
+            link = parents[link].parent
+    return moving
+
+
+def _walk_up(parents: dict[str, Joint], tip: str, base: str | None, where: str) -> list[Joint]:
+    chain: list[Joint] = []
     link = tip
     while link != base:
         if link not in parents:
@@ -105,30 +184,29 @@ def _walk_up(parents: dict[str, Any], tip: str, base: str | None, where: str) ->
     return chain[::-1]
 
 
-def _robot(chain: list[Any], name: str, where: str) -> Robot:
+def _robot(chain: list[Joint], name: str, where: str) -> Robot:
     T_M = np.eye(4)
     axes: list[FloatArray] = []
     points: list[FloatArray] = []
-    moving: list[Any] = []
+    moving: list[Joint] = []
     for joint in chain:
-        T_M = T_M @ (np.eye(4) if joint.origin is None else np.asarray(joint.origin, dtype=np.float64))
+        T_M = T_M @ joint.T
         if joint.type == "fixed":
             continue
         if joint.type not in MOVING:
             raise RobotError(
-                f"{where}: joint {joint.name!r} is of type {joint.type!r}; "
+                f"{where}: joint {joint.name!r:.60} is of type {joint.type!r:.60}; "
                 "only revolute, continuous, prismatic and fixed joints can be read."
             )
-        if joint.mimic is not None:
-            raise RobotError(f"{where}: joint {joint.name!r} mimics another; only independent joints can be read.")
-        axis = np.asarray([1.0, 0.0, 0.0] if joint.axis is None else joint.axis, dtype=np.float64)
-        if not np.linalg.norm(axis) > 0:
-            raise RobotError(f"{where}: joint {joint.name!r} has a zero axis.")
-        axes.append(T_M[:3, :3] @ (axis / np.linalg.norm(axis)))
+        if joint.mimics:
+            raise RobotError(f"{where}: joint {joint.name!r:.60} mimics another; only independent joints can be read.")
+        axes.append(T_M[:3, :3] @ joint.axis)
         points.append(T_M[:3, 3].copy())
         moving.append(joint)
     if not moving:
         raise RobotError(f"{where}: has no moving joints; a robot needs 2 to 7.")
+    if len(moving) > MOST_JOINTS:
+        raise RobotError(f"{where}: has {len(moving)} moving joints in a row; a robot needs 2 to 7.")
     prismatic = np.array([joint.type == "prismatic" for joint in moving])
     sign = np.ones(len(moving))
     if float(axes[-1] @ T_M[:3, 2]) < PARALLEL - 1.0:  # the last joint turns about -z of the tip
@@ -154,13 +232,12 @@ def _robot(chain: list[Any], name: str, where: str) -> Robot:
     )
 
 
-def _limits(joint: Any, where: str) -> list[float]:
+def _limits(joint: Joint, where: str) -> tuple[float, float]:
     if joint.type == "continuous":
-        return [-np.pi, np.pi]
-    limit = joint.limit
-    if limit is None or limit.lower is None or limit.upper is None:
-        raise RobotError(f"{where}: joint {joint.name!r} has no limits; give <limit lower= upper=>.")
-    return [float(limit.lower), float(limit.upper)]
+        return -np.pi, np.pi
+    if joint.limits is None:
+        raise RobotError(f"{where}: joint {joint.name!r:.60} has no limits; give <limit lower= upper=>.")
+    return joint.limits
 
 
 def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, FloatArray]:

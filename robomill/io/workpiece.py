@@ -5,16 +5,20 @@ from __future__ import annotations
 import base64
 import binascii
 import zlib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.files import STL
+from robomill.io.beside import Beside
 from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
 from robomill.surface.stock import Stock
 from robomill.units import to_si
+
+OF_TRIANGLE = 72  # bytes: three corners of three numbers
+MOST_TRIANGLES = STL.most // 50  # a triangle of a binary STL takes 50 bytes
 
 
 def part_from_table(table: Table) -> FloatArray:
@@ -47,13 +51,14 @@ def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
     return {"frame": rows.tolist()}
 
 
-def stock_from_table(table: Table, folder: Path | None) -> Stock:
+def stock_from_table(table: Table, beside: Beside) -> Stock:
     """A block by its corners (a solid by its packed mesh), or an STL file beside the set-up."""
     if not table.has("stl"):
         return from_table(table, Stock, codecs=MESH)
     from robomill.io.meshes import read_stl_stock  # meshes load only where one is read
 
-    stock, _ = read_stl_stock((folder or Path()) / table.text("stl"), unit=table.text("unit", "mm"))
+    data, name = beside.read(table, "stl", STL)
+    stock, _ = read_stl_stock(data, unit=table.text("unit", "mm"), name=name)
     table.finish()
     return stock
 
@@ -63,16 +68,25 @@ def stock_to_table(stock: Stock) -> dict[str, Any]:
 
 
 def _unpacked(table: Table, name: str, around: Around) -> FloatArray | None:
-    packed = table.text(name)
+    """(t, 3, 3): as many triangles as are declared and a stock's file holds are inflated, whatever is packed."""
+    packed, count = table.text(name), table.whole(f"{name}_count", MOST_TRIANGLES)
+    if not 0 < count <= MOST_TRIANGLES:
+        raise table.refuse(f"{name}_count", f"found {count}, expected 1 to {MOST_TRIANGLES:,} triangles.")
     try:
-        numbers = np.frombuffer(zlib.decompress(base64.b64decode(packed, validate=True)), dtype="<f8")
-        return numbers.reshape(-1, 3, 3)
+        inflating = zlib.decompressobj()
+        numbers = inflating.decompress(base64.b64decode(packed, validate=True), count * OF_TRIANGLE + 1)
+        if len(numbers) <= count * OF_TRIANGLE:
+            if not inflating.eof:
+                raise ValueError("it ends too soon")
+            return np.frombuffer(numbers, dtype="<f8").reshape(-1, 3, 3)
     except (binascii.Error, zlib.error, ValueError):
         raise table.refuse(name, "the packed mesh is damaged; read the STL file again.") from None
+    raise table.refuse(name, f"the packed mesh holds more than {count:,} triangles; read the STL file again.")
 
 
 def _packed(name: str, triangles: FloatArray) -> dict[str, Any]:
-    return {name: base64.b64encode(zlib.compress(triangles.astype("<f8").tobytes())).decode()}
+    packed = base64.b64encode(zlib.compress(triangles.astype("<f8").tobytes())).decode()
+    return {name: packed, f"{name}_count": len(triangles)}
 
 
-MESH: dict[Any, Codec] = {FloatArray | None: Codec(("{name}",), _unpacked, _packed)}
+MESH: dict[Any, Codec] = {FloatArray | None: Codec(("{name}", "{name}_count"), _unpacked, _packed)}

@@ -7,10 +7,10 @@ import os
 from pathlib import Path
 
 from robomill.errors import GCodeError
+from robomill.files import PROGRAM, check_size, read_file
 
 Source = str | bytes | bytearray | Path
 SUFFIXES = frozenset({".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"})
-MAX_BYTES = 200_000_000
 
 
 def read_source(source: Source) -> tuple[bytes, str]:
@@ -47,17 +47,7 @@ def _is_path(text: str) -> bool:
 
 
 def _read_file(path: Path) -> bytes:
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise GCodeError(
-                f"{path.name}: {size / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB can be read, "
-                "so split the program into parts."
-            )
-        return as_plain_bytes(path.read_bytes(), path.name)
-    except OSError as exc:
-        reason = exc.strerror or type(exc).__name__
-        raise GCodeError(f"{path}: cannot be read ({reason}); expected a program file.") from exc
+    return as_plain_bytes(read_file(path, PROGRAM, GCodeError), path.name)
 
 
 def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
@@ -65,8 +55,7 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
 
     Raises GCodeError for an empty or binary file.
     """
-    if len(data) > MAX_BYTES:
-        raise GCodeError(f"{name}: {len(data) / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB can be read.")
+    check_size(len(data), PROGRAM, GCodeError, name)
     for mark, encoding in (
         (codecs.BOM_UTF8, ""),
         (codecs.BOM_UTF32_LE, "utf-32"),

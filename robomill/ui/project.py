@@ -204,7 +204,7 @@ def project_from_toml(text: str, view: View | None = None, maps: MapView | None 
     """
     data = parse_toml(text, WHERE)
     tables = {name: _table(data, name) for name in ("view", "maps", "uncertainty")}
-    setup = open_project(tomli_w.dumps(data), WHERE)
+    setup = open_project(data, WHERE)
     known = None
     if tables["uncertainty"] is not None:
         known = Knowledge.from_table(tables["uncertainty"], setup.robot, setup.springs, f"{WHERE}: [uncertainty]")

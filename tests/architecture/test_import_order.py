@@ -14,7 +14,7 @@ PACKAGE = ROOT / "robomill"
 
 # Rooms from the ground up; those on one line may not import each other.
 STOREYS = [
-    {"units", "arrays", "vectors", "errors", "compiled", "provenance", "quantities"},
+    {"units", "arrays", "vectors", "errors", "files", "compiled", "provenance", "quantities"},
     {"robot"},
     {"kinematics", "cutting", "toolpath"},
     {"compliance", "surface"},

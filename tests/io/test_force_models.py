@@ -9,6 +9,7 @@ from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
+from robomill.io.beside import Beside
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.materials import load_material, material_to_toml
 from robomill.io.tables import Table
@@ -17,7 +18,7 @@ CUTTER = Cutter("flat", 8e-3)
 
 
 def read(folder=None, **data):
-    return force_from_table(Table(data, "setup.toml, [force]"), CUTTER, folder)
+    return force_from_table(Table(data, "setup.toml, [force]"), CUTTER, Beside(folder))
 
 
 def again(force):

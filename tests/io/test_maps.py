@@ -47,7 +47,7 @@ def test_refusals(field, tmp_path):
         write_map(tmp_path / "map.xlsx", [field.field("C_yy")])
     with pytest.raises(WorkspaceError, match="no quantity"):
         write_map(tmp_path / "map.csv", [])
-    with pytest.raises(WorkspaceError, match="cannot write"):
+    with pytest.raises(WorkspaceError, match="cannot be written"):
         write_map(tmp_path / "missing" / "map.csv", [field.field("C_yy")])
     uneven = compliance_field(field.robot, Grid(x=[0, 0.1, 0.3], y=[-1.3], z=[0]))
     with pytest.raises(WorkspaceError, match="evenly"):

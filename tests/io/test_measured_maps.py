@@ -8,6 +8,7 @@ import pytest
 import robomill as rm
 from robomill.errors import ProjectError
 from robomill.identification.measured_field import MeasuredField
+from robomill.io.beside import Beside
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table
@@ -20,7 +21,7 @@ TILT_DEG = [[0.0, 0.0], [30.0, -45.0], [0.0, 90.0]]
 
 
 def read(folder=None, **data):
-    return map_from_table(Table(data, "setup.toml, [measured_map]"), ROBOT, folder)
+    return map_from_table(Table(data, "setup.toml, [measured_map]"), ROBOT, Beside(folder))
 
 
 def rows(points=3, matrices=3, tilts=3):

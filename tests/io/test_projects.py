@@ -11,11 +11,13 @@ import pytest
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
+from robomill.io.beside import Beside
 from robomill.io.programs import program_from_bytes
 from robomill.io.projects import load_setup, open_project, setup_from_toml, setup_to_toml
 from robomill.io.robot_writer import robot_to_toml
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.io.tables import parse_toml
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, SketchSource
@@ -89,7 +91,7 @@ BAD = [
     (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of path, constant"),
     (TEXT.replace('name = "slavkovic_5r"', 'name = "robbie"'), "robbie"),
     (TEXT.replace('"table_2"', '"table_9"'), "table_9"),
-    (TEXT.replace('program = "path.nc"', 'program = "lost.nc"'), "lost.nc: there is no such program"),
+    (TEXT.replace('program = "path.nc"', 'program = "lost.nc"'), "[path], program: lost.nc: cannot be opened"),
     (TEXT.replace("[-46.0, -20.0, -10.0]", "[-46.0, -20.0]"), "lower_mm: expected a list of 3 numbers"),
     (TEXT.replace("[-46.0, -20.0, -10.0]", "[99.0, -20.0, -10.0]"), "Stock in X"),
     (TEXT.replace('kind = "paper"', 'kind = "rumour"', 1), "expected one of paper, measured"),
@@ -100,14 +102,14 @@ BAD = [
 def test_bad_setups_are_refused_in_a_sentence(text: str, sentence: str) -> None:
     assert text != TEXT
     with pytest.raises(RobomillError, match=re.escape(sentence)) as refused:
-        setup_from_toml(text, "setup.toml", SAMPLE.parent)
+        setup_from_toml(text, "setup.toml", Beside(SAMPLE.parent))
     assert "\n" not in str(refused.value).strip()
 
 
 def test_a_broken_project_names_its_file() -> None:
     text = TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0")
     with pytest.raises(ProjectError, match=re.escape("mine.toml: ")):
-        open_project(text, "mine.toml")
+        open_project(parse_toml(text, "mine.toml"), "mine.toml")
 
 
 @pytest.mark.parametrize(
@@ -187,7 +189,7 @@ def test_what_is_no_set_up_is_told_from_one(tmp_path: Path) -> None:
 )
 def test_what_excludes_each_other_is_refused(old: str, new: str, sentence: str) -> None:
     with pytest.raises(RobomillError, match=re.escape(sentence)):
-        setup_from_toml(TEXT.replace(old, new), "setup.toml", SAMPLE.parent)
+        setup_from_toml(TEXT.replace(old, new), "setup.toml", Beside(SAMPLE.parent))
 
 
 def test_a_robot_beside_the_set_up_is_meant_before_a_preset(tmp_path: Path) -> None:
@@ -195,7 +197,7 @@ def test_a_robot_beside_the_set_up_is_meant_before_a_preset(tmp_path: Path) -> N
     (tmp_path / "mine.toml").write_text(robot_to_toml(other))
     text = TEXT.replace('name = "slavkovic_5r"', 'name = "mine.toml"').replace('compliance_set = "table_2"', "")
     setup = setup_from_toml(
-        text.replace('program = "path.nc"', 'program_text = "G1 X1 F1\\nM2"'), "setup.toml", tmp_path
+        text.replace('program = "path.nc"', 'program_text = "G1 X1 F1\\nM2"'), "setup.toml", Beside(tmp_path)
     )
     assert setup.robot.name == "mine"
 
@@ -225,4 +227,4 @@ def test_the_first_tool_that_cuts_is_the_cutter_where_none_is_named() -> None:
 def test_a_cutter_that_cannot_be_is_refused_with_its_table_and_key():
     text = SAMPLE.read_text(encoding="utf-8").replace('kind = "flat"', 'kind = "drill"', 1)
     with pytest.raises(RobomillError, match=r"^setup.toml, \[cutter\], tip_angle_deg: A drill needs a tip angle"):
-        setup_from_toml(text, "setup.toml", SAMPLE.parent)
+        setup_from_toml(text, "setup.toml", Beside(SAMPLE.parent))

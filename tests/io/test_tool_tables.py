@@ -10,6 +10,7 @@ import tomli_w
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
+from robomill.io.beside import Beside
 from robomill.io.tables import Table, parse_toml
 from robomill.io.tool_tables import read_tool_table, tools_from_table, tools_to_tables
 
@@ -60,7 +61,7 @@ def test_a_set_up_keeps_every_tool(tmp_path: Path) -> None:
     top.finish()
     (tmp_path / "mine.tbl").write_text("T1 D0.25\n")
     named = Table({"tools": "mine.tbl", "tools_unit": "in"}, "set-up")
-    assert tools_from_table(named, tmp_path)[1].diameter == pytest.approx(6.35e-3)
+    assert tools_from_table(named, Beside(tmp_path))[1].diameter == pytest.approx(6.35e-3)
     assert not tools_from_table(Table({}, "set-up"))
 
 

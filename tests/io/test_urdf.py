@@ -88,7 +88,7 @@ def test_a_named_tip_picks_the_branch(tmp_path):
 def test_not_xml(tmp_path):
     path = tmp_path / "noise.urdf"
     path.write_bytes(b"\x00\x01 not xml")
-    with pytest.raises(RobotError, match="not a URDF"):
+    with pytest.raises(RobotError, match="not a text file; expected a robot"):
         read_urdf(path)
 
 
@@ -109,7 +109,7 @@ def test_base_tip_and_name(tmp_path):
         read_urdf(path, base="d", tip="b")
     with pytest.raises(RobotError, match="a robot needs 2 to 7"):
         read_urdf(path, base="b", tip="b")
-    with pytest.raises(RobotError, match=r"none.urdf: no such file"):
+    with pytest.raises(RobotError, match=r"none.urdf: cannot be opened"):
         read_urdf(tmp_path / "none.urdf")
 
 

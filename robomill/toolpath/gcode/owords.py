@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from robomill.errors import GCodeError
+from robomill.files import FileKind, read_file
 from robomill.toolpath.gcode import flow
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import restore_modes
@@ -15,8 +17,7 @@ from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
 from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.gcode.words import Block
 
-MAX_FILE = 10_000_000
-"""Bytes of a subroutine file beside the program."""
+SUBROUTINE = FileKind("a subroutine beside the program", 10)
 
 
 @dataclass
@@ -273,9 +274,12 @@ class OWords:
         folder = self.main.folder
         plain = label.replace("_", "").replace("-", "").isalnum()
         path = folder / f"{label}.ngc" if folder is not None and plain else None
-        if path is None or not path.is_file() or path.stat().st_size > MAX_FILE:
+        if path is None or not path.is_file():
             raise reader.refuse(f"O{label} is called, but there is no O{label} sub; define it in the program.")
-        lines = Lines(path.read_bytes())
+        try:
+            lines = Lines(read_file(path, SUBROUTINE, GCodeError, regular=True))
+        except GCodeError as exc:
+            raise reader.refuse(f"O{label} is called, but {exc}") from None
         self.machine.findings.add(
             "sub-file", "info", reader.line, f"O{label} is read from {path.name} beside the program"
         )

@@ -7,6 +7,8 @@ import math
 from pathlib import Path
 from typing import Any
 
+from robomill.errors import GCodeError
+from robomill.files import written
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
 from robomill.units import from_si
@@ -51,7 +53,7 @@ def write_moves_jsonl(program: Program, path: str | Path) -> None:
     """
     sweep, length = program.sweep, program.length
     turned = bool(program.rotary.any())
-    with Path(path).open("w", encoding="utf-8") as out:
+    with written(path, GCodeError) as place, place.open("w", encoding="utf-8") as out:
         for i in range(len(program)):
             kind = int(program.kind[i])
             row: dict[str, Any] = {

@@ -14,6 +14,7 @@ from robomill.cutting.forces import FORCES
 from robomill.cutting.materials import Material
 from robomill.cutting.materials import alternatives as others_of
 from robomill.errors import CuttingError
+from robomill.files import MATERIAL
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
 from robomill.io.texts import read_text
 from robomill.provenance import Provenance
@@ -123,7 +124,7 @@ def _copy(material: Material) -> None:
 
 
 def _take(data: bytes, name: str) -> None:
-    _keep(material_from_toml(*read_text(data, CuttingError, "a material row (.toml)", name)))
+    _keep(material_from_toml(*read_text(data, CuttingError, MATERIAL, name)))
 
 
 def _keep(material: Material, from_editor: bool = False) -> None:

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
+from robomill.files import PROGRAM as LIMIT
 from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, write_moves_jsonl
 from robomill.toolpath.gcode.chords import to_toolpath
-from robomill.toolpath.text import MAX_BYTES, as_plain_bytes
+from robomill.toolpath.text import as_plain_bytes
 
 PROGRAM = "G21 G90\nG0 X1\nG1 Y2 F60\nM2\n"
 
@@ -58,9 +59,9 @@ def test_a_string_is_a_file_if_it_looks_like_one(tmp_path: Path) -> None:
     file = tmp_path / "part.NC"
     file.write_text(PROGRAM)
     assert len(read_gcode(str(file))) == len(read_gcode(file)) == len(read_gcode(PROGRAM)) == 3
-    with pytest.raises(GCodeError, match="cannot be read"):
+    with pytest.raises(GCodeError, match="cannot be opened"):
         read_gcode(str(tmp_path / "missing.nc"))
-    with pytest.raises(GCodeError, match="cannot be read"):
+    with pytest.raises(GCodeError, match="cannot be opened"):
         read_gcode(tmp_path)
     with pytest.raises(GCodeError, match="no motion"):
         read_gcode("M2")
@@ -71,7 +72,7 @@ def test_a_string_is_a_file_if_it_looks_like_one(tmp_path: Path) -> None:
 def test_too_large_is_refused() -> None:
     class Huge(bytes):
         def __len__(self) -> int:
-            return MAX_BYTES + 1
+            return LIMIT.most + 1
 
     with pytest.raises(GCodeError, match="at most 200 MB"):
         as_plain_bytes(Huge(b"G0"))

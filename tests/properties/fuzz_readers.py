@@ -1,0 +1,256 @@
+"""Every reader against damaged files: only refusals, soon, in little memory.
+
+python tests/properties/fuzz_readers.py 10000 [READER ...]     counts what escapes, the slowest case and the peak
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import resource
+import sys
+import time
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from robomill.errors import RobomillError
+from robomill.io.forces import read_forces
+from robomill.io.load_tests import read_load_tests, read_measured_map
+from robomill.io.materials import material_from_toml
+from robomill.io.meshes import read_stl_stock
+from robomill.io.profiles import read_profile
+from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
+from robomill.io.robots import load_robot, robot_from_toml
+from robomill.io.samples import samples_dir
+from robomill.io.tool_tables import read_tool_table
+from robomill.io.urdf import read_urdf
+from robomill.toolpath.apt import read_apt
+from robomill.toolpath.gcode import read_gcode
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.sketch_presets import PRESETS, preset
+from robomill.toolpath.source import SketchSource
+
+SAMPLES = samples_dir()
+NUMBER = re.compile(r"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
+ODD = [
+    *("nan", "inf", "-inf", "0", "-1", "-0.0", "1e308", "-1e308", "1e-300", "1e400", "1e", "1_0", "−1", "٣"),
+    *("9" * 400, "9" * 5000, "0x" + "f" * 5000, "true", '""', '"x"', "[]", "{}", "[[]]", "[1]", "[nan]", "{a = 1}"),
+    *("[[1, 2], [3]]", "1979-05-27", '"\\u0000"', '"../../etc/passwd"', '"""', "'" * 3, "\ufeff", "\u2028", "é", '"'),
+    *("[" * 5000, "[" * 5000 + "]" * 5000, "a." * 5000 + "a = 1", "[[" + "a." * 3000 + "a]]", "0 1", "x" * 98_000),
+    *("_" * 98_000, "1" * 98_000, "," * 98_000, "1;" * 20_000, "(" * 98_000, " " * 98_000 + "x", "a_" * 40_000),
+    *("T1e400", "F1e400", "#1=1e400", "GOTO/nan,inf,1e400", "facet normal nan nan nan", "vertex 1e308 1e308 -1e308"),
+    *("<a>", "&x;", "</robot>", '"' + "x" * 200_000 + '"', "a," * 1000),
+]
+HEADS = '<?xml version="1.0"?><!DOCTYPE robot [<!ENTITY x SYSTEM "file:///etc/hostname"><!ENTITY y "&x;&x;">]>'
+
+
+@dataclass(frozen=True)
+class Reader:
+    """What reads, and whole files for it to be damaged."""
+
+    read: Callable[[bytes], object]
+    seeds: tuple[bytes, ...]
+    plain: bool = False  # bytes that are no text
+
+
+def text_of(data: bytes) -> str:
+    return data.decode("utf-8", "replace")
+
+
+def _urdf(folder: Path, data: bytes) -> object:
+    file = folder / "arm.urdf"
+    file.write_bytes(data)
+    return read_urdf(file)
+
+
+def _files(pattern: str) -> tuple[bytes, ...]:
+    return tuple(path.read_bytes() for path in sorted(SAMPLES.glob(pattern)))
+
+
+def _setups() -> tuple[bytes, ...]:
+    files = sorted(SAMPLES.glob("*/setup*.toml"))
+    return (*(path.read_bytes() for path in files), *(setup_to_toml(load_setup(path)).encode() for path in files))
+
+
+def _sketches() -> tuple[bytes, ...]:
+    setup = load_setup(SAMPLES / "paper_flute")
+    drawn = [setup.replace(source=SketchSource(preset(name, Sketch(), 8e-3)), stock=None) for name in PRESETS]
+    return tuple(setup_to_toml(each).encode() for each in drawn)
+
+
+def _project(data: bytes) -> object:
+    from robomill.ui.project import project_from_toml
+
+    project = project_from_toml(text_of(data))
+    return project.digest(), project.setup.toolpath
+
+
+def _projects() -> tuple[bytes, ...]:
+    from robomill.ui.project import Project, View, project_to_toml
+
+    setup = load_setup(SAMPLES / "paper_flute")
+    seen = Project(setup, View(theta=(0.1, 0.2, 0.3, 0.4, 0.5)))
+    maps = seen.maps.of(setup.robot)
+    known = (
+        '\n[uncertainty]\nmodel = "joints"\nparameters = [1e-7, 1e-7, 1e-7, 1e-7, 1e-7]\ncovariance = ['
+        + ", ".join(str([1e-16 if i == j else 0.0 for j in range(5)]) for i in range(5))
+        + "]\ndof = 7\nmodel_error = [0.1, 1e-9, 1e-6]\n"
+    )
+    plain = project_to_toml(seen.replace(maps=maps))
+    return plain.encode(), (plain + known).encode()
+
+
+def _stls() -> tuple[bytes, ...]:
+    import trimesh
+
+    block = trimesh.creation.box(extents=[110.0, 40.0, 10.0])
+    return block.export(file_type="stl"), block.export(file_type="stl_ascii").encode()
+
+
+URDF = "".join(
+    f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0.{i} 0.5" '
+    f'rpy="0 1.57 0.{i}"/><axis xyz="0 {i % 2} {1 - i % 2}"/><limit lower="-2" upper="2" effort="1" velocity="1"/>'
+    "</joint>"
+    for i in range(4)
+)
+MESH = '<visual><geometry><mesh filename="file:///etc/hostname"/></geometry></visual>'
+LINKS = "".join(f"<link name='l{i}'>{MESH}</link>" for i in range(5))
+URDFS = (
+    f'<robot name="arm">{LINKS}{URDF}</robot>'.encode(),
+    f'{HEADS}<robot name="&x;">{LINKS}{URDF}</robot>'.encode(),
+)
+FORCES = (
+    "t_s,F_feed_N,F_feed_normal_N,F_axial_N\n" + "".join(f"{k / 100},{k},{90 + k},{-k}\n" for k in range(40))
+).encode()
+PROFILE = ("station_mm;offset_mm\n" + "".join(f"{k},5;0,{k}\n" for k in range(20))).encode()
+TABLES = (
+    b"T1 P1 D3.0 Z12.5 ; mill\nT2 P2 D6 Z40 Q3\n",
+    b"tool,kind,diameter_mm,flutes,length_mm\n1,ball,6,2,62.5\n2,flat,8,3,50\n",
+    b'[[tools]]\nnumber = 1\nkind = "ball"\ndiameter_mm = 6\nflutes = 2\nlength_mm = 62.5\n',
+)
+GCODE = (*_files("*/*.nc"), b"G21 G90 F900 S8000 M3\nT1 M6\nG43 H1\nG0 X0 Y0 Z5\nG1 Z-1\nG2 X9 Y9 I4.5 J4.5\nM2\n")
+APT = (
+    b"PARTNO/X\nUNITS/MM\nFROM/0,0,5,0,0,1\nFEDRAT/60,MMPM\nSPINDL/900,CLW\nGOTO/1,2,3,0,0.1,1\nRAPID\nGOTO/4,5,6\n",
+)
+
+
+@cache
+def readers(folder: Path) -> dict[str, Reader]:
+    """Every reader by name; ``folder`` is for those that read files only."""
+    arm = load_robot("slavkovic_5r")
+    return {
+        "project": Reader(_project, _projects()),
+        "robot": Reader(lambda data: robot_from_toml(text_of(data)), _files("robots/*.toml")),
+        "setup": Reader(lambda data: setup_from_toml(text_of(data)).toolpath, _setups()),
+        "urdf": Reader(lambda data: _urdf(folder, data), URDFS),
+        "load tests": Reader(lambda data: read_load_tests(text_of(data) + "\n", arm), _files("load_tests/[not]*.csv")),
+        "measured map": Reader(
+            lambda data: read_measured_map(text_of(data) + "\n", arm), _files("load_tests/nine_points_compliances.csv")
+        ),
+        "forces": Reader(read_forces, (FORCES,)),
+        "profile": Reader(lambda data: read_profile(text_of(data) + "\n"), (PROFILE,)),
+        "tool table": Reader(read_tool_table, TABLES),
+        "materials": Reader(lambda data: material_from_toml(text_of(data)), _files("materials/*.toml")),
+        "gcode": Reader(read_gcode, GCODE),
+        "apt": Reader(read_apt, APT),
+        "stl": Reader(read_stl_stock, _stls(), True),
+        "sketch": Reader(lambda data: setup_from_toml(text_of(data)).toolpath, _sketches()),
+    }
+
+
+def damaged(data: bytes, r: random.Random, plain: bool) -> bytes:
+    """The file with a few things wrong."""
+    if plain and r.random() < 0.6:
+        raw = bytearray(data)
+        for _ in range(r.randint(1, 8)):
+            at = r.randrange(len(raw)) if r.random() < 0.5 else r.randrange(min(len(raw), 100))
+            raw[at] = r.randrange(256)
+        return bytes(raw[: r.randrange(len(raw))]) if r.random() < 0.2 else bytes(raw)
+    text = data.decode("utf-8", "surrogateescape")
+    for _ in range(r.randint(1, 3)):
+        text = _once(text, r)
+    if r.random() < 0.02:
+        return text.encode("utf-16", "surrogatepass")
+    return text.encode("utf-8", "surrogateescape" if plain else "replace")
+
+
+def _once(text: str, r: random.Random) -> str:
+    kind, at = r.random(), r.randrange(len(text) + 1)
+    numbers = list(NUMBER.finditer(text))
+    lines = text.split("\n")
+    row = r.randrange(len(lines))
+    if kind < 0.35 and numbers:
+        found = r.choice(numbers)
+        return text[: found.start()] + r.choice(ODD) + text[found.end() :]
+    if kind < 0.55 and "=" in lines[row]:
+        lines[row] = lines[row].partition("=")[0] + "= " + r.choice(ODD)
+    elif kind < 0.65:
+        lines.insert(row, r.choice(ODD))
+    elif kind < 0.72:
+        del lines[row]
+    elif kind < 0.79:
+        lines.insert(row, r.choice(lines))
+    elif kind < 0.86:
+        return text[:at] + r.choice(ODD) + text[at:]
+    elif kind < 0.93:
+        return text[:at] + text[at + r.randint(1, 40) :]
+    else:
+        return text[:at] + chr(r.choice([0, 9, 34, 39, 44, 59, 91, 93, 123, 0xD7, 0x2028, 0xFFFF])) + text[at:]
+    return "\n".join(lines)
+
+
+@dataclass
+class Found:
+    """Of one reader: how many were read, what escaped (where: how often), seconds of the slowest."""
+
+    read: int
+    escaped: Counter[str]
+    slowest: float
+    worst: bytes = b""
+
+
+def run(reader: Reader, count: int, seed: int) -> Found:
+    """``count`` damaged files; the same ``seed`` damages alike."""
+    r, found = random.Random(seed), Found(0, Counter(), 0.0)
+    for _ in range(count):
+        data = damaged(r.choice(reader.seeds), r, reader.plain)
+        began = time.process_time()
+        try:
+            reader.read(data)
+            found.read += 1
+        except RobomillError:
+            pass
+        except Exception as exc:
+            inner = [f for f in traceback.extract_tb(exc.__traceback__) if "/robomill/" in f.filename] or [None]
+            place = f"{Path(inner[-1].filename).name}:{inner[-1].lineno} {inner[-1].name}" if inner[-1] else "?"
+            found.escaped[f"{type(exc).__name__} at {place}: {str(exc)[:60]}"] += 1
+        spent = time.process_time() - began
+        if spent > found.slowest:
+            found.slowest, found.worst = spent, data
+    return found
+
+
+def main(words: list[str]) -> None:
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        every = readers(Path(folder))
+        for name in words[1:] or every:
+            began = time.process_time()
+            found = run(every[name], int(words[0]), seed=len(name))
+            peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+            counted = f"{found.read:6} read, {found.escaped.total():4} escaped, slowest {found.slowest:.2f} s"
+            spent = time.process_time() - began
+            print(f"{name:13} {counted}, all {spent:.0f} s, peak {peak:.0f} MB", flush=True)
+            for words_, times in found.escaped.most_common():
+                print(f"    {times:4} {words_}")
+            if found.slowest > 2.0:
+                print(f"    slow: {found.worst[:200]!r} ... {len(found.worst)} bytes")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:] or ["10000"])
