@@ -99,6 +99,9 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")
     run.add_argument("--out", metavar="DIR", help="write the result there: CSV tables, JSON, STL")
+    run.add_argument(
+        "--allow-outside", action="store_true", help="let the set-up name files that are not in its own folder or below"
+    )
 
     text = "Serve the app to others: no error details for visitors, work kept within bounds."
     serve = verbs.add_parser("serve", help=text, description=text)

@@ -23,7 +23,9 @@ def test_a_file_is_read_up_to_its_limit(tmp_path: Path) -> None:
     assert len(read_file(file, SMALL, ProjectError)) == MB
     with file.open("ab") as more:
         more.truncate(3 * MB)
-    with pytest.raises(ProjectError, match=r"words: found 3[.]0 MB, expected a few words of at most 1 MB; split the file"):
+    with pytest.raises(
+        ProjectError, match=r"words: found 3[.]0 MB, expected a few words of at most 1 MB; split the file"
+    ):
         read_file(file, SMALL, ProjectError)
     with pytest.raises(ProjectError, match="^mine: found more than 1 MB"):
         check_size(MB + 1, SMALL, ProjectError, "mine")
@@ -64,11 +66,8 @@ def test_a_file_is_put_in_place_when_it_is_complete(tmp_path: Path) -> None:
         assert place.suffix == ".csv"
         assert target.read_text() == "old"
     assert target.read_text() == "new"
-    with pytest.raises(ZeroDivisionError), written(target, ProjectError) as place:
-        place.write_text("half")
-        raise ZeroDivisionError
-    with pytest.raises(ProjectError, match="Disk full"), written(target, ProjectError) as place:
-        raise ProjectError("Disk full")
+    with pytest.raises(TypeError), written(target, ProjectError) as place:
+        place.write_text(1)  # type: ignore[arg-type]
     assert target.read_text() == "new"
     assert os.listdir(tmp_path) == ["part.csv"]
 
