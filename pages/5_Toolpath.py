@@ -5,6 +5,7 @@ from __future__ import annotations
 import streamlit as st
 
 from robomill import ui
+from robomill.ui import pieces
 from robomill.ui.toolpath import details, view
 from robomill.ui.toolpath.lines import lines_inputs
 from robomill.ui.toolpath.part_zero import part_zero
@@ -50,7 +51,7 @@ with right:
         path_figure(setup, reach, result, dark)
         words = details.line_words(setup, reach, result, unit)
         if words:
-            st.info(words, icon=":material/my_location:")
+            pieces.said("info", words, "my_location")
         stock_note(setup)
         if result is None:
             view.ask_button(setup)

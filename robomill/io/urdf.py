@@ -49,11 +49,11 @@ def read_urdf(
 ) -> Robot:
     """The serial arm from link ``base`` to link ``tip`` of a URDF file (defaults: the root and the only end link).
 
-    ``given`` is its path or its bytes, ``where`` the file's name then. Frames {M} and {T} are those of the two links, and
-    the flange is the tip too, if that stands on the last axis with its z along it, as makers' flanges do; joint senses,
-    zeros and limits are the file's. Compliances are not in a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed. Raises
-    RobotError for branches (name the tip), missing links or joints, closed loops, mimic and floating joints. Meshes are
-    not looked at, and a file that declares entities is refused: no other file is ever opened.
+    ``given`` is its path or its bytes, ``where`` the file's name then. Frames {M} and {T} are those of the two links,
+    and the flange is the tip too, if that stands on the last axis with its z along it, as makers' flanges do; joint
+    senses, zeros and limits are the file's. Compliances are not in a URDF: 1e-6 rad/(N m) (m/N) each, marked assumed.
+    Raises RobotError for branches (name the tip), missing links or joints, closed loops, mimic and floating joints.
+    Meshes are not looked at, and a file that declares entities is refused: no other file is ever opened.
     """
     text, where = read_text(given, RobotError, ROBOT, where)
     root = _root(text, where)

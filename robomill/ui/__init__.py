@@ -34,8 +34,9 @@ Rules of the house:
   builds a figure once for equal keys: plotly takes longer to build one than most results take to compute.
 - ``ui.split`` and ``ui.thirds`` are columns that stand under each other in a narrow window; name each once a page.
 - Catch ``RobomillError`` only, best with ``ui.attempt``.
-- Provenance: ``pieces.badge("paper" | "measured" | "assumed" | "user" | "computed")`` gives HTML for ``ui.note``,
-  ``ui.headline`` and ``pieces.facts``.
+- Words are shown as they are: what holds a name, a refusal or a remark goes through ``pieces.error``, ``pieces.said``,
+  ``pieces.strong``, ``ui.note``, ``pieces.table`` (``markup`` escapes it there), never into ``st.markdown`` or
+  ``st.warning``. HTML is a ``markup.Html``: ``ui.note(pieces.badge("paper"), text)``; an f-string is words again.
 """
 
 from __future__ import annotations

@@ -25,6 +25,7 @@ import streamlit as st
 from robomill.errors import ProjectError, RobomillError
 from robomill.ui import inputs, session
 from robomill.ui.keeping import Settings
+from robomill.ui.markup import as_markdown
 from robomill.ui.project import DEFAULT_PRESET, SUFFIX, Project, preset_setup, presets, project_from_toml
 from robomill.ui.session import Store
 from robomill.ui.shelf import KEY, Head, Shelf
@@ -209,7 +210,7 @@ def notices() -> None:
     if notice is None or (notice.project is not None and notice.project.setup is not session.project().setup):
         return
     with st.container(horizontal=True, vertical_alignment="center", gap="small", key="autosave-notice"):
-        st.markdown(f":material/history: {notice.words}", width="stretch")
+        st.markdown(f":material/history: {as_markdown(notice.words)}", width="stretch")
         if notice.instead is not None:
             _answer("Take the other", "swap_horiz", bring_kept, notice.instead.place)
         elif notice.project is not None and not untouched(notice.project):

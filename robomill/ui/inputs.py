@@ -17,6 +17,7 @@ import streamlit as st
 from robomill.errors import ProjectError
 from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
+from robomill.ui.markup import as_markdown
 from robomill.ui.project import read_field, with_field
 from robomill.ui.typed import accept, heard, own, seed, sentence, submit
 
@@ -137,7 +138,7 @@ def choice(
 
     common: dict[str, Any] = {
         "key": key,
-        "format_func": lambda k: options[k],
+        "format_func": lambda k: options[k] if look.listed else as_markdown(options[k]),
         "on_change": take,
         "help": look.hint,
         "disabled": look.disabled,
@@ -194,7 +195,7 @@ def several(
 
     common: dict[str, Any] = {
         "key": key,
-        "format_func": lambda k: options[k],
+        "format_func": lambda k: options[k] if look.listed else as_markdown(options[k]),
         "on_change": take,
         "label_visibility": look.label_visibility,
         **own(key, "default", shown),

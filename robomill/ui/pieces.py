@@ -7,12 +7,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.provenance import Provenance
+from robomill.ui.markup import Html, as_html, as_markdown
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
@@ -61,46 +62,48 @@ def _tile(tile: Tile) -> str:
     )
 
 
-def subscripts(text: str) -> str:
+def subscripts(text: str) -> Html:
     """Text as HTML, with the indices of symbols like ``C_yy`` and ``a_2`` set low."""
-    return re.sub(r"\b([A-Za-zδθ])_(\w+)", r"\1<sub>\2</sub>", html.escape(text))
+    return Html(re.sub(r"\b([A-Za-zδθ])_(\w+)", r"\1<sub>\2</sub>", html.escape(text)))
 
 
-def badge(kind: str, text: str = "") -> str:
-    """A small coloured pill with a word, as HTML for ``write_html``: paper, measured, assumed, user or computed."""
-    return f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(text or kind)}</span>'
+def badge(kind: str, text: str = "") -> Html:
+    """A small coloured pill with a word: paper, measured, assumed, user or computed."""
+    return Html(f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(text or kind)}</span>')
 
 
-def sourced(said: Provenance) -> str:
-    """Where a number comes from, as HTML: the badge and the words."""
-    return f"{badge(said.kind)} {subscripts(said.source)}"
+def sourced(said: Provenance) -> Html:
+    """Where a number comes from: the badge and the words."""
+    return as_html(badge(said.kind), subscripts(said.source))
 
 
 def headline(kicker: str, title: str, lead: str = "") -> None:
-    """The page's one sentence. ``lead`` may hold HTML (badges)."""
-    lead_html = f'<p class="rm-lead">{lead}</p>' if lead else ""
+    """The page's one sentence."""
+    lead_html = f'<p class="rm-lead">{as_html(lead)}</p>' if lead else ""
     st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><p class="rm-title">{html.escape(title)}</p>{lead_html}')
 
 
-def note(text: str) -> None:
-    """A quiet line; may hold HTML (badges)."""
-    st.html(f'<p class="rm-note">{text}</p>')
+def note(*parts: str) -> None:
+    """A quiet line of words and badges."""
+    st.html(f'<p class="rm-note">{as_html(*parts)}</p>')
 
 
 def facts(rows: Sequence[tuple[str, str, str]]) -> None:
-    """A small table without lines of its own: what, value, HTML of the remark (badges)."""
-    table([(html.escape(a), html.escape(b), c) for a, b, c in rows], "qn ")
+    """A small table without lines of its own: what, value, remark."""
+    table(rows, "qn ")
 
 
 def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), strong: int = -1) -> None:
-    """A table of cells in HTML with a row of titles; ``strong`` is the row in force.
+    """A table with a row of titles; ``strong`` is the row in force.
 
     ``kinds`` has a letter a column: q what is asked (s where that is short), n a number, v a value in words, w text,
     b a bar, a blank for a remark, which stands under its q in a narrow window.
     """
 
     def row(tag: str, cells: Sequence[str], style: str = "") -> str:
-        inner = "".join(f'<{tag} class="{kind}">{cell}</{tag}>' for kind, cell in zip(kinds, cells, strict=True))
+        inner = "".join(
+            f'<{tag} class="{kind}">{as_html(cell)}</{tag}>' for kind, cell in zip(kinds, cells, strict=True)
+        )
         return f"<tr{style}>{inner}</tr>"
 
     bold = ' style="font-weight:600"'
@@ -110,10 +113,10 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
     st.html(f'<div style="overflow-x:auto"><table class="rm-facts{remarks}">{top}{body}</table></div>')
 
 
-def bar(share: float, look: str) -> str:
+def bar(share: float, look: str) -> Html:
     """A bar of ``share`` (of 1) of its cell's width; ``look`` is a colour or the name of a provenance."""
     kind, colour = ("", f";background:{look}") if look.startswith("#") else (f" rm-{html.escape(look)}", "")
-    return f'<span class="rm-bar{kind}" style="width:{100 * share:.1f}%{colour}"></span>'
+    return Html(f'<span class="rm-bar{kind}" style="width:{100 * share:.1f}%{colour}"></span>')
 
 
 def matrix(rows: Sequence[Sequence[str]], names: Sequence[str], columns: Sequence[str] | None = None) -> None:
@@ -138,7 +141,18 @@ def _low(name: str) -> str:
 
 def error(exc: RobomillError | str) -> None:
     """A refusal as people read it: one sentence."""
-    st.error(str(exc), icon=":material/error:")
+    said("error", str(exc), "error")
+
+
+def said(level: Literal["error", "warning", "info"], words: str, icon: str = "") -> None:
+    """A sentence in its coloured box, shown as it is whatever it quotes; ``icon`` names a symbol."""
+    show = {"error": st.error, "warning": st.warning, "info": st.info}[level]
+    show(as_markdown(words), icon=f":material/{icon}:" if icon else None)
+
+
+def strong(words: str) -> None:
+    """A bold line, shown as it is."""
+    st.markdown(f"**{as_markdown(words)}**")
 
 
 def thirds() -> tuple[Any, Any]:

@@ -29,6 +29,7 @@ from robomill.workspace.quantities import COMPONENTS, map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
+LARGEST = 1e6  # of any number that says how something is looked at, in SI
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
 COMPLIANCE = quantities(Robot)["C_theta_all"]
@@ -242,7 +243,7 @@ def _looked(kind: type, table: dict[str, Any], where: str, robot: Robot) -> Any:
 
 def _fits(hint: Any, value: Any) -> tuple[bool, Any]:
     """Whether a value of a TOML file is what a field of type ``hint`` holds, and that value."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
+    number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST
     kinds = {str: isinstance(value, str), bool: isinstance(value, bool), float: number, float | None: number}
     if hint in kinds:
         return kinds[hint], float(value) if number and hint is not bool else value

@@ -3,7 +3,6 @@ there; until then the place shows the picture before it, greyed."""
 
 from __future__ import annotations
 
-import html
 import uuid
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -138,7 +137,7 @@ def _waiting(place: str, order: Order, alt: str) -> None:
 
 def _refused(place: str, exc: RobomillError, otherwise: Callable[[], Any]) -> None:
     otherwise()
-    pieces.note(html.escape(str(exc)))
+    pieces.note(str(exc))
     again = exc.again_s if isinstance(exc, RenderError) else None
     if again is not None:
         _look_again(place, round(1000 * max(again, AGAIN_LEAST_S)))

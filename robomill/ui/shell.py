@@ -10,6 +10,7 @@ import streamlit as st
 from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.ui import autosave, inputs, rendered, session, snapshots
+from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
@@ -137,7 +138,7 @@ def _files(held: session.Store) -> None:
     if waiting:
         error(waiting[1])
     if said := autosave.trouble():
-        st.caption(said)
+        st.caption(as_markdown(said))
 
 
 def _open(data: bytes, name: str) -> None:

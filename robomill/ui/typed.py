@@ -9,6 +9,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.ui import session
+from robomill.ui.markup import as_markdown
 
 HEARD = "typed.heard"  # kept once an edit was taken that no server had answered
 
@@ -54,7 +55,7 @@ def sentence(key: str) -> None:
     """The reason why the input at ``key`` was refused, if it was."""
     waiting = session.store().refused.get(key)
     if waiting is not None:
-        st.error(waiting[1], icon=":material/error:")
+        st.error(as_markdown(waiting[1]), icon=":material/error:")
 
 
 def refuse(key: str, typed: Any, reason: str) -> None:

@@ -7,6 +7,7 @@ readable with any colour vision, and words stand beside the colours.
 
 from __future__ import annotations
 
+import html
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import cycle
@@ -146,6 +147,11 @@ def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) ->
     }
     base.update(layout)
     return go.Figure(layout=base)
+
+
+def plain(text: str) -> str:
+    """Words that came from a file, which plotly shall show and not read as its markup."""
+    return html.escape(text, quote=False)
 
 
 def say(fig: go.Figure, text: str, x: float, y: float, colour: str, **more: Any) -> None:

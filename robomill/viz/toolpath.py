@@ -10,7 +10,7 @@ from plotly.colors import sample_colorscale
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.viz.path_picture import PathPicture
-from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, rgba, tool_colours
+from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, plain, rgba, tool_colours
 
 VECTOR_LINES = 5_000
 MAX_PICKS = 3_000
@@ -227,7 +227,7 @@ def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
     hover = "%{text}<br>x %{x:.2f}, y %{y:.2f}, z %{customdata[1]:.2f} " + picture.length_unit
     data: list[FloatArray] = [block.astype(float), q[:, 2]]
     if picture.tools is not None:
-        words = [f"{w}<br>{picture.tool_names.get(n, '')}" for w, n in zip(words, picture.tools[kept].tolist())]
+        words = [f"{w}<br>{plain(picture.tool_names.get(n, ''))}" for w, n in zip(words, picture.tools[kept].tolist())]
     if picture.value is not None:
         value = picture.value[kept]
         data.append(value)

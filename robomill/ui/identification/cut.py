@@ -77,7 +77,7 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
     except RobomillError as exc:
         pieces.error(exc)
         return
-    st.markdown(f"**{uncertainty.sentence(found, known, unit)}**")
+    pieces.strong(uncertainty.sentence(found, known, unit))
     with st.container(border=True):
         pieces.figure(
             band_figure(_curves(found, now, known, axis, unit), axis, unit, dark=dark),

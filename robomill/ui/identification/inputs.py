@@ -141,10 +141,10 @@ def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, fo
     if tests is None:
         return
     made = tests.provenance.kind
-    pieces.note(summary(tests) + (f" {pieces.badge(made)}" if made != "measured" else ""))
+    pieces.note(summary(tests), *([pieces.badge(made)] if made != "measured" else []))
     loud = [f for f in found if f.level in ("error", "suspicious", "warning")]
     for finding in loud[:4]:
-        st.warning(finding.message, icon=":material/visibility:" if finding.level == "suspicious" else None)
+        pieces.said("warning", finding.message, "visibility" if finding.level == "suspicious" else "")
     for finding in [f for f in found if f not in loud][:4] + loud[4:]:
         pieces.note(finding.message)
 

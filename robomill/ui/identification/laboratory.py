@@ -67,7 +67,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
                     )
             _hand_in(bench, lab, result)
         elif done:
-            st.info(reason, icon=":material/lightbulb:")
+            pieces.said("info", reason, "lightbulb")
         _readings(lab.tests)
 
 
@@ -203,7 +203,7 @@ def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
 def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
     solved = inverse_kinematics(robot, pose_from_world(np.array(trial.pose)))
     if not bool(solved.reached):
-        st.info(f"This pose cannot be measured: {solved.reason()}.", icon=":material/block:")
+        pieces.said("info", f"This pose cannot be measured: {solved.reason()}.", "block")
         return
     scene = ArmScene(frames=joint_frames(robot, solved.theta), force=trial.F, force_label=f"{trial.load:g} N")
     pieces.figure(

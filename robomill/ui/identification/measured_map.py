@@ -51,7 +51,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
         pieces.error(refusal)
     if field is not None:
         for finding in field.findings:
-            st.warning(finding.message, icon=":material/visibility:")
+            pieces.said("warning", finding.message, "visibility")
         _maps(field, robot, *chosen, view.length, dark)
         _cut(field, cut, view.length, dark)
         _use(field)
@@ -179,7 +179,7 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
     ):
         with column, st.container(border=True):
             title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
-            st.markdown(f"**{name}**")
+            pieces.strong(name)
             dots = points if k != 1 else points[:0]
             pieces.figure(
                 level_figure(
@@ -238,7 +238,7 @@ def _cut(field: MeasuredField, cut: CutByBoth, unit: str, dark: bool) -> None:
     with right, st.container(border=True, height="stretch"):
         i = by_joints.worst
         st.markdown(f"**At its worst, line {by_joints.worst_block}**")
-        head = "", f"map {pieces.badge(field.provenance.kind)}", f"joints {pieces.badge('computed')}"
+        head = "", "map " + pieces.badge(field.provenance.kind), "joints " + pieces.badge("computed")
         body = [
             (axis, *(format_si(float(v), unit, sign=True) for v in values))
             for axis, *values in zip("XYZ", by_map.delta[i], by_joints.delta[i], strict=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import numpy as np
@@ -27,13 +26,13 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
         with st.spinner("Fitting every model …"):
             compared = comparison_of(bench, robot)
     except RobomillError as exc:
-        st.info(str(exc), icon=":material/info:")
+        pieces.said("info", str(exc), "info")
         return
     results, rows = compared.results, compared.rows()
     counts = [row["parameters"] for row in rows]
     names = [f"{r.choice.title} ({n})" for r, n in zip(results, counts, strict=True)]
     best = compared.simplest_good
-    st.markdown(f"**{_judgement(compared)}**")
+    pieces.strong(_judgement(compared))
     with st.container(border=True):
         pieces.figure(
             models_figure(
@@ -51,9 +50,9 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
         )
     absorbed = compared.absorbed()
     if absorbed:
-        st.info(absorbed, icon=":material/lightbulb:")
+        pieces.said("info", absorbed, "lightbulb")
     for name, reason in compared.refused.items():
-        pieces.note(f"{MODELS[name].title}: {html.escape(reason)}")
+        pieces.note(f"{MODELS[name].title}: {reason}")
     _side_by_side(results, rows, robot, joint_unit)
     if bench.model != best.model:
         take = (bench.writer("model"), best.model)
@@ -93,7 +92,7 @@ def _side_by_side(
         (
             result.choice.title,
             *(words.number(float(words.shown(c, unit)), unit) for c, unit in zip(result.C_theta, units, strict=True)),
-            html.escape(str(row["remark"]).capitalize()),
+            str(row["remark"]).capitalize(),
         )
         for result, row in zip(results, rows, strict=True)
     ]

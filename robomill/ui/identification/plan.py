@@ -36,7 +36,7 @@ def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit:
     except RobomillError as exc:
         pieces.error(exc)
         return
-    st.markdown(f"**{plan.sentence()}**")
+    pieces.strong(plan.sentence())
     with st.container(border=True):
         names = [p.label.capitalize() for p in plan.labels]
         live = [k for k, p in enumerate(plan.labels) if p.label not in result.lumped and result.parameters[k] > 0]

@@ -17,7 +17,7 @@ from robomill.ui.identification.bench import Bench, lines_of, used_tests
 from robomill.units import format_many, format_si, from_si, unit_label
 from robomill.viz.identification import gaps_figure
 
-ICONS = {"suspicious": ":material/visibility:", "info": ":material/info:"}
+ICONS = {"suspicious": "visibility", "info": "info"}
 
 
 def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
@@ -36,7 +36,7 @@ def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, 
             pieces.facts(rows)
             pieces.note(f"Off the stated ones; x, y, z in {unit_label(unit)} with 95 % intervals, all else left free.")
     for finding in found:
-        st.info(finding.message, icon=ICONS.get(finding.level))
+        pieces.said("info", finding.message, ICONS.get(finding.level, ""))
     if len(lines.pulley):
         with st.container(border=True):
             _gaps(lines, unit, dark)

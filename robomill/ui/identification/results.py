@@ -12,6 +12,7 @@ from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench
+from robomill.ui.markup import Html, as_html
 from robomill.units import format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
     correlation_figure,
@@ -71,9 +72,9 @@ def unseen(result: IdentificationResult) -> None:
     """The joint that cannot be seen, or is known least, and why."""
     if result.unseen_joints:
         for joint in result.unseen_joints:
-            st.warning(joint.sentence, icon=":material/visibility_off:")
+            pieces.said("warning", joint.sentence, "visibility_off")
     elif result.has_joints and not result.single:
-        st.info(result.explain(result.weakest_joint), icon=":material/lightbulb:")
+        pieces.said("info", result.explain(result.weakest_joint), "lightbulb")
 
 
 def _noise(result: IdentificationResult) -> str:
@@ -95,7 +96,7 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
             ["not seen", "–", "–"]
             if not np.isfinite(value)
             else [
-                f"<b>{words.number(value, unit)}</b>",
+                Html(f"<b>{words.number(value, unit)}</b>"),
                 words.number(error, unit),
                 f"{words.number(low, unit)} to {words.number(high, unit)}",
             ]
@@ -103,12 +104,12 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
         if parameter.label in result.lumped:
             cells = [f"counted with {result.lumped[parameter.label]}", "", ""]
         cells += [words.number(columns[c][k], unit) for c in references]
-        own = "" if unit == common else f" <small>{html.escape(unit_label(unit))}</small>"
-        body.append((f"{pieces.subscripts(parameter.label)}{own}", *cells))
-    pieces.table(body, "s" + "n" * (len(head) - 1), list(map(html.escape, head)))
+        own = "" if unit == common else Html(f" <small>{html.escape(unit_label(unit))}</small>")
+        body.append((pieces.subscripts(parameter.label) + own, *cells))
+    pieces.table(body, "s" + "n" * (len(head) - 1), head)
     sources = [(title, robot.provenance.get(f"compliance.{name}")) for name, title in words.SET_TITLES.items()]
-    said = [f"{pieces.badge(source.kind)} {title}" for title, source in sources if source and title in references]
-    pieces.note(f"In {unit_label(common)}. {' '.join(said)}")
+    said = [as_html(pieces.badge(source.kind), title) for title, source in sources if source and title in references]
+    pieces.note(f"In {unit_label(common)}.", *said)
 
 
 def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
@@ -148,10 +149,8 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
             for o in result.outliers[:6]
         )
         more = f"; and {len(rows) - 6} more" if len(rows) > 6 else ""
-        st.warning(
-            f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out.",
-            icon=":material/flag:",
-        )
+        words = f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out."
+        pieces.said("warning", words, "flag")
         if len(rows) > 0.1 * len(result.row):
             pieces.note("So many at once speak against the model rather than against the readings: compare the models.")
     flagged = tuple(sorted({*rows, *bench.excluded}))

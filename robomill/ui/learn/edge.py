@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-
 import numpy as np
 import plotly.graph_objects as go
 import streamlit as st
@@ -66,7 +64,7 @@ def edge(found: InHand) -> None:
 def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     pose = here.pose
     if not pose.reached:
-        pieces.note(html.escape(here.reason))
+        pieces.note(here.reason)
         return
     yardstick = solids.yardstick(found.pose.frames)
     # One scale for the whole ray, so that the body is seen to stretch.

@@ -19,6 +19,7 @@ from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cached, pieces
+from robomill.ui.markup import Html
 from robomill.ui.point import FORCE
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.units import from_si, unit_label
@@ -35,8 +36,10 @@ def equations(pose: PoseReport) -> None:
     with left:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
         pieces.note(
-            "Every joint gives in its own direction J<sub>i</sub>; the tip gives by the sum. Along Y, with "
-            "C<sub>θ</sub> in 10⁻⁶ rad/(N m) and J in m/rad:"
+            pieces.subscripts(
+                "Every joint gives in its own direction J_i; the tip gives by the sum. Along Y, with "
+                "C_θ in 10⁻⁶ rad/(N m) and J in m/rad:"
+            )
         )
         st.latex(r"\large " + component(pose, 1, 1))
         pieces.note("and from Y into Z, the reason for the sideways answer:")
@@ -103,10 +106,10 @@ def reproduced() -> None:
     """The table, with what did not come out and why."""
     st.subheader("The paper, reproduced")
     found = rows()
-    pieces.note(html.escape(summary(found)))
+    pieces.note(summary(found))
     shown = [
         (
-            f"<b>{html.escape(r.statement.where)}</b>",
+            Html(f"<b>{html.escape(r.statement.where)}</b>"),
             _given(r.statement),
             pieces.subscripts(r.found),
             pieces.badge(TONE[r.statement.status], SHORT[r.statement.status]),
@@ -118,10 +121,10 @@ def reproduced() -> None:
     pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
 
 
-def _given(statement: Statement) -> str:
+def _given(statement: Statement) -> Html:
     """What the paper gives, and its own words."""
     quoted = " ".join(f"“{html.escape(q)}”" for q in statement.quotations)
-    return f"{pieces.subscripts(statement.gives)}<details><summary>in its words</summary>{quoted}</details>"
+    return pieces.subscripts(statement.gives) + Html(f"<details><summary>in its words</summary>{quoted}</details>")
 
 
 def _csv(found: list[Row]) -> str:

@@ -14,6 +14,7 @@ from robomill.ui import fields, inputs, pieces, session
 from robomill.ui.project import MapView
 from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
 from robomill.viz.maps import Map, Scale, symmetric_limit
+from robomill.viz.theme import plain
 from robomill.workspace.fields import ComplianceField
 
 UM = "um/N"
@@ -76,10 +77,11 @@ def panels(
         "difference": Scale.signed(f"difference, {unit_label(UM)}", list(differences.values())),
     }
     rows: list[list[Map | None]] = [
-        [Map(f"<b>{names[key]}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]
+        [Map(f"<b>{plain(names[key])}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]
     ]
     apart: list[Map | None] = [
-        Map(f"{names[key]} − {names[keys[0]]}", differences[key], "difference", unit_label(UM)) for key in keys[1:]
+        Map(f"{plain(names[key])} − {plain(names[keys[0]])}", differences[key], "difference", unit_label(UM))
+        for key in keys[1:]
     ]
     if len(apart) == 1:
         rows[0] += apart

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import numpy as np
@@ -59,7 +58,7 @@ def show(region: Region) -> None:
         "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
     )
     for words in [words for line in found for words in line.notes()]:
-        pieces.note(html.escape(words))
+        pieces.note(words)
 
 
 def _line_columns(panels: list[LinePanel], robot: Robot) -> dict[str, Any]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-
 import numpy as np
 import plotly.graph_objects as go
 import streamlit as st
@@ -57,7 +55,7 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
     """The report: arm and ellipsoid, shares, C; tables beneath."""
     st.subheader(f"The pose at {place(found.point, unit)}")
     if not found.pose.reached:
-        pieces.note(f"Not reached: {html.escape(found.reason)}. Click a coloured cell of a map.")
+        pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
         return
     _posture_note(found.pose, component)
     left, right = pieces.split([1, 1.05], "point")
@@ -80,10 +78,9 @@ def _posture_note(pose: PoseReport, component: str) -> None:
     if len(C):
         a, b = ("xyz".index(axis) for axis in component)
         values = np.append(C[:, a, b], pose.C[a, b])  # the one that is shown is one of them
-        pieces.note(
-            f"What stands here holds for one posture. Over {len(C)} postures that hold the tool here, C<sub>{component}"
-            f"</sub> ranges from {format_many((values.min(), values.max()), 'um/N', between=' to ')}."
-        )
+        ends = format_many((values.min(), values.max()), "um/N", between=" to ")
+        words = f"Over {len(C)} postures that hold the tool here, C_{component} ranges from {ends}."
+        pieces.note("What stands here holds for one posture.", pieces.subscripts(words))
 
 
 def _arm(pose: PoseReport, component: str, unit: str) -> None:

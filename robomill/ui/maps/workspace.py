@@ -140,7 +140,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
             continue
         corner = format_many(box.lower, unit, 0, with_unit=False)
         mark = pieces.badge(kind) + (" place in Y " + pieces.badge("assumed") if kind == "paper" else "")
-        rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) {mark}"))
+        rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) " + mark))
     pieces.facts(rows)
     if largest is not None and view.region != "largest":
         largest_box = partial(session.see, region="largest", at=None, point=None)

@@ -84,7 +84,7 @@ def inputs_column(result: SimulationResult | None) -> None:
     with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
         force_panel.inputs_panel()
         if result is not None and result.coupling is not None and not result.coupling.converged:
-            st.warning(result.coupling.finding.sentence, icon=":material/warning:")
+            pieces.said("warning", result.coupling.finding.sentence, "warning")
     with st.expander("**Tools**" if setup.tools else "**Cutter**", expanded=True, key="milling.open.cutter"):
         if not setup.tools:
             cut_panel.cutter_inputs()
@@ -92,7 +92,7 @@ def inputs_column(result: SimulationResult | None) -> None:
         if result is not None:
             for finding in result.notes:
                 if finding.code in force_view.OF_CUTTER:
-                    st.warning(finding.sentence, icon=":material/warning:")
+                    pieces.said("warning", finding.sentence, "warning")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
         cut_panel.stock_inputs()
     with st.expander("**Beside the joints**", expanded=False, key="milling.open.springs"):

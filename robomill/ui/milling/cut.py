@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
@@ -40,7 +39,7 @@ def stock_inputs() -> None:
     if current == "stl":
         _stl(stock if given == "stl" else None)
     elif stock is None:
-        pieces.note(f"{pieces.badge('computed')} {_around(setup)} around the feed moves")
+        pieces.note(pieces.badge("computed"), f"{_around(setup)} around the feed moves")
     else:
         declared.field("stock.lower")
         declared.field("stock.upper")
@@ -77,8 +76,9 @@ def _stl(stock: Stock | None) -> None:
     inputs.upload("Stock as a closed solid (.stl), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
     if stock is not None and stock.triangles is not None:
         for finding in session.kept(ODD, ()):
-            st.warning(finding.sentence, icon=":material/straighten:")
-        pieces.note(f"{pieces.badge('user')} solid of {format_count(len(stock.triangles), 'triangle')}, {_size(stock)}")
+            pieces.said("warning", finding.sentence, "straighten")
+        solid = format_count(len(stock.triangles), "triangle")
+        pieces.note(pieces.badge("user"), f"solid of {solid}, {_size(stock)}")
     elif FILE not in session.store().refused:
         pieces.note("Until a file is given, the stock stays as it was.")
 

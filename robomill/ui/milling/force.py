@@ -118,7 +118,7 @@ def _record(force: Any) -> None:
     if force is not None:
         _filter(force)
         samples, provenance = format_count(len(force.record.x), "sample"), force.provenance
-        pieces.note(f"{pieces.badge(provenance.kind)} {provenance.source}: {samples} against {force.record.axis}.")
+        pieces.note(pieces.badge(provenance.kind), f"{provenance.source}: {samples} against {force.record.axis}.")
     elif FILE not in session.store().refused:
         pieces.note("Until a record is given, the force stays as it was.")
 

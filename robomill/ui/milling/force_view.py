@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-
 import numpy as np
 
 from robomill.arrays import FloatArray
@@ -113,7 +111,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         feed, normal, axial = (format_si(v, "N", 0, sign=True, with_unit=False) for v in F[row])
         off = format_si(float(largest[row]), unit)
         mark = pieces.badge(material.provenance.kind) + (" in force" if row == 0 else "")
-        rows.append((html.escape(material.title), feed, normal, axial if known else "not given", off, mark))
+        rows.append((material.title, feed, normal, axial if known else "not given", off, mark))
     head = ("Row", *(f"{name}, N" for name in COMPONENTS), "tip off, max", "")
     pieces.table(rows, " nnnn ", head, strong=0)
     pieces.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
@@ -139,4 +137,4 @@ def worth_knowing(result: SimulationResult) -> None:
     """Notes on force, stock and cutter."""
     for finding in result.notes:
         if finding.code not in (COUPLING, *OF_CUTTER):  # these stand among the facts and beside the cutter
-            pieces.note(f"• {html.escape(finding.sentence)}")
+            pieces.note(f"• {finding.sentence}")

@@ -71,7 +71,7 @@ def picker(force: Any) -> None:
     count = len(others(material))
     words = f" The band comes from {count} other rows of {material.alloy}." if count else " No other row: no band."
     source = material.provenance.source
-    pieces.note(f"{pieces.badge(material.provenance.kind)} {source}.{words}")
+    pieces.note(pieces.badge(material.provenance.kind), f"{source}.{words}")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
         _coefficients(material)
@@ -80,7 +80,7 @@ def picker(force: Any) -> None:
 
 
 def _coefficients(material: Material) -> None:
-    st.markdown(f"**{material.title}**")
+    pieces.strong(material.title)
     inputs.table(
         f"milling.coefficients.{material.name}",
         lambda: coefficient_frame(material),

@@ -145,7 +145,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
     if measured is None:
         return
     for words in measured.findings:
-        st.warning(words, icon=":material/straighten:")
+        pieces.said("warning", words, "straighten")
     try:
         against = compare_profile(found, measured.station, measured.offset)
     except RobomillError as exc:
@@ -214,4 +214,4 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         ]
     )
     for finding in result.machined.notes():
-        st.warning(finding.sentence, icon=":material/layers:")
+        pieces.said("warning", finding.sentence, "layers")

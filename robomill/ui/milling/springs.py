@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -62,7 +61,7 @@ def _one(kind: type[Spring]) -> None:
     fitted = spring.fitted(cutter)
     if fitted != spring:
         inputs.button(_otherwise(spring, fitted), f"{key}.same", "sync", _put, kind, fitted, type="tertiary")
-    pieces.note(f"{pieces.badge(spring.provenance.kind)} {html.escape(spring.facts)}")
+    pieces.note(pieces.badge(spring.provenance.kind), spring.facts)
 
 
 def _otherwise(spring: Spring, fitted: Spring) -> str:
@@ -108,7 +107,7 @@ def _each_joint(kind: type[Spring]) -> None:
         ),
     )
     units = ", ".join(dict.fromkeys(unit_label(q.unit) for q in columns))
-    pieces.note(f"{pieces.badge('user')} {units}; 0 is rigid, which is what the paper assumes.")
+    pieces.note(pieces.badge("user"), f"{units}; 0 is rigid, which is what the paper assumes.")
 
 
 def joint_columns(kind: type[Spring]) -> list[Quantity]:
@@ -217,13 +216,13 @@ def lines_table(result: SimulationResult, i: int) -> None:
     unit = session.project().view.length
     rows = [
         (
-            html.escape(name),
+            name,
             *(_signed(v, unit) for v in share),
             pieces.badge(kind) + ("" if counts else " shown, not added"),
         )
         for name, share, kind, counts in [*lines(result, i), ("together", result.delta[i], "computed", True)]
     ]
-    head = ("", *(f"δ<sub>{a}</sub>, {unit}" for a in "XYZ"), "")
+    head = ("", *(pieces.subscripts(f"δ_{a}, {unit}") for a in "XYZ"), "")
     pieces.table(rows, " nnn ", head, strong=len(rows) - 1)
 
 

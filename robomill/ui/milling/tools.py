@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -65,7 +64,7 @@ def _cut_with() -> IntArray:
 def _ask(number: int) -> None:
     """A tool that is missing: its diameter makes it a row of the table, where the rest can be said."""
     words = f"**Tool {number}** cuts and nobody has said what it is."
-    st.warning(words, icon=":material/help:")
+    pieces.said("warning", words, "help")
     diameter = quantities(Cutter)["diameter"]
     unit = declared.in_view(diameter.unit)
     box = box_of(diameter, label=f"Diameter of tool {number}", unit=unit, optional=True, placeholder="type it")
@@ -99,9 +98,9 @@ def _table(tools: ToolTable) -> None:
         lambda frame: session.change(tools=tools_of(frame, unit, tools), from_editor=True),
         inputs.Sheet(columns=columns | {NAME: special[NAME]}, dynamic=True),
     )
-    pieces.note(f"{pieces.badge('user')} An empty cell is not stated: kind, flutes and helix are then assumed.")
+    pieces.note(pieces.badge("user"), "An empty cell is not stated: kind, flutes and helix are then assumed.")
     for finding in (*session.kept(ODD, ()), *tools.notes(_cut_with().tolist())):
-        pieces.note(f"{pieces.badge('assumed')} {html.escape(finding.sentence)}")
+        pieces.note(pieces.badge("assumed"), finding.sentence)
 
 
 def _ways_in(tools: ToolTable) -> None:

@@ -86,7 +86,7 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
 
 def where_from(setup: SimulationSetup) -> None:
     """Each block of numbers with its badge and its source."""
-    rows = [(html.escape(s.what), pieces.subscripts(s.value), pieces.sourced(s.provenance)) for s in sources(setup)]
+    rows = [(s.what, pieces.subscripts(s.value), pieces.sourced(s.provenance)) for s in sources(setup)]
     pieces.table(rows, "qv ")
 
 
@@ -101,7 +101,7 @@ def beside_the_paper(project: Project) -> None:
     top = max((abs(c.value) for c in found if np.isfinite(c.value)), default=1.0) or 1.0
     rows = [
         (
-            f"{html.escape(c.label)} {pieces.badge(c.kind)}",
+            f"{c.label} " + pieces.badge(c.kind),
             pieces.bar(abs(c.value) / top, c.kind),
             "about " * c.rough + format_si(abs(c.value), project.view.length, 2),
         )

@@ -67,7 +67,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     low, high = summary.low, summary.high
     rows = [
         (
-            f"{axis}<sub>W</sub>",
+            pieces.subscripts(f"{axis}_W"),
             f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
             f"{_plain(high[i] - low[i], unit)} {unit_label(unit)}",
         )

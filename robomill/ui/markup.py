@@ -1,0 +1,34 @@
+"""Words as they are: what came from a file, a person or a refusal is shown as text, never read as HTML or Markdown."""
+
+from __future__ import annotations
+
+import html
+import re
+
+# Breaks what Markdown finds in plain words: addresses to link, names of symbols and smileys between colons.
+_APART = "\u2060"
+
+
+class Html(str):
+    """Text that is HTML already. What is added to it is plain text unless it is HTML, too."""
+
+    __slots__ = ()
+
+    def __add__(self, other: str) -> Html:
+        return Html(f"{self}{as_html(other)}")
+
+    def __radd__(self, other: str) -> Html:
+        return Html(f"{as_html(other)}{self}")
+
+
+def as_html(*parts: str) -> Html:
+    """The parts with a space between them, each escaped unless it is HTML."""
+    return Html(" ".join(part if isinstance(part, Html) else html.escape(part) for part in parts))
+
+
+def as_markdown(text: str) -> str:
+    """One paragraph of Markdown that shows exactly these words: no style, link, picture, formula or foreign address."""
+    words = " ".join(text.split())
+    words = re.sub(r"[\\`*\[\]<~$|#]|(?<!\w)_|_(?!\w)|&(?=#?\w+;)|:(?=[A-Za-z])", r"\\\g<0>", words)
+    words = re.sub(r"^(\d+)([.)])(?= )|^([-+>=])", lambda m: f"{m[1] or ''}\\{m[2] or m[3]}", words)
+    return re.sub(r"(?i)(://|\bwww(?=\.)|@|:(?=[\w/+-]+:))", rf"\1{_APART}", words)
