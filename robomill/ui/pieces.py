@@ -53,7 +53,7 @@ def _tile(tile: Tile) -> str:
     note = subscripts(tile.note)
     if tile.was and tile.was != tile.value:
         moved = f" · {html.escape(tile.change)}" if tile.change else ""
-        note = f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}'
+        note = Html(f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}')
     mark = f"{badge(tile.kind)} " if tile.kind else ""
     ranges = "".join(f'<div class="rm-range">{html.escape(words)}</div>' for words in tile.ranges)
     return (

@@ -62,7 +62,9 @@ def test_words_of_a_file_are_words_on_every_page(app: AppTest, page: str) -> Non
             assert "[a](" not in element.value
             assert not re.search(r"(?<!\\):red\[", element.value)
             assert element.proto.allow_html is False or "foreign" not in element.value
-    assert page == "4_Identification" or "foreign.example" in html.unescape(words(shown)), "the words themselves are there"
+    assert page == "4_Identification" or "foreign.example" in html.unescape(words(shown)), (
+        "the words themselves are there"
+    )
 
 
 def test_a_refused_file_is_quoted_as_words(app: AppTest) -> None:

@@ -63,7 +63,7 @@ def _cut_with() -> IntArray:
 
 def _ask(number: int) -> None:
     """A tool that is missing: its diameter makes it a row of the table, where the rest can be said."""
-    words = f"**Tool {number}** cuts and nobody has said what it is."
+    words = f"Tool {number} cuts and nobody has said what it is."
     pieces.said("warning", words, "help")
     diameter = quantities(Cutter)["diameter"]
     unit = declared.in_view(diameter.unit)
