@@ -65,7 +65,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     path = setup.toolpath
     summary = path_summary(path)
     low, high = summary.low, summary.high
-    rows = [
+    rows: list[tuple[str, str, str]] = [
         (
             pieces.subscripts(f"{axis}_W"),
             f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
