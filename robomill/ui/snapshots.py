@@ -18,6 +18,7 @@ from robomill.io.tables import parse_toml
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import autosave, cached, inputs, pieces, session
+from robomill.ui.markup import as_markdown
 from robomill.ui.project import project_from_toml, project_to_toml
 from robomill.ui.shelf import Head, place_of
 from robomill.ui.verdict import WORDS
@@ -36,7 +37,7 @@ def kept_projects() -> None:
     if session.drop(OPENED):
         st.rerun()
     if why := autosave.trouble():
-        st.caption(why)
+        st.caption(as_markdown(why))
     if not autosave.line().key:
         return
     heads = autosave.shelf().heads(autosave.line().key)

@@ -92,7 +92,7 @@ def _compliances(robot: Robot, unit: str) -> None:
     shown, write = partial(tables.compliance_frame, unit=unit), partial(_write_compliance, unit=unit)
     _table(f"compliance:{unit}", "Joint", column, shown, write)
     if robot.compliance_set == USER_SET:
-        pieces.note(f"{pieces.badge('user')} entered in the app")
+        pieces.note(pieces.badge("user"), "entered in the app")
     else:
         _said(robot, f"compliance.{robot.compliance_set}")
 
