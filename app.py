@@ -18,7 +18,10 @@ project = ui.begin("Start")
 setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
 if result is None:
-    ui.note("The numbers above were refused. Undo the last change, or mend it on the Robot, Toolpath or Milling page.")
+    ui.note(
+        "Nothing is computed yet. Where numbers above were refused, undo the last change, or mend it on the Robot, "
+        "Toolpath or Milling page."
+    )
     st.stop()
 
 ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))

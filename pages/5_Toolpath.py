@@ -23,7 +23,7 @@ source = setup.source
 empty = source.kind == "sketch" and not source.sketch.elements
 path = None if empty else ui.attempt(lambda: setup.toolpath)
 reach = ui.attempt(path_reach, setup) if path is not None else None
-result = ui.attempt(view.simulated, setup) if reach is not None else None
+result = ui.attempt(ui.result, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
 view.tiles(source, path, reach, result, unit)
@@ -53,8 +53,6 @@ with right:
         if words:
             pieces.said("info", words, "my_location")
         stock_note(setup)
-        if result is None:
-            view.ask_button(setup)
     with st.container(border=True):
         st.markdown("**The path in figures**")
         details.path_facts(setup, unit)

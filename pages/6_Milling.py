@@ -15,7 +15,7 @@ if result is None:
     left, right = ui.thirds()
     with left:
         panel.inputs_column(None)
-    right.info("Nothing was computed: mend the value named above. What you typed is kept.")
+    right.info("Nothing is computed yet: where a value is named above, mend it. What you typed is kept.")
     st.stop()
 
 with st.container(gap=None):

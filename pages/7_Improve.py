@@ -13,7 +13,7 @@ joints = setup.robot.joint_numbers
 title = f"Improve · {setup.name}"
 
 result = ui.attempt(ui.result, setup)
-if result is None or result.worst < 0:
+if result is None or result.worst < 0 or result.setup.digest() != setup.digest():
     ui.headline(title, "There is no cut to improve yet.")
     ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
     st.stop()

@@ -16,19 +16,40 @@ GIB = 1 << 30
 PLACE = "ROBOMILL_MEMORY"
 LEAST, MOST = GIB, 64 * GIB  # what is believed of the system
 KEPT_RESULTS = 0.15  # share that results kept for all sessions may take
+SURFACES, PATHS, MAPS = 1 / 16, 1 / 4, 1 / 16  # shares that the surfaces of a run, its path, a map may take
+CELL = 64  # bytes of a cell: heights as told, as left, before, their difference, walls
+SAMPLE = 3000  # bytes of a sample of the path: poses, joints in all postures, Jacobians, shares of the compliance
+STEP = 4000  # bytes more of a step that is marched: what it meets, by angle and height
 
 
 @cache
 def memory() -> int:
     """Bytes that this process may count on: what the machine, its container and its limits leave."""
     with suppress(ValueError):
-        return int(float(os.environ.get(PLACE, "")) * GIB)
+        said = float(os.environ.get(PLACE, ""))
+        if 0.0 < said < float("inf"):
+            return int(said * GIB)
     return int(min(max(min(_limits(), default=4 * GIB), LEAST), MOST))
 
 
 def kept_results() -> int:
     """Bytes that results kept for all sessions may take together."""
     return int(KEPT_RESULTS * memory())
+
+
+def cells() -> int:
+    """Cells that the surface of a part may have."""
+    return int(SURFACES * memory() / CELL)
+
+
+def samples(marched: bool = False) -> int:
+    """Samples that a path may have, or steps of it that are ``marched`` through the stock."""
+    return int(PATHS * memory() / (SAMPLE + STEP * marched))
+
+
+def map_bytes() -> int:
+    """Bytes that a map may take."""
+    return int(MAPS * memory())
 
 
 def _limits() -> list[int]:

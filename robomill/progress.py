@@ -3,7 +3,8 @@
     with watched(Progress(stop=event.is_set)):      # whoever waits
         simulate(setup)
 
-    checkpoint(i / len(slices), "steps cut")        # the work, between slices of less than a tenth of a second
+    for some in slices(len(steps), "steps cut"):    # the work, a tenth of a second at a time
+        kernel(steps[some], ...)
 
 What is watched belongs to the thread that works, so that results which are made when they are first asked for
 (surfaces, gauges) can be stopped too. Unwatched, nothing of this does anything.
@@ -16,6 +17,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+
+SLICE_S = 0.04  # s: what a piece of work should take
+FEW = 16  # items of the first piece
 
 
 class Cancelled(Exception):  # noqa: N818 - no error
@@ -51,6 +55,20 @@ def watched(progress: Progress | None) -> Iterator[None]:
         yield
     finally:
         _watching.reset(before)
+
+
+def slices(count: int, stage: str, most: int = 1 << 20) -> Iterator[slice]:
+    """0 to ``count`` in pieces that take less than a tenth of a second each, with a checkpoint before each; in pieces
+    of ``most`` where nobody waits."""
+    begin, size = 0, FEW if _watching.get() is not None else most
+    while begin < count:
+        checkpoint(begin / count, stage)
+        before = time.monotonic()
+        yield slice(begin, min(begin + size, count))
+        begin += size
+        if _watching.get() is not None:
+            faster = SLICE_S / max(time.monotonic() - before, 1e-9)
+            size = int(min(max(size * min(faster, 4.0), 1), most))
 
 
 def checkpoint(share: float = 0.0, stage: str = "") -> None:

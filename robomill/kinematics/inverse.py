@@ -15,6 +15,7 @@ from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.joining import Joined, join
 from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 
 Spin = float | Literal["least_motion", "fixed"]
@@ -164,6 +165,7 @@ def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> 
     held = wish.free_spin and arm.spindle_on_last_axis
 
     def joined(T_MT: FloatArray, angle: float) -> Joined:
+        checkpoint()
         found, sound = every(robot, arm, spun(T_MT, angle))
         if held:
             found[..., 5] = robot.home[5]
@@ -192,6 +194,7 @@ def _numerical(robot: Robot, wish: Wish) -> Chosen:
     else:
         theta, found = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=bool)
         for i in range(len(wish.T_MT)):
+            checkpoint(i / len(wish.T_MT))
             if i % wish.length == 0:
                 near = bent_home(robot)[None]
             theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, wish.T_MT[i : i + 1], near, wish.mode)

@@ -13,6 +13,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
+from robomill.progress import checkpoint
 from robomill.simulation.coupling import Coupling, Settled, settle
 from robomill.simulation.cut import met_conditions, through_stock
 from robomill.simulation.setup import SimulationSetup
@@ -91,7 +92,8 @@ class _Walk:
         rows = np.zeros((m, 0 if first is None else len(first[0])))
         sectors = np.zeros((m, *(first[1].shape if first is not None else (0, 4))))
         settled: dict[int, Settled] = {}
-        for i in map(int, self.march.steps):
+        for n, i in enumerate(map(int, self.march.steps)):
+            checkpoint(n / len(self.march.steps), "Force and deflection, step by step")
             settled[i], rows[i], sectors[i] = self._step(i)
         return rows, sectors, settled
 

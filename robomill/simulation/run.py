@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from robomill import budgets
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
@@ -20,6 +21,7 @@ from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_ki
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
+from robomill.progress import checkpoint
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_conditions, told_conditions
 from robomill.simulation.mapped import beyond_map, total_compliance
@@ -29,6 +31,7 @@ from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import farther, held
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sampling import check_samples
 
 
 def simulate(setup: SimulationSetup) -> SimulationResult:
@@ -38,9 +41,13 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     Raises RobomillError children naming what cannot be run.
     """
     path = sampled(setup.toolpath, setup.step)
+    if setup.engagement:
+        check_samples(setup.toolpath, setup.step, len(path), budgets.samples(marched=True))
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
+    checkpoint(0.0, "How the arm stands")
     ik = configurations(setup, path)
+    checkpoint(0.0, "Compliance")
     C_joint, C_spring = compliances(setup, path, ik.theta)
     C = total_compliance(setup, path, C_joint, C_spring)
     sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
@@ -88,6 +95,7 @@ def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:
     F = forces(bent)[1]
 
     def largest(theta: FloatArray) -> float:
+        checkpoint()
         C = total_compliance(setup, path, *compliances(setup, path, theta))
         size = np.linalg.norm(replace(bent, C=C).delta(F), axis=1)[path.cutting]
         return float(np.nanmax(size)) if np.isfinite(size).any() else float("nan")

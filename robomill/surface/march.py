@@ -14,11 +14,15 @@ from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.progress import checkpoint
 from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, moves_of, tool_axes
 from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 
-AT_ONCE = 8192  # steps: what they meet is kept in half precision where it serves only the course over a revolution
+AT_ONCE = (
+    256,
+    8192,
+)  # steps at least, where nothing goes on after them, and at most: what they meet is looked at at once
 JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
@@ -198,15 +202,27 @@ class March:
         from robomill.surface.engagement_kernels import REST
 
         state, begins = self._state(self._begins), self._begins
-        n = np.arange(len(self.steps))
         rows = np.zeros((len(self.points), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(self.points), len(state[1].sectors), 4), dtype=np.float16)
-        for some in np.array_split(n, len(n) // AT_ONCE + 1):
-            runs = np.cumsum(begins)[some] - 1, begins[some]
+        run, first = np.cumsum(begins) - 1, 0
+        while first < len(self.steps):
+            checkpoint(first / len(self.steps), "What each step meets")
+            n = np.arange(first, self._stop_after(first))
+            some, first = slice(n[0], n[-1] + 1), int(n[-1]) + 1
             rows[self.steps[some]], sectors[self.steps[some]] = self._march(
-                state, some, self._ends[some], runs, (True, True)
+                state, n, self._ends[some], (run[some], begins[some]), (True, True)
             )
         return rows, sectors, int(state[0].columns.lost[0])
+
+    def _stop_after(self, first: int) -> int:
+        """Where the steps end that are marched at once: where nothing goes on, so that none needs to know the next."""
+        from robomill.surface.march_kernels import ONWARD
+
+        n = slice(first + AT_ONCE[0] - 1, first + AT_ONCE[1])
+        ends, feed = self._ends[n], self._feed[n]
+        onward = (ends[1:, :3] == ends[:-1, 3:]).all(axis=1) & (np.einsum("ni,ni->n", feed[1:], feed[:-1]) > ONWARD)
+        stops = np.flatnonzero(self._begins[n][1:] & ~onward)
+        return int(n.start + 1 + stops[0]) if len(stops) else min(n.stop, len(self.steps))
 
     def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, np.ndarray]:
         """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 6,) and sectors; cuts nothing."""

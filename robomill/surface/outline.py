@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
+from robomill.progress import slices
 from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000
@@ -41,7 +42,8 @@ class Outline:
         start = radius - np.minimum(self.reach, 0.9 * radius)
         asked = np.ascontiguousarray(np.column_stack([places, height, start]))
         result = np.empty((len(asked), 3))
-        walls_left(*self._tracks, asked, result)
+        for some in slices(len(asked), "Walls"):
+            walls_left(*self._tracks, asked[some], result[some])
         told, told_both, left = result.T
         with np.errstate(invalid="ignore"):
             return told - radius, left - radius, np.asarray(np.abs(told_both - told) <= SAME)
@@ -58,7 +60,8 @@ class Outline:
         """
         asked = np.ascontiguousarray(np.column_stack([places, offset]))
         result = np.empty((len(asked), 5))
-        floors_left(*self._tracks, asked, result)
+        for some in slices(len(asked), "Floors"):
+            floors_left(*self._tracks, asked[some], result[some])
         told, left, told_both, left_both, upright = result.T
         with np.errstate(invalid="ignore"):
             one = (told_both - told <= SAME + slack) & (left_both - left <= SAME + slack)

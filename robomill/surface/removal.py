@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
+from robomill.progress import slices
 from robomill.surface.stock import Cells
 
 TILE_CELLS = 250_000
@@ -48,7 +49,8 @@ def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -
         n = len(part)
         tile = Heights(part, cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
         edge = EdgeRecord(z_centre[:n], z_low[:n], share[:n], flat, np.zeros(1, dtype=np.int64))
-        cut_moves(shape, ends, chosen, tile, edge)
+        for some in slices(len(chosen), "Surface"):
+            cut_moves(shape, ends, chosen[some], tile, edge)
         heights = np.empty(edge.noted[0])
         walls = np.empty((edge.noted[0], 6))
         settle(tile, edge, heights, walls)
@@ -77,7 +79,8 @@ def cut_tilted(z: FloatArray, cells: Cells, cutter: Cutter, moves: tuple[FloatAr
         part = z[i : i + rows]
         tile = Heights(part, cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
         hidden = Hidden(np.full(part.shape, np.inf), np.full(part.shape, -np.inf))
-        cut_tilted_moves(shape, tilted, chosen, tile, hidden)
+        for some in slices(len(chosen), "Surface"):
+            cut_tilted_moves(shape, tilted, chosen[some], tile, hidden)
         opened = hidden.high >= part
         part[opened] = np.minimum(part, hidden.low)[opened]
         overhang[i : i + rows] = (hidden.high > -np.inf) & ~opened

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
@@ -118,16 +119,17 @@ class Cells(NamedTuple):
         return frozen(self.y0 + np.arange(self.ny) * self.dy)
 
 
-def stock_grid(stock: Stock, cell: float, budget: int = 50_000_000) -> Cells:
+def stock_grid(stock: Stock, cell: float, budget: int | None = None) -> Cells:
     """Cells of a height map over ``stock``, none larger than ``cell`` (m).
 
-    Raises SurfaceError for a cell size that is not positive, or that needs more than ``budget`` cells, naming the
-    size that fits.
+    Raises SurfaceError for a cell size that is not positive, or that needs more than ``budget`` cells (None: what
+    the memory holds), naming the size that fits.
     """
     if not (np.isfinite(cell) and cell > 0):
         raise SurfaceError(f"Cell size: found {cell}; expected a length above 0, e.g. 0.1 mm.")
     length, width = float(stock.size[0]), float(stock.size[1])
     nx, ny = (max(1, int(np.ceil(side / cell - 1e-6))) for side in (length, width))
+    budget = budgets.cells() if budget is None else budget
     if nx * ny > budget:
         fits = fitting_cell(length, width, budget)
         raise SurfaceError(

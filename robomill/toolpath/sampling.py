@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
+from robomill import budgets
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
 from robomill.toolpath.path import PER_MOVE, Toolpath
-from robomill.units import from_si, to_si
+from robomill.units import format_short, to_si
 from robomill.vectors import angle_between
 
-MAX_SAMPLES = 5_000_000
 CORNER = to_si(10.0, "deg")
 
 
@@ -23,19 +23,14 @@ def resample(path: Toolpath, step: float) -> Toolpath:
     A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
     no length): there the force already has the new direction. Rapids stay whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
-    would give more than ``MAX_SAMPLES`` points.
+    would give more points than the memory holds.
     """
     if not (math.isfinite(step) and step > 0):
         raise ToolpathError(f"Step along the path: found {step}; expected a length above 0.")
     pieces = np.where(path.cutting, np.ceil(path.step_length / step - 1e-9), 1.0)
     starts = _begins(path)
     total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
-    if total > MAX_SAMPLES:
-        fits = float(path.step_length[path.cutting].sum()) / max(MAX_SAMPLES - 2 * len(path), 1)
-        raise ToolpathError(
-            f"Step along the path: {from_si(step, 'mm'):.3g} mm would need {total:.3g} points; "
-            f"at most {MAX_SAMPLES} fit, so use {from_si(fits, 'mm'):.3g} mm or more."
-        )
+    check_samples(path, step, total, budgets.samples())
     counts = np.maximum(pieces, 1.0).astype(np.int64)
     samples = counts + starts
     owner = np.repeat(np.arange(len(path)), samples)
@@ -54,6 +49,18 @@ def resample(path: Toolpath, step: float) -> Toolpath:
         k=_slerp(path.k[before], path.k[owner], fraction),
         **carried,
     )
+
+
+def check_samples(path: Toolpath, step: float, total: float, most: int) -> None:
+    """Raises ToolpathError where ``total`` points are more than ``most``, naming the step (m) that fits."""
+    if total <= most:
+        return
+    spare = most - 2 * len(path)
+    fits = float(path.step_length[path.cutting].sum()) / max(spare, 1)
+    found = f"Step along the path: {format_short(step, 'mm')} would need {total:,.0f} points; at most {most:,} fit"
+    if spare <= 0:
+        raise ToolpathError(f"{found}, and the path has {len(path):,} moves of its own: run it in parts.")
+    raise ToolpathError(f"{found}, so use {format_short(1.05 * fits, 'mm')} or more.")
 
 
 def _begins(path: Toolpath) -> BoolArray:

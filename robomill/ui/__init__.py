@@ -6,7 +6,7 @@ How to write a page (at most 120 lines)::
     from robomill.viz.deviation import components_figure      # pictures come from viz, numbers from report
 
     project = ui.begin("Milling")                             # page config, style, project, sidebar
-    result = ui.attempt(ui.result, project.setup)             # cached by digest; a refusal is shown, then None
+    result = ui.attempt(ui.result, project.setup)             # kept by digest; a refusal, or progress, is shown
     ui.headline("Milling", "The groove is 0.23 mm off.")      # one sentence
     ui.tiles([ui.Tile("Max deviation", "0.25 mm")])           # four tiles
     left, right = ui.thirds()                                 # inputs left, picture right
@@ -41,10 +41,11 @@ Rules of the house:
 
 from __future__ import annotations
 
-from robomill.ui.cached import kept_figure, result
+from robomill.ui.cached import kept_figure
 from robomill.ui.inputs import number
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
+from robomill.ui.running import result
 from robomill.ui.shell import begin, dark
 from robomill.ui.verdict import tip_tile, verdict_sentence, verdict_tiles
 

@@ -33,8 +33,6 @@ def shared(key: Callable[..., Any], words: str = "") -> Callable[[Function], Fun
     """
 
     def keep(function: Function) -> Function:
-        name = f"{function.__module__}.{function.__qualname__}"
-
         @wraps(function)
         def asked(*arguments: Any) -> Any:
             def made() -> Any:
@@ -43,11 +41,16 @@ def shared(key: Callable[..., Any], words: str = "") -> Callable[[Function], Fun
                 with st.spinner(f"{words} ..."):
                     return function(*arguments)
 
-            return commons.get((name, digest(key(*arguments))), made)
+            return commons.get(name_of(function, key(*arguments)), made)
 
         return cast("Function", asked)
 
     return keep
+
+
+def name_of(function: Callable[..., Any], said: Any) -> tuple[str, str]:
+    """Under what the answer of a shared function is kept; ``said`` is what its key says."""
+    return f"{function.__module__}.{function.__qualname__}", digest(said)
 
 
 def by_setup(setup: SimulationSetup) -> tuple[Any, ...]:
@@ -65,6 +68,12 @@ def result(setup: SimulationSetup) -> SimulationResult:
     """``simulate(setup)``, from the cache where it was computed before. Raises the refusal of ``simulate``."""
     found = simulate(setup)
     _ = found.verdict  # so that what cannot be judged is refused here, where a page expects it
+    return found
+
+
+def held(setup: SimulationSetup) -> SimulationResult | None:
+    """The run of ``setup`` where it is kept; None where it would have to be computed."""
+    found: SimulationResult | None = commons.find(name_of(result, by_setup(setup)))
     return found
 
 

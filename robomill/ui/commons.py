@@ -59,14 +59,16 @@ class Commons:
         raises is not kept."""
         with self._lock:
             mine = self._making.setdefault(key, threading.Lock())
-        with mine:
-            found = self.find(key, NOTHING)
-            if found is NOTHING:
-                found = make()
-                self.put(key, found)
-        with self._lock:
-            self._making.pop(key, None)
-        return found
+        try:
+            with mine:
+                found = self.find(key, NOTHING)
+                if found is NOTHING:
+                    found = make()
+                    self.put(key, found)
+            return found
+        finally:
+            with self._lock:
+                self._making.pop(key, None)
 
     def clear(self) -> None:
         """Forget everything."""

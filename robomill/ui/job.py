@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import streamlit as st
@@ -15,6 +16,7 @@ from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
 
 EVERY_S = 0.4
+ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
 
 
 @dataclass(eq=False)
@@ -33,6 +35,7 @@ class Job:
     error: RobomillError | None = None
     bug: BaseException | None = None
     began: float = field(default_factory=time.monotonic)
+    seen: float = field(default_factory=time.monotonic)
     stop: threading.Event = field(default_factory=threading.Event)
     done: threading.Event = field(default_factory=threading.Event)
 
@@ -52,12 +55,15 @@ class Job:
         spent = time.monotonic() - self.began
         return spent * (1.0 / self.share - 1.0) if self.share > 0.02 else float("nan")
 
+    def _unwanted(self) -> bool:
+        return self.stop.is_set() or time.monotonic() - self.seen > ABANDONED_S
+
     def _run(self) -> None:
         try:
-            with watched(Progress(self.stop.is_set, lambda now: self.reach(now.share, now.stage))):
+            with watched(Progress(self._unwanted, lambda now: self.reach(now.share, now.stage))):
                 self.made = self.work(self)
         except Cancelled:
-            pass
+            self.stop.set()
         except RobomillError as exc:
             self.error = exc
         except Exception as exc:  # shown by the page that asked: a thread has nobody to raise to
@@ -80,10 +86,17 @@ def give_up(key: str) -> None:
         job.stop.set()
 
 
-def finished(key: str) -> Job | None:
-    """The job kept under ``key`` where it has ended; its bug, if it met one, is raised here."""
+def finished(key: str, wait_s: float = 0.0) -> Job | None:
+    """The job kept under ``key`` where it has ended, or ends within ``wait_s``; its bug, if it met one, is raised here.
+    One that nobody had looked at for long is forgotten."""
     job: Job | None = session.kept(key)
-    if job is None or not job.done.is_set():
+    if job is None:
+        return None
+    job.seen = time.monotonic()
+    if not job.done.wait(wait_s):
+        return None
+    if job.stop.is_set():
+        session.drop(key)
         return None
     if job.bug is not None:
         raise job.bug
@@ -91,13 +104,14 @@ def finished(key: str) -> Job | None:
 
 
 @st.fragment(run_every=EVERY_S)
-def waiting(key: str, words: Callable[[Job], str]) -> None:
-    """Progress in ``words`` and a cancel button; the page runs again at the end."""
+def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | None = None) -> None:
+    """Progress in ``words`` and a button that cancels, by ``stop``; the page runs again at the end."""
     job: Job | None = session.kept(key)
     if job is None or job.done.is_set():
         st.rerun()
         return
+    job.seen = time.monotonic()
     bar, cancel = st.columns([4, 1], vertical_alignment="center")
     bar.progress(job.share, words(job))
     with cancel:
-        inputs.button("Cancel", f"{key}.cancel", "close", give_up, key, width="stretch")
+        inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="stretch")

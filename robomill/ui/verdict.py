@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 
 from robomill.arrays import digest
-from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
@@ -170,7 +169,4 @@ def previous(result: SimulationResult) -> SimulationResult | None:
         return None
     if digest(old.setup.source) != digest(result.setup.source):
         return None  # two different parts are not before and after
-    try:
-        return cached.result(old.setup)
-    except RobomillError:
-        return None
+    return cached.held(old.setup)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import WorkspaceError
 from robomill.units import format_si
@@ -14,7 +15,6 @@ from robomill.units import format_si
 # The paper's working box (Sec. 3): 1200 x 600 x 500 mm, Z_M from -400 to 100; its place in Y_M is assumed.
 PAPER_BOX = (frozen([-0.6, -1.6, -0.4]), frozen([0.6, -1.0, 0.1]))
 PAPER_BOX_SIZE = frozen([1.2, 0.6, 0.5])
-BUDGET = 1 << 30  # bytes a map may take
 LARGEST_AXIS = 100_000
 
 
@@ -55,9 +55,9 @@ class Grid:
 
     def check_budget(self, bytes_per_cell: int) -> None:
         """Raises WorkspaceError, naming the step that fits, where a map would need more than the budget."""
-        if self.cells * bytes_per_cell <= BUDGET:
+        fits = budgets.map_bytes() // bytes_per_cell
+        if self.cells <= fits:
             return
-        fits = BUDGET // bytes_per_cell
         axes = sum(size > 1 for size in self.shape)
         step = self.step * (self.cells / fits) ** (1.0 / axes)
         raise WorkspaceError(

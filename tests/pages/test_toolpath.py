@@ -9,6 +9,7 @@ from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
+from robomill.ui import running
 from robomill.ui.toolpath.reading import BACKGROUND_CHARACTERS
 
 
@@ -88,7 +89,8 @@ def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:
         assert "toolpath.program" in drawn, "a run that draws nothing takes the program off the page"
 
 
-def test_a_big_program_is_read_beside_the_page(app: AppTest) -> None:
+def test_a_big_program_is_read_and_run_beside_the_page(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(running, "FIRST_S", 0.0)
     go(app, "5_Toolpath")
     body = "".join(f"G1 X{i % 100} Y{i // 100 % 7}\n" for i in range(180_000))
     text = f"G21 G90\nG0 X0 Y0 Z1\nG1 Z-1 F6000\n{body}M2\n"
@@ -102,4 +104,11 @@ def test_a_big_program_is_read_beside_the_page(app: AppTest) -> None:
         app.run()
     assert not app.exception
     assert store(app).project.setup.source == GCodeSource(text, "big.nc")
-    assert "Not simulated yet" in words(app)
+    run = store(app).values[running.KEY]
+    assert not run.done.is_set()
+    app.button(key="run.cancel").click().run()
+    assert run.done.wait(30)
+    assert run.made is None
+    assert "Not computed yet" in words(app)
+    assert app.button(key="run.ask")
+    assert not app.exception

@@ -69,12 +69,13 @@ def test_odd_stocks_are_said():
     assert len(Stock((0, 0, 0), (0.0079, 1, 1)).warnings(CUTTER)) == 1
 
 
-def test_too_many_cells_are_refused_with_the_size_that_fits():
+def test_too_many_cells_are_refused_with_the_size_that_fits(monkeypatch):
+    monkeypatch.setattr("robomill.budgets.cells", lambda: 50_000_000)
     with pytest.raises(SurfaceError, match=r"at most 50 million fit, so use 0.00\d\d mm or more"):
         cut(STOCK, 1e-6, CUTTER, np.array([[0.01, 0.01, -0.002], [0.02, 0.01, -0.002]]))
     for length, width in ((0.06, 0.04), (0.123, 1.7), (2.0, 2e-4)):
         cell = fitting_cell(length, width, 50_000_000)
-        nx, ny, _, _, dx, dy = stock_grid(Stock((0, 0, 0), (length, width, 1)), cell)
+        nx, ny, _, _, dx, dy = stock_grid(Stock((0, 0, 0), (length, width, 1)), cell, 50_000_000)
         assert nx * ny <= 50_000_000
         assert max(dx, dy) <= cell * (1 + 1e-9)
 

@@ -49,7 +49,7 @@ def test_pieces_are_as_few_as_the_step_allows() -> None:
 
 
 def test_the_step_that_a_refusal_names_fits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robomill.toolpath.sampling.MAX_SAMPLES", 100)
+    monkeypatch.setattr("robomill.budgets.samples", lambda: 100)
     with pytest.raises(ToolpathError, match="at most 100 fit, so use ") as refused:
         resample(two_lines(), 1e-4)
     step = float(str(refused.value).split("so use ")[1].split(" mm")[0]) * 1e-3

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from robomill import budgets
 from robomill.errors import WorkspaceError
 from robomill.workspace import grid as grids
 from robomill.workspace.grid import Grid, axis_points, box_grid, plane_grid
@@ -48,15 +49,16 @@ def test_a_plane_has_one_axis_of_one(normal, fixed):
     assert [len(axis) for axis in axes] == [1 if i == fixed else n for i, n in enumerate((3, 5, 7))]
 
 
-def test_the_budget_counts_bytes_and_names_the_step_that_fits():
+def test_the_budget_counts_bytes_and_names_the_step_that_fits(monkeypatch):
+    monkeypatch.setattr(budgets, "map_bytes", lambda: 1 << 30)
     grid = box_grid([0, 0, 0], [1, 1, 1], 0.1)
     assert grid.cells == 1331
-    grid.check_budget(grids.BUDGET // 1331)
+    grid.check_budget(budgets.map_bytes() // 1331)
     with pytest.raises(WorkspaceError, match="11 x 11 x 11 = 1,331 cells needs 2.0 GiB") as refused:
-        grid.check_budget(2 * grids.BUDGET // 1331 + 1)
+        grid.check_budget(2 * budgets.map_bytes() // 1331 + 1)
     # Half the cells fit: the step grows by the cube root of two.
     assert "665 cells fit" in str(refused.value)
     assert "step of 126" in str(refused.value)
     # In a plane by the square root: 0.1 sqrt(121 / 31), rounded up to a tenth of a millimetre.
     with pytest.raises(WorkspaceError, match="step of 197.6 mm"):
-        plane_grid("z", 0, [0, 0, 0], [1, 1, 0], 0.1).check_budget(grids.BUDGET // 31)
+        plane_grid("z", 0, [0, 0, 0], [1, 1, 0], 0.1).check_budget(budgets.map_bytes() // 31)

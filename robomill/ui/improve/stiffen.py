@@ -7,29 +7,41 @@ from typing import Any
 import streamlit as st
 
 from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
+from robomill.simulation.estimate import run_seconds
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import job as jobs
+from robomill.ui.job import Job
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
-AUTO_SAMPLES = 30_000
-ASKED = "improve.asked"
+KEY, AT_ONCE_S = "improve.ranking", 1.0
 
 
 def found(setup: SimulationSetup) -> Stiffening | None:
-    """The ranking: at once for a short path, when asked for a long one. Raises the simulation's refusal."""
-    path = setup.toolpath
-    short = len(path) + float(path.s[-1]) / setup.step <= AUTO_SAMPLES and not setup.engagement
-    if not short and session.kept(ASKED) != setup.digest():
-        return None
-    with st.spinner("Cutting once with each joint twice as stiff …", show_time=True):
+    """The ranking: at once where that is short, else beside the page when it is asked for. Raises the simulation's
+    refusal."""
+    if run_seconds(setup) * (setup.robot.n + 1) <= AT_ONCE_S:
         return stiffer_joints(setup, cached.result)
+    job: Job | None = session.kept(KEY)
+    if job is None or job.about.digest() != setup.digest():
+        return None
+    ended = jobs.finished(KEY, AT_ONCE_S)
+    if ended is None:
+        return None
+    if ended.error is not None:
+        raise ended.error
+    made: Stiffening | None = ended.made
+    return made
 
 
 def ask(setup: SimulationSetup) -> None:
-    """The button that ranks the joints of a long path."""
-    rank = (session.keep, ASKED, setup.digest())
-    inputs.button("Rank the joints", "improve.rank", "play_arrow", *rank, type="primary")
+    """The button that ranks the joints of a long path, or how far that has come."""
+    if session.kept(KEY) is not None and session.kept(KEY).about.digest() == setup.digest():
+        jobs.waiting(KEY, lambda job: f"Cutting once with each joint twice as stiff: {job.stage}")
+        return
+    rank = Job(lambda _: stiffer_joints(setup, cached.result), setup)
+    inputs.button("Rank the joints", "improve.rank", "play_arrow", jobs.begin, KEY, rank, type="primary")
     pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
 
 

@@ -10,7 +10,7 @@ import streamlit as st
 from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, running, session
 from robomill.ui import evidence as evidence_panel
 from robomill.ui.arm import arm_at
 from robomill.ui.milling import cut as cut_panel
@@ -107,7 +107,9 @@ def workbench(digest: str, dark: bool) -> None:
     project = session.project()
     if project.setup.digest() != digest:
         st.rerun()
-    result = cached.result(project.setup)
+    result = running.shown(project.setup)
+    if result is None:
+        return
     spread, peak = spread_of(result)
     left, right = pieces.thirds()
     with left:

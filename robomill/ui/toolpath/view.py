@@ -1,18 +1,16 @@
-"""What the toolpath page says first, one sentence and the tiles; and the run behind them, on demand if it is long."""
+"""What the toolpath page says first: one sentence, and the tiles."""
 
 from __future__ import annotations
 
 import dataclasses
 
 import numpy as np
-import streamlit as st
 
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import pieces
 from robomill.ui.toolpath.summary import (
     duration,
     finding_words,
@@ -26,40 +24,11 @@ from robomill.ui.verdict import tip_tile, tone, verdict_sentences
 from robomill.units import (
     format_count,
     format_many,
-    format_short_count,
     format_si,
     format_value,
 )
 
-AUTO_SAMPLES = 60_000
-ASKED = "toolpath.asked"
 NOUNS = {"program": "cut", "lines": "cut", "sketch": "shape"}
-
-
-def samples(setup: SimulationSetup) -> int:
-    """About how many points a simulation of this path has."""
-    path = setup.toolpath
-    return int(len(path) + float(path.s[-1]) / setup.step)
-
-
-def simulated(setup: SimulationSetup) -> SimulationResult | None:
-    """The run of this set-up: at once where it is short, on demand where it is long. Raises its refusal."""
-    if samples(setup) <= AUTO_SAMPLES and not setup.engagement:
-        return cached.result(setup)
-    if session.kept(ASKED) == setup.digest():
-        with st.spinner(f"Simulating about {format_short_count(samples(setup))} points …", show_time=True):
-            return cached.result(setup)
-    return None
-
-
-def ask_button(setup: SimulationSetup) -> None:
-    """The button that simulates a long path."""
-    count = samples(setup)
-    words = "the engagement is found step by step" if setup.engagement else f"about {format_short_count(count)} points"
-    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        ask = (session.keep, ASKED, setup.digest())
-        inputs.button("Simulate", "toolpath.simulate", "play_arrow", *ask, type="primary")
-        pieces.note(f"Not simulated yet: {words}. The deviation can be seen after that.")
 
 
 def headline(

@@ -1,0 +1,80 @@
+"""How much memory there is, as the system, its limits or the owner say; and what work may take of it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from robomill import budgets
+from robomill.errors import RobomillError
+
+
+@pytest.fixture(autouse=True)
+def _fresh() -> Iterator[None]:
+    budgets.memory.cache_clear()
+    yield
+    budgets.memory.cache_clear()
+
+
+def test_the_owner_says_how_much_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(budgets.PLACE, "2.5")
+    assert budgets.memory() == int(2.5 * 2**30)
+    for share in (budgets.cells() * budgets.CELL, budgets.map_bytes(), budgets.kept_results()):
+        assert 0 < share < budgets.memory() / 4
+
+
+def test_never_more_than_the_machine_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(budgets.PLACE, raising=False)
+    pages = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    assert budgets.LEAST <= budgets.memory() <= max(budgets.LEAST, min(1.01 * pages, budgets.MOST))
+
+
+def test_a_limit_of_the_process_counts() -> None:
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))\n"
+        "from robomill import budgets; print(budgets.memory() <= 3 << 30)"
+    )
+    env = {key: value for key, value in os.environ.items() if key != budgets.PLACE}
+    assert subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True).stdout == "True\n"
+
+
+@pytest.mark.parametrize("nonsense", ["", "much", "nan", "-3", "0", "1e400"])
+def test_nonsense_of_the_owner_is_not_taken(monkeypatch: pytest.MonkeyPatch, nonsense: str) -> None:
+    monkeypatch.setenv(budgets.PLACE, nonsense)
+    assert budgets.LEAST <= budgets.memory() <= budgets.MOST
+
+
+def test_what_is_too_large_is_refused_with_what_fits_and_that_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    import robomill as rm
+    from robomill.simulation.samples import sampled
+    from robomill.surface.stock import stock_grid
+    from robomill.units import to_si
+
+    monkeypatch.setenv(budgets.PLACE, "2")
+    setup = rm.load_setup("samples/paper_flute")
+    with pytest.raises(RobomillError, match=r"0\.0120 mm needs .* million cells") as refused:
+        setup.replace(cell=0.012e-3)
+    fits = to_si(float(str(refused.value).split("so use ")[1].split(" mm")[0]), "mm")
+    cells = stock_grid(setup.stock_block, fits)
+    assert 0.9 * budgets.cells() < cells.nx * cells.ny <= budgets.cells()
+    with pytest.raises(RobomillError, match="points; at most") as refused:
+        rm.simulate(setup.replace(step=3e-8))
+    fits = to_si(float(str(refused.value).split("so use ")[1].split(" mm")[0]), "mm")
+    assert 0.8 * budgets.samples() < len(sampled(setup.toolpath, fits)) <= budgets.samples()
+
+
+def test_steps_that_are_marched_take_more_so_fewer_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    import robomill as rm
+    from robomill.simulation.samples import sampled
+
+    setup = rm.load_setup("samples/paper_flute/setup_process.toml")
+    assert setup.engagement
+    monkeypatch.setattr(budgets, "samples", lambda marched=False: 200 if marched else 10_000)
+    with pytest.raises(RobomillError, match="at most 200 fit, so use") as refused:
+        rm.simulate(setup.replace(step=1e-4))
+    fits = float(str(refused.value).split("so use ")[1].split(" mm")[0]) * 1e-3
+    assert len(sampled(setup.toolpath, fits)) <= 200
