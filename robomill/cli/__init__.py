@@ -1,6 +1,6 @@
 """The command line: the same job without a screen, with the same numbers.
 
-Exit codes: 0 success, 1 red verdict, 2 refused input (the sentence is on stderr).
+Exit codes: 0 success, 1 red verdict, 2 refused input (the sentence is on stderr), 130 interrupted.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from robomill import __version__, compiled
+from robomill.cli.progress_line import ProgressLine
 from robomill.cli.serve import run_serve, serve_options, start_app
 from robomill.cli.verbs import run_gcode, run_identify, run_ik, run_map, run_pose, run_robots, run_simulate
 from robomill.errors import RobomillError
+from robomill.progress import Progress, watched
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
 SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg")
@@ -27,14 +29,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         return start_app(words)
     arguments = parser().parse_args(_joined(words))
     compiled.announce(lambda word: print(f"{word} ...", file=sys.stderr, flush=True))
+    line = ProgressLine(sys.stderr)
     try:
-        code: int = arguments.run(arguments)
+        with watched(Progress(say=line.say)):  # unwatched, work would not stop for Ctrl-C before it is done
+            code: int = arguments.run(arguments)
+    except KeyboardInterrupt:
+        return 130
     except RobomillError as exc:
         print(f"robomill: {exc}", file=sys.stderr)
         return 2
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    finally:
+        line.clear()
     return code
 
 

@@ -11,7 +11,7 @@ from robomill.io.samples import samples_dir
 from robomill.report.paper import SLOT
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import sideways
-from robomill.ui import cached, pieces
+from robomill.ui import cached, pieces, running
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
 from robomill.units import from_si
 from robomill.viz.evidence import Claim, evidence_figure
@@ -49,7 +49,7 @@ def claims(project: Project, process: bool = False) -> list[Claim]:
         known.append(_process_setup())
         rows.append(_computed("process data, Table 2", known[-1]))
         rows.append(_computed("process data, Table 3", known[-1].replace(robot=third)))
-    if project.setup.digest() not in {setup.digest() for setup in known}:
+    if project.setup.digest() not in {setup.digest() for setup in known} and running.there(project.setup):
         rows.append(dataclasses.replace(_computed("robomill, your set-up", project.setup), kind="user"))
     return rows
 

@@ -38,6 +38,11 @@ def result(setup: SimulationSetup) -> SimulationResult | None:
     return _before(setup)
 
 
+def there(setup: SimulationSetup) -> bool:
+    """Whether the run of ``setup`` is kept, or short: what only adds to a page asks before it needs it."""
+    return cached.held(setup) is not None or run_seconds(setup) <= SHORT_S
+
+
 def shown(setup: SimulationSetup) -> SimulationResult | None:
     """What ``result`` has answered, for a part of the page that is run by itself."""
     return cached.held(setup) or _before(setup)

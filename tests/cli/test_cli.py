@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import pty
+import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -295,6 +298,28 @@ def test_without_a_verb_the_app_is_served_on_this_machine_only(monkeypatch, word
     assert Path(command[4]).name == "app.py"
     assert Path(command[4]).is_file()
     assert command[5:] == expected
+
+
+def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) -> None:
+    """A run of minutes: 5000 coupled steps."""
+    folder = Path(shutil.copytree(FLUTE, tmp_path / "flute"))
+    text = (folder / "setup_process.toml").read_text()
+    setup = folder / "long.toml"
+    setup.write_text(text.replace("step_mm = 1.0", "step_mm = 0.02\ncoupling = true"))
+    code = "import sys; from robomill.cli import main; sys.exit(main(['simulate', sys.argv[1]]))"
+    leader, terminal = pty.openpty()
+    process = subprocess.Popen([sys.executable, "-c", code, str(setup)], stdout=subprocess.PIPE, stderr=terminal)
+    os.close(terminal)
+    said = b""
+    while b"step by step: " not in said and process.poll() is None:
+        said += os.read(leader, 1000)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130, said
+    assert b"Traceback" not in said
+    assert process.stdout is not None
+    assert process.stdout.read() == b""
+    process.stdout.close()
+    os.close(leader)
 
 
 def test_an_interrupted_app_exits_with_130(monkeypatch) -> None:

@@ -13,7 +13,7 @@ from robomill.errors import RobomillError
 from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, session, shell
+from robomill.ui import cached, inputs, pieces, running, session, shell
 from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
 from robomill.ui.point import InHand
@@ -171,8 +171,8 @@ def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) ->
 
 
 def quiet_result(project: Project) -> SimulationResult | None:
-    """The milling result of the project, or None where it is refused: this page works without one."""
+    """The milling result of the project, or None where it is refused or long: this page works without one."""
     try:
-        return cached.result(project.setup)
+        return cached.result(project.setup) if running.there(project.setup) else None
     except RobomillError:
         return None
