@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import html
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -119,9 +118,7 @@ def compared(places: Mapping[str, str]) -> None:
         except RobomillError as exc:
             pieces.error(exc)
     rows = [*outcomes(list(setups.values()), session.project().view.length), *differences(list(setups.values()))]
-    cells = [[html.escape(cell) for cell in row] for row in rows]
-    head = ["", *map(html.escape, setups)]
-    pieces.table(cells, "q" + "v" * len(setups), head)
+    pieces.table(rows, "q" + "v" * len(setups), ["", *setups])
 
 
 def outcomes(setups: Sequence[SimulationSetup], unit: str) -> list[list[str]]:
