@@ -17,7 +17,7 @@ ASK_S = 60.0  # and one that takes longer than this is asked for
 FIRST_S = 0.3  # any other is waited for so long, lest the page changes twice
 KEY, LAST, ASKED, STOPPED = "run", "run.last", "run.asked", "run.stopped"
 GREYED = """<style>[data-testid="stMain"] :is(.rm-tiles, .rm-title, .rm-lead, .rm-facts, .rm-matrix,
-[data-testid="stPlotlyChart"], [data-testid="stImage"]) { opacity: .4; }</style>"""
+[data-testid="stPlotlyChart"], [data-testid="stImage"], .st-key-milling-verdict) { opacity: .4; }</style>"""
 
 
 def result(setup: SimulationSetup) -> SimulationResult | None:
