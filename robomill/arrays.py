@@ -15,6 +15,7 @@ from robomill.errors import RobomillError
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
+FARTHEST = 1e4  # m from the base of a robot or the zero of a part
 
 
 def as_floats(
@@ -40,6 +41,13 @@ def as_floats(
     if finite and not np.isfinite(array).all():
         raise error(f"{name}: expected finite numbers, found NaN or infinity.")
     return array
+
+
+def check_place(p: ArrayLike, name: str, error: type[RobomillError]) -> None:
+    """Refuse a place (..., 3) m that is farther off than a machine can be, where rounding would eat all else."""
+    farthest = float(np.abs(p).max())
+    if not farthest <= FARTHEST:
+        raise error(f"{name}: it lies {farthest:.3g} m off; expected {FARTHEST:g} m at most.")
 
 
 def frozen(array: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:

@@ -130,7 +130,7 @@ class Knowledge:
                 str(table.get("words", "from load tests")),
                 error=None if "model_error" not in table else ModelError(*map(float, table["model_error"])),
             )
-        except (KeyError, TypeError, ValueError) as exc:
+        except (KeyError, TypeError, ValueError, OverflowError) as exc:
             raise ProjectError(f"{where} cannot be used ({exc}); remove it or save the project again.") from exc
         return known.held_by(robot, springs)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, check_place
 from robomill.errors import RobotError
 from robomill.quantities import Quantity
 
@@ -78,4 +78,5 @@ def frame(value: Any, name: str, where: str) -> FloatArray:
         raise RobotError(
             f"{where}: {name} is not a rotation and a shift ({why}); its three axes must be unit, square, right-handed."
         )
+    check_place(T[:3, 3], f"{where}: {name}", RobotError)
     return T

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.arrays import FloatArray, as_floats, check_place, digest, frozen
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
@@ -121,6 +121,7 @@ class SimulationSetup:
         R = T_MW[:3, :3]
         if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:
             raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
+        check_place(T_MW[:3, 3], "Part zero", SetupError)
         object.__setattr__(self, "T_MW", frozen(T_MW))
         self._take_tolerances()
         self._take_spin()

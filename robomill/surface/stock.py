@@ -128,14 +128,15 @@ def stock_grid(stock: Stock, cell: float, budget: int | None = None) -> Cells:
     if not (np.isfinite(cell) and cell > 0):
         raise SurfaceError(f"Cell size: found {cell}; expected a length above 0, e.g. 0.1 mm.")
     length, width = float(stock.size[0]), float(stock.size[1])
-    nx, ny = (max(1, int(np.ceil(side / cell - 1e-6))) for side in (length, width))
+    along, across = (max(1.0, float(np.ceil(side / cell - 1e-6))) for side in (length, width))
     budget = budgets.cells() if budget is None else budget
-    if nx * ny > budget:
-        fits = fitting_cell(length, width, budget)
+    if not along * across <= budget:
+        fits, needed = fitting_cell(length, width, budget), along * across
         raise SurfaceError(
-            f"Cell size: {format_si(cell, 'mm', 4)} needs {nx * ny / 1e6:.4g} million cells for this stock; at most"
+            f"Cell size: {format_si(cell, 'mm', 4)} needs {needed / 1e6:.4g} million cells for this stock; at most"
             f" {budget / 1e6:.4g} million fit, so use {format_si(fits, 'mm', 4)} or more."
         )
+    nx, ny = int(along), int(across)
     dx, dy = length / nx, width / ny
     return Cells(nx, ny, float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robomill.arrays import as_floats, digest, frozen
+from robomill.arrays import as_floats, check_place, digest, frozen
 from robomill.errors import RobomillError, RobotError
 
 
@@ -153,3 +153,10 @@ def test_the_digest_is_the_same_on_every_machine() -> None:
     words = np.array([1.0]).tobytes()
     assert digest(One(np.array([1.0]))) == sha256(b"dOne(a=a<f8(1,)" + words + b")").hexdigest()
     assert digest({"a": None, "b": b"xy"}) == sha256(b"m(t1:ant1:by2:xy)").hexdigest()
+
+
+@pytest.mark.parametrize("far", [1.0001e4, -1e300, np.nan, np.inf])
+def test_a_place_is_where_a_machine_can_be(far: float) -> None:
+    check_place([0.0, -1e4, 1e4], "Part zero", RobomillError)
+    with pytest.raises(RobomillError, match="^Part zero: it lies .* m off; expected 10000 m at most"):
+        check_place([0.0, 0.0, far], "Part zero", RobomillError)

@@ -128,3 +128,9 @@ def test_part_zero_is_on_top_where_the_path_cuts_below_zero():
     assert flat.upper[2] - flat.lower[2] == pytest.approx(1e-6)
     with pytest.raises(SurfaceError, match="found no feed move"):
         Stock.from_path(path, CUTTER, [False, False])
+
+
+@pytest.mark.parametrize("cell", [1e-300, 5e-324, 1e-12])
+def test_a_cell_that_is_next_to_nothing_is_refused(cell: float) -> None:
+    with pytest.raises(SurfaceError, match=r"Cell size: .* million cells .* use .* or more"):
+        stock_grid(Stock([0.0, 0.0, 0.0], [1.0, 1.0, 0.1]), cell)
