@@ -58,7 +58,7 @@ with right:
     with picture, st.container(border=True):
         tip = format_many(now.T_MT[:3, 3], view.length, 1, with_unit=False)
         caption = f"Tip at ({tip}) {view.length} in {{M}}. Foot and tube sizes are for the eye only."
-        scene = ArmScene(frames=now.frames, ghost=pose.ghost(now, old))
+        scene = ArmScene(frames=now.frames, joints=now.robot.joint_numbers, ghost=pose.ghost(now, old))
         arm(scene, "robot-arm", (caption, "The arm at the chosen joint angles."), 500, zoom=0.8)
     with numbers:
         pose.compliance_matrix(now, old)

@@ -71,6 +71,11 @@ class PoseReport:
         return bool(dexterity.near_singular(self.robot, self.det_J))
 
     @property
+    def has_det_J(self) -> bool:
+        """Whether the task Jacobian is square; where it is not, ``det_J`` is its size only, no determinant."""
+        return dexterity.has_determinant(self.robot)
+
+    @property
     def det_J_unit(self) -> str:
         """A key of ``UNITS``."""
         return dexterity.determinant_unit(self.robot)

@@ -30,9 +30,14 @@ def square_rows(robot: Robot) -> tuple[str, ...]:
     return tuple(ROWS[i] for i in _row_indices(robot))
 
 
+def has_determinant(robot: Robot) -> bool:
+    """Whether the arm's task Jacobian is square: as many independent rows as joints."""
+    return len(square_rows(robot)) == robot.n
+
+
 def determinant_unit(robot: Robot) -> str:
-    """The unit of ``determinant`` as a key of ``UNITS``: one power of m for each row of v."""
-    powers = sum(row.startswith("v") for row in square_rows(robot))
+    """The unit of ``determinant`` as a key of ``UNITS``: one power of m for each row of v, less one a sliding joint."""
+    powers = sum(row.startswith("v") for row in square_rows(robot)) - int(robot.prismatic[robot.free].sum())
     return {1: "m", 2: "m2", 3: "m3"}.get(powers, "1")
 
 

@@ -26,10 +26,10 @@ def pose_lines(record: dict[str, Any]) -> list[str]:
     lines = [f"{record['robot']}, compliance {record['compliance_set']}", "T_MT (m)", *matrix_lines(record["T_MT"])]
     lines += ["J (m, rad)", *matrix_lines(record["J"])]
     if det is not None:
-        lines.append("det(J)  " + format_value(det, "m3", 4))
+        lines.append("det(J)  " + format_value(det, record["det_J_unit"], 4))
     lines += ["C (um/N)", *matrix_lines(record["C_um_per_N"])]
-    for i, share in enumerate(record["joint_share_um_per_N"]):
-        lines += [f"of joint {i + 1}", *matrix_lines(share)]
+    for joint, share in zip(record["joints"], record["joint_share_um_per_N"], strict=True):
+        lines += [f"of joint {joint}", *matrix_lines(share)]
     return lines
 
 
@@ -75,7 +75,8 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
             f"force     {vector(record['force_N'], 'N')}",
         ]
     if record["worst_block"] and record["joint_shares_add_up"]:
-        lines += [f"joint {i + 1}   {vector(share, 'mm')}" for i, share in enumerate(record["joint_share_mm"])]
+        shares = zip(record["joints"], record["joint_share_mm"], strict=True)
+        lines += [f"joint {joint}   {vector(share, 'mm')}" for joint, share in shares]
         lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
     for name, turn in (record["tooth"] or {}).items():

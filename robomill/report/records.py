@@ -77,10 +77,12 @@ def pose_record(pose: PoseReport) -> dict[str, Any]:
     return {
         "robot": robot.name,
         "compliance_set": robot.compliance_set,
+        "joints": list(robot.joint_numbers),
         "theta_deg": shown_theta(robot, pose.theta).tolist(),
         "T_MT": pose.T_MT.tolist(),
         "J": pose.J.tolist(),
-        "det_J": pose.det_J if robot.n == 5 else None,
+        "det_J": pose.det_J if pose.has_det_J else None,
+        "det_J_unit": pose.det_J_unit if pose.has_det_J else None,
         "C_um_per_N": shown(pose.C, "um/N"),
         "joint_share_um_per_N": shown(pose.C_joint, "um/N"),
         "provenance": said_of(robot),

@@ -35,6 +35,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "max_deviation_mm": shown(result.max_deviation, "mm"),
         "rms_deviation_mm": shown(result.rms_deviation, "mm"),
         "deviation_mm": there(result.delta, "mm"),
+        "joints": list(result.setup.robot.joint_numbers),
         "joint_share_mm": there(result.delta_joint, "mm"),
         "spring_share_mm": {
             spring.name: there(result.delta_spring[:, k], "mm") for k, spring in enumerate(result.setup.springs)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.dexterity import limit_distance
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import translation
 from robomill.robot.model import Robot
@@ -20,7 +21,7 @@ MAX_SAMPLES = 400_000
 
 @dataclass(frozen=True, eq=False)
 class PathReach:
-    """The sampled path, which samples (m,) are reached, and the room (m,) rad or m to the nearest joint limit."""
+    """The sampled path, which samples (m,) are reached, and the room (m,) to the joint limits: ``limit_distance``."""
 
     path: Toolpath
     reached: BoolArray
@@ -38,8 +39,7 @@ def path_reach(setup: SimulationSetup) -> PathReach:
     whole = setup.toolpath
     path = sampled(whole, max(setup.step, float(whole.s[-1]) / MAX_SAMPLES, 1e-6))
     ik = configurations(setup, path)
-    limits = setup.robot.limits
-    room = np.minimum(ik.theta - limits[:, 0], limits[:, 1] - ik.theta).min(axis=1)
+    room = limit_distance(setup.robot, ik.theta)
     lost = np.flatnonzero(path.cutting & ~ik.reached)
     return PathReach(path, ik.reached, room, str(ik.reason(int(lost[0]))) if len(lost) else "")
 

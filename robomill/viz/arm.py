@@ -19,6 +19,7 @@ class ArmScene:
 
     frames (n+1, 4, 4): the frame before each joint (the joint turns about its z), then {T}.
     offset (n,): travel along each joint's z before the link goes across (the D-H d).
+    joints (n,): the joints' numbers, 1 to n where they are not given.
     part (lower (3,), upper (3,)) in {W}; path (m, 3) with reached (m,); force, displacement (3,) at the tip.
     """
 
@@ -33,6 +34,7 @@ class ArmScene:
     displacement_label: str = ""
     cutter_radius: float = 0.004
     ghost: FloatArray | None = None
+    joints: tuple[int, ...] = ()
     bench: bool = True
 
 
@@ -64,7 +66,7 @@ def arm_figure(
         vector = _sized(scene.displacement, 0.17 * reach)
         opaque += solids.arrow(tip, vector, p.warm, width)
         said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
-    fig.add_traces([solids.painted(opaque), _joint_hover(scene.frames, p.text), solids.words(said)])
+    fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), solids.words(said)])
     fig.add_traces(_part_traces(scene, reach, dark))
     fig.update_layout(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
     return fig
@@ -118,8 +120,9 @@ def _arm(scene: ArmScene, dark: bool) -> list[solids.Painted]:
     return [*((m, p.link) for m in links), *((m, p.joint) for m in joints), (spindle, p.joint), (cutter, p.warm)]
 
 
-def _joint_hover(frames: FloatArray, colour: str) -> go.Scatter3d:
-    x, y, z = frames[:, :3, 3].T
+def _joint_hover(scene: ArmScene, colour: str) -> go.Scatter3d:
+    x, y, z = scene.frames[:, :3, 3].T
+    joints = scene.joints or range(1, len(scene.frames))
     return go.Scatter3d(
         x=x,
         y=y,
@@ -127,7 +130,7 @@ def _joint_hover(frames: FloatArray, colour: str) -> go.Scatter3d:
         mode="markers",
         showlegend=False,
         marker={"size": 9, "opacity": 0.0, "color": colour},
-        text=[*(f"joint {i + 1}" for i in range(len(frames) - 1)), "tool tip {T}"],
+        text=[*(f"joint {number}" for number in joints), "tool tip {T}"],
         hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
     )
 

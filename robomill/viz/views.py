@@ -73,6 +73,7 @@ def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
     F, delta = result.F[index], result.delta[index]
     return ArmScene(
         frames=joint_frames(setup.robot, result.theta[index]),
+        joints=setup.robot.joint_numbers,
         T_MW=setup.T_MW,
         part=(setup.stock_block.lower, setup.stock_block.upper),
         path=path.p[keep] @ R.T + t,

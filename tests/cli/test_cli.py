@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pty
+import re
 import shutil
 import signal
 import subprocess
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 
 from robomill.cli import main, serve
+from robomill.io.robots import load_robot, robot_to_toml
 from robomill.io.samples import samples_dir
 from robomill.ui.keeping import Settings
 
@@ -56,6 +58,21 @@ def test_ik_and_back(capsys) -> None:
     p = record(capsys, "pose", "slavkovic_5r", "--theta-deg", theta)
     assert p["C_um_per_N"][1][1] == pytest.approx(2.295, abs=5e-4)
     assert abs(p["det_J"]) == pytest.approx(1.134, abs=5e-4)
+
+
+def test_pose_of_six_axes_has_its_determinant(capsys) -> None:
+    r = record(capsys, "pose", "kuka_kr500", "--theta-deg", "10,-70,80,20,30,40")
+    assert r["det_J"] == pytest.approx(np.linalg.det(np.array(r["J"])))
+    assert r["det_J_unit"] == "m3"
+
+
+def test_a_held_axis_is_left_out_and_the_others_keep_their_numbers(capsys, tmp_path: Path) -> None:
+    robot = load_robot("slavkovic_5r")
+    held = tmp_path / "held.toml"
+    held.write_text(robot_to_toml(robot.replace(blocked=np.array([np.nan, 0.1, np.nan, np.nan, np.nan]))))
+    assert record(capsys, "pose", held, "--theta-deg", "0,0,0,0")["joints"] == [1, 3, 4, 5]
+    _, text, _ = run(capsys, "pose", held, "--theta-deg", "0,0,0,0")
+    assert re.findall(r"of joint (\d)", text) == ["1", "3", "4", "5"]
 
 
 def test_negative_values_are_values(capsys) -> None:
@@ -416,7 +433,8 @@ def test_sliding_joints_are_in_millimetres(capsys, tmp_path: Path) -> None:
     np.testing.assert_allclose(np.array(r["T_MT"])[0, :2], [np.sqrt(0.75), -0.5])
     np.testing.assert_allclose(r["theta_deg"], [30, 250])
     np.testing.assert_allclose(np.array(r["C_um_per_N"])[2, 2], 1e-8 * 1e6)
-    assert r["det_J"] is None
+    # Turning about Z and going along it: the rows v_z and omega_z exchange the two joint speeds, whatever the length.
+    assert (r["det_J"], r["det_J_unit"]) == (pytest.approx(-1.0), "1")
 
 
 def test_moves_are_written_one_a_line(capsys, tmp_path: Path) -> None:

@@ -26,12 +26,24 @@ ROW = load_material("al7075_t6_carbide_ref190")
 SLOT = CutConditions.steady(0.03, 200.0, [2e-3, 1e-3])
 
 
-def test_models_are_found_in_their_order_and_say_what_they_follow():
-    assert list(FORCES) == ["path", "constant", "mechanistic", "kienzle", "measured"]
-    assert len({m.rank for m in FORCES.values()}) == len(FORCES)
-    assert [m.follows_cut for m in FORCES.values()] == [False, False, True, True, False]
-    assert [m.ends_with_material for m in FORCES.values()] == [True, True, False, False, False]
-    assert [m.stated for m in FORCES.values()] == [True, True, False, False, False]
+def test_models_are_found_in_the_order_of_their_ranks():
+    ranks = [m.rank for m in FORCES.values()]
+    assert ranks == sorted(ranks)
+
+
+@pytest.mark.parametrize(
+    ("name", "follows", "ends", "stated"),
+    [
+        ("path", False, True, True),
+        ("constant", False, True, True),
+        ("mechanistic", True, False, False),
+        ("kienzle", True, False, False),
+        ("measured", False, False, False),
+    ],
+)
+def test_models_say_what_they_follow(name, follows, ends, stated):
+    model = FORCES[name]
+    assert (model.follows_cut, model.ends_with_material, model.stated) == (follows, ends, stated)
 
 
 def test_another_model_starts_from_the_force_that_pushed():

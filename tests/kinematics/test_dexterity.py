@@ -64,6 +64,32 @@ def test_six_axes_are_asked_for_all_six_rows_even_where_they_move_in_a_plane_onl
     assert dexterity.determinant(flat, np.full(6, 0.3)) == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.parametrize("kinds", ["rr", "rp", "rrp", "rrrp", "rrprr", "rrrrrr"])
+def test_the_unit_of_the_determinant_is_how_it_grows_with_the_arm(kinds):
+    """Twice the arm (its slides twice as far out): det(J) is 2^p times itself, p the power of m in its unit."""
+    n = len(kinds)
+    rng = np.random.default_rng(3)
+    slides = np.array([kind == "p" for kind in kinds])
+    alpha = np.zeros(n) if n < 4 else rng.uniform(-1.5, 1.5, n)
+    alpha[0] = np.pi / 2 if kinds == "rp" else alpha[0]  # a polar arm: the slide goes outwards
+    a, d, limits, zero = rng.uniform(0.2, 1, n), np.zeros(n), np.tile([-2.0, 2.0], (n, 1)), np.zeros(n)
+    soft = np.full(n, 1e-7)
+    one, two = (rm.Robot("r", "standard", alpha, s * a, d, zero, limits, soft, prismatic=slides) for s in (1, 2))
+    theta = rng.uniform(0.3, 0.8, n)
+    small = dexterity.determinant(one, theta)
+    large = dexterity.determinant(two, np.where(slides, 2 * theta, theta))
+    assert abs(small) > 1e-6
+    power = {"1": 0, "m": 1, "m2": 2, "m3": 3}[dexterity.determinant_unit(one)]
+    assert large / small == pytest.approx(2.0**power)
+    assert dexterity.has_determinant(one)
+
+
+def test_seven_axes_have_no_determinant():
+    zero, limits = np.zeros(7), np.tile([-2.0, 2.0], (7, 1))
+    arm = rm.Robot("seven", "standard", np.full(7, 1.0), np.full(7, 0.2), zero, zero, limits, np.full(7, 1e-7))
+    assert not dexterity.has_determinant(arm)
+
+
 def test_singular_configurations_show():
     straight = [0.3, 0.0]
     robot = rm.load_robot("planar_2r")

@@ -85,9 +85,11 @@ def test_a_spin_in_degrees_and_what_is_none():
 
 @pytest.mark.parametrize("setup", [FANUC, KUKA, FANUC.replace(spin="least_deviation")], ids=["fanuc", "kuka", "stiff"])
 def test_the_toolpath_pages_reach_is_that_of_the_run(setup):
-    """Room to the joints' limits along the path, by the configurations of the run itself."""
+    """Room to the joints' limits along the path as a share of half their range, by the run's own configurations."""
     run, reach = rm.simulate(setup), path_reach(setup)
     np.testing.assert_array_equal(reach.reached, run.reached)
     low, high = setup.robot.limits.T
-    np.testing.assert_allclose(reach.room, np.minimum(run.theta - low, high - run.theta).min(axis=1), atol=1e-12)
+    np.testing.assert_allclose(
+        reach.room, (1 - np.abs(2 * run.theta - low - high) / (high - low)).min(axis=1), atol=1e-12
+    )
     np.testing.assert_array_equal(configurations(setup, run.path).theta, run.theta)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.kinematics.forward import joint_frames
 from robomill.simulation.result import SimulationResult
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
@@ -15,6 +16,13 @@ def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
     scene = arm_scene(result, result.worst)
     assert scene.displacement is not None
     assert 500 < displacement_scale(scene.displacement, scene.frames) < 5000
+
+
+def test_the_joints_of_an_arm_with_a_held_axis_keep_their_numbers() -> None:
+    robot = rm.load_robot("slavkovic_5r").replace(blocked=np.array([np.nan, 0.1, np.nan, np.nan, np.nan]))
+    fig = arm_figure(ArmScene(joint_frames(robot, np.zeros(4)), joints=robot.joint_numbers), dark=False)
+    (hover,) = [t for t in fig.data if t.type == "scatter3d" and t.mode == "markers"]
+    assert list(hover.text) == ["joint 1", "joint 3", "joint 4", "joint 5", "tool tip {T}"]
 
 
 def test_the_arm_stands_where_its_kinematics_put_it(result: SimulationResult) -> None:

@@ -22,6 +22,7 @@ from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import SAMPLE_ROBOT, Bench, Trial, robot_of
+from robomill.ui.identification.plan import theta_columns
 from robomill.ui.project import View
 from robomill.units import format_number, format_percent, format_si, from_si
 from robomill.viz.arm import ArmScene, arm_figure
@@ -68,7 +69,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
             _hand_in(bench, lab, result)
         elif done:
             pieces.said("info", reason, "lightbulb")
-        _readings(lab.tests)
+        _readings(robot, lab.tests)
 
 
 def _taken(lab: Laboratory) -> int:
@@ -205,7 +206,12 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
     if not bool(solved.reached):
         pieces.said("info", f"This pose cannot be measured: {solved.reason()}.", "block")
         return
-    scene = ArmScene(frames=joint_frames(robot, solved.theta), force=trial.F, force_label=f"{trial.load:g} N")
+    scene = ArmScene(
+        joint_frames(robot, solved.theta),
+        force=trial.F,
+        force_label=f"{trial.load:g} N",
+        joints=robot.joint_numbers,
+    )
     pieces.figure(
         arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9),
         "lab-arm",
@@ -233,14 +239,12 @@ def _off(error: float) -> str:
     return "not seen" if np.isnan(error) else f"{format_percent(error, 1)} off"
 
 
-def _readings(tests: LoadTests | None) -> None:
+def _readings(robot: Robot, tests: LoadTests | None) -> None:
     if tests is None:
         return
     assert tests.theta is not None
     with st.expander(f"Readings ({len(tests)})", icon=":material/table:"):
-        columns: dict[str, Any] = {
-            f"θ{i + 1}, °": np.round(from_si(tests.theta[:, i], "deg"), 2) for i in range(tests.theta.shape[1])
-        }
+        columns: dict[str, Any] = theta_columns(robot, tests.theta)
         for i, axis in enumerate("xyz"):
             columns[f"F{axis}, N"] = tests.wrench[:, i]
         for i, axis in enumerate("xyz"):

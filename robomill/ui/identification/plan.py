@@ -50,7 +50,7 @@ def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit:
             caption="As the noise of these tests says; the new readings decide.",
             alt="Half widths of the 95 % intervals now and after the planned tests.",
         )
-    columns = plan_columns(plan, unit)
+    columns = plan_columns(robot, plan, unit)
     st.dataframe(columns, hide_index=True)
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         pieces.download(
@@ -124,7 +124,7 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
     return bench.remembered(key, make)[1]
 
 
-def plan_columns(plan: Plan, unit: str) -> dict[str, Any]:
+def plan_columns(robot: Robot, plan: Plan, unit: str) -> dict[str, Any]:
     """The plan as columns: pose in the world, load, and joint angles."""
     columns: dict[str, Any] = {"test": np.arange(1, len(plan.F) + 1)}
     for i, name in enumerate("XYZ"):
@@ -133,9 +133,13 @@ def plan_columns(plan: Plan, unit: str) -> dict[str, Any]:
         columns[f"{name}, °"] = np.round(from_si(plan.x_M[:, 3 + i], "deg"), 2)
     columns["push"] = [_direction(F) for F in plan.F]
     columns["N"] = np.round(np.linalg.norm(plan.F, axis=1), 1)
-    for i in range(plan.theta.shape[1]):
-        columns[f"θ{i + 1}, °"] = np.round(from_si(plan.theta[:, i], "deg"), 2)
-    return columns
+    return columns | theta_columns(robot, plan.theta)
+
+
+def theta_columns(robot: Robot, theta: FloatArray) -> dict[str, FloatArray]:
+    """Joint coordinates (m, n) as columns under each joint's number, in its own unit."""
+    joints = zip(robot.joint_numbers, robot.joint_units, theta.T, strict=True)
+    return {f"θ{number}, {unit_label(unit)}": np.round(from_si(values, unit), 2) for number, unit, values in joints}
 
 
 def _direction(F: FloatArray) -> str:

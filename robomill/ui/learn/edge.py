@@ -79,7 +79,14 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     grown = format_times(times / FORCE)
     caption = f"Where 100 N in every direction take the tip, shown {grown}; the same scale at every distance."
     alt = "The arm with its compliance ellipsoid at the chosen distance."
-    arm(ArmScene(frames=pose.frames), "learn-edge", (caption, alt), 480, 1.1, ((pose.C, way.p), finish))
+    arm(
+        ArmScene(frames=pose.frames, joints=pose.robot.joint_numbers),
+        "learn-edge",
+        (caption, alt),
+        480,
+        1.1,
+        ((pose.C, way.p), finish),
+    )
 
 
 def _measure(pose: PoseReport, way: Ray, i: int) -> None:

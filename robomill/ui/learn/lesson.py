@@ -153,6 +153,7 @@ def _push(pose: PoseReport, revealed: bool) -> None:
     unit = session.project().view.length
     scene = ArmScene(
         frames=pose.frames,
+        joints=pose.robot.joint_numbers,
         force=np.array([0.0, FORCE, 0.0]),
         force_label="100 N",
         displacement=delta if revealed else None,

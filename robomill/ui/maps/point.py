@@ -89,6 +89,7 @@ def _arm(pose: PoseReport, component: str, unit: str) -> None:
     delta = pose.delta(F)
     scene = ArmScene(
         frames=pose.frames,
+        joints=pose.robot.joint_numbers,
         force=F,
         displacement=delta,
         force_label=format_si(FORCE, "N", 0),

@@ -276,7 +276,12 @@ def _level(low: float, high: float, view: MapView, unit: str) -> float:
 def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[FloatArray, Scale] | None) -> go.Figure:
     dark, robot, view = shell.dark(), region.robot, region.view
     p = palette(dark)
-    fig = arm_figure(ArmScene(frames=_standing(region)), dark=dark, height=560, revision="workspace-solid")
+    fig = arm_figure(
+        ArmScene(frames=_standing(region), joints=robot.joint_numbers),
+        dark=dark,
+        height=560,
+        revision="workspace-solid",
+    )
     if mask.any():
         fig.add_trace(voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark))
     low, high = np.array(region.box.lower), np.array(region.box.upper)

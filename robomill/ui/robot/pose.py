@@ -82,12 +82,12 @@ def det_value(pose: PoseReport | None) -> str:
     """det(J) of the arm's task with its unit; with more than six axes there is none."""
     if pose is None:
         return ""
-    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.robot.n <= 6 else "not square"
+    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.has_det_J else "not square"
 
 
 def det_words(pose: PoseReport) -> str:
     """What det(J) says in words."""
-    if pose.robot.n > 6:
+    if not pose.has_det_J:
         return "the task Jacobian of this arm is not square"
     return "a singularity is near" if pose.near_singular else "0 at a singularity"
 

@@ -96,7 +96,7 @@ def _picture(
             "digits": decimals(unit, None),
         }
     elif colour == "limits":
-        more = {"value": from_si(reach.room, "deg"), "title": "Room to the nearest limit", "unit": "°", "digits": 1}
+        more = {"value": from_si(reach.room, "%"), "title": "Room to the nearest limit", "unit": "%", "digits": 1}
     elif colour == "feed":
         feed = session.project().view.feed
         more = {"value": from_si(path.v_f, feed), "title": "Feed", "unit": unit_label(feed), "digits": 1}
@@ -147,7 +147,7 @@ def _columns(reach: PathReach, result: SimulationResult | None) -> dict[str, Flo
         "feed_mm_min": from_si(path.v_f, "mm/min"),
         "feed_mm_s": from_si(path.v_f, "mm/s"),
         "reached": reach.reached.astype(float),
-        "room_to_limits_deg": from_si(reach.room, "deg"),
+        "limit_distance_percent": from_si(reach.room, "%"),
     }
     if result is not None and len(result.path) == len(path):
         columns["deviation_mm"] = from_si(result.deviation, "mm")
