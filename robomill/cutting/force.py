@@ -217,10 +217,22 @@ def force_on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike)
 
     Models that know the engagement give 0 in air by themselves; constant ones push wherever the path cuts.
     """
+    return _on_tool(model, conditions, R_MF, model.components(conditions))
+
+
+def force_by_material(
+    model: ForceModel, conditions: CutConditions, R_MF: ArrayLike
+) -> list[tuple[Material, FloatArray]]:
+    """``force_on_tool`` for the material in force and each other of its alloy; none without a material."""
+    return [(row, _on_tool(model, conditions, R_MF, F)) for row, F in model.by_material(conditions)]
+
+
+def _on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike, components: FloatArray) -> FloatArray:
+    """Components (m, 3) N in the model's frame as the force on the tool in {M}: 0 on rapids, NaN where unjudged."""
     frames = as_floats(R_MF, "feed frames", (3, 3), error=CuttingError)
     if frames.shape != (len(conditions), 3, 3):
         raise CuttingError(f"Feed frames: expected shape ({len(conditions)}, 3, 3), found {frames.shape}.")
-    F = np.array(model.components(conditions))
+    F = np.array(components)
     for unknown in model.unjudged(conditions):
         F[unknown.where] = np.nan
     if model.frame == "path":

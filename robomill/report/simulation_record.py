@@ -12,7 +12,7 @@ from robomill.report.records import shown
 from robomill.report.tables import MEASURED
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
-from robomill.simulation.stations import nearest_feed
+from robomill.simulation.stations import largest_deviations, nearest_feed
 from robomill.simulation.tooth import LEFT_OUT, tooth
 from robomill.surface.groove import GrooveSection
 
@@ -140,7 +140,7 @@ def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
     peak, spread = peak_force(result), alloy_spread(result)
     if peak is None or spread is None or i < 0:
         return {}
-    largest = np.where(result.judged, spread.deviation, -np.inf).max(axis=1)
+    largest = largest_deviations(result, spread)
     return {
         "force_peak_N": {"low": shown(peak.low[i], "N"), "high": shown(peak.high[i], "N"), "frame": list(COMPONENTS)},
         "alloy_spread": [

@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import displacement
-from robomill.cutting.force import ForceSpread
+from robomill.cutting.force import ForceSpread, force_by_material
 from robomill.cutting.materials import Material
 from robomill.simulation.result import SimulationResult
 
@@ -45,12 +45,11 @@ def alloy_spread(result: SimulationResult) -> AlloySpread | None:
 
     The part of delta that the force does not cause (sag) stays; coupling is not iterated anew.
     """
-    rows = result.setup.force.by_material(result.conditions)
+    rows = force_by_material(result.setup.force, result.conditions, result.R_MF)
     if not rows:
         return None
-    at_feed = result.conditions.cutting[:, None]
     C = result.C
-    F = np.stack([np.where(at_feed, np.einsum("mij,mj->mi", result.R_MF, f), 0.0) for _, f in rows])
+    F = np.stack([f for _, f in rows])
     rest = result.delta - displacement(C, result.F)
     delta = displacement(C, F) + rest
     return AlloySpread(tuple(material for material, _ in rows), F, delta)

@@ -72,7 +72,7 @@ def force_components(result: SimulationResult, spread: AlloySpread) -> FloatArra
 
 
 def largest_deviations(result: SimulationResult, spread: AlloySpread) -> FloatArray:
-    """(r,) m: the largest judged deviation of each row of the alloy."""
+    """(r,) m: the largest judged deviation of each row of the alloy; -inf where no sample is judged."""
     return np.asarray(np.where(result.judged, spread.deviation, -np.inf).max(axis=1))
 
 

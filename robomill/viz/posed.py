@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.transforms import invert
@@ -23,7 +24,7 @@ def tool_solids(cutter: Cutter, tip: FloatArray, k: FloatArray, reach: float) ->
     """
     R = cutter.radius
     flutes = cutter.flute_length or 2.5 * cutter.diameter
-    out = max(cutter.stick_out or 4.0 * cutter.diameter, flutes)
+    out = max(ToolBending.first(cutter).stick_out, flutes)
     r = np.linspace(0.0, R, 25)
     below = cutter.profile(r)
     cutting = _turned(np.append(r, R), np.append(below, max(flutes, float(below[-1]))), tip, k)

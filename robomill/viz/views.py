@@ -67,7 +67,6 @@ def headroom(result: SimulationResult) -> float:
 def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
     """The arm at sample ``index`` of the run, with part, path, force and displacement."""
     setup = result.setup
-    R, t = setup.T_MW[:3, :3], setup.T_MW[:3, 3]
     path = result.path
     keep = path.cutting | np.append(path.cutting[1:], False)
     F, delta = result.F[index], result.delta[index]
@@ -76,7 +75,7 @@ def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
         joints=setup.robot.joint_numbers,
         T_MW=setup.T_MW,
         part=(setup.stock_block.lower, setup.stock_block.upper),
-        path=path.p[keep] @ R.T + t,
+        path=setup.in_base(path.p[keep]),
         path_reached=result.reached[keep],
         force=F if np.isfinite(F).all() else None,
         displacement=delta if np.isfinite(delta).all() else None,

@@ -192,7 +192,7 @@ def _dominant(c: str) -> MapQuantity:
         "1",
         f"argmax_i |C_i,{c}|",
         f"Where to stiffen first, if it is C_{c} that matters."
-        if _one_sign(c)
+        if one_sign(c)
         else f"The largest part by size. {CANCEL}",
         lambda field: _largest(field, np.abs(field.shares[..., k])),
         colours="joints",
@@ -228,7 +228,7 @@ def _share(robot: Robot, c: str, joint: int) -> MapQuantity:
         "%",
         f"C_{number},{c} / Σ_i |C_i,{c}|",
         f"The part of C_{c} that would vanish if joint {number} were rigid."
-        if _one_sign(c)
+        if one_sign(c)
         else f"Joint {number}'s part of C_{c}, of the sum of all parts' sizes. {CANCEL}",
         law,
         colours=_signed_or_not(c),
@@ -237,10 +237,10 @@ def _share(robot: Robot, c: str, joint: int) -> MapQuantity:
 
 
 def _signed_or_not(c: str) -> Colours:
-    return "sequential" if _one_sign(c) else "diverging"
+    return "sequential" if one_sign(c) else "diverging"
 
 
-def _one_sign(c: str) -> bool:
+def one_sign(c: str) -> bool:
     """Whether all joints add to a component with one sign: C_θ J_x J_x is never negative, C_θ J_x J_y may be."""
     return c[0] == c[1]
 

@@ -126,3 +126,17 @@ def test_only_forces_from_a_material_have_rows_and_a_peak():
     spread = alloy_spread(computed)
     assert spread.materials[0].name == PROCESS.force.material.name
     assert (spread.F[:, ~computed.conditions.cutting] == 0.0).all()
+
+
+def test_no_row_of_the_alloy_knows_a_force_that_has_no_model():
+    """From M4 on a right-hand cutter turns against its teeth: each row's own run knows no force there, nor its row."""
+    turned = "G21 G90 S12000 M3\nG0 X-50 Y0 Z-2\nG1 X0 F1800\nM4\nG1 X50\nM2\n"
+    result = rm.simulate(PROCESS.replace(source=GCodeSource(turned)))
+    spread, against = alloy_spread(result), result.path.block == 5
+    assert np.isnan(spread.F[:, against & result.conditions.engaged]).all()
+    for row, material in enumerate(spread.materials):
+        other = rm.simulate(
+            result.setup.replace(force=dataclasses.replace(PROCESS.force, material=material, alternatives=()))
+        )
+        np.testing.assert_allclose(spread.F[row], other.F, atol=1e-9)
+        np.testing.assert_allclose(spread.delta[row], other.delta, atol=1e-15)

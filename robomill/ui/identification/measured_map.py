@@ -24,8 +24,8 @@ from robomill.viz.deviation import both_figure
 from robomill.viz.measured_maps import Level, level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
+from robomill.workspace.quantities import COMPONENTS, one_sign
 
-COMPONENTS = ("C_xx", "C_yy", "C_zz", "C_xy", "C_xz", "C_yz")
 CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
 
@@ -74,7 +74,7 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
         upload("Your measured map (CSV)", "identification.map.file", bench.take_map, bench.map_revision)
         pieces.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
-        options = {c: c.replace("_", " ") for c in COMPONENTS}
+        options = {f"C_{c}": f"C {c}" for c in COMPONENTS}
         component = inputs.pick("Component", "identification.map.component", options, "C_yy", inputs.LISTED)
         z = 0.0
         if field is not None:
@@ -165,7 +165,7 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
     if not np.isfinite(both).any():
         pieces.note("Nothing was measured at this level.")
         return
-    signed = component[-1] != component[-2]
+    signed = not one_sign(component[-2:])
     top = float(np.nanmax(np.abs(both)))
     limits = (-top, top) if signed else (float(np.nanmin(both)), float(np.nanmax(both)))
     far = float(np.nanmax(np.abs(sizes[2]))) if np.isfinite(sizes[2]).any() else 1.0

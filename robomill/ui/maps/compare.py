@@ -16,6 +16,7 @@ from robomill.units import NOT_REACHED, format_number, format_percent, format_va
 from robomill.viz.maps import Map, Scale, symmetric_limit
 from robomill.viz.theme import plain
 from robomill.workspace.fields import ComplianceField
+from robomill.workspace.quantities import one_sign
 
 UM = "um/N"
 MOST = 3
@@ -66,7 +67,7 @@ def panels(
     keys = list(values)
     if not keys:
         raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
-    cross = view.component[0] != view.component[1]
+    cross = not one_sign(view.component)
     every = [v for v in values.values() if np.isfinite(v).any()]
     low = min((float(np.nanmin(v)) for v in every), default=0.0)
     label = f"C<sub>{view.component}</sub>, {unit_label(UM)}"
