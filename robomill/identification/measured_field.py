@@ -82,7 +82,8 @@ class MeasuredField:
                     "in three independent directions at every point."
                 )
             C[k] = np.linalg.lstsq(F, moved, rcond=None)[0].T
-            spread[k] = np.sqrt(np.diag(np.linalg.inv(F.T @ F)))
+            size = np.abs(F).max()
+            spread[k] = np.sqrt(np.diag(np.linalg.inv((F / size).T @ (F / size)))) / size
             where[k] = x_M[here[0]]
         stderr = noise_of_tests(C, spread, tests.noise) * np.repeat(spread[:, None, :], 3, axis=1)
         return cls(where[:, :3], C, where[:, 3:], reach, tests.provenance, stderr)

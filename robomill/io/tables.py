@@ -129,7 +129,7 @@ class Table:
 
     def whole(self, key: str, default: Any = MISSING) -> int:
         value = self._get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int):
+        if isinstance(value, bool) or not isinstance(value, int) or not -LARGEST <= value < LARGEST:
             raise self.refuse(key, f"expected a whole number, found {value!r:.40}.")
         return value
 
@@ -205,8 +205,8 @@ class Table:
         label = "" if unit == "1" else f" in {unit}"
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.refuse(key, f"expected a number{label}, found {value!r:.40}.")
-        if not math.isfinite(value):
-            raise self.refuse(key, f"expected a finite number{label}, found {value}.")
+        if not abs(value) < math.inf or (isinstance(value, int) and abs(value) > LARGEST):
+            raise self.refuse(key, f"expected a finite number{label}, found {value!r:.40}.")
         converted = float(to_si(float(value), unit))
         if not math.isfinite(converted):
             raise self.refuse(key, f"expected a number{label} of ordinary size, found {value}.")

@@ -206,7 +206,7 @@ def shortfall(arm: Decoupled, T_MT: FloatArray) -> str:
     if rho < abs(arm.h):
         return f"{_metres(abs(arm.h) - rho)} inside the arm's lateral offset, too close to axis 1"
     L_2, L_3 = abs(arm.l_2), abs(arm.l_3)
-    x = np.sqrt(max(rho**2 - arm.h**2, 0.0))
+    x = np.sqrt(rho - abs(arm.h)) * np.sqrt(rho + abs(arm.h))
     reach = [float(np.hypot(side * x - arm.a_1, p[2])) for side in (1.0, -1.0)]
     beyond, inside = min(reach) - (L_2 + L_3), abs(L_2 - L_3) - max(reach)
     if beyond > 0:

@@ -323,3 +323,16 @@ def test_what_lies_between_points_of_a_bent_field_is_in_the_error():
     said = field.standard_error(between)
     assert np.abs(missed).max() == pytest.approx(said[:, 1, 1].max(), rel=1e-3)
     assert said[:, 0, 0].max() < 1e-11
+
+
+def test_forces_next_to_nothing_are_no_crash() -> None:
+    """Their squares would be zero, and a matrix of them singular."""
+    F = 1e-200 * np.eye(3)
+    tests = LoadTests(
+        wrench=np.hstack([F, np.zeros((3, 3))]),
+        displacement=np.hstack([1e-206 * np.eye(3), np.full((3, 3), np.nan)]),
+        x_M=np.tile([0.0, -1.3, 0.0, 0.0, 0.0], (3, 1)),
+        row=np.arange(3),
+    )
+    field = MeasuredField.from_tests(rm.load_robot("slavkovic_5r"), tests)
+    np.testing.assert_allclose(field.C[0], 1e-6 * np.eye(3), atol=1e-12)

@@ -96,3 +96,11 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         read_tool_table(tmp_path / "none.tbl")
     with pytest.raises(CuttingError, match="unit is 'cm'"):
         read_tool_table("T1\n", unit="cm")
+
+
+@pytest.mark.parametrize("column", ["tool", "diameter_mm", "flutes"])
+@pytest.mark.parametrize("digits", [25, 400, 5000])
+def test_a_number_of_very_many_digits_is_refused(column: str, digits: int) -> None:
+    cells = {"tool": "1", "diameter_mm": "6", "flutes": "2"} | {column: "9" * digits}
+    with pytest.raises(CuttingError):
+        read_tool_table(",".join(cells) + "\n" + ",".join(cells.values()) + "\n")
