@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -18,6 +19,8 @@ from robomill.identification.models import Model, Parameter
 from robomill.identification.treatment import STANDARD, Treatment
 from robomill.provenance import Finding, Kind, Provenance
 from robomill.robot.model import Robot
+
+IDENTIFIED = "compliance.identified"  # the block of a robot's provenance
 
 
 class Condition(NamedTuple):
@@ -190,6 +193,23 @@ class IdentificationResult:
             found.append(SpindleSpring(across, along, provenance=source))
         return tuple(found)
 
+    def adopted(
+        self, robot: Robot, name: str, before: Robot, springs: Sequence[Spring]
+    ) -> tuple[Robot, tuple[Spring, ...]]:
+        """``robot`` with the compliances found in the tests ``name``, and ``springs`` of ``before`` with those found.
+
+        What stood at the place of a spring found gives way, and so does whatever an earlier identification found: the
+        measured and synthetic springs beside a robot ``before`` whose compliances were identified.
+        """
+        source = f"identified from {len(self.row)} load tests ({name}), {self.choice.title.lower()}"
+        applied = self.applied_to(robot)
+        marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
+        found = self.springs(robot)
+        taken = {_place(spring) for spring in found}
+        earlier = ("measured", "synthetic") if IDENTIFIED in before.provenance else ()
+        kept = tuple(s for s in springs if _place(s) not in taken and s.provenance.kind not in earlier)
+        return applied.replace(provenance=marked), kept + found
+
     def explain(self, joint: int) -> str:
         """Why a joint (1-based) is known as well as it is, and what would help."""
         for parameter, text in zip(self.labels, self.explanations, strict=True):
@@ -216,7 +236,12 @@ class IdentificationResult:
         source = f"identified from {len(self.row)} load tests, model {self.model}"
         if kept:
             source += f"; joint {', '.join(kept)} not seen, value kept from {robot.compliance_set}"
-        provenance = {**robot.provenance, "compliance.identified": Provenance(self.kind, source)}
+        provenance = {**robot.provenance, IDENTIFIED: Provenance(self.kind, source)}
         changed = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta))
         sets = {**robot.compliance_sets, "identified": changed.C_theta_all}
         return changed.replace(compliance_sets=sets, compliance_set="identified", provenance=provenance)
+
+
+def _place(spring: Spring) -> tuple[str, int]:
+    """Which spring of the arm it is: its kind, and its joint where there is one a joint."""
+    return spring.kind, getattr(spring, "joint", 0)

@@ -130,6 +130,29 @@ def read_cells(text: str, layout: Layout, name: str = "") -> list[tuple[str, dic
     return rows
 
 
+def append_rows(text: str, more: str, layout: Layout, name: str = "") -> str:
+    """``text`` with the rows of the table ``more`` below its own, in the columns and with the separator of ``text``.
+
+    Columns are matched by what they hold. ``name`` is that of ``more``; raises the layout's error for two tables that
+    hold different quantities or the same in different units.
+    """
+    ours, theirs = _body(text, layout, "")[0], _body(more, layout, name)[0]
+    known, given = _known(ours.names, layout, ours.place)[0], _known(theirs.names, layout, theirs.place)[0]
+    wanted, found = ({(column.quantity, column.unit) for column in table.values()} for table in (known, given))
+    if wanted != found:
+        raise theirs.place.refuse(
+            f"found the columns {', '.join(theirs.names):.80}, expected {', '.join(ours.names):.80} as in the table "
+            "that they join; bring both to the same columns and units."
+        )
+    places = {column.at: given[quantity].at for quantity, column in known.items()}
+    rows = []
+    for k, line in enumerate(theirs.lines):
+        _check_width(theirs, k)
+        cells = _cells(line.replace(",", ".") if theirs.mark != "," else line, theirs.mark)
+        rows.append(ours.mark.join(cells[places[at]].strip() if at in places else "" for at in range(len(ours.names))))
+    return "\n".join([text.rstrip("\r\n"), *rows]) + "\n"
+
+
 def _body(text: str, layout: Layout, name: str) -> tuple[_Body, str]:
     """What is below the header, and the remarks."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

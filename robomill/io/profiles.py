@@ -36,8 +36,10 @@ class MeasuredProfile:
     findings: tuple[str, ...] = ()
 
 
-def read_profile(source: str | Path, *, name: str = "") -> MeasuredProfile:
-    """Read a CSV with columns like ``station_mm, offset_mm`` (units mm, um, m or in); source is a path or the text.
+def read_profile(source: str | Path | bytes, *, name: str = "") -> MeasuredProfile:
+    """Read a CSV with columns like ``station_mm, offset_mm`` (units mm, um, m or in).
+
+    ``source`` is a path, the text or its bytes.
 
     Rows may come in any order. Raises SurfaceError with file, row and column for a missing column, text or a gap where
     a number is due, a repeated station, or fewer than two rows.

@@ -36,13 +36,13 @@ from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import TOLERANCES, SimulationSetup
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
+from robomill.toolpath.text import SUFFIXES
 
 FORMAT = "robomill-setup"
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
 ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as tolerance_mm: one number, or three
 NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numerics]
-PROGRAMS = (".nc", ".ngc", ".tap", ".gcode", ".cnc")
 
 
 def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup:
@@ -53,7 +53,7 @@ def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup
     file = Path(path)
     if file.is_dir():
         file = file / "setup.toml"
-    if file.suffix.lower() in PROGRAMS:
+    if file.suffix.lower() in SUFFIXES and file.suffix.lower() != ".txt":  # which a set-up may end in, too
         raise ProjectError(
             f"{file}: this is a program, not a set-up; read it with 'robomill gcode', or cut it with "
             "'robomill simulate SETUP.toml --program'."

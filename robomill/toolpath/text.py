@@ -10,7 +10,7 @@ from robomill.errors import GCodeError
 from robomill.files import PROGRAM, check_size, read_file
 
 Source = str | bytes | bytearray | Path
-SUFFIXES = frozenset({".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"})
+SUFFIXES = (".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min")
 
 
 def read_source(source: Source) -> tuple[bytes, str]:

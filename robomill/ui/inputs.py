@@ -14,7 +14,6 @@ from typing import Any, Literal
 import pandas as pd
 import streamlit as st
 
-from robomill.errors import ProjectError
 from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
 from robomill.ui.markup import as_markdown
@@ -311,14 +310,6 @@ def reread(key: str, take: Callable[[bytes, str], None], option: str, chosen: An
     session.keep(option, chosen)
     if given := session.kept(key):
         submit(key, None, lambda: take(*given))
-
-
-def decoded(data: bytes, name: str, expected: str) -> str:
-    """The text of a file. Raises ProjectError where it is none."""
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise ProjectError(f"{name}: this is not a text file; expected {expected}.") from None
 
 
 def table(

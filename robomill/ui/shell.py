@@ -9,6 +9,8 @@ import streamlit as st
 
 from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
+from robomill.files import SETUP
+from robomill.io.texts import read_text
 from robomill.ui import autosave, inputs, rendered, session, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
@@ -142,7 +144,7 @@ def _files(held: session.Store) -> None:
 
 
 def _open(data: bytes, name: str) -> None:
-    reason = session.open_text(inputs.decoded(data, name, "a project saved by robomill"))
+    reason = session.open_text(read_text(data, ProjectError, SETUP, name)[0])
     if reason:
         raise ProjectError(f"{name} was not opened. {reason} Your project is as it was.")
 

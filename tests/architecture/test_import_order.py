@@ -14,7 +14,19 @@ PACKAGE = ROOT / "robomill"
 
 # Rooms from the ground up; those on one line may not import each other.
 STOREYS = [
-    {"units", "arrays", "vectors", "errors", "files", "compiled", "provenance", "quantities"},
+    {
+        "units",
+        "arrays",
+        "vectors",
+        "errors",
+        "files",
+        "compiled",
+        "provenance",
+        "quantities",
+        "seals",
+        "budgets",
+        "progress",
+    },
     {"robot"},
     {"kinematics", "cutting", "toolpath"},
     {"compliance", "surface"},
@@ -35,6 +47,10 @@ MODULES = sorted(p for p in PACKAGE.rglob("*.py") if p.parent != PACKAGE or p.st
 def room_of(path: Path) -> str:
     first = path.relative_to(PACKAGE).parts[0]
     return first.removesuffix(".py")
+
+
+def test_every_room_has_its_storey() -> None:
+    assert {room_of(path) for path in MODULES} == set(LEVEL)
 
 
 def imported(path: Path) -> set[str]:

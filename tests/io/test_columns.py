@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import robomill.io.columns as columns_module
 from robomill.errors import LoadTestError, SurfaceError
-from robomill.io.columns import Layout, read_columns, spelled
+from robomill.io.columns import Layout, append_rows, read_columns, spelled
 
 UNITS = {
     "fx": ("N", "kN"),
@@ -229,3 +229,27 @@ def test_a_missing_file_names_itself(tmp_path) -> None:
     columns, name = read_columns(str(file), LAYOUT)
     assert name == "there.csv"
     assert math.isclose(columns.values["fx"].sum(), 3)
+
+
+SHEETS = {
+    "itself": "Fx_N,m_Nm\n5.5,-6\n7,8.25\n",
+    "semicolons and decimal commas": "Fx_N;m_Nm\r\n5,5;-6\r\n7;8,25\r\n",
+    "tabs, remarks, other order": "# filled in on Monday\nm [N m]\tnote\tforce_N\n-6\ta\t5,5\n\n8,25\tb\t7\n",
+    "quoted": '"Fx_N","m_Nm"\n"5.5","-6"\n"7","8.25"\n',
+}
+
+
+@pytest.mark.parametrize("more", SHEETS.values(), ids=SHEETS)
+@pytest.mark.parametrize("head", ["Fx_N,m_Nm\n1,2\n3,4", "# old\nm_Nm;by;Fx_N\n2;me;1\n4,0;me;3,0\n\n"])
+def test_a_sheet_joins_a_table_that_is_written_another_way(head: str, more: str) -> None:
+    joined = append_rows(head, more, LAYOUT, "sheet.csv")
+    assert joined.startswith(head.rstrip("\n"))
+    table, _ = read_columns(joined, LAYOUT)
+    assert table.values["fx"].tolist() == [1.0, 3.0, 5.5, 7.0]
+    assert table.values["m"].tolist() == [2.0, 4.0, -6.0, 8.25]
+
+
+@pytest.mark.parametrize("more", ["Fx_N\n1\n2\n", "Fx_kN,m_Nm\n1,2\n3,4\n"])
+def test_a_sheet_of_other_columns_or_units_joins_nothing(more: str) -> None:
+    with pytest.raises(SurfaceError, match=r"^sheet.csv, row 1: found the columns .* expected Fx_N, m_Nm"):
+        append_rows("Fx_N,m_Nm\n1,2\n3,4\n", more, LAYOUT, "sheet.csv")

@@ -176,6 +176,16 @@ def test_what_is_no_set_up_is_told_from_one(tmp_path: Path) -> None:
     assert load_setup(SAMPLE.parent).digest() == load_setup(SAMPLE).digest()
     with pytest.raises(ProjectError, match="path.nc: this is a program, not a set-up"):
         load_setup(SAMPLE.parent / "path.nc")
+    for ending in ("mpf", "SPF", "min", "eia", "g"):
+        program = tmp_path / f"part.{ending}"
+        program.write_text("G1 X1 F100\n")
+        with pytest.raises(ProjectError, match="this is a program, not a set-up"):
+            load_setup(program)
+    other = tmp_path / "setup.txt"
+    other.write_text("G1 X1 F100\n")
+    with pytest.raises(ProjectError) as caught:
+        load_setup(other)
+    assert "this is a program" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

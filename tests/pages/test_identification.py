@@ -12,6 +12,7 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.errors import LoadTestError, ProjectError
+from robomill.files import TABLE
 from robomill.identification.estimate import identify
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.laboratory import MAX_LOAD
@@ -23,11 +24,12 @@ from robomill.io.load_tests import read_load_tests
 from robomill.io.projects import load_setup
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.io.texts import read_text
 from robomill.provenance import Kind, Provenance
 from robomill.simulation.run import simulate
 from robomill.ui import session, uncertainty
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import KEY, SAMPLES, Bench, Trial, decoded, sample_text
+from robomill.ui.identification.bench import KEY, SAMPLES, Bench, Trial, sample_text
 from robomill.ui.identification.inputs import adopted
 from robomill.ui.project import Project, project_from_toml, project_to_toml
 from robomill.ui.session import KEY as PROJECT
@@ -179,7 +181,7 @@ def test_micrometres_taken_for_millimetres_are_suspected(page: AppTest) -> None:
 
 def test_a_file_that_is_no_text_is_refused() -> None:
     with pytest.raises(LoadTestError, match=r"sheet.xlsx: this is not a text file"):
-        decoded(b"PK\x03\x04\xff\xfe\x00", "sheet.xlsx")
+        read_text(b"PK\x03\x04\xff\xfe\x00", LoadTestError, TABLE, "sheet.xlsx")
 
 
 def test_the_bench_survives_a_visit_elsewhere(among_pages: AppTest) -> None:

@@ -166,31 +166,6 @@ def sample_text(sample: str) -> str:
     return (samples_dir() / "load_tests" / f"{sample}.csv").read_text(encoding="utf-8")
 
 
-def decoded(data: bytes, name: str) -> str:
-    """An uploaded file as text. Raises LoadTestError for what is not one."""
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise LoadTestError(f"{name}: this is not a text file; save the table as CSV (UTF-8) and take that.") from None
-
-
-def appended(text: str, sheet: str) -> str:
-    """The tests with the rows of a filled-in sheet after them. Raises LoadTestError where their columns differ."""
-    head, extra = _body(text), _body(sheet)
-    names, others = ([cell.strip().strip('"') for cell in lines[0].split(",")] for lines in (head, extra))
-    if names != others:
-        raise LoadTestError(
-            f"The sheet has the columns {', '.join(others)[:80]}, the tests have {', '.join(names)[:80]}: "
-            "bring both to the same columns in the same order, then paste the rows."
-        )
-    return text.rstrip("\n") + "\n" + "\n".join(extra[1:]) + "\n"
-
-
-def _body(text: str) -> list[str]:
-    """Header and rows without remarks and empty lines; at least one line."""
-    return [line for line in text.splitlines() if line.strip(" \t,;") and not line.startswith("#")] or [""]
-
-
 def robot_of(bench: Bench) -> Robot:
     """The robot that was measured: the project's, or a preset."""
     return load_robot(bench.robot_name) if bench.robot_name else session.project().setup.robot

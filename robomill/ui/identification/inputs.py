@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import streamlit as st
 
-from robomill.errors import RobomillError
+from robomill.errors import LoadTestError, RobomillError
+from robomill.files import TABLE
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS, Model
@@ -15,12 +16,13 @@ from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import TEMPLATES, load_test_template
 from robomill.io.load_tests import read_findings
 from robomill.io.robots import robot_names
-from robomill.provenance import Finding, Provenance
+from robomill.io.texts import read_text
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.ui.identification.bench import SAMPLES, Bench, decoded, take_sample
+from robomill.ui.identification.bench import SAMPLES, Bench, take_sample
 from robomill.ui.identification.words import summary
 
 SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual laboratory"}
@@ -44,7 +46,6 @@ BANDS = {"model": "Noise and error of the model", "noise": "Noise of the fit onl
 MAX_MB = 50
 EDITABLE = 60_000
 OWN = "own"
-IDENTIFIED = "compliance.identified"
 
 
 def choose(key: str, options: dict[str, str]) -> str:
@@ -87,7 +88,7 @@ def upload(label: str, key: str, take: Callable[[str, str], None], revision: int
     """
 
     def text_of(data: bytes, name: str) -> None:
-        take(decoded(data, name), name)
+        take(read_text(data, LoadTestError, TABLE, name)[0], name)
 
     inputs.upload(label, key, text_of, most_MB=MAX_MB, fresh=revision)
 
@@ -190,15 +191,9 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
 
 
 def adopted(setup: SimulationSetup, robot: Robot, result: IdentificationResult, name: str) -> SimulationSetup:
-    """The set-up with the compliances and springs found; springs of an earlier identification and a map give way."""
-    source = f"identified from {len(result.row)} load tests ({name}), {result.choice.title.lower()}"
-    applied = result.applied_to(robot)
-    marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
-    found = result.springs(robot)
-    names = {spring.name for spring in found}
-    ours = ("measured", "synthetic") if IDENTIFIED in setup.robot.provenance else ()  # such springs came from that
-    old = tuple(s for s in setup.springs if s.name not in names and s.provenance.kind not in ours)
-    return setup.replace(robot=applied.replace(provenance=marked), springs=old + found, measured_map=None)
+    """The set-up with the compliances and springs found; a measured map gives way."""
+    changed, springs = result.adopted(robot, name, setup.robot, setup.springs)
+    return setup.replace(robot=changed, springs=springs, measured_map=None)
 
 
 def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowledge:

@@ -11,12 +11,14 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
 from robomill.identification.plan import MARGIN, Loads, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
+from robomill.io.columns import append_rows
+from robomill.io.load_test_columns import LAYOUT
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.ui.identification.bench import Bench, appended, tests_of
+from robomill.ui.identification.bench import Bench, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import field, upload
 from robomill.units import format_si, from_si, unit_label
@@ -100,7 +102,7 @@ def _joint(bench: Bench, robot: Robot, result: IdentificationResult) -> int:
 
 def _take_sheet(bench: Bench, robot: Robot, text: str, name: str) -> None:
     read_load_tests(text + "\n", robot)  # refused here with row and column of the sheet, before it joins anything
-    bench.take(appended(bench.text, text), f"{bench.name} + {name}")
+    bench.take(append_rows(bench.text, text, LAYOUT, name), f"{bench.name} + {name}")
 
 
 def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:

@@ -170,9 +170,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
 
 
 def _take(data: bytes, name: str) -> None:
-    text = inputs.decoded(data, name, "a CSV table")
-    # Without a line break the text could be taken for the name of a file.
-    session.keep(MEASURED, read_profile(text + "\n", name=name))
+    session.keep(MEASURED, read_profile(data, name=name))
 
 
 def spread_panel(result: SimulationResult, dark: bool) -> None:

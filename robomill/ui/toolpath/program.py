@@ -9,11 +9,13 @@ from pathlib import Path
 import streamlit as st
 
 from robomill.errors import GCodeError, RobomillError, ToolpathError
+from robomill.files import PROGRAM
 from robomill.io.programs import program_from_bytes
 from robomill.provenance import Finding
 from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
+from robomill.toolpath.text import SUFFIXES
 from robomill.ui import inputs, pieces, session, typed
 from robomill.ui.box import NumberBox
 from robomill.ui.toolpath import reading
@@ -21,8 +23,6 @@ from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
 from robomill.ui.toolpath.sources import put
 
-SUFFIXES = ("nc", "ngc", "tap", "gcode", "cnc", "txt", "mpf", "eia", "min")
-MAX_PROGRAM_MB = 100
 EDITABLE_CHARACTERS = 200_000
 TEXT, MODE, REFUSED = "toolpath.text", "toolpath.mode", "toolpath.refused"
 MODES = {"code": "Code", "edit": "Edit"}
@@ -43,8 +43,8 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
         "Program file",
         "toolpath.file",
         take_program,
-        most_MB=MAX_PROGRAM_MB,
-        look=inputs.Look(hint=f"Endings {', '.join(SUFFIXES)}, upper or lower case; up to {MAX_PROGRAM_MB} MB."),
+        most_MB=PROGRAM.most_MB,
+        look=inputs.Look(hint=f"Endings {', '.join(SUFFIXES)}, upper or lower case."),
         fresh=session.store().revision,
     )
     reading.reading_inputs(_accept, _refuse)
@@ -99,7 +99,7 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
 def take_program(data: bytes, name: str) -> None:
     """A dropped file: read at once, or beside the page where it is big. Raises the refusal of what is no program."""
     _leave()
-    if Path(name).suffix.lower().lstrip(".") not in SUFFIXES:
+    if Path(name).suffix.lower() not in SUFFIXES:
         raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
     source = program_from_bytes(data, name)
     if len(source.text) > reading.BACKGROUND_CHARACTERS:
