@@ -29,7 +29,7 @@ from robomill.toolpath.text import as_plain_bytes, read_source, split_lines
 )
 def test_a_string_of_one_line_with_the_end_of_a_programs_name_is_a_file(source: str, is_file: bool) -> None:
     if is_file:
-        with pytest.raises(GCodeError, match="cannot be read"):
+        with pytest.raises(GCodeError, match="cannot be opened"):
             read_source(source)
     elif "\0" in source:
         with pytest.raises(GCodeError, match="NUL"):
