@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import GCodeError
+from robomill.files import FileKind
 from robomill.toolpath import text as texts
 from robomill.toolpath.text import as_plain_bytes, read_source, split_lines
 
@@ -67,14 +68,15 @@ def test_what_is_no_text_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     with pytest.raises(GCodeError, match="found a binary file"):
         as_plain_bytes(b"\x01" + b"G" * 98)
     assert as_plain_bytes(b"\t\x0c\x1b\n" * 9) == b"\t\x0c\x1b\n" * 9
-    monkeypatch.setattr(texts, "MAX_BYTES", 10)
-    assert as_plain_bytes(b"G" * 10) == b"G" * 10
-    (tmp_path / "long.nc").write_bytes(b"G" * 11)
-    for long in (b"G" * 11, tmp_path / "long.nc"):
-        with pytest.raises(GCodeError, match="MB can be read"):
+    monkeypatch.setattr(texts, "PROGRAM", FileKind("a program", 1))
+    most = 1_000_000
+    assert as_plain_bytes(b"G" * most) == b"G" * most
+    (tmp_path / "long.nc").write_bytes(b"G" * (most + 1))
+    for long in (b"G" * (most + 1), tmp_path / "long.nc"):
+        with pytest.raises(GCodeError, match="at most 1 MB"):
             read_source(long)
-    (tmp_path / "long.nc").write_bytes(b"G" * 10)
-    assert read_source(tmp_path / "long.nc")[0] == b"G" * 10
+    (tmp_path / "long.nc").write_bytes(b"G" * most)
+    assert read_source(tmp_path / "long.nc")[0] == b"G" * most
 
 
 @pytest.mark.parametrize("text", ["a\nb", "a\r\nb\n", "a\rb\r", "\n\n", "", "a", "a\n\n"])
