@@ -8,6 +8,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.ui.arm import arm
+from robomill.ui.point import FORCE
 from robomill.ui.robot import editors, pose
 from robomill.units import format_many, format_si
 from robomill.viz.arm import ArmScene
@@ -17,11 +18,11 @@ robot, view, dark = project.setup.robot, project.view, ui.dark()
 result = ui.attempt(ui.result, project.setup)
 theta = pose.configuration(project, result)
 now, old = pose.compared(project, theta)
-push = now.delta([0.0, 100.0, 0.0])
+push = now.delta([0.0, FORCE, 0.0])
 
 ui.headline(
     f"Robot · {robot.title or robot.name}",
-    f"At this pose 100 N along Y move the tip {format_si(abs(push[1]), view.length, 3)} in Y "
+    f"At this pose {format_si(FORCE, 'N', 0)} along Y move the tip {format_si(abs(push[1]), view.length, 3)} in Y "
     f"and {format_si(abs(push[2]), view.length, 3)} in Z.",
 )
 tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)

@@ -1,9 +1,9 @@
 """The paper once: what it prints and claims, in its own words, with our reading beside it.
 
 Slavkovic, Milutinovic, Kokotovic, Glavonjic, Zivanovic, Ehmann, *Cartesian Compliance Identification and Analysis of an
-Articulated Machining Robot*, FME Transactions 41 (2013) 83-95. Everything that shows or checks a number of the paper
-takes it from here: the pages Start, Milling and Learn, the reproduction table, the tests. Quotations are exact; indices
-are written as X_M, C_xx. Numbers are SI.
+Articulated Machining Robot*, FME Transactions 41 (2013) 83-95. Quotations are exact; indices are written as X_M, C_xx.
+Its tables stand as they are printed, in the unit that each names; its milling test and its box, in SI, stand in
+``robomill.paper``.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from robomill.paper import BOX_SIZE, SLOT
 from robomill.units import from_si
 
 Status = Literal["reproduced", "assumed", "gap", "not computed"]
@@ -19,27 +20,7 @@ Status = Literal["reproduced", "assumed", "gap", "not computed"]
 TABLE_1 = ((90, 0, 90, -90, 0), (-90, 90, 0, 0, 180), (1, 1, 1, -1, 1))
 # Tables 2 and 3: joint compliances in 1e-7 rad/(N m), by the names of the robot's compliance sets.
 TABLES = {"table_2": (7.14, 10.12, 12.30, 17.32, 91.35), "table_3": (9.03, 11.17, 14.74, 27.65, 97.58)}
-BOX_SIZE = (1.2, 0.6, 0.5)  # m, Fig. 3
 EQUATIONS = 81  # Sec. 5.1: nine points, three forces, three displacements
-
-
-@dataclass(frozen=True)
-class Slot:
-    """The milling test of Sec. 5.2, SI: a slot as wide as its cutter, in the direction of +X_M."""
-
-    diameter: float = 8e-3
-    flutes: int = 3
-    a_p: float = 2e-3
-    n_s: float = 200.0  # 12 000 per minute
-    v_f: float = 0.03
-    point: tuple[float, float, float] = (0.0, -1.3, 0.0)
-    force: float = 100.0  # static, feed-normal, about
-    from_table_2: float = 0.23e-3  # deviation in Y_M, predicted
-    from_map: float = 0.29e-3  # by the measured compliances
-    measured: float = 0.30e-3  # on the part, about
-
-
-SLOT = Slot()
 
 
 @dataclass(frozen=True)

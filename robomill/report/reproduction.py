@@ -13,8 +13,9 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.paper import BOX_SIZE
 from robomill.report import reproduction_experiments as experiments
-from robomill.report.paper import BOX_SIZE, STATEMENTS, TABLE_1, TABLES
+from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction_row import STEP, Evidence, Found, Row
 from robomill.units import format_many, format_percent, format_si, format_significant, format_value, from_si
 from robomill.workspace.fields import compliance_field

@@ -7,7 +7,8 @@ import numpy as np
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
-from robomill.report.paper import EQUATIONS, SLOT, TABLES
+from robomill.paper import SLOT
+from robomill.report.paper import EQUATIONS, TABLES
 from robomill.report.reproduction_row import Evidence, Found
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import nearest_feed

@@ -8,7 +8,7 @@ import streamlit as st
 
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.report.paper import SLOT
+from robomill.paper import SLOT
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import sideways
 from robomill.ui import cached, pieces, running

@@ -9,12 +9,13 @@ import numpy as np
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.paper import SLOT, Point
 from robomill.robot.model import Robot
-from robomill.ui.project import MapView, Point
+from robomill.ui.project import MapView
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.reach import Box
 
-FORCE = 100.0  # N, the paper's static force
+FORCE = SLOT.force  # N
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +44,7 @@ def default_point(view: MapView, box: Box, known: ComplianceField) -> Point:
     if view.point is not None:
         return view.point
     if view.region == "paper" and view.A == view.B == 0:
-        return (0.0, -1.3, 0.0)
+        return SLOT.point
     centre = middle(box)
     if not known.reached.any():
         return centre

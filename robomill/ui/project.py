@@ -22,6 +22,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.io.projects import load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.tables import parse_toml
+from robomill.paper import BOX, Point
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
@@ -34,7 +35,6 @@ SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
 COMPLIANCE = quantities(Robot)["C_theta_all"]
 PRISMATIC_UNITS = {COMPLIANCE.unit: str(COMPLIANCE.sliding), "kN m/rad": "N/um"}  # as shown for joints that turn, slide
-Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ class MapView:
 
     robot: str = ""
     region: str = "largest"
-    lower: Point = (-0.6, -1.6, -0.4)
-    upper: Point = (0.6, -1.0, 0.1)
+    lower: Point = BOX[0]
+    upper: Point = BOX[1]
     step: float | None = None
     A: float = 0.0
     B: float = 0.0

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import WorkspaceError
+from robomill.paper import BOX, BOX_SIZE
 from robomill.units import format_si
 
-# The paper's working box (Sec. 3): 1200 x 600 x 500 mm, Z_M from -400 to 100; its place in Y_M is assumed.
-PAPER_BOX = (frozen([-0.6, -1.6, -0.4]), frozen([0.6, -1.0, 0.1]))
-PAPER_BOX_SIZE = frozen([1.2, 0.6, 0.5])
+PAPER_BOX = (frozen(BOX[0]), frozen(BOX[1]))
+PAPER_BOX_SIZE = frozen(BOX_SIZE)
 LARGEST_AXIS = 100_000
 
 

@@ -15,6 +15,7 @@ from robomill.kinematics.inverse import IKResult, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.steadiness import hasty_turns, passages
 from robomill.kinematics.transforms import axis_from_tilt, pose_from_world
+from robomill.paper import SLOT
 from robomill.robot.model import Robot
 from robomill.units import format_si
 from robomill.workspace.grid import PAPER_BOX
@@ -70,7 +71,7 @@ def line_deviation(
     robot: Robot,
     start: ArrayLike,
     end: ArrayLike,
-    force: float = 100.0,
+    force: float = SLOT.force,
     points: int = 61,
     A: float = 0.0,
     B: float = 0.0,
@@ -107,7 +108,7 @@ def border_and_middle_lines(
     lower: ArrayLike = PAPER_BOX[0][:2],
     upper: ArrayLike = PAPER_BOX[1][:2],
     z: float = 0.0,
-    force: float = 100.0,
+    force: float = SLOT.force,
     points: int = 61,
 ) -> list[LineDeviation]:
     """The six lines of Fig. 8: three along X_M and three along Y_M, on the borders and through the middle."""

@@ -22,7 +22,7 @@ STOREYS = [
         "files",
         "compiled",
         "provenance",
-        "quantities",
+        "quantities", "paper",
         "seals",
         "budgets",
         "progress",

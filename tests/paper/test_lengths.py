@@ -5,7 +5,8 @@ import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.report.paper import SLOT, TABLES
+from robomill.paper import SLOT
+from robomill.report.paper import TABLES
 from robomill.report.paper_lengths import OURS, TRIED, are_assumed, lengths, over_lengths
 from robomill.report.simulation_record import lengths_record
 from tests.paper import arm

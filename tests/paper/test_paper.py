@@ -12,7 +12,8 @@ from scipy.optimize import nnls
 import robomill as rm
 from robomill.io.materials import sample_materials
 from robomill.io.samples import samples_dir
-from robomill.report.paper import BOX_SIZE, SLOT, STATEMENTS, TABLE_1, TABLES
+from robomill.paper import BOX_SIZE, SLOT
+from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction import CHECKS, reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, columns, summary
 from robomill.workspace.fields import compliance_field

@@ -13,3 +13,10 @@ def test_a_line_through_a_singular_wrist_is_smooth_and_says_so():
 
 def test_the_papers_lines_say_nothing():
     assert not [note for line in border_and_middle_lines(rm.load_robot("slavkovic_5r")) for note in line.notes()]
+
+
+def test_the_force_of_the_lines_is_that_of_the_papers_slot() -> None:
+    """Fig. 8 and Sec. 5.2 say 100 N each: the lines unasked are those of a hundred times the lines of 1 N."""
+    robot = rm.load_robot("slavkovic_5r")
+    unasked, one = (lines[4] for lines in (border_and_middle_lines(robot), border_and_middle_lines(robot, force=1.0)))
+    np.testing.assert_allclose(unasked.delta_joint, 100.0 * one.delta_joint, rtol=1e-12, atol=0.0)

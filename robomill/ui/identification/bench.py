@@ -26,6 +26,7 @@ from robomill.identification.treatment import AUTO, Treatment
 from robomill.io.load_tests import read_load_tests, read_measured_map
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.paper import SLOT
 from robomill.robot.model import Robot
 from robomill.ui import session
 
@@ -50,7 +51,7 @@ MAP_SAMPLES = {"grid_45x6": SAMPLES["grid_45x6"], "nine_points_compliances": SAM
 class Trial:
     """What is measured next in the laboratory: X, Y, Z, A, B (m, rad), the axis of {M} pushed along, the load in N."""
 
-    pose: tuple[float, ...] = (0.0, -1.3, 0.0, 0.0, 0.0)
+    pose: tuple[float, ...] = (*SLOT.point, 0.0, 0.0)
     axis: str = "Y"
     load: float = 250.0
 

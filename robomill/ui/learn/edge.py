@@ -10,13 +10,13 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.dexterity import near_singular
+from robomill.paper import Point
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.arm import arm
 from robomill.ui.cached import shared
 from robomill.ui.learn import lesson
 from robomill.ui.point import FORCE, InHand, in_hand
-from robomill.ui.project import Point
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz import solids
 from robomill.viz.arm import ArmScene
@@ -77,7 +77,7 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
         fig.update_layout(scene_camera=lesson.SIDE)
 
     grown = format_times(times / FORCE)
-    caption = f"Where 100 N in every direction take the tip, shown {grown}; the same scale at every distance."
+    caption = f"Where {format_si(FORCE, 'N', 0)} in every direction take the tip, shown {grown}; the same scale at every distance."
     alt = "The arm with its compliance ellipsoid at the chosen distance."
     arm(
         ArmScene(frames=pose.frames, joints=pose.robot.joint_numbers),

@@ -21,6 +21,7 @@ from robomill.units import format_number, format_si, format_times, from_si, unit
 from robomill.viz.arm import ArmScene, displacement_scale
 
 KEPT = "learn.lesson"
+PUSH = format_si(FORCE, "N", 0)
 ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
@@ -101,7 +102,7 @@ def _answer(C: FloatArray, now: Lesson) -> None:
     delta = displacement(C, [0.0, FORCE, 0.0])
     truth = went(delta)
     unit = session.project().view.length
-    st.html(f'<p class="rm-say">100 N along Y move the tip {_moves(delta, unit)}.</p>')
+    st.html(f'<p class="rm-say">{PUSH} along Y move the tip {_moves(delta, unit)}.</p>')
     if now.answer is not None:
         judged = "Right." if now.answer == truth else "Look again:"
         said = (
@@ -155,11 +156,11 @@ def _push(pose: PoseReport, revealed: bool) -> None:
         frames=pose.frames,
         joints=pose.robot.joint_numbers,
         force=np.array([0.0, FORCE, 0.0]),
-        force_label="100 N",
+        force_label=PUSH,
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit),
     )
     drawn = format_times(displacement_scale(delta, pose.frames))
-    caption = f"Seen from the side. Displacement shown {drawn}." if revealed else "Seen from the side: 100 N along Y."
-    alt = "The arm seen from the side with a force of 100 N along Y on the tool."
+    caption = f"Seen from the side. Displacement shown {drawn}." if revealed else f"Seen from the side: {PUSH} along Y."
+    alt = f"The arm seen from the side with a force of {PUSH} along Y on the tool."
     arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.update_layout(scene_camera=SIDE)))

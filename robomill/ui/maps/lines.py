@@ -12,7 +12,8 @@ from robomill.robot.model import Robot
 from robomill.ui import fields, pieces, shell
 from robomill.ui.maps import plane
 from robomill.ui.maps.plane import Region
-from robomill.units import format_significant, from_si, unit_label
+from robomill.ui.point import FORCE
+from robomill.units import format_si, format_significant, from_si, unit_label
 from robomill.viz.shares import LinePanel, line_panels
 
 
@@ -54,7 +55,7 @@ def show(region: Region) -> None:
         table=lambda: _line_columns(panels, robot),
         lazy=True,
         alt="Deviation along six straight lines, total and by joint.",
-        caption="Fig. 8: borders and middle of the region's plane, 100 N normal to the feed (left of it), "
+        caption=f"Fig. 8: borders and middle of the region's plane, {format_si(FORCE, 'N', 0)} normal to the feed (left of it), "
         "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
     )
     for words in [words for line in found for words in line.notes()]:

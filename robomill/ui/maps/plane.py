@@ -11,10 +11,11 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
+from robomill.paper import Point
 from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.ui.project import MapView, Point
+from robomill.ui.project import MapView
 from robomill.units import UNITS, decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
 from robomill.workspace.fields import ComplianceField

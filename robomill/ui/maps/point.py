@@ -8,10 +8,10 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
+from robomill.paper import Point
 from robomill.ui import fields, pieces, shell
 from robomill.ui.arm import arm
 from robomill.ui.point import FORCE, InHand
-from robomill.ui.project import Point
 from robomill.units import (
     format_many,
     format_number,
@@ -48,7 +48,8 @@ def headline(found: InHand, unit: str) -> str:
         if abs(v) > 0.02 * np.linalg.norm(delta)
     ]
     moved = ", ".join(ways[:-1]) + (" and " if len(ways) > 1 else "") + ways[-1] if ways else "not at all"
-    return f"At {where}, 100 N along Y move the tip {moved}; joint {pose.gives_most('yy')} gives most."
+    push = format_si(FORCE, "N", 0)
+    return f"At {where}, {push} along Y move the tip {moved}; joint {pose.gives_most('yy')} gives most."
 
 
 def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:

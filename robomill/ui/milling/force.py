@@ -17,6 +17,7 @@ from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
+from robomill.paper import SLOT
 from robomill.quantities import declared_types
 from robomill.ui import cached, declared, inputs, pieces, session
 from robomill.ui.milling import materials as material_panel
@@ -94,7 +95,7 @@ def _mean_force() -> MeanForce:
     except RobomillError:
         result = None
     if result is None or result.worst < 0:
-        return MeanForce(np.array([0.0, 100.0, 0.0]), np.array([0.0, 100.0, 0.0]))
+        return MeanForce(np.array([0.0, SLOT.force, 0.0]), np.array([0.0, SLOT.force, 0.0]))
     i = result.worst
     return MeanForce(np.round(result.F[i], 6) + 0.0, np.round(result.force_components[i], 6) + 0.0)
 

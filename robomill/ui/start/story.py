@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.io.samples import app_dir
-from robomill.report.paper import SLOT
+from robomill.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
