@@ -1,5 +1,7 @@
 """What is said of a line: where its joints run, where the arm passes a singular configuration."""
 
+import numpy as np
+
 import robomill as rm
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
 

@@ -77,7 +77,8 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
         fig.update_layout(scene_camera=lesson.SIDE)
 
     grown = format_times(times / FORCE)
-    caption = f"Where {format_si(FORCE, 'N', 0)} in every direction take the tip, shown {grown}; the same scale at every distance."
+    push = format_si(FORCE, "N", 0)
+    caption = f"Where {push} in every direction take the tip, shown {grown}; the same scale at every distance."
     alt = "The arm with its compliance ellipsoid at the chosen distance."
     arm(
         ArmScene(frames=pose.frames, joints=pose.robot.joint_numbers),

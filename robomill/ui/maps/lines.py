@@ -55,8 +55,8 @@ def show(region: Region) -> None:
         table=lambda: _line_columns(panels, robot),
         lazy=True,
         alt="Deviation along six straight lines, total and by joint.",
-        caption=f"Fig. 8: borders and middle of the region's plane, {format_si(FORCE, 'N', 0)} normal to the feed (left of it), "
-        "deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
+        caption=f"Fig. 8: borders and middle of the region's plane, {format_si(FORCE, 'N', 0)} normal to the feed "
+        "(left of it), deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
     )
     for words in [words for line in found for words in line.notes()]:
         pieces.note(words)
