@@ -8,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import WorkspaceError
+from robomill.improve.sensitivity import scaled_shares
 from robomill.robot.model import Robot
 from robomill.ui import fields, pieces, shell
 from robomill.ui.maps import plane
@@ -31,7 +32,7 @@ def show(region: Region) -> None:
     panels = []
     for line in found:
         by_joint = from_si(line.along_normal(), unit)
-        now = by_joint / scale
+        now = scaled_shares(by_joint, scale, -1)
         axis = 0 if abs(line.feed[0]) > 0.5 else 1
         fixed = "YX"[axis]
         panels.append(
@@ -56,7 +57,8 @@ def show(region: Region) -> None:
         lazy=True,
         alt="Deviation along six straight lines, total and by joint.",
         caption=f"Fig. 8: borders and middle of the region's plane, {format_si(FORCE, 'N', 0)} normal to the feed "
-        "(left of it), deviation along that normal, deflected minus commanded; tool vertical. Total in black, joints in colour.",
+        "(left of it), deviation along that normal, deflected minus commanded; tool vertical. "
+        "Total in black, joints in colour.",
     )
     for words in [words for line in found for words in line.notes()]:
         pieces.note(words)
