@@ -23,7 +23,7 @@ from robomill.cutting.engaged import FACING, MOMENTS, PANELS
 from robomill.cutting.tool import DISH
 from robomill.surface.envelope_kernels import Shape
 from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.rib_kernels import COSINE, PHI, SINE, Walk, is_plain, jumps, next_change, walk_on
+from robomill.surface.rib_kernels import COSINE, HALF, PHI, SINE, Walk, gap_end, is_plain, jumps, next_change, walk_on
 from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, piece_between, stretch_ends
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
@@ -33,6 +33,7 @@ EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
+SMALL_HALF, LEAST_HALF = 2.0**-14, 2.0**-24  # numbers below the first are kept in steps of the second one
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is known of an angle: itself, its sine and cosine; then what is engaged at it: length, height along the axis,
@@ -212,21 +213,17 @@ def note(pieces: FloatArray, count: int, row: float, middle: float, width: float
 def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halves: int) -> tuple[int, int, int]:
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
     how many angles between were looked at for ribs and gaps of material that its panels pass over."""
-    rows, count, gaps, looked = room.rows, 0, 0, 0
+    rows, count, gaps, looked, every = room.rows, 0, 0, 0, HALF * halves
+    changed, phi = next_change(world, step, walk, rows, (0, 0, 0), every) if walk.radius > 0.0 else (every, 0.0)
     for panel in range(PANELS * halves):
-        first = 3 * panel + panel // PANELS
         begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
-        rough = False
+        first, rough = gap_end(3 * panel) - 1, False
         for n in range(3):
             left, right = first + n, first + n + 1
             a = start if n == 0 else rows[left, PHI]
             b = end if n == 2 else rows[right, PHI]
-            since = left
-            while walk.radius > 0.0 and looked < HIDDEN:
-                phi = next_change(world, step, walk, rows[since], rows[left], rows[right])
-                if phi >= rows[right, PHI]:
-                    break
-                since = between = 2 * ANGLES + looked
+            while changed == 3 * panel + n and looked < HIDDEN:
+                between = 2 * ANGLES + looked
                 look(room, world, shape, step, between, phi)
                 looked += 1
                 if jumps(rows[left, LENGTH], rows[between, LENGTH]) and jumps(
@@ -234,6 +231,7 @@ def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halve
                 ):
                     gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
                     left, a, rough = between, phi, True
+                changed, phi = next_change(world, step, walk, rows, (changed, between, left), every)
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         if not rough:
@@ -360,6 +358,12 @@ def add_pieces(room: Room, count: int, total: FloatArray) -> None:
 
 
 @part
+def as_half(length: float) -> float:
+    """A length >= 0 as half precision keeps it where it is small, for there rounding it later costs microseconds."""
+    return length if length >= SMALL_HALF else math.floor(length / LEAST_HALF + 0.5) * LEAST_HALF
+
+
+@part
 def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArray, sectors: FloatArray) -> None:
     """The engaged part of one step, into ``total`` (8 e + 6,) and ``sectors`` (4 s,), see ``EngagedPart``."""
     rest = total[MOMENTS * len(room.exponents) :]
@@ -375,10 +379,10 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]
-        sectors[4 * n] = height / width if width > 0.0 else 0.0
-        sectors[4 * n + 1] = low / height if height > 0.0 else 0.0
-        sectors[4 * n + 2] = high / height if height > 0.0 else 0.0
-        sectors[4 * n + 3] = face / width if width > 0.0 else 0.0
+        sectors[4 * n] = as_half(height / width) if width > 0.0 else 0.0
+        sectors[4 * n + 1] = as_half(low / height) if height > 0.0 else 0.0
+        sectors[4 * n + 2] = as_half(high / height) if height > 0.0 else 0.0
+        sectors[4 * n + 3] = as_half(face / width) if width > 0.0 else 0.0
     if rest[PHI_EX] < rest[PHI_ST]:
         rest[PHI_ST] = rest[PHI_EX] = 0.0
         return

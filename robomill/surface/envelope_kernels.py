@@ -77,6 +77,14 @@ def profile(shape: Shape, r: float) -> float:
 
 
 @part
+def profile_within(shape: Shape, square: float) -> float:
+    """Height of the cutting surface above the tip where the squared radius is so much, m; a ball's without its root."""
+    if shape.kind == BALL:
+        return shape.rc - math.sqrt(max(shape.rc**2 - square, 0.0))
+    return profile(shape, math.sqrt(square))
+
+
+@part
 def radius_at(shape: Shape, height: float) -> float:
     """Radius of the cutter ``height`` > 0 above its tip, m: the inverse of its profile."""
     if shape.kind == FLAT:

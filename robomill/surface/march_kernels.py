@@ -19,6 +19,7 @@ from robomill.surface.envelope_kernels import (
     Shape,
     nearest,
     profile,
+    profile_within,
     radius_at,
     row_interval,
     shape_of,
@@ -133,7 +134,7 @@ def open_row(columns: Columns, shape: Shape, move: Move, r: int, row: tuple[int,
             y = columns.y0 + j * columns.dy
             if move.m == 0.0:
                 ex, ey = nearest(move, x, y)
-                height += profile(shape, math.sqrt(ex * ex + ey * ey))
+                height += profile_within(shape, ex * ex + ey * ey)
             else:
                 height = swept_height(shape, move, x, y)
         if not single:
@@ -207,7 +208,7 @@ def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: fl
             n += 2
 
 
-@part
+@called
 def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
     """Note a run in the cells that the two sides of its step pass through, and where it stops its front."""
     columns, ends, k = world.columns, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
@@ -223,19 +224,18 @@ def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
     up = (nose * k[0], nose * k[1], nose * k[2] + 10.0 * SKIN)
     cell = min(columns.dx, columns.dy)
     pieces = 2 * int(length / cell) + 2
-    for n in range(pieces + 1):
-        x, y, z = ends[0] + n / pieces * vx, ends[1] + n / pieces * vy, ends[2] + n / pieces * vz
-        for side in (-out, out):
-            note_place(world, r, (x + side * lx + up[0], y + side * ly + up[1], z + side * lz + up[2]))
-    pieces = int(2.0 * math.pi * shape.R / cell) if stops else 0
-    for n in range(1, pieces):
-        phi = math.pi * n / pieces
-        f, side = out * math.sin(phi), out * math.cos(phi)
-        x, y, z = f * fx + side * lx + up[0], f * fy + side * ly + up[1], f * fz + side * lz + up[2]
-        note_place(world, r, (ends[3] + x, ends[4] + y, ends[5] + z))
+    sides, front = 2 * pieces + 2, int(2.0 * math.pi * shape.R / cell) if stops else 0
+    for n in range(sides + max(front - 1, 0)):
+        if n < sides:
+            part_of, f, side = n // 2 / pieces, 0.0, out if n % 2 else -out
+        else:
+            phi = math.pi * (n - sides + 1) / front
+            part_of, f, side = 1.0, out * math.sin(phi), out * math.cos(phi)
+        x, y, z = ends[0] + part_of * vx + up[0], ends[1] + part_of * vy + up[1], ends[2] + part_of * vz + up[2]
+        note_place(world, r, (x + f * fx + side * lx, y + f * fy + side * ly, z + f * fz + side * lz))
 
 
-@called
+@part
 def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
     """Note a run in the cell of a place on its rim (m), unless a noted run reaches further there."""
     x, y, z = place

@@ -11,12 +11,14 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import called, part
+from robomill.cutting.engaged import PANELS
 from robomill.surface.envelope_kernels import FLAT, Shape
 from robomill.surface.material_kernels import NOBODY, World, cell_of
 from robomill.surface.step_kernels import Step
 
 PITCH = 0.7  # cells: so far apart ribs and gaps of material are looked for
 JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
+HALF = 3 * PANELS  # gaps between the angles looked at in a half turn
 PHI, SINE, COSINE = range(3)  # of a row that is known of an angle: itself, its sine and cosine
 
 
@@ -52,6 +54,12 @@ def walk_on(world: World, shape: Shape, step: Step) -> Walk:
 
 
 @part
+def gap_end(gap: int) -> int:
+    """The row at which a gap between the angles looked at ends; each half turn begins with a row of its own."""
+    return gap + gap // HALF + 1
+
+
+@part
 def cell_on_rim(world: World, step: Step, radius: float, sine: float, cosine: float) -> tuple[float, int]:
     """How high above the tip the column at an angle of the rim stands (0 outside the stock), and whose side."""
     columns, block = world.columns, world.block
@@ -64,20 +72,27 @@ def cell_on_rim(world: World, step: Step, radius: float, sine: float, cosine: fl
 
 
 @called
-def next_change(world: World, step: Step, walk: Walk, since: FloatArray, left: FloatArray, right: FloatArray) -> float:
-    """The next angle between those of two rows, after that of ``since``, at which the column under the rim is higher or
-    lower than at both, or another side is noted than before; that of ``right`` if none."""
-    phi, end, sine, cosine = since[PHI], right[PHI], since[SINE], since[COSINE]
-    if phi + walk.pitch >= end:
-        return end
-    low, _ = cell_on_rim(world, step, walk.radius, left[SINE], left[COSINE])
-    high, _ = cell_on_rim(world, step, walk.radius, right[SINE], right[COSINE])
-    _, noted = cell_on_rim(world, step, walk.radius, sine, cosine)
-    while phi + walk.pitch < end:
-        phi += walk.pitch
-        sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
-        top, name = cell_on_rim(world, step, walk.radius, sine, cosine)
-        if (jumps(top, low) and jumps(top, high)) or name != noted:
-            return phi
-        noted = name
-    return end
+def next_change(
+    world: World, step: Step, walk: Walk, rows: FloatArray, since: tuple[int, int, int], gaps: int
+) -> tuple[int, float]:
+    """The next change along the rim: the gap, of ``gaps`` between the angles of rows, and the angle in it at which the
+    column under the rim is higher or lower than at both its ends, or another side is noted than before. ``since``: the
+    gap it is looked for from, the row to look on from, and that where the gap begins. Past the last gap if none."""
+    gap, row, left = since
+    top, noted = cell_on_rim(world, step, walk.radius, rows[row, SINE], rows[row, COSINE])
+    low = top if left == row else cell_on_rim(world, step, walk.radius, rows[left, SINE], rows[left, COSINE])[0]
+    while gap < gaps:
+        right = gap_end(gap)
+        phi, end, sine, cosine = rows[row, PHI], rows[right, PHI], rows[row, SINE], rows[row, COSINE]
+        high, after = cell_on_rim(world, step, walk.radius, rows[right, SINE], rows[right, COSINE])
+        while phi + walk.pitch < end:
+            phi += walk.pitch
+            sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
+            top, name = cell_on_rim(world, step, walk.radius, sine, cosine)
+            if (jumps(top, low) and jumps(top, high)) or name != noted:
+                return gap, phi
+        gap, row, low, noted = gap + 1, right, high, after
+        if gap == HALF and gap < gaps:  # where both half turns meet, the other one has a row of its own
+            row += 1
+            low, noted = cell_on_rim(world, step, walk.radius, rows[row, SINE], rows[row, COSINE])
+    return gaps, 0.0
