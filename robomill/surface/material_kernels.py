@@ -153,10 +153,24 @@ def in_column(columns: Columns, i: int, j: int, z: float) -> float:
 
 
 @part
+def lowest_and_highest(columns: Columns, cells: tuple[int, int, int, int]) -> tuple[float, float]:
+    """The lowest and the highest of the tops of four cells, m."""
+    i, a, j, b = cells
+    tops = columns.heights
+    p, q, r, s = tops[i, j, 0], tops[i, b, 0], tops[a, j, 0], tops[a, b, 0]
+    return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
+
+
+@part
 def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> float:
     """How deep in the material the cells around a point have a height, m (``FAR`` at most), < 0 in air; 0 where they do
     not agree by more than their slack."""
     i, a, j, b = cells
+    if columns.heights.shape[2] == 1:
+        low, high = lowest_and_highest(columns, cells)
+        if low - z > columns.slack:
+            return min(low - z, FAR)
+        return max(high - z, -FAR) if z - high > columns.slack else 0.0
     deep = in_column(columns, i, j, z)
     sign = 1.0 if deep > 0.0 else -1.0
     deep = min(sign * deep, FAR)
@@ -244,10 +258,7 @@ def top_over(world: World, x: float, y: float) -> float:
     if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
         return -math.inf
     cells = cells_around(columns, x, y)
-    i, a, j, b = cells
-    tops = columns.heights
-    p, q, r, s = tops[i, j, 0], tops[i, b, 0], tops[a, j, 0], tops[a, b, 0]
-    high = max(max(p, q), max(r, s))
-    if high - min(min(p, q), min(r, s)) <= SKIN:
+    low, high = lowest_and_highest(columns, cells)
+    if high - low <= SKIN:
         return high
     return block.z_high - max(0.0, above_runs(world, cells, (x, y, block.z_high), NOBODY))
