@@ -19,6 +19,7 @@ from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
 from robomill.surface.stock import AXES, Cells, Stock, stock_grid
 from robomill.units import format_si
 
+JUST_ABOVE = 1e-12  # m: so far cells at walls are raised to see which a later cutter reaches, too
 NO_EDGE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 6)))
 
 
@@ -193,9 +194,13 @@ def _cut_with(
     ends, axes = at_one_axis(moves, cutter.radius, cell)
     leans = leaning(axes)
     before = flat[edge.index]
+    flat[edge.index] = before + JUST_ABOVE
     fresh = cut_upright(z, cells, cutter, ends[~leans])
+    reached = flat[edge.index] <= before
+    flat[edge.index] = np.minimum(flat[edge.index], before)
     if len(edge.index):
-        edge = _joined(edge, flat[edge.index] == before, fresh)
+        covered = reached & ~np.isin(edge.index, fresh.index)
+        edge = _joined(edge, (flat[edge.index] == before) & ~covered, fresh)
     else:
         edge = fresh
     overhang = 0

@@ -161,3 +161,7 @@ def test_walls_of_an_earlier_cutter_stand_where_a_later_one_does_not_cut():
     assert (both.z.ravel()[both.edge.index] > -0.002).sum() > 20
     swapped = cut(STOCK, 7e-4, Tooling((small, big), [1, 1, 0, 0]), p, None, cutting)
     np.testing.assert_array_equal(swapped.z, both.z)
+    # No wall of the earlier slot is left in the later one.
+    assert swapped.removed_volume == pytest.approx(union.area * 0.002, rel=1e-3)
+    i, j = np.divmod(swapped.edge.index, swapped.z.shape[1])
+    assert (shapely.distance(union.boundary, shapely.points(swapped.x[i], swapped.y[j])) < near).all()
