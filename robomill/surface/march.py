@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.cutting.engaged import FACING, MOMENTS, PANELS
+from robomill.cutting.force import feed_frame
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
@@ -96,6 +97,12 @@ class March:
         move = self._move[self.steps]
         span = self.points[move] - self.points[move - 1]
         return np.asarray(span / np.linalg.norm(span, axis=1, keepdims=True))
+
+    @cached_property
+    def _heading(self) -> FloatArray:
+        """(n, 3) the first axis of the frame that the force is given in, which a plunge's angles are counted from."""
+        way = np.diff(self.points, axis=0, prepend=self.points[:1]) if self.way is None else self.way
+        return feed_frame(np.nan_to_num(way), tool_axes(self.k, len(self.points)))[self.steps, :, 0].copy()
 
     @cached_property
     def _ahead(self) -> FloatArray:
@@ -253,7 +260,13 @@ class March:
         sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
         tips = ends[:, 3:] + self._ahead[n]
         steps = Steps(
-            np.ascontiguousarray(ends), tips, self._feed[n], self._axes[0][n], runs[0], runs[1].astype(np.int64)
+            np.ascontiguousarray(ends),
+            tips,
+            self._feed[n],
+            self._axes[0][n],
+            self._heading[n],
+            runs[0],
+            runs[1].astype(np.int64),
         )
         march(world, room, steps, found, sectors, do)
         return found, sectors.reshape(len(n), len(room.sectors), 4)

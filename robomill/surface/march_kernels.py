@@ -46,13 +46,14 @@ Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
 
 
 class Steps(NamedTuple):
-    """Steps of a path: ends (n, 6) m, then the tip (m), unit feed and axis of the tool where each is looked at (n, 3),
-    the run it belongs to (n,) and whether it begins it (n,)."""
+    """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``) where each
+    is looked at (n, 3), the run it belongs to (n,) and whether it begins it (n,)."""
 
     ends: Out2
     tip: Out2
     feed: Out2
     axis: Out2
+    heading: Out2
     run: OutInt1
     begins: OutInt1
 
@@ -266,7 +267,7 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
         if do[0]:
-            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], r)
+            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], r)
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
         if do[1]:
             go_on(world.runs[r], ends, steps.begins[n] == 1)

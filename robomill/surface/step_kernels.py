@@ -54,14 +54,15 @@ class Piece(NamedTuple):
 
 
 @part
-def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, run: int) -> Step:
-    """A tool along k (3,) with its ``tip`` (3,) m, fed along a unit v (3,)."""
+def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, heading: FloatArray, run: int) -> Step:
+    """A tool along k (3,) with its ``tip`` (3,) m, fed along a unit v (3,); fed straight along its axis, its angles are
+    counted from ``heading`` (3,), a unit vector across k."""
     along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
     fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
     across = math.sqrt(fx * fx + fy * fy + fz * fz)
-    if across < FACING:  # straight along the axis: any direction across it
+    if across < FACING:
         across = 0.0
-        fx, fy, fz = (k[2], 0.0, -k[0]) if abs(k[0]) < 0.9 else (-k[1], k[0], 0.0)
+        fx, fy, fz = heading[0], heading[1], heading[2]
     size = math.sqrt(fx * fx + fy * fy + fz * fz)
     fx, fy, fz = fx / size, fy / size, fz / size
     return Step(

@@ -173,9 +173,9 @@ def slot(cutter: Cutter, A: float, B: float) -> CutCase:
     return CutCase(f"{cutter.kind} slot, A {A} B {B}", cutter, (along_x(0, -2, tilt=(A, B)),), steps=steps)
 
 
-def drill(z: float, x: float = 0.0) -> Pass:
+def drill(z: float, x: float = 0.0, y: float = 0.0) -> Pass:
     """Straight down from above."""
-    return Pass(((x, 0.0, 3.0), (x, 0.0, z)))
+    return Pass(((x, y, 3.0), (x, y, z)))
 
 
 def _helix(radius: float, pitch: float, turns: float, chord: float = 9.0) -> tuple[Point, ...]:
@@ -225,6 +225,17 @@ CASES = (
     CutCase("ramp up, ball", BALL, (Pass(((-30, 0, -3), (10, 0, -3 + 40 * RAMP))),), span=(20.0, 26.0), steady=False),
     CutCase("plunge", FLAT, (drill(-5),), span=(4.0, 7.0)),
     CutCase("plunge, half over the edge", FLAT, (drill(-5, 20),), span=(4.0, 7.0)),
+    CutCase("plunge, half over the left edge", FLAT, (drill(-5, 0, 20),), span=(4.0, 7.0)),
+    CutCase("plunge of a ball, half over a corner's edge", BALL, (drill(-6, 12, -20),), span=(7.5, 8.5)),
+    CutCase("plunge beside a hole", FLAT, (drill(-5), drill(-5, 0, 5)), span=(4.0, 7.0)),
+    CutCase("plunge beside a hole, from aside", FLAT, (drill(-5), drill(-5, 12, 5), drill(-5, 0, 5)), span=(4.0, 7.0)),
+    CutCase(
+        "leaning plunge along its own axis",
+        FLAT,
+        (Pass(tuple((0.0, 3.0 - s * axis(20, 0)[1], 4.0 - s * axis(20, 0)[2]) for s in (0.0, 8.0)), (20, 0)),),
+        span=(5.0, 8.0),
+        steady=False,
+    ),
     CutCase(
         "plunge into its own hole",
         FLAT,

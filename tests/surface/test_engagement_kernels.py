@@ -146,7 +146,7 @@ def block_world(layers=1, dx=0.5 * MM):
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
     v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
-    return step_at(np.array([0, 0, -depth]), np.array(axis), v, 0)
+    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), 0)
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -230,7 +230,7 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     turns step and block by so many right angles."""
     way = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][turn])
     v = np.append(math.sqrt(1.0 - along**2) * way, along)
-    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, 0)
+    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), 0)
     if turn in (1, 2):  # the left of Y is -X, that of -X is -Y
         low, high = -high, -low
     limits = {"x_low": low, "x_high": high} if turn % 2 else {"y_low": low, "y_high": high}
