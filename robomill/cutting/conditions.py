@@ -153,6 +153,13 @@ class CutConditions:
         return cls(v_f=v_f, n_s=n_s, a_p=a_p, phi_st=arc[0], phi_ex=arc[1], **given)  # type: ignore[arg-type]
 
 
+def beyond_flutes(conditions: CutConditions, tooling: Tooling) -> BoolArray:
+    """(m,) whether a step is engaged above the cutter's flutes; a cutter without a stated length has enough."""
+    highest = conditions.a_p if conditions.reach is None else conditions.reach
+    flutes = np.array([np.inf if each.flute_length is None else each.flute_length for each in tooling.cutters])
+    return np.asarray(conditions.engaged & (highest > flutes[tooling.of_step] * (1.0 + 1e-9)))
+
+
 THRUSTS = {
     "thrust-end-teeth": "of the end teeth, to the centre, by the same coefficients as the flank",
     "thrust-lips": "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)",
@@ -167,11 +174,10 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
     engaged = conditions.engaged
     tooling = Tooling.of(conditions.tooling or cutter, len(conditions))
     highest = conditions.a_p if conditions.reach is None else conditions.reach
+    beyond = beyond_flutes(conditions, tooling)
     for each, made in tooling.steps_of_each():
-        if each.flute_length is None:
-            continue
-        deep = np.flatnonzero(engaged & made & (highest > each.flute_length * (1.0 + 1e-9)))
-        if deep.size:
+        deep = np.flatnonzero(beyond & made)
+        if deep.size and each.flute_length is not None:
             worst = deep[np.argmax(highest[deep])]
             text = (
                 f"depth {format_si(highest[worst], 'mm')} is beyond the flute length "

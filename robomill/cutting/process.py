@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.cutting.conditions import CutConditions
+from robomill.cutting.conditions import CutConditions, beyond_flutes
 from robomill.cutting.course import Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
@@ -95,6 +95,7 @@ class ProcessForce(ForceModel):
                 ~np.isfinite(conditions.n_s),
                 "the spindle's speed follows the diameter (G96) and is not read, so the chip is not known",
             ),
+            ("shank", beyond_flutes(conditions, tooling), "a shank that rubs above the flutes has no force model"),
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
         ]
         if not self.material.knows_radial:

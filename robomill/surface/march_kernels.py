@@ -46,8 +46,8 @@ Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
 
 
 class Steps(NamedTuple):
-    """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``) where each
-    is looked at (n, 3), the run it belongs to (n,) and whether it begins it (n,)."""
+    """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``)
+    where each is looked at (n, 3), the run it belongs to (n,) and whether it begins it (n,)."""
 
     ends: Out2
     tip: Out2

@@ -265,6 +265,8 @@ def test_what_has_no_model_is_said_and_not_a_number():
     assert reasons(mill, ccw=True) == {"spindle_sense"}
     assert reasons(MechanisticForce(MILL.replace(hand="left"), REF190), ccw=True) == set()
     assert reasons(MechanisticForce(MILL.replace(hand="left"), REF190)) == {"spindle_sense"}
+    assert reasons(MechanisticForce(MILL.replace(flute_length=2e-3), REF190)) == set()
+    assert reasons(MechanisticForce(MILL.replace(flute_length=1.9e-3), REF190)) == {"shank"}
     assert reasons(drill) == {"drill_sideways"}
     assert reasons(drill, across=0.0, along=-1.0) == set()
     assert reasons(PathForce(feed=1.0), across=0.0, along=-1.0) == {"plunge_stated"}
