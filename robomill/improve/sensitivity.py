@@ -33,10 +33,17 @@ class Sensitivity:
     ranking: IntArray
     joint_numbers: tuple[int, ...]
 
-    def relative(self) -> FloatArray:
-        """(n,) mean gain as a part of the mean measure."""
-        gain = np.nanmean(self.gain.reshape(-1, self.gain.shape[-1]), axis=0)
-        return gain / np.nanmean(self.before)
+    @property
+    def mean(self) -> FloatArray:
+        """(n,) mean gain over what is known; NaN where nothing is."""
+        return mean_known(self.gain)
+
+
+def mean_known(gain: FloatArray) -> FloatArray:
+    """(n,) mean of ``gain`` (..., n) over the places where every joint's is known; NaN where there is none."""
+    flat = gain.reshape(-1, gain.shape[-1])
+    known = np.isfinite(flat).all(axis=1)
+    return np.asarray(flat[known].mean(axis=0)) if known.any() else np.full(gain.shape[-1], np.nan)
 
 
 def stiffened(robot: Robot, factors: ArrayLike) -> Robot:
@@ -100,11 +107,8 @@ def _sensitivity(parts: FloatArray, factor: float, joint_numbers: tuple[int, ...
     before = np.linalg.norm(whole, axis=-1)
     after = np.linalg.norm(whole[..., None, :] - (1.0 - 1.0 / factor) * parts, axis=-1)
     gain = before[..., None] - after
-    n = gain.shape[-1]
-    flat = gain.reshape(-1, n)
-    known = np.isfinite(flat).all(axis=1)
-    mean = flat[known].mean(axis=0) if known.any() else np.zeros(n)
-    return Sensitivity(factor, before, gain, np.argsort(-mean, kind="stable"), joint_numbers or tuple(range(1, n + 1)))
+    ranking = np.argsort(-mean_known(gain), kind="stable")
+    return Sensitivity(factor, before, gain, ranking, joint_numbers or tuple(range(1, gain.shape[-1] + 1)))
 
 
 def _positive(factors: FloatArray) -> None:

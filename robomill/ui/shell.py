@@ -14,7 +14,8 @@ from robomill.io.texts import read_text
 from robomill.ui import autosave, inputs, rendered, session, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
-from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
+from robomill.ui.project import PRISMATIC_UNITS, SUFFIX, Project, preset_setup, presets, project_to_toml
+from robomill.units import unit_label
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
@@ -59,7 +60,7 @@ export default function (component) {
 }
 """
 _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css="i { display: none }", js=THEME_WATCH)
-JOINT_UNITS = {"1e-7 rad/(N m)": "×10⁻⁷ rad/(N m)", "kN m/rad": "kN m/rad"}
+JOINT_UNITS = {unit: unit_label(unit) for unit in PRISMATIC_UNITS}
 
 
 def begin(title: str) -> Project:

@@ -39,7 +39,7 @@ def test_ranking_names_the_joints_to_blame_at_the_milling_test(point):
     assert list(found.ranking[:2]) == [2, 4]
     # 10 % stiffer takes 1 - 1/1.1 of the joint's own share: 0.1473 and 0.0822 mm per 100 N.
     np.testing.assert_allclose(found.gain[[2, 4]] * 1e5, (1 - 1 / 1.1) * np.array([0.1473, 0.0822]), atol=1e-5)
-    assert found.relative().sum() == pytest.approx(1 - 1 / 1.1)
+    assert found.mean.sum() / found.before == pytest.approx(1 - 1 / 1.1)
 
 
 def test_cells_that_are_not_reached_do_not_count(point):
@@ -81,12 +81,13 @@ def test_over_a_path_the_ranking_is_by_the_mean_of_brute_force(point):
         np.testing.assert_allclose(found.gain[:4], gain, atol=1e-15)
         np.testing.assert_allclose(found.before[:4], sizes(robot))
         np.testing.assert_array_equal(found.ranking, np.argsort(-gain.mean(axis=0)))
-        np.testing.assert_allclose(found.relative(), gain.mean(axis=0) / sizes(robot).mean())
+        np.testing.assert_allclose(found.mean, gain.mean(axis=0))
         assert found.factor == factor
         assert found.joint_numbers == (1, 2, 3, 4, 5)
     assert deflection_sensitivity(shares).factor == pytest.approx(1.1)
     nothing = deflection_sensitivity(np.full((3, 5, 3), np.nan))
     np.testing.assert_array_equal(nothing.ranking, range(5))
+    assert np.isnan(nothing.mean).all()
     assert deflection_sensitivity(shares, joint_numbers=(2, 3, 4, 5, 6)).joint_numbers == (2, 3, 4, 5, 6)
 
 

@@ -10,7 +10,13 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.errors import RobomillError
-from robomill.improve.sensitivity import Sensitivity, compliance_sensitivity, deflection_sensitivity, stiffened
+from robomill.improve.sensitivity import (
+    Sensitivity,
+    compliance_sensitivity,
+    deflection_sensitivity,
+    scaled_shares,
+    stiffened,
+)
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, running, session, shell
@@ -36,7 +42,7 @@ def tiles(
     gain = compliance_sensitivity(now.C_joint(), component, joint_numbers=pose.robot.joint_numbers)
     best = int(gain.ranking[0])
     known = bool(now.reached.any())
-    saved = float(np.nanmean(gain.gain[..., best])) if known else float("nan")
+    saved = float(gain.mean[best])
     soft = now.values("C_soft")
     worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if known else None
     where = tuple(float(axis[i]) for axis, i in zip((now.grid.x, now.grid.y, now.grid.z), worst)) if worst else None
@@ -129,11 +135,11 @@ def where_it_pays(
     along = _along_path(result, view, robot)
     micro = "um"
     if along is not None:
-        groups.append(("deviation<br>on the path", from_si(_mean(along), micro), f"{unit_label(micro)}, mean"))
+        groups.append(("deviation<br>on the path", from_si(along.mean, micro), f"{unit_label(micro)}, mean"))
     if now.reached.any():
         over = compliance_sensitivity(now.C_joint(), view.component, joint_numbers=joints)
         groups.append(
-            (f"|C<sub>{view.component}</sub>|<br>in region", from_si(_mean(over), UM), f"{unit_label(UM)}, mean")
+            (f"|C<sub>{view.component}</sub>|<br>in region", from_si(over.mean, UM), f"{unit_label(UM)}, mean")
         )
     if not groups:
         pieces.note("Nothing is reached here, so nothing can be ranked.")
@@ -153,18 +159,13 @@ def _plain(title: str) -> str:
     return title.replace("<sub>", "_").replace("</sub>", "").replace("<br>", " ")
 
 
-def _mean(gain: Sensitivity) -> FloatArray:
-    flat = gain.gain.reshape(-1, gain.gain.shape[-1])
-    return flat[np.isfinite(flat).all(axis=1)].mean(axis=0)
-
-
 def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) -> Sensitivity | None:
     if result is None or result.setup.robot.n != robot.n:
         return None
     judged = result.judged
     if not judged.any():
         return None
-    delta_joint = result.delta_joint[judged] / view.stiffening(robot)[None, :, None]
+    delta_joint = scaled_shares(result.delta_joint[judged], view.stiffening(robot), -2)
     if not np.isfinite(delta_joint).all():
         return None
     return deflection_sensitivity(delta_joint, joint_numbers=robot.joint_numbers)
