@@ -142,7 +142,7 @@ def run_simulate(arguments: Any) -> int:
     if arguments.program:
         setup = setup.replace(source=read_program(arguments.program))
     if arguments.tol is not None:
-        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"), floor_tolerance=None, feed_tolerance=None)
+        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"), floor_tolerance=None)
     setup = setup.replace(robot=_with_set(setup.robot, arguments))
     result = simulate(setup)
     record = simulation_record(result)

@@ -20,7 +20,8 @@ from robomill.simulation.seen import Run
 CORNER = np.radians(45.0)
 TURNS = np.radians(5.0)  # where the path turns more, walls ahead and behind are looked for too
 AROUND = np.radians(np.arange(0.0, 360.0, 22.5))
-ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is looked for
+ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is looked for,
+RIM = 0.98  # and at this share of what the tool cuts flat although it goes aside: a ledge beside a wall is narrow
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
@@ -164,26 +165,39 @@ def _upright(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
 
 def _floors(at: Places) -> Readings:
     """The floor under every place, where there is one left: lowest over the width that the tool cuts flat."""
-    flat, count = at.number("flat_radius"), len(at.i)
-    q = np.repeat(np.arange(count), len(ACROSS))
-    offset = np.tile(ACROSS, count) * flat[q]
-    level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
-    chosen = np.tile(np.array(ACROSS) == 0.0, count) | ((flat > 0.0) & level)[q]
-    chosen &= ~at.steep[q] | at.bottoms[q]
     aside = np.hypot(at.d[:, 0], at.d[:, 1])
-    chosen &= (np.abs(offset) + aside[q] < flat[q]) | (offset == 0.0)  # else metal left there is the wall's error
-    q, offset = q[chosen], offset[chosen]
-    inside = at.depth(q, at.c[q] + offset[:, None] * at.left_of[q]) > SAME
+    q, offset, u = _under(at, at.number("flat_radius"), aside)
+    inside = at.depth(q, at.c[q] + offset[:, None] * u) > SAME
     inside &= at.below[q] <= SAME  # there is no floor beneath a cut through the stock
-    q, offset = q[inside], offset[inside]
-    lines = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
+    q, offset, u = q[inside], offset[inside], u[inside]
+    lines = np.hstack([at.c[q], at.axial[q], u])
     told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
     deepest = at.bottoms[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
-    length = at.result.path.step_length[at.i[q]] / len(ACROSS)
+    length = at.result.path.step_length[at.i[q]] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
     return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2])
+
+
+def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Where a floor is looked for: places q (m,), offsets (m,) m along unit directions u (m, 3). Beneath the axis;
+    where the tool cuts flat across its feed, to both sides too; and at the bottom of a plunge all around."""
+    every, bottom = np.arange(len(at.i)), np.flatnonzero(at.bottoms & at.steep & (flat > 0.0))
+    rim = RIM * np.maximum(flat - aside, 0.0)
+    level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
+    beneath = every[~at.steep | at.bottoms]
+    wide = np.flatnonzero((flat > 0.0) & level & ~at.steep)
+    aims = [(beneath, np.zeros(len(beneath)))]
+    for at_side in (*(share * flat for share in ACROSS if share), rim, -rim):
+        some = wide[(np.abs(at_side) + aside < flat)[wide]]  # else metal left there is the wall's error
+        aims.append((some, at_side[some]))
+    turned = np.repeat(bottom, len(AROUND))
+    ahead, left = np.tile(np.cos(AROUND), len(bottom)), np.tile(np.sin(AROUND), len(bottom))
+    around = ahead[:, None] * at.feed[turned] + left[:, None] * at.left_of[turned]
+    q, offset = (np.concatenate(parts) for parts in zip(*aims, strict=True))
+    u = np.concatenate([at.left_of[q], around])
+    return np.concatenate([q, turned]), np.concatenate([offset, rim[turned]]), u
 
 
 def _ends(at: Places) -> Readings:

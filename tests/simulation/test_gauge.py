@@ -346,3 +346,20 @@ def test_a_cut_through_the_bottom_has_walls_as_high_as_the_stock_and_no_floor(y)
     np.testing.assert_allclose(found.walls.error, 0.2e-3, atol=1e-8)
     np.testing.assert_allclose(found.walls.height, 2e-3, atol=1e-9)
     assert len(found.floors.error) == 0
+
+
+@pytest.mark.parametrize("wide", [0.3, 1.0, 2.0, 3.9])
+@pytest.mark.parametrize("radius", [4e-3, 10e-3])
+def test_the_floor_of_a_narrow_ledge_is_told(wide, radius):
+    """The ledge that a side pass leaves stands as much too high as the tip does, however narrow it is."""
+    y = -20.0 + wide - radius * 1e3
+    result = run("G0 X-45 Y-40 Z5", f"G0 Y{y}", "G0 Z-2", "G1 X45 F1800", cutter=Cutter("flat", 2.0 * radius, flutes=2))
+    floors = pushed(result, left=0.05e-3, up=0.2e-3).gauge.floors
+    assert floors.error[floors.worst] == pytest.approx(0.2e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("place", ["X0 Y-21", "X0 Y21", "X31.5 Y3", "X-31 Y0", "X5 Y5"])
+def test_the_bottom_of_a_plunge_beside_the_block_is_a_floor(place):
+    result = run("G0 X0 Y-40 Z5", f"G0 {place}", "G1 Z-3 F300")
+    floors = pushed(result, along=0.1e-3, up=0.2e-3).gauge.floors
+    assert floors.error[floors.worst] == pytest.approx(0.2e-3, abs=1e-9)
