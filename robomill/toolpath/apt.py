@@ -19,7 +19,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.units import to_si
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?$")
+_NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
 _MOVES = frozenset(
     {
         "CIRCLE",

@@ -7,7 +7,16 @@ from pathlib import Path
 import fuzz_readers
 import pytest
 
+from robomill.compiled import compile_all
+
+pytestmark = pytest.mark.usefixtures("compiled_before")
 NAMES = sorted(fuzz_readers.readers(Path()))
+
+
+@pytest.fixture(scope="module")
+def compiled_before() -> None:
+    """Kernels are compiled before a clock runs."""
+    compile_all()
 
 
 @pytest.mark.parametrize("name", NAMES)

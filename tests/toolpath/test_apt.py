@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -118,3 +120,11 @@ def test_spindle_on_and_off_and_its_sense() -> None:
 def test_rates_that_are_none_are_refused(line: str, found: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: .*{found}"):
         read_apt(f"PARTNO/X\n{line}\nFROM/0,0,9\nFINI\n")
+
+
+def test_a_number_of_a_hundred_thousand_digits_is_refused_at_once():
+    """It took minutes: every way to split the digits was tried."""
+    began = time.process_time()
+    with pytest.raises(GCodeError):
+        read_apt(f"GOTO/0,0,0\nGOTO/{'1' * 98_000}x,0,0\nGOTO/1,0,0\n")
+    assert time.process_time() - began < 1.0
