@@ -69,7 +69,9 @@ def test_a_click_on_a_map_opens_the_report_of_its_pose(page: Any) -> None:
 
 def test_table_2_against_table_3_in_two_clicks(page: Any) -> None:
     open_page(page, "Compliance")
-    page.get_by_role("radio", name="Compare").or_(page.get_by_role("button", name="Compare")).first.click()
+    page.get_by_role("radio", name="Compare", exact=True).or_(
+        page.get_by_role("button", name="Compare", exact=True)
+    ).first.click()
     page.locator(".js-plotly-plot .annotation-text", has_text="Table 3 − Table 2").first.wait_for(timeout=30_000)
     assert page.get_by_text("+16 % against Table 2").is_visible()
 
