@@ -29,6 +29,9 @@ from robomill.units import UNITS, format_short, unit_label
 
 QuantityKind = Literal["number", "array", "whole", "switch", "choice"]
 _KEY = "quantity"
+GREATEST, SMALLEST = 1e12, 1e-12
+"""In its own unit, a number beyond the first is a slip of the pen, and so is one below the second that has to be more than
+zero: what would be computed from it overflows or never ends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +112,9 @@ class Quantity:
             return None
         found = _CONVERTERS[self.kind](self, value, error, who)
         if self.kind in ("number", "array", "whole") and not np.all(self.allows(found)):
-            raise self._refusal(self._offending(found), error, who)
+            worst = self._offending(found)
+            shown = self.short(worst) if math.isfinite(worst) else str(worst)
+            raise self._refusal(shown, error, who, self._slips(worst))
         return found
 
     @property
@@ -121,10 +126,11 @@ class Quantity:
         return self.below if self.below is not None else self.most
 
     def allows(self, value: Any) -> Any:
-        """Where ``value`` lies within the bounds; NaN and infinity never do."""
-        good = np.isfinite(value)
+        """Where ``value`` lies within the bounds; NaN and what is beyond ``GREATEST`` never do."""
+        one = UNITS[self.unit].factor
+        good = np.abs(value) <= GREATEST * one
         if self.above is not None:
-            good &= value > self.above
+            good &= value >= SMALLEST * one if self.above == 0.0 else value > self.above
         if self.least is not None:
             good &= value >= self.least
         if self.below is not None:
@@ -133,10 +139,18 @@ class Quantity:
             good &= value <= self.most
         return good
 
-    def _offending(self, value: Any) -> str:
-        """The first number out of bounds, as people read it."""
-        worst = float(np.ravel(value)[np.flatnonzero(~np.ravel(self.allows(value)))[0]])
-        return self.short(worst) if math.isfinite(worst) else str(worst)
+    def _offending(self, value: Any) -> float:
+        """The first number out of bounds."""
+        return float(np.ravel(value)[np.flatnonzero(~np.ravel(self.allows(value)))[0]])
+
+    def _slips(self, worst: float) -> str:
+        """What is expected besides, of a number that only ``GREATEST`` or ``SMALLEST`` refuses."""
+        size = abs(worst) / UNITS[self.unit].factor
+        if GREATEST < size < math.inf:
+            return f", and no larger than {format_short(GREATEST * UNITS[self.unit].factor, self.unit)}"
+        if self.above == 0.0 and worst > 0.0 and size < SMALLEST:
+            return f", and no smaller than {format_short(SMALLEST * UNITS[self.unit].factor, self.unit)}"
+        return ""
 
     def short(self, value: Any) -> str:
         """A value of the field (SI) in words: ``"8 mm"``, the title of a choice, ``"on"`` or ``"off"``."""
@@ -146,8 +160,8 @@ class Quantity:
             return "on" if value else "off"
         return format_short(value, self.unit)
 
-    def _refusal(self, found: str, error: type[RobomillError], who: str) -> RobomillError:
-        return error(f"{self.said_of(who)}: found {found}; expected {self.expected}.", where=self.name)
+    def _refusal(self, found: str, error: type[RobomillError], who: str, besides: str = "") -> RobomillError:
+        return error(f"{self.said_of(who)}: found {found}; expected {self.expected}{besides}.", where=self.name)
 
     def said_of(self, who: str) -> str:
         """The head of a refusal: ``"Cutter, Diameter"``, or ``"Diameter"`` of nobody."""

@@ -46,7 +46,7 @@ def serve_options(serve: argparse.ArgumentParser) -> None:
 
 def run_serve(arguments: Any) -> int:
     """Serve until told to stop. Raises RobomillError where a bound of what is kept is none."""
-    from robomill.ui.keeping import PREFIX, Settings
+    from robomill.ui.keeping.settings import PREFIX, Settings
 
     environment = dict(os.environ)
     for option, name in (("", ""), ("_folder", "_FOLDER"), ("_mb", "_ALL_MB"), ("_days", "_DAYS")):

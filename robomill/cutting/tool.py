@@ -61,7 +61,7 @@ class Cutter:
     """
 
     kind: CutterKind = choice("Kind", {kind: shape.short for kind, shape in SHAPES.items()})
-    diameter: float = quantity("Diameter", "mm", above=0.0, step=1.0)
+    diameter: float = quantity("Diameter", "mm", least=1e-6, step=1.0)
     corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, step=0.25)
     flutes: int = whole("Flutes", default=2, least=1)
     helix: Hand = choice(

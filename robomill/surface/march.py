@@ -20,10 +20,8 @@ from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed
 from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 
-AT_ONCE = (
-    256,
-    8192,
-)  # steps at least, where nothing goes on after them, and at most: what they meet is looked at at once
+AT_ONCE = (256, 8192)  # steps that are marched together: at least, where none goes on after them, and at most
+ONWARD = np.cos(np.radians(10.0))  # between two steps of which the second one covers the first one's front
 JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
@@ -142,6 +140,13 @@ class March:
         return begins
 
     @cached_property
+    def _stops(self) -> BoolArray:
+        """(n,) bool: steps from whose end none goes on, round a corner of 10 degrees at most."""
+        ends, feed = self._ends, self._feed
+        there = (ends[1:, :3] == ends[:-1, 3:]).all(axis=1)
+        return np.append(~(there & (np.einsum("ni,ni->n", feed[1:], feed[:-1]) > ONWARD)), True)
+
+    @cached_property
     def _stepwise(self) -> tuple[Any, Any]:
         """The state of ``meet`` and ``cut``."""
         return self._state(np.ones(len(self.steps), dtype=bool))
@@ -217,19 +222,15 @@ class March:
             n = np.arange(first, self._stop_after(first))
             some, first = slice(n[0], n[-1] + 1), int(n[-1]) + 1
             rows[self.steps[some]], sectors[self.steps[some]] = self._march(
-                state, n, self._ends[some], (run[some], begins[some]), (True, True)
+                state, n, self._ends[some], (run[some], begins[some], self._stops[some]), (True, True)
             )
         return rows, sectors, int(state[0].columns.lost[0])
 
     def _stop_after(self, first: int) -> int:
-        """Where the steps end that are marched at once: where nothing goes on, so that none needs to know the next."""
-        from robomill.surface.march_kernels import ONWARD
-
+        """Where the steps end that are marched together: where nothing goes on, so that none needs to know the next."""
         n = slice(first + AT_ONCE[0] - 1, first + AT_ONCE[1])
-        ends, feed = self._ends[n], self._feed[n]
-        onward = (ends[1:, :3] == ends[:-1, 3:]).all(axis=1) & (np.einsum("ni,ni->n", feed[1:], feed[:-1]) > ONWARD)
-        stops = np.flatnonzero(self._begins[n][1:] & ~onward)
-        return int(n.start + 1 + stops[0]) if len(stops) else min(n.stop, len(self.steps))
+        ends = np.flatnonzero(self._stops[n] & np.append(self._begins, True)[1:][n])
+        return int(n.start + 1 + ends[0]) if len(ends) else min(n.stop, len(self.steps))
 
     def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, np.ndarray]:
         """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 6,) and sectors; cuts nothing."""
@@ -242,14 +243,15 @@ class March:
 
     def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, np.ndarray]:
         n = self._number[[i]]
-        return self._march(self._stepwise, n, ends[None], (n, np.ones(1, dtype=bool)), do)
+        alone = np.ones(1, dtype=bool)
+        return self._march(self._stepwise, n, ends[None], (n, alone, alone), do)
 
     def _march(
         self,
         state: tuple[Any, Any],
         n: IntArray,
         ends: FloatArray,
-        runs: tuple[IntArray, BoolArray],
+        runs: tuple[IntArray, BoolArray, BoolArray],
         do: tuple[bool, bool],
     ) -> tuple[FloatArray, np.ndarray]:
         from robomill.surface.engagement_kernels import REST
@@ -267,6 +269,7 @@ class March:
             self._heading[n],
             runs[0],
             runs[1].astype(np.int64),
+            runs[2].astype(np.int64),
         )
         march(world, room, steps, found, sectors, do)
         return found, sectors.reshape(len(n), len(room.sectors), 4)

@@ -41,13 +41,13 @@ from robomill.surface.material_kernels import (
 from robomill.surface.step_kernels import step_at
 from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
 
-ONWARD = math.cos(math.radians(10.0))  # between two steps of which the second one covers the first one's front
 Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
 
 
 class Steps(NamedTuple):
     """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``)
-    where each is looked at (n, 3), the run it belongs to (n,) and whether it begins it (n,)."""
+    where each is looked at (n, 3), the run it belongs to, whether it begins it and whether nothing goes on from its
+    end (n,)."""
 
     ends: Out2
     tip: Out2
@@ -56,6 +56,7 @@ class Steps(NamedTuple):
     heading: Out2
     run: OutInt1
     begins: OutInt1
+    stops: OutInt1
 
 
 @part
@@ -248,18 +249,6 @@ def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
         world.columns.names[i, j, 0] = r
 
 
-@part
-def goes_on(steps: Steps, n: int) -> bool:
-    """Whether the step after the n-th one goes on where that ends, round a corner of 10 degrees at most."""
-    if n + 1 == len(steps.ends):
-        return False
-    onward, there = 0.0, True
-    for q in range(3):
-        there = there and steps.ends[n + 1, q] == steps.ends[n, q + 3]
-        onward += steps.feed[n, q] * steps.feed[n + 1, q]
-    return there and onward > ONWARD
-
-
 @kernel
 def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2, do: tuple[bool, bool]) -> None:
     """Steps one after the other: ``do`` (meet, cut) them; what they meet goes to ``found`` (n, 8 e + 6), ``sectors``
@@ -272,4 +261,4 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
         if do[1]:
             go_on(world.runs[r], ends, steps.begins[n] == 1)
             if n + 1 == len(steps.ends) or steps.begins[n + 1] == 1:
-                cut_run(world, r, not goes_on(steps, n))
+                cut_run(world, r, steps.stops[n] == 1)

@@ -12,6 +12,7 @@ from robomill.surface.swept import Heights
 WALL_LEVELS = 9
 FLOOR_POINTS = 21
 SUBDIVISIONS, NARROWINGS = 16, 9  # from a fiftieth of the radius to a femtometre
+FINEST = 1 / 20_000  # of the way to the side of the stock: the shortest step by which a wall is sought
 
 
 @dataclass(frozen=True)
@@ -52,10 +53,12 @@ def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: Flo
     """Position w of the first material above each level, from ``middle`` towards ``end``; NaN if there is none.
 
     Where the stock itself lies below a level, material is what was not cut. Found on a line of points, then on
-    ever finer ones between two of them; material narrower than a fiftieth of the radius may be missed.
+    ever finer ones between two of them; material narrower than a fiftieth of the radius may be missed, and under a
+    cutter much smaller than the stock, what is narrower than a twenty-thousandth of the way.
     """
     side = 1.0 if end > middle else -1.0
-    reach, step = abs(end - middle), radius / 50
+    reach = abs(end - middle)
+    step = max(radius / 50, FINEST * reach)
     thin = 1e-9 * abs(levels[0] - levels[-1]) + 1e-12
 
     def above(w: FloatArray, level: FloatArray) -> BoolArray:

@@ -16,9 +16,9 @@ How to write a page (at most 120 lines)::
         ui.figure(fig, "components", table=lambda: columns)   # keyed, PNG, CSV, table twin
 
 The core is ``project`` (what a person decided), ``session`` (its history and what is kept by name), ``cached`` and
-``rendered`` (results, pictures by fingerprint), ``inputs``, ``pieces``, ``verdict`` and ``shell``; ``autosave`` brings
-the project back where a page or its server went away (``writer`` hands it to the ``shelf``, bounded by ``keeping``).
-Every page has a room of its own beside it, and no room knows another.
+``rendered`` (results, pictures by fingerprint), ``inputs``, ``pieces``, ``verdict`` and ``shell``; the room ``keeping``
+brings the project back where a page or its server went away. Every page has a room of its own beside it, and no room
+knows another.
 
 Rules of the house:
 

@@ -11,7 +11,8 @@ from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import autosave, inputs, rendered, session, snapshots
+from robomill.ui import inputs, rendered, session
+from robomill.ui.keeping import autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
 from robomill.ui.project import PRISMATIC_UNITS, SUFFIX, Project, preset_setup, presets, project_to_toml

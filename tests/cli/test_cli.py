@@ -19,7 +19,7 @@ import pytest
 from robomill.cli import main, serve
 from robomill.io.robots import load_robot, robot_to_toml
 from robomill.io.samples import samples_dir
-from robomill.ui.keeping import Settings
+from robomill.ui.keeping.settings import Settings
 
 FLUTE = samples_dir() / "paper_flute"
 
@@ -112,6 +112,17 @@ def test_a_red_verdict_exits_with_1(capsys) -> None:
     code, out, _ = run(capsys, "simulate", FLUTE / "setup.toml", "--tol", "0.1")
     assert code == 1
     assert "out of tolerance" in out
+
+
+def test_another_tolerance_of_walls_and_floors_leaves_that_along_the_feed(capsys, tmp_path: Path) -> None:
+    shutil.copytree(FLUTE, tmp_path, dirs_exist_ok=True)
+    setup = tmp_path / "setup.toml"
+    three = "tolerance_mm = { wall = 0.3, floor = 0.3, feed = 0.001 }"
+    setup.write_text(setup.read_text().replace("tolerance_mm = 0.3", three).replace("feed_N = 0.0", "feed_N = 100.0"))
+    code, out, _ = run(capsys, "simulate", setup, "--tol", "0.5", "--json")
+    judged = json.loads(out)
+    assert [judged[name]["tolerance_mm"] for name in ("wall", "floor", "feed")] == [0.5, 0.5, 0.001]
+    assert code == 1, "the ends of the cut lie further along the feed than a micrometre"
 
 
 SLOT = "G0 X-50 Y0 Z-2\nG1 X50 F1800"

@@ -66,7 +66,7 @@ def test_fields_come_out_as_their_class_keeps_them() -> None:
     ("field", "good"),
     [
         ("width", to_si(5.0, "mm")),
-        ("width", 1e-300),
+        ("width", to_si(1e-12, "mm")),
         ("turn", -math.pi),
         ("turn", math.nextafter(math.pi, 0)),
         ("ratio", 0.0),
@@ -98,6 +98,12 @@ def test_bounds_hold_what_they_include(field: str, good: object) -> None:
         ("right", 1e-3, "Sample, Right: found 0.001 N; expected at most 0 N."),
         ("free", "much", "Sample, Free: found 'much'; expected a finite number."),
         ("free", math.inf, "Sample, Free: found inf; expected a finite number."),
+        ("free", -1e308, "Sample, Free: found −1e+308 N; expected a finite number, and no larger than 1e+12 N."),
+        (
+            "width",
+            1e-300,
+            "Sample, Width: found 1e−297 mm; expected more than 0 mm to 5 mm, and no smaller than 1e−12 mm.",
+        ),
         ("push", [1.0, -11.0, -12.0], "Sample, Push: found −11 N; expected −10 N or more."),
         ("push", [1.0, 2.0], "Sample, Push (N): expected shape (..., 3), found (2,)."),
         ("push", [[1.0, 2.0, 3.0]], "Sample, Push (N): expected shape (3), found (1, 3)."),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
+from robomill.ui.keeping.snapshots import differences, outcomes
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
-from robomill.ui.snapshots import differences, outcomes
 
 SETUP = preset_setup(DEFAULT_PRESET)
 

@@ -16,16 +16,16 @@ from robomill.io.projects import setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import autosave, cached, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, session
+from robomill.ui.keeping import autosave
+from robomill.ui.keeping.shelf import Head, place_of
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import project_from_toml, project_to_toml
-from robomill.ui.shelf import Head, place_of
 from robomill.ui.verdict import WORDS
 from robomill.units import format_si, unit_label
 
 NAME, CHOSEN, DELETED, OPENED = (f"snapshots.{word}" for word in ("name", "chosen", "deleted", "opened"))
 MOST = 3
-IN_FORCE = "In force"
 # Of a set-up's file: what is no decision, or said by the rows above.
 NOT_COMPARED = ("format", "version", "name", "description", "provenance")
 
@@ -111,14 +111,15 @@ def _put_back() -> None:
 
 def compared(places: Mapping[str, str]) -> None:
     """The table: what each project comes to, then what differs in the set-ups by name and value."""
-    setups = {IN_FORCE: session.project().setup}
+    names, setups = ["In force"], [session.project().setup]
     for name, place in places.items():
         try:
-            setups[name] = project_from_toml(autosave.shelf().get(autosave.line().key, place)[1][0]).setup
+            setups.append(project_from_toml(autosave.shelf().get(autosave.line().key, place)[1][0]).setup)
+            names.append(name)
         except RobomillError as exc:
             pieces.error(exc)
-    rows = [*outcomes(list(setups.values()), session.project().view.length), *differences(list(setups.values()))]
-    pieces.table(rows, "q" + "v" * len(setups), ["", *setups])
+    rows = [*outcomes(setups, session.project().view.length), *differences(setups)]
+    pieces.table(rows, "q" + "v" * len(setups), ["", *names])
 
 
 def outcomes(setups: Sequence[SimulationSetup], unit: str) -> list[list[str]]:

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import ProjectError
-from robomill.ui.keeping import Settings
-from robomill.ui.shelf import OvertakenError, Shelf, place_of
+from robomill.ui.keeping.settings import Settings
+from robomill.ui.keeping.shelf import OvertakenError, Shelf, place_of
 
 KEY, OTHER = "a1" * 32, "b2" * 32
 TAB, SECOND = "tab-" + "0" * 16, "tab-" + "1" * 16

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 from robomill.errors import ProjectError
+from robomill.ui.keeping.shelf import Head, OvertakenError, Shelf
 from robomill.ui.project import Project, project_to_toml
-from robomill.ui.shelf import Head, OvertakenError, Shelf
 
 EARLIER, EARLIER_BYTES = 20, 200_000  # states before the last one that are kept with it
 REST = 10.0  # a tab's next writing waits this many times as long as its last one took,

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import ProjectError
-from robomill.ui import writer as module
-from robomill.ui.keeping import Settings
+from robomill.ui.keeping import writer as module
+from robomill.ui.keeping.settings import Settings
+from robomill.ui.keeping.shelf import Shelf
+from robomill.ui.keeping.writer import Line, Work, Writer
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup, project_from_toml
-from robomill.ui.shelf import Shelf
-from robomill.ui.writer import Line, Work, Writer
 
 KEY, PLACE = "a1" * 32, "tab-" + "0" * 16
 
@@ -99,33 +99,24 @@ def test_who_comes_second_is_told_and_goes_on_at_a_place_of_its_own(shelf: Slow)
     assert names == ["first", "second"]
 
 
-def test_a_refusal_is_said_until_the_next_one_that_can_be_written(shelf: Slow, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object, **__: object) -> None:
-        raise ProjectError("The disk is full.")
+@pytest.mark.parametrize("failure", [ProjectError("The disk is full."), RuntimeError("a bug")])
+def test_a_writing_that_fails_is_said_until_the_next_that_succeeds(
+    shelf: Slow, monkeypatch: pytest.MonkeyPatch, failure: Exception
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise failure
 
     writer, line = Writer(shelf), Line(KEY, PLACE)
-    monkeypatch.setattr(shelf, "put", full)
+    monkeypatch.setattr(shelf, "put", fails)
     writer.hand(line, Work(named("mine")))
     assert writer.flush(10.0)
-    assert line.trouble == "The disk is full."
+    assert line.trouble
+    if isinstance(failure, ProjectError):
+        assert line.trouble == "The disk is full."
     monkeypatch.undo()
     writer.hand(line, Work(named("mine")))
     assert writer.flush(10.0)
     assert line.trouble == ""
-
-
-def test_a_bug_of_one_writing_does_not_end_the_writing(shelf: Slow, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object, **__: object) -> None:
-        raise RuntimeError("a bug")
-
-    writer, line = Writer(shelf), Line(KEY, PLACE)
-    monkeypatch.setattr(shelf, "put", broken)
-    writer.hand(line, Work(named("mine")))
-    assert writer.flush(10.0)
-    assert line.trouble
-    monkeypatch.undo()
-    writer.hand(line, Work(named("mine")))
-    assert writer.flush(10.0)
     assert shelf.has(KEY, PLACE)
 
 

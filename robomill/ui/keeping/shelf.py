@@ -20,7 +20,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from robomill.errors import ProjectError
-from robomill.ui.keeping import Settings
+from robomill.ui.keeping.settings import Settings
 
 FIRST = "# robomill work "
 SEPARATOR = "\n\f"
