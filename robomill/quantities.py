@@ -30,8 +30,8 @@ from robomill.units import UNITS, format_short, unit_label
 QuantityKind = Literal["number", "array", "whole", "switch", "choice"]
 _KEY = "quantity"
 GREATEST, SMALLEST = 1e12, 1e-12
-"""In its own unit, a number beyond the first is a slip of the pen, and so is one below the second that has to be more than
-zero: what would be computed from it overflows or never ends."""
+"""In its own unit, a number beyond the first is a slip of the pen, and so is one below the second that has to be more
+than zero: what would be computed from it overflows or never ends."""
 
 
 @dataclass(frozen=True, eq=False)
