@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from functools import cached_property
+from itertools import product
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions, beyond_flutes
 from robomill.cutting.course import Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
-from robomill.cutting.materials import Material
+from robomill.cutting.materials import GIVES, PUBLISHED, Material
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
 from robomill.provenance import Finding, Provenance
-from robomill.quantities import switch
+from robomill.quantities import quantity, switch
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
 DRILL_THRUST = 0.5
 #: Cuts whose revolution is computed at once, to bound the memory.
 CASES = 2048
+
+
+def _share(part: str) -> Any:
+    low, high = PUBLISHED[part]
+    hint = f"Of the tangential force, for a row that gives no {part} one. Published for aluminium: {low:g} to {high:g}."
+    label = f"{part.capitalize()} share, assumed"
+    return quantity(label, optional=True, least=0.0, most=3.0, step=0.05, digits=2, boxed=False, hint=hint)
 
 
 @dataclass(frozen=True)
@@ -33,6 +42,8 @@ class ProcessForce(ForceModel):
 
     ``alternatives`` are other rows of the same alloy; ``by_material`` gives the force of each.
     ``axial`` False leaves out the axial component, to name what the helix adds.
+    ``radial_share`` and ``axial_share`` are assumed of the tangential force where the row's source gives no such force;
+    where they are not given either, what needs them is not judged.
     """
 
     cutter: Cutter
@@ -43,6 +54,8 @@ class ProcessForce(ForceModel):
         default=True,
         hint="Off names what the feed force and the feed-normal force do alone.",
     )
+    radial_share: float | None = _share("radial")
+    axial_share: float | None = _share("axial")
 
     follows_cut: ClassVar[bool] = True
     ends_with_material: ClassVar[bool] = False
@@ -57,23 +70,50 @@ class ProcessForce(ForceModel):
                     where="material",
                 )
 
+    @cached_property
+    def row(self) -> Material:
+        """The material in force, with what is assumed of it."""
+        return self.material.completed(self._shares)
+
+    @property
+    def rows(self) -> tuple[Material, ...]:
+        """The row in force, the others of its alloy, and, where shares are assumed, the row at the published ends."""
+        assumed = [part for part in self.material.unknown if self._shares[part] is not None]
+        ends = product(*(PUBLISHED[part] for part in assumed)) if assumed else ()
+        bounds = (self.material.completed(dict(zip(assumed, end, strict=True))) for end in ends)
+        return (self.row, *(each.completed(self._shares) for each in self.alternatives), *bounds)
+
+    @property
+    def _shares(self) -> dict[str, float | None]:
+        return {"radial": self.radial_share, "axial": self.axial_share}
+
     @property
     def provenance(self) -> Provenance:
-        """Computed, from the material's source."""
-        return Provenance(
-            "computed", f"{self.kind} force with {self.material.title}: {self.material.provenance.source}"
-        )
+        """Computed, from the material's source; assumed where a share is."""
+        row = self.row
+        source = f"{self.kind} force with {row.title}: {row.provenance.source}"
+        return Provenance("computed" if row is self.material else "assumed", source)
 
     def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
-        """Unknown coefficients taken as 0; the law of a drill's thrust has none of them."""
+        """What is assumed of the material; the law of a drill's thrust has none of it."""
         engaged = conditions.engaged
-        drilled = engaged.any() and self._tooling(conditions).drills[engaged].all()
-        return () if drilled else self.material.findings
+        if engaged.any() and self._tooling(conditions).drills[engaged].all():
+            return ()
+        found = []
+        for part in self.material.unknown:
+            if self._shares[part] is not None:
+                low, high = PUBLISHED[part]
+                text = (
+                    f"{self.material.title}: its source gives no {part} force; assumed {self._shares[part]:g} of the "
+                    f"tangential one (published for aluminium: {low:g} to {high:g}, and that is the range shown)."
+                )
+                found.append(Finding("warning", 0, text, code=f"assumed-{part}-share"))
+        return tuple(found)
 
     @property
     def numbers(self) -> str:
         """The material, and whether the axial force is left out."""
-        return self.material.title + ("" if self.axial else ", axial force left out")
+        return self.row.title + ("" if self.axial else ", axial force left out")
 
     def cut_by(self, cutter: Cutter) -> Self:
         """The same material cut by another cutter."""
@@ -82,11 +122,10 @@ class ProcessForce(ForceModel):
     @property
     def exponents(self) -> tuple[float, ...]:
         """Those of the material and of its alternatives."""
-        rows = (self.material, *self.alternatives)
-        return tuple(sorted({term.exponent for row in rows for term in row.terms}, reverse=True))
+        return tuple(sorted({term.exponent for row in self.rows for term in row.terms}, reverse=True))
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
-        """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, thrusts unknown."""
+        """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, forces unknown."""
         tooling, engaged = self._tooling(conditions), conditions.engaged
         drill = tooling.drills
         reasons = [
@@ -97,23 +136,35 @@ class ProcessForce(ForceModel):
             ),
             ("shank", beyond_flutes(conditions, tooling), "a shank that rubs above the flutes has no force model"),
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
+            self._unknown(conditions, tooling),
         ]
-        if not self.material.knows_radial:
-            down = ~drill & (conditions.along < -DISH)
-            reasons.append(("thrust", down, f"{self.material.title} gives no radial coefficient, which a thrust needs"))
         found = (Unjudged(code, engaged & where, why) for code, where, why in reasons)
         return against_hand(conditions, tooling) + tuple(each for each in found if each.where.any())
+
+    def _unknown(self, conditions: CutConditions, tooling: Tooling) -> tuple[str, BoolArray, str]:
+        """Steps whose force has a part that the material does not give: every mill's the radial one; the axial one,
+        where the helix pulls, along the axis, on a nose or at the end face."""
+        mills = ~tooling.drills
+        nose = (tooling.each("nose_height") > 0.0) | (conditions.along < -DISH)
+        needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}
+        lacking = [part for part in self.row.unknown if (needs[part] & conditions.engaged).any()]
+        where = np.any([needs[part] for part in lacking], axis=0) if lacking else np.zeros_like(mills)
+        names = " and ".join(name for name in self.row.missing if GIVES[name] in lacking)
+        shares = ", ".join(f"{part}_share" for part in lacking)
+        why = f"{self.material.title} gives no {' and no '.join(lacking)} force: add {names} to the row, or assume a "
+        why += f"share of the tangential force ({shares})"
+        return "coefficient", where, why
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air and on rapids.
 
         Raises CuttingError where the tool cuts with its spindle stopped or without feed.
         """
-        return self._mean(self.material, conditions)
+        return self._mean(self.row, conditions)
 
     def by_material(self, conditions: CutConditions) -> list[tuple[Material, FloatArray]]:
-        """Mean force (m, 3) N for ``material`` and each of ``alternatives``."""
-        return [(row, self._mean(row, conditions)) for row in (self.material, *self.alternatives)]
+        """Mean force (m, 3) N for each of ``rows``."""
+        return [(row, self._mean(row, conditions)) for row in self.rows]
 
     def peak(self, conditions: CutConditions) -> ForceSpread:
         """Extremes over a revolution, with the lag of the helix (teeth alike, no run-out); 0 where ``components`` is.
@@ -132,7 +183,7 @@ class ProcessForce(ForceModel):
             order = np.argsort(kind, kind="stable")
             for start in range(0, len(course.c), CASES):
                 cases = np.arange(start, min(start + CASES, len(course.c)))
-                turns = force_over_pitch(edge_terms(self.material, cutter), cutter, course.at(cases))
+                turns = force_over_pitch(edge_terms(self.row, cutter), cutter, course.at(cases))
                 turns[..., 2] *= self.axial
                 turns -= turns.mean(axis=-2, keepdims=True)
                 rows = order[slice(*np.searchsorted(kind[order], [start, start + len(cases)]))]

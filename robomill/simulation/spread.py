@@ -32,7 +32,7 @@ class AlloySpread:
     @property
     def axial(self) -> tuple[bool, ...]:
         """(r,) whether a row knows the axial force."""
-        return tuple(material.knows_axial for material in self.materials)
+        return tuple("axial" not in material.unknown for material in self.materials)
 
     @property
     def deviation(self) -> FloatArray:

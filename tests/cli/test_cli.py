@@ -151,6 +151,45 @@ def test_what_has_no_model_exits_with_1_and_says_why(name, capsys, tmp_path: Pat
     assert "not judged" in out
 
 
+def test_a_force_of_which_a_part_is_not_known_is_never_green(capsys, tmp_path: Path) -> None:
+    """A row from turning gives the tangential force alone. Named, it is not judged; with the shares assumed there is a
+    number, the same as of a row that holds them, and its range is that of the published shares."""
+    shutil.copytree(FLUTE, tmp_path, dirs_exist_ok=True)
+    setup, text = tmp_path / "setup_process.toml", (FLUTE / "setup_process.toml").read_text()
+    old = 'kind = "mechanistic"\nmaterial = "al7075_t6_carbide_ref190"'
+    row = (samples_dir() / "materials" / "al_wrought_cured_kienzle.toml").read_text()
+
+    def simulated(kind: str, radial: float | None = None, axial: float | None = None) -> tuple[int, dict]:
+        force = 'kind = "kienzle"\nmaterial = "al_wrought_cured_kienzle"'
+        if kind == "row":
+            ratios = f"[coefficients]\nradial_ratio = {radial}\naxial_ratio = {axial}"
+            (tmp_path / "own.toml").write_text(row.replace("[coefficients]", ratios))
+            force = 'kind = "kienzle"\nmaterial = "own.toml"'
+        elif kind == "shares":
+            force += f"\nradial_share = {radial}" + ("" if axial is None else f"\naxial_share = {axial}")
+        setup.write_text(text.replace(old, force))
+        code, out, err = run(capsys, "simulate", setup, "--tol", "0.9", "--json")
+        assert code in (0, 1), err
+        return code, json.loads(out)
+
+    for given in ((), ("shares", 0.4)):
+        code, found = simulated(*(given or ("bare",)))
+        assert (code, found["verdict"]) == (1, "unjudged")
+        assert found["not_judged"]["count"] == found["not_judged"]["of"]
+        (reason,) = found["not_judged"]["reasons"]
+        assert reason["code"] == "coefficient"
+        assert ("radial_ratio" in reason["why"]) == (not given)
+        assert "axial_share" in reason["why"]
+    code, assumed = simulated("shares", 0.4, 0.1)
+    held_code, held = simulated("row", 0.4, 0.1)
+    assert (code, assumed["verdict"]) == (held_code, held["verdict"]) == (0, "ok")
+    assert assumed["deviation_mm"] == pytest.approx(held["deviation_mm"])
+    assert {"assumed-radial-share", "assumed-axial-share"} <= {each["code"] for each in assumed["findings"]}
+    largest = [each["max_deviation_mm"] for each in assumed["alloy_spread"]]
+    corners = [simulated("row", r, a)[1]["max_deviation_mm"] for r in (0.2, 0.95) for a in (0.04, 0.42)]
+    assert largest[1:] == pytest.approx(corners)
+
+
 def test_a_drilled_hole_has_a_thrust(capsys, tmp_path: Path) -> None:
     """Plunging an end mill in the paper's set-up ended in 0.00 mm and green: now in a thrust, and in a depth error of
     C_zz times it."""

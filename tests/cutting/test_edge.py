@@ -271,9 +271,6 @@ def test_what_has_no_model_is_said_and_not_a_number():
     assert reasons(drill, across=0.0, along=-1.0) == set()
     assert reasons(PathForce(feed=1.0), across=0.0, along=-1.0) == {"plunge_stated"}
     assert reasons(PathForce(feed=1.0)) == set()
-    kienzle = KienzleForce(MILL, load_material("al_wrought_cured_kienzle"))
-    assert reasons(kienzle) == set()
-    assert reasons(kienzle, across=0.0, along=-1.0) == {"thrust"}
     unknown = CutConditions(
         **{**{n: getattr(SLOT, n) for n in ("v_f", "a_p", "phi_st", "phi_ex", "cutting", "s", "t")}, "n_s": np.nan}
     )

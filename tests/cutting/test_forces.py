@@ -76,7 +76,7 @@ def test_only_a_process_force_changes_with_the_cutter_and_knows_peak_and_rows():
     assert force.cut_by(MILL) is force
     assert force.cut_by(other).cutter == other
     np.testing.assert_allclose(force.cut_by(other).components(SLOT)[:, 1] < force.components(SLOT)[:, 1], True)
-    assert [row.knows_axial for row, _ in force.by_material(SLOT)] == [True, False]
+    assert [row.unknown for row, _ in force.by_material(SLOT)] == [(), ("axial",)]
     stated = PathForce(1.0)
     assert stated.cut_by(other) is stated
     assert stated.peak(SLOT) is None
@@ -111,13 +111,9 @@ def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
         assert cutter.conical == (kind in ("chamfer", "drill"))
 
 
-def test_unknown_axial_coefficients_are_named():
-    force = MechanisticForce(MILL, load_material("al6061_t6_carbide_ref160"))
-    assert force.components(SLOT)[0, 2] == 0.0
-    assert [each.code for each in force.findings(SLOT)] == ["no-axial-coefficient"]
-    assert MechanisticForce(MILL, ROW).findings(SLOT) == ()
-    drill = MILL.replace(kind="drill", flutes=2, tip_angle=np.radians(118.0))
-    assert MechanisticForce(drill, force.material).findings(SLOT) == ()  # its thrust asks for no such coefficient
+def test_a_force_from_a_material_has_its_source():
+    force = MechanisticForce(MILL, ROW)
+    assert force.findings(SLOT) == ()
     assert force.provenance.kind == "computed"
     assert "10.1186/s10033-021-00536-9" in force.provenance.source
 

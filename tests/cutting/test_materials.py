@@ -2,9 +2,10 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.materials import PUBLISHED, Material, alternatives
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
 from robomill.provenance import Provenance
@@ -157,3 +158,43 @@ def test_a_row_names_the_coefficients_of_its_kind(name: str) -> None:
     written = {c for every in kinds.values() for c in every if getattr(row, c) is not None}
     assert written <= set(row.coefficients)
     assert row.coefficients == kinds["kienzle" if name.endswith("kienzle") else "mechanistic"]
+
+
+def test_what_a_row_does_not_give_is_named_and_can_be_assumed() -> None:
+    """A share of the tangential force is that share at any chip, whatever the kind of the row."""
+    kienzle = load_material("al_wrought_cured_kienzle")
+    mechanistic = load_material("al6061_t6_carbide_ref160")
+    assert (kienzle.missing, kienzle.unknown) == (("radial_ratio", "axial_ratio"), ("radial", "axial"))
+    assert (mechanistic.missing, mechanistic.unknown) == (("Kac", "Kae"), ("axial",))
+    for row in (kienzle, mechanistic):
+        assert row.completed({"radial": None, "axial": None}) is row
+        whole = row.completed({"radial": 0.4, "axial": 0.1})
+        assert (whole.unknown, whole.provenance.kind, whole.alloy) == ((), "assumed", row.alloy)
+        assert row.title in whole.title
+        for chip in (1e-5, 1e-4):
+            tangential, radial, axial = (
+                sum(getattr(term, K) * chip**term.exponent for term in whole.terms) for K in ("Kt", "Kr", "Ka")
+            )
+            assert tangential == pytest.approx(sum(term.Kt * chip**term.exponent for term in row.terms))
+            assert axial == pytest.approx(0.1 * tangential)
+            if row is kienzle:
+                assert radial == pytest.approx(0.4 * tangential)
+    assert kienzle.completed({"radial": 0.4}).unknown == ("axial",)
+    known = Material(**ROW)
+    assert known.completed({"radial": 0.4, "axial": 0.1}).Krc == known.Krc
+
+
+def test_the_published_shares_are_those_of_the_rows_for_aluminium() -> None:
+    chips = np.linspace(0.02e-3, 0.2e-3, 50)
+    for part, K in (("radial", "Kr"), ("axial", "Ka")):
+        shares = np.array(
+            [
+                sum(getattr(t, K) * chips**t.exponent for t in row.terms)
+                / sum(t.Kt * chips**t.exponent for t in row.terms)
+                for row in sample_materials()
+                if row.kind == "mechanistic" and part not in row.unknown
+            ]
+        )
+        low, high = PUBLISHED[part]
+        assert low <= shares.min() <= 1.1 * low
+        assert 0.95 * high <= shares.max() <= high

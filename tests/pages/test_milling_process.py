@@ -84,6 +84,13 @@ def test_kienzle_row_and_back(app: AppTest) -> None:
     app.selectbox(key="force.kind").set_value("kienzle").run()
     assert not app.exception
     assert isinstance(store(app).project.setup.force, KienzleForce)
+    assert "gives no radial and no axial force" in words(app)
+    assert "rm-tile ok" not in words(app)
+    for part in ("radial", "axial"):  # the boxes stand where the row does not give it
+        app.number_input(key=f"force.{part}_share").set_value(0.3).run()
+    assert not app.exception
+    assert store(app).project.setup.force.row.unknown == ()
+    assert "assumed 0.3 of the tangential one" in words(app)
     app.selectbox(key="force.kind").set_value("path").run()
     assert not app.exception
     assert app.number_input(key="force.feed_normal:N").value > 0

@@ -72,6 +72,8 @@ def picker(force: Any) -> None:
     words = f" The band comes from {count} other rows of {material.alloy}." if count else " No other row: no band."
     source = material.provenance.source
     pieces.note(pieces.badge(material.provenance.kind), f"{source}.{words}")
+    for part in material.unknown:
+        inputs.number(f"force.{part}_share")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
         _coefficients(material)

@@ -1,0 +1,95 @@
+"""What a material's source does not give: not judged where the force depends on it, and assumed aloud."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.force import force_on_tool
+from robomill.cutting.forces.kienzle import KienzleForce
+from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.materials import PUBLISHED
+from robomill.cutting.tool import Cutter
+from robomill.io.materials import load_material
+from tests.cutting.cutters import CUTTERS, MILL, SLOT
+
+TURNED = load_material("al_wrought_cured_kienzle")
+NO_AXIAL = load_material("al6061_t6_carbide_ref160")
+DRILL = Cutter("drill", 6e-3, tip_angle=2.0, flutes=2)
+WAYS = {"level": (1.0, 0.0), "ramp": (0.8, -0.6), "up": (0.8, 0.6), "down": (0.0, -1.0)}
+TOOLS = [*CUTTERS, MILL.replace(helix_angle=0.0), DRILL]
+
+
+@pytest.mark.parametrize("axial", [True, False])
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("cutter", TOOLS, ids=lambda c: f"{c.kind} {c.helix_angle:.1f} {c.hand}")
+def test_judged_is_what_does_not_change_with_the_unknown(cutter, way, axial):
+    """The force is computed with other values of what is unknown: where it changes it is not judged, and elsewhere it
+    is, but for a plunge, whose sideways parts cancel over a full turn only."""
+    across, along = WAYS[way]
+    if cutter.kind == "drill" and across:
+        return  # led sideways: a reason of its own
+    conditions = CutConditions.steady(0.03, 200.0, 5e-3, across=across, along=along)
+    for known in itertools.product((None, 0.3), repeat=2):
+        row = TURNED.replace(radial_ratio=known[0], axial_ratio=known[1])
+        found = KienzleForce(cutter, row, axial=axial)
+        tried = [
+            KienzleForce(
+                cutter, row.replace(radial_ratio=known[0] or radial, axial_ratio=known[1] or lengthwise), axial=axial
+            ).components(conditions)[0]
+            for radial, lengthwise in itertools.product((0.1, 0.5), repeat=2)
+        ]
+        changes = np.ptp(tried, axis=0).max() > 1e-6
+        reasons = found.unjudged(conditions)
+        assert np.isnan(force_on_tool(found, conditions, np.eye(3)[None])).all() == bool(reasons)
+        assert {each.code for each in reasons} <= {"coefficient"}
+        if changes or way == "level":
+            assert bool(reasons) == changes
+        for each in reasons:
+            assert ("radial_ratio" in each.why) == (known[0] is None)
+
+
+def test_a_share_stands_for_what_the_source_does_not_give():
+    """As if the row had it; a row that does give it keeps its own."""
+    given = TURNED.replace(radial_ratio=0.4, axial_ratio=0.1)
+    shared = KienzleForce(MILL, TURNED, radial_share=0.4, axial_share=0.1)
+    assert shared.unjudged(SLOT) == ()
+    np.testing.assert_allclose(shared.components(SLOT), KienzleForce(MILL, given).components(SLOT), rtol=1e-12)
+    np.testing.assert_allclose(shared.peak(SLOT).high, KienzleForce(MILL, given).peak(SLOT).high, rtol=1e-12)
+    own = KienzleForce(MILL, given, radial_share=0.9, axial_share=0.9)
+    np.testing.assert_array_equal(own.components(SLOT), KienzleForce(MILL, given).components(SLOT))
+    assert (own.findings(SLOT), own.provenance.kind) == ((), "computed")
+    half = KienzleForce(MILL, TURNED, radial_share=0.4).unjudged(SLOT)
+    assert [("axial_ratio" in each.why, "radial_ratio" in each.why) for each in half] == [(True, False)]
+
+
+def test_a_mechanistic_row_without_axial_coefficients():
+    force = MechanisticForce(MILL, NO_AXIAL)
+    assert [each.code for each in force.unjudged(SLOT)] == ["coefficient"]
+    assert "Kac and Kae" in force.unjudged(SLOT)[0].why
+    assert replace(force, axial=False).unjudged(SLOT) == ()
+    filled = NO_AXIAL.replace(Kac=0.1 * NO_AXIAL.Ktc, Kae=0.1 * NO_AXIAL.Kte)
+    np.testing.assert_allclose(
+        replace(force, axial_share=0.1).components(SLOT), MechanisticForce(MILL, filled).components(SLOT), rtol=1e-12
+    )
+
+
+def test_an_assumption_is_said_with_its_range():
+    force = KienzleForce(MILL, TURNED, radial_share=0.4, axial_share=0.1)
+    assert force.provenance.kind == "assumed"
+    assert [each.code for each in force.findings(SLOT)] == ["assumed-radial-share", "assumed-axial-share"]
+    assert force.findings(SLOT)[0].level == "warning"
+    assert KienzleForce(DRILL, TURNED, radial_share=0.4).findings(SLOT) == ()  # its thrust asks for no such force
+    ends = {
+        tuple(KienzleForce(MILL, TURNED.replace(radial_ratio=r, axial_ratio=a)).components(SLOT)[0].round(9))
+        for r, a in itertools.product(PUBLISHED["radial"], PUBLISHED["axial"])
+    }
+    rows = [tuple(F[0].round(9)) for _, F in force.by_material(SLOT)]
+    assert len(rows) == 5
+    assert set(rows[1:]) == ends
+    assert len({row.title for row, _ in force.by_material(SLOT)}) == 5
+    assert len(KienzleForce(MILL, TURNED, radial_share=0.4).by_material(SLOT)) == 3
