@@ -9,17 +9,19 @@ material the wall across its end is moved by the deviation along the feed; that 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.simulation.places import Places, places
 from robomill.simulation.seen import Run
+from robomill.surface.outline import Walls
 
 CORNER = np.radians(45.0)
 TURNS = np.radians(5.0)  # where the path turns more, walls ahead and behind are looked for too
 AROUND = np.radians(np.arange(0.0, 360.0, 22.5))
+LOOK = np.radians(np.arange(0.0, 360.0, 10.0))  # for anything that stands
 ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is looked for,
 RIM = 0.98  # and at this share of what the tool cuts flat although it goes aside: a ledge beside a wall is narrow
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
@@ -65,11 +67,12 @@ class Readings:
 
 @dataclass(frozen=True, eq=False)
 class Gauge:
-    """All that a gauge would find on the part."""
+    """All that a gauge would find on the part; and samples (g,) beside which a wall should stand and does not."""
 
     walls: Readings
     floors: Readings
     ends: Readings
+    gone: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
 def gauge(result: Run) -> Gauge:
@@ -78,7 +81,8 @@ def gauge(result: Run) -> Gauge:
         nothing = Readings(np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(4)))
         return Gauge(nothing, nothing, nothing)
     at = places(result)
-    return Gauge(_walls(at), _floors(at), _ends(at))
+    walls, gone = _walls(at)
+    return Gauge(walls, _floors(at), _ends(at), gone)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,36 +115,61 @@ def _rims(at: Places, q: IntArray, u: FloatArray, sign: FloatArray, length: Floa
     low = np.maximum(nose, at.below[q])
     height = np.where(deep > low, low + share * (deep - low), ON_NOSE * deep)
     radius = at.radius_at(q, height)
-    stands = at.depth(q, at.c[q] + (radius + BESIDE)[:, None] * u) > height
+    stands = at.stands(q, at.c[q] + (radius + BESIDE)[:, None] * u, height)
     return Rims(q, u, sign, length, height, radius, deep - at.below[q]).only((deep > at.below[q] + SAME) & stands)
 
 
-def _standing(at: Places, rims: Rims) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """(m,) m: how far beyond the rim the wall stands, told (infinite: none) and left; and whether it is one wall."""
-    lines = np.hstack([at.c[rims.q], at.axial[rims.q], rims.u])
-    told, left, one = at.outline.walls(lines, rims.height, rims.radius)
-    return np.nan_to_num(told, nan=np.inf), left, one
+def _standing(at: Places, rims: Rims) -> Walls:
+    """The walls that stand beyond rims; infinitely far where none was told."""
+    found = at.outline.walls(np.hstack([at.c[rims.q], at.axial[rims.q], rims.u]), rims.height, rims.radius)
+    return found._replace(told=np.nan_to_num(found.told, nan=np.inf))
 
 
-def _walls(at: Places) -> Readings:
-    """Walls at every place and direction where material stands beside the tool in the end."""
+def _walls(at: Places) -> tuple[Readings, IntArray]:
+    """Walls at every place and direction where material stands beside the tool in the end, and samples (g,) beside
+    which one should stand and does not."""
     steep, (begin, end), turn = at.steep, at.begins_or_ends, at.turn
     rims = _directions(at, (turn > TURNS) & ~begin & ~end | steep)
-    told, left, one = _standing(at, rims)
+    told, left, one, carried = _standing(at, rims)
     # Chords of an arc overlap on its inner side by no more than this.
     gentle = (rims.length > 0.0) & (turn[rims.q] < CORNER) & ~steep[rims.q]
     same = SAME + np.where(gentle, rims.radius * (1.0 - np.cos(turn[rims.q])), 0.0)
     # A tool lifted above the height at which a wall is measured leaves metal over its whole width: the floor's error.
     keep = (told <= same) & (at.d[rims.q, 2] < rims.height) & (one | np.isnan(left))
-    rims, told, left = rims.only(keep), told[keep], left[keep]
+    rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
     q = rims.q
     own = at.d[q, 0] * _dot(rims.u, at.feed[q]) + at.d[q, 1] * _dot(rims.u, at.left_of[q])
-    error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, left - told)
+    # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
+    carried = np.where(left > told, np.maximum(np.maximum(carried, own), 0.0), carried)
+    error = np.where(np.abs(carried) < np.abs(left - told), carried, left - told)
+    error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
     upright = _upright(at, q, rims.height)
     aside, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
-    most = aside * upright + up * np.sqrt(1.0 - upright**2)  # no wall moves further; one between two passes may be gone
+    most = aside * upright + up * np.sqrt(1.0 - upright**2)  # no wall moves further
     error = np.clip(error * upright, -most, most)
-    return Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign)
+    reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
+    lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
+    return Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign), np.unique(at.i[q[lost]])
+
+
+def _nothing_stands(at: Places, rims: Rims, suspects: BoolArray) -> BoolArray:
+    """(m,) bool: whether nothing stands any more around where the wall beyond a rim was told to be, whichever way one
+    looks; asked of ``suspects`` (m,), where one looks through it."""
+    lost = np.zeros(len(suspects), dtype=bool)
+    some = np.flatnonzero(suspects)
+    if not len(some):
+        return lost
+    n = len(LOOK)
+    q, height = np.repeat(rims.q[some], n), np.repeat(rims.height[some], n)
+    wall = np.repeat((at.c[rims.q] + rims.radius[:, None] * rims.u)[some], n, axis=0)
+    way = (
+        np.tile(np.cos(LOOK), len(some))[:, None] * at.feed[q]
+        + np.tile(np.sin(LOOK), len(some))[:, None] * at.left_of[q]
+    )
+    left = at.outline.walls(np.hstack([wall, at.axial[q], way]), height, np.zeros(len(q))).left
+    near = np.isnan(left) | (left < at.outline.reach) & at.stands(q, wall + (left + BESIDE)[:, None] * way, height)
+    lost[some] = ~near.reshape(-1, n).any(axis=1)
+    return lost
 
 
 def _directions(at: Places, around: BoolArray) -> Rims:
@@ -206,7 +235,7 @@ def _ends(at: Places) -> Readings:
     q = np.concatenate([begin, end])
     way = np.concatenate([-np.ones(len(begin)), np.ones(len(end))])
     rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
-    rims = rims.only(_standing(at, rims)[0] <= SAME)
+    rims = rims.only(_standing(at, rims).told <= SAME)
     return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0])
 
 

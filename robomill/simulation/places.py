@@ -55,6 +55,10 @@ class Places:
             top = stock_heights(stock, cells.x, cells.y)[x, y]
         return np.where(inside, np.maximum(top - points[:, 2], 0.0) / self.axial[q, 2], 0.0)
 
+    def stands(self, q: IntArray, points: FloatArray, height: FloatArray) -> BoolArray:
+        """(m,) bool: whether the stock stood higher than ``height`` (m,) m above the tips of places q there."""
+        return np.asarray(self.depth(q, points) > height)
+
     @property
     def below(self) -> FloatArray:
         """(q,) m along the axis: how far the tip stands below the bottom of the stock, where walls begin, or 0."""

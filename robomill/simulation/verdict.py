@@ -59,6 +59,7 @@ class Verdict:
         return self.level in ("out", "unjudged", "unreached", "missed")
 
 
+GONE = "a wall that should stand is cut away"
 RAPID = "a rapid runs through material that no cut removes"
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
@@ -78,6 +79,9 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
     said = f"{_said(result, readings, share)}: {WORDS[level]}"
+    if len(gauge.gone):
+        lines = named(result.path.block[gauge.gone].tolist())
+        level, said = "out", f"{said}; {GONE} (line {lines}): {WORDS['out']}"
     unknown = unjudged_words(result)
     if result.worst < 0:
         level, said = _nothing(result)

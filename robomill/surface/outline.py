@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,18 @@ from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000
 SAME = 2e-6  # m: tracks whose heights differ by less are one floor
+
+
+class Walls(NamedTuple):
+    """How far beyond a rim walls stand: ``told`` (q,) m and ``left`` (q,) m, NaN where nothing is cut; whether it is
+    ``one`` wall (q,), as where a floor beside it sinks or rises through the height, the wall that was told is none any
+    more; and how far (q,) m the pass that makes it in the end has ``carried`` it.
+    """
+
+    told: FloatArray
+    left: FloatArray
+    one: BoolArray
+    carried: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,22 +44,16 @@ class Outline:
     cutter: IntArray
     reach: float
 
-    def walls(
-        self, places: FloatArray, height: FloatArray, radius: FloatArray
-    ) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """How far beyond the tool's own rim, of ``radius`` (q,) at ``height`` (q,) above its tip, the wall stands along
-        u: (q,) m as told and (q,) m as left, NaN where nothing is cut; and whether it is one wall (q,).
-
-        Where a floor beside it sinks or rises through the height, the wall that was told there is none any more.
-        """
+    def walls(self, places: FloatArray, height: FloatArray, radius: FloatArray) -> Walls:
+        """The walls that stand along u beyond the rim of ``radius`` (q,) at ``height`` (q,) above the tip."""
         start = radius - np.minimum(self.reach, 0.9 * radius)
         asked = np.ascontiguousarray(np.column_stack([places, height, start]))
-        result = np.empty((len(asked), 3))
+        result = np.empty((len(asked), 4))
         for some in slices(len(asked), "Walls"):
             walls_left(*self._tracks, asked[some], result[some])
-        told, told_both, left = result.T
+        told, told_both, left, carried = result.T
         with np.errstate(invalid="ignore"):
-            return told - radius, left - radius, np.asarray(np.abs(told_both - told) <= SAME)
+            return Walls(told - radius, left - radius, np.asarray(np.abs(told_both - told) <= SAME), carried)
 
     def floors(
         self, places: FloatArray, offset: FloatArray, slack: FloatArray

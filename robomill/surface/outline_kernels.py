@@ -145,6 +145,33 @@ def wall_at(tracks: Tracks, other: Tracks, place: In1) -> float:
 
 
 @part
+def inside(tracks: Tracks, n: int, place: In1, out: float) -> tuple[float, bool]:
+    """How far (m) the point ``out`` along u is inside of a move's track, at the height of a place (11,), < 0 outside;
+    and whether the track comes from behind it."""
+    seen = seen_from(place, tracks.ends[n])
+    move = move_between(seen.u, seen.v, 0.0, seen.u + seen.du, seen.v + seen.dv, 0.0)
+    ex, ey = nearest(move, out, 0.0)
+    shape = shape_of(tracks.shapes[tracks.cutter[n]])
+    return radius_at(shape, place[9] - (seen.z + 0.5 * seen.dz)) - math.hypot(ex, ey), ex > 0.0
+
+
+@part
+def carried(told: Tracks, left: Tracks, place: In1, out: float, deep: bool) -> float:
+    """How far (m) the wall that was told ``out`` along u has been carried. Where it is cut too ``deep``: that track
+    which is deepest over it in the end; else how far it still is to the next track on this side of it, < 0."""
+    i0, i1, j0, j1 = squares_near(told, place[0], place[1])
+    deepest, found = -math.inf, 0.0
+    for i in range(i0, i1):
+        row = i * told.squares[1]
+        for n in range(told.first[row + j0], told.first[row + j1]):
+            if below(told, n, place, place[9]) and below(left, n, place, place[9]):
+                depth, behind = inside(left, n, place, out)
+                if depth > deepest and (deep or behind):
+                    deepest, found = depth, depth - inside(told, n, place, out)[0]
+    return found if deep else deepest
+
+
+@part
 def upright_part(shape: Shape, r: float) -> float:
     """Part along the axis of the normal of a cutter's surface at radius r: 1 on its flat."""
     e = max(r - shape.r0, 0.0)
@@ -197,12 +224,13 @@ def floor_at(told: Tracks, left: Tracks, place: In1, offset: float) -> Floor:
 
 @kernel
 def walls_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
-    """result (q, 3): how far out along u (m) the wall stands from the tip, at places (q, 11), see ``wall_at``: as told,
-    and as told and as left by the moves alone that run below the height in both."""
+    """result (q, 4): how far out along u (m) the wall stands from the tip, at places (q, 11), see ``wall_at``: as told,
+    and as told and as left by the moves alone that run below the height in both; and how far it was ``carried``."""
     for q in range(len(places)):
         result[q, 0] = wall_at(told, told, places[q])
         result[q, 1] = wall_at(told, left, places[q])
         result[q, 2] = wall_at(left, told, places[q])
+        result[q, 3] = carried(told, left, places[q], result[q, 0], result[q, 2] > result[q, 0])
 
 
 @kernel

@@ -59,7 +59,7 @@ def test_walls_are_where_the_polygon_ends(seed):
         share, angle = rng.uniform(0, 1), rng.uniform(0, 2 * np.pi)
         c, u = ends[n, :3] + share * (ends[n, 3:] - ends[n, :3]), np.array([np.cos(angle), np.sin(angle), 0])
         R = radii[n]
-        found, left, one = outline.walls(np.concatenate([c, UP, u])[None], np.array([1e-3]), np.array([R]))
+        found, left, one, _ = outline.walls(np.concatenate([c, UP, u])[None], np.array([1e-3]), np.array([R]))
         truth = ray_end(polygon, c[:2], u[:2], R - min(reach, 0.9 * R)) - R
         if np.isfinite(truth) and truth < reach:
             assert found == pytest.approx(truth, abs=2e-7)
