@@ -31,7 +31,7 @@ else:
 
 left, right = ui.thirds()
 with left:
-    workspace.controls(robot, view, unit)
+    workspace.controls(robot, view)
 with right:
     with st.container(border=True):
         workspace.picture()

@@ -22,7 +22,7 @@ if box is None or known is None:
     ui.tiles([ui.Tile(label, "none") for label in ("At the point", "Softest direction", "Softest place", "Pays most")])
     left, _ = ui.thirds()
     with left:
-        plane.controls(robot, view, unit)
+        plane.controls(robot, view)
     st.stop()
 
 factors = view.stiffening(robot)
@@ -36,7 +36,7 @@ ui.tiles(compliance.tiles(found, old, now, known, view, unit))
 
 left, right = ui.thirds()
 with left:
-    compliance.controls(robot, view, found, unit)
+    compliance.controls(robot, view, found)
     compliance.what_if(robot, view)
 with right, st.container(border=True):
     sheets.picture()

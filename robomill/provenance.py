@@ -11,6 +11,7 @@ from robomill.errors import RobomillError
 Kind = Literal["paper", "measured", "assumed", "user", "computed", "synthetic"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 Level = Literal["error", "warning", "suspicious", "ignored", "info"]
+LEVELS: tuple[Level, ...] = get_args(Level)  # the grave ones first
 MANY = 3  # numbers that a sentence names
 
 
@@ -42,6 +43,11 @@ class Finding:
     message: str
     count: int = 1
     code: str = ""
+
+    @property
+    def order(self) -> tuple[int, int, str]:
+        """Its place in a list: the grave ones first, then by line."""
+        return LEVELS.index(self.level), self.line, self.message
 
     @property
     def sentence(self) -> str:

@@ -18,7 +18,6 @@ from robomill.units import format_si, to_si
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
 
-CutterKind = Literal["flat", "ball", "bull", "chamfer", "drill"]
 Hand = Literal["right", "left"]
 HANDS = {"right": "right", "left": "left"}
 
@@ -60,7 +59,7 @@ class Cutter:
     Raises CuttingError for a cutter that cannot be.
     """
 
-    kind: CutterKind = choice("Kind", {kind: shape.short for kind, shape in SHAPES.items()})
+    kind: str = choice("Kind", {kind: shape.short for kind, shape in SHAPES.items()})
     diameter: float = quantity("Diameter", "mm", least=1e-6, step=1.0)
     corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, step=0.25)
     flutes: int = whole("Flutes", default=2, least=1)
@@ -232,7 +231,7 @@ class Cutter:
             changes["corner_radius"] = 0.0
         return replace(self, **changes)
 
-    def reshaped(self, kind: CutterKind) -> Cutter:
+    def reshaped(self, kind: str) -> Cutter:
         """The same cutter of another shape, with a first value for each number that one needs."""
         plain: dict[str, Any] = {"corner_radius": 0.0, "tip_angle": None, "tip_diameter": 0.0}
         return replace(self, kind=kind, **(plain | SHAPES[kind].first(self.diameter)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -87,52 +86,6 @@ class Knowledge:
     def holds_for(self, robot: Robot, springs: Sequence[Spring]) -> bool:
         """Whether exactly the compliances it belongs to are in force: an edit ends that, an undo brings it back."""
         return self.compliances == compliance_digest(robot, springs)
-
-    def to_table(self) -> dict[str, Any]:
-        """Plain numbers for a project file; ``from_table`` reads them back."""
-        table: dict[str, Any] = {
-            "model": self.model.name,
-            "bending_joints": list(self.model.bending_joints),
-            "bending_turned": self.model.turned,
-            "parameters": self.parameters.tolist(),
-            "covariance": self.covariance.tolist(),
-            "words": self.source,
-        }
-        if self.dof is not None:
-            table["dof"] = int(self.dof)
-        if self.error is not None:
-            table["model_error"] = [self.error.share, self.error.per_newton, self.error.floor]
-        if self.F is not None:
-            table["force_covariance"] = self.F.tolist()
-        if self.lengths is not None:
-            table["lengths"] = self.lengths.tolist()
-        return table
-
-    @classmethod
-    def from_table(cls, table: Any, robot: Robot, springs: Sequence[Spring], where: str) -> Knowledge:
-        """What a project file knows of the compliances in it. Raises ProjectError, naming ``where``."""
-        if not isinstance(table, dict):
-            raise ProjectError(f"{where} is not a table; remove it or save the project again.")
-        try:
-            joints = tuple(int(j) for j in table.get("bending_joints", (2, 3)))
-            model = Model(str(table["model"]), joints, bool(table.get("bending_turned", False)))
-            p, rows = len(model.parameters(robot)), 2 * robot.rows
-            given = {name: table[name] for name in ("force_covariance", "lengths", "dof") if name in table}
-            if "lengths" in given:
-                as_floats(given["lengths"], "lengths", (rows,))
-            known = cls(
-                model,
-                as_floats(table["parameters"], "parameters", (p,)),
-                as_floats(table["covariance"], "covariance", (p, p)),
-                int(given["dof"]) if "dof" in given else None,
-                given.get("force_covariance"),
-                given.get("lengths"),
-                str(table.get("words", "from load tests")),
-                error=None if "model_error" not in table else ModelError(*map(float, table["model_error"])),
-            )
-        except (KeyError, TypeError, ValueError, OverflowError) as exc:
-            raise ProjectError(f"{where} cannot be used ({exc}); remove it or save the project again.") from exc
-        return known.held_by(robot, springs)
 
 
 def compliance_digest(robot: Robot, springs: Sequence[Spring]) -> str:

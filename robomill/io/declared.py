@@ -135,9 +135,6 @@ def _array(table: Table, declared: Quantity) -> Any:
     length, *rest = declared.shape
     if rest:
         return table.rows(declared.key, int(rest[0] or 0), declared.unit)
-    if length is None:
-        listed = table.data.get(declared.key)
-        length = len(listed) if isinstance(listed, list) else 0
     return np.array(table.numbers(declared.key, length, declared.unit))
 
 

@@ -22,14 +22,11 @@ def map_from_table(table: Table, robot: Robot, beside: Beside) -> MeasuredField:
         field = read_measured_map(data, robot, name)
     else:
         p = table.rows("p_mm", 3, "mm")
-        C = table.rows("C_m_N", 9, "m/N").reshape(-1, 3, 3)
-        AB = table.rows("tilt_deg", 2, "deg")
-        if not len(p) == len(C) == len(AB):
-            raise table.refuse("C_m_N", f"expected {len(p)} rows like p_mm, found {len(C)} and {len(AB)} of tilt_deg.")
+        C = table.rows("C_m_N", 9, "m/N", len(p)).reshape(-1, 3, 3)
+        AB = table.rows("tilt_deg", 2, "deg", len(p))
         reach, made = table.number("reach_m", "m", 0.0), _provenance(table)
-        stderr = table.rows("stderr_m_N", 9, "m/N").reshape(-1, 3, 3) if table.has("stderr_m_N") else None
-        if stderr is not None and len(stderr) != len(p):
-            raise table.refuse("stderr_m_N", f"expected {len(p)} rows like p_mm, found {len(stderr)}.")
+        given = table.has("stderr_m_N")
+        stderr = table.rows("stderr_m_N", 9, "m/N", len(p)).reshape(-1, 3, 3) if given else None
         field = MeasuredField(p, C, AB, reach, made, stderr)  # type: ignore[arg-type]
     table.finish()
     return field

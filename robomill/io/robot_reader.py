@@ -13,6 +13,7 @@ from robomill.errors import RobotError
 from robomill.io.tables import MISSING, Table, parse_toml
 from robomill.quantities import quantities
 from robomill.robot.model import USER_SET, Robot
+from robomill.robot.stiffness import turned_over
 
 FORMAT, VERSION = "robomill robot", 1
 # Accepted suffixes of a key and the unit each names. The writer takes the first that gives the number back exactly.
@@ -20,8 +21,9 @@ LENGTH = {"mm": "mm", "m": "m"}
 ANGLE = {"deg": "deg", "rad": "rad"}
 SPELLED = {"mm": LENGTH, "deg": ANGLE}
 STEMS = {"limits_all": "limits", "blocked": "blocked_at"}  # of keys that are not called as their field
-SI_COMPLIANCE, STIFFNESS = "C_theta_SI", "k_theta_Nm_per_rad"
-COMPLIANCE = {"C_theta_1e-7_rad_per_Nm": "1e-7 rad/(N m)", SI_COMPLIANCE: "1", STIFFNESS: "1"}
+C_THETA = {"1e-7_rad_per_Nm": "1e-7 rad/(N m)", "SI": "1"}
+STIFFNESS = "k_theta_Nm_per_rad"
+COMPLIANCE = {**{f"C_theta_{suffix}": unit for suffix, unit in C_THETA.items()}, STIFFNESS: "1"}
 TURNS, SLIDES = "revolute", "prismatic"
 
 
@@ -108,7 +110,7 @@ def _column(table: Table, rows: int) -> FloatArray:
     for joint, stiffness in enumerate(values, 1):
         if stiffness <= 0:
             raise table.refuse(key, f"joint {joint}: the stiffness is {stiffness:g}; it must be above zero.")
-    return 1.0 / values
+    return np.asarray(turned_over(values))
 
 
 def _frame(table: Table) -> FloatArray:
@@ -116,9 +118,6 @@ def _frame(table: Table) -> FloatArray:
     T = np.eye(4)
     T[:3, 3] = table.measures("xyz", LENGTH, 3, (0.0, 0.0, 0.0), "three numbers")
     if table.has("rotation"):
-        rotation = table.rows("rotation", 3, "1")
-        if len(rotation) != 3:
-            raise table.refuse("rotation", f"expected three rows of three numbers, found {len(rotation)} rows.")
-        T[:3, :3] = rotation
+        T[:3, :3] = table.rows("rotation", 3, "1", 3)
     table.finish()
     return T

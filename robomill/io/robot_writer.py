@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.io.robot_reader import FORMAT, LENGTH, SLIDES, TURNS, VERSION, written
+from robomill.io.robot_reader import C_THETA, FORMAT, LENGTH, SLIDES, TURNS, VERSION, written
 from robomill.io.tables import exactly, toml_value
 from robomill.robot.model import Robot
 
@@ -61,4 +61,4 @@ def _entry(stem: str, value: Any, units: Mapping[str, str]) -> str:
 
 
 def _compliance_entry(values: FloatArray) -> str:
-    return _entry("C_theta", values, {"1e-7_rad_per_Nm": "1e-7 rad/(N m)", "SI": "1"})
+    return _entry("C_theta", values, C_THETA)

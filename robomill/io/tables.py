@@ -138,24 +138,27 @@ class Table:
         value = self._get(key, default)
         return value if value is default else self._si(key, value, unit)
 
-    def numbers(self, key: str, count: int, unit: str, default: Any = MISSING, expected: str = "") -> Any:
-        """``count`` values in SI as a list (``default`` as it is); ``expected`` says what they are, for the refusal."""
+    def numbers(self, key: str, count: int | None, unit: str, default: Any = MISSING, expected: str = "") -> Any:
+        """``count`` (None: any) values in SI as a list (``default`` as it is); a refusal says ``expected``."""
         value = self._get(key, default)
         if value is default:
             return value
-        if not isinstance(value, list) or len(value) != count:
+        if not isinstance(value, list) or len(value) != (len(value) if count is None else count):
             found = f"{len(value)}: {value!r:.60}" if isinstance(value, list) else f"{value!r:.60}"
-            raise self.refuse(key, f"expected {expected or f'a list of {count} numbers'}, found {found}.")
+            many = "" if count is None else f"{count} "
+            raise self.refuse(key, f"expected {expected or f'a list of {many}numbers'}, found {found}.")
         return [self._si(key, item, unit) for item in value]
 
-    def rows(self, key: str, count: int, unit: str) -> FloatArray:
-        """A list of lists of ``count`` numbers, in SI, as (r, count)."""
+    def rows(self, key: str, count: int, unit: str, many: int | None = None) -> FloatArray:
+        """A list of ``many`` (None: any) lists of ``count`` numbers, in SI, as (r, count)."""
         value = self._get(key, MISSING)
         if not isinstance(value, list) or not value:
             raise self.refuse(key, f"expected a list of rows of {count} numbers, found {value!r:.60}.")
         for i, row in enumerate(value):
             if not isinstance(row, list) or len(row) != count:
                 raise self.refuse(key, f"row {i + 1}: expected {count} numbers, found {row!r:.60}.")
+        if many is not None and len(value) != many:
+            raise self.refuse(key, f"expected {many} rows of {count} numbers, found {len(value)} rows.")
         return np.array([[self._si(key, item, unit) for item in row] for row in value])
 
     def measure(self, stem: str, suffixes: Mapping[str, str], default: Any = MISSING) -> Any:

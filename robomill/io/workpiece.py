@@ -24,7 +24,10 @@ MOST_TRIANGLES = STL.most // 50  # a triangle of a binary STL takes 50 bytes
 def part_from_table(table: Table) -> FloatArray:
     if table.has("frame"):
         T_MW = np.eye(4)
-        T_MW[:3] = np.array(table.rows("frame", 4, "1"))[:3]
+        frame = table.rows("frame", 4, "1")
+        if len(frame) not in (3, 4):
+            raise table.refuse("frame", f"expected the three rows of a frame, found {len(frame)}.")
+        T_MW[:3] = frame[:3]
         T_MW[:3, 3] = to_si(T_MW[:3, 3], "mm")
     else:
         T_MW = part_frame(table.numbers("zero_mm", 3, "mm", [0.0] * 3), table.number("rotation_z_deg", "deg", 0.0))

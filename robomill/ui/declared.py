@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
@@ -29,6 +29,24 @@ def field(path: str, write: Callable[[Any], None] | None = None, look: Look = PL
     if said is None:
         raise KeyError(f"not a declared field: {path!r}")
     draw(said, path, read_field(setup, path), write or inputs.into_setup(path, path), look)
+
+
+def seen(path: str, look: Look = PLAIN, options: Mapping[Any, str] | None = None, label: str = "", **more: Any) -> Any:
+    """The field of what is looked at, "view.camera" or "maps.A", as declared: draws it and returns what is in force.
+
+    Where ``options`` are given it is a choice between these; what is none of them (on another arm) is shown as the
+    first one. A field that is not declared needs its ``label``, too. ``more`` are fields that change with it.
+    """
+    owner, _, name = path.partition(".")
+    held, write = (session.project().view, session.look) if owner == "view" else (session.maps(), session.see)
+    said = quantities(type(held)).get(name, Quantity(label))
+    if options is not None:
+        said = replace(said, kind="choice", options=options)
+    current = getattr(held, name)
+    if said.kind == "choice" and current not in said.options:
+        current = next(iter(said.options))
+    draw(said, path, current, lambda new: write(**{name: new, **more}), look)
+    return current
 
 
 def fields(owner: Any, key: str, write: Callable[[str, Any], None]) -> None:
@@ -58,7 +76,8 @@ def draw(said: Quantity, key: str, current: Any, write: Callable[[Any], None], l
         )
     else:
         shown = {"unit": in_view(said.unit), "hint": look.hint, "disabled": look.disabled, "hidden": look.hidden}
-        inputs.value(key, box_of(said, **shown), current, write)
+        empty = {} if look.placeholder is None else {"placeholder": look.placeholder}
+        inputs.value(key, box_of(said, **shown, **empty), current, write)
 
 
 def _write_entry(array: Any, i: int, write: Callable[[Any], None], new: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from robomill.compliance.posture import over_posture
 from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.ui.cached import shared
 from robomill.ui.project import MapView
@@ -24,7 +26,7 @@ from robomill.workspace.region import FLAT, coarse_grid, flat_axis, largest_regi
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.5)
 PLANE_CELLS = 1900
 DRAWN_CELLS = 60_000
-NORMALS = {"z": "XY", "y": "XZ", "x": "YZ"}
+NORMALS = quantities(MapView)["normal"].options
 
 
 def geometry_key(robot: Robot) -> str:
@@ -36,11 +38,10 @@ def geometry_key(robot: Robot) -> str:
 def region(robot: Robot, view: MapView) -> Box:
     """The box the maps cover. Raises WorkspaceError where nothing is in reach or a corner is on the wrong side."""
     if view.region == "own":
-        lower, upper = np.array(view.lower), np.array(view.upper)
-        if (upper < lower).any():
-            axis = "XYZ"[int(np.argmax(upper < lower))]
+        if (view.upper < view.lower).any():
+            axis = "XYZ"[int(np.argmax(view.upper < view.lower))]
             raise WorkspaceError(f"Region: {axis} ends before it begins; type the smaller number first.")
-        return Box(lower, upper)
+        return Box(view.lower, view.upper)
     if view.region == "paper":
         return Box(*PAPER_BOX)
     found = _proposed(robot, view.region, view.A, view.B)
@@ -59,7 +60,7 @@ def flat(robot: Robot) -> int | None:
     return flat_axis(robot)
 
 
-def normals(robot: Robot) -> dict[str, str]:
+def normals(robot: Robot) -> Mapping[str, str]:
     """Planes that make sense for this arm: normal -> name."""
     axis = flat(robot)
     return NORMALS if axis is None else {"xyz"[axis]: NORMALS["xyz"[axis]]}

@@ -165,19 +165,6 @@ def pick(label: str, key: str, options: Mapping[Any, str], otherwise: Any = None
     return current if current in options else first
 
 
-def seen(label: str, path: str, options: Mapping[Any, str], look: Look = PLAIN, **more: Any) -> Any:
-    """A choice that is a field of what is looked at, "view.camera" or "maps.sheet": returns what is chosen.
-
-    What is no option (on another arm) is shown as the first one; ``more`` are fields that change with it.
-    """
-    owner, _, name = path.partition(".")
-    held, write = (session.project().view, session.look) if owner == "view" else (session.maps(), session.see)
-    current = getattr(held, name)
-    shown = current if current in options else next(iter(options))
-    choice(label, path, options, shown, lambda new: write(**{name: new, **more}), look)
-    return shown
-
-
 def several(
     label: str,
     key: str,

@@ -42,7 +42,8 @@ def middle(box: Box) -> Point:
 def default_point(view: MapView, box: Box, known: ComplianceField) -> Point:
     """The point in hand: as clicked, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:
-        return view.point
+        x, y, z = view.point.tolist()
+        return x, y, z
     if view.region == "paper" and view.A == view.B == 0:
         return SLOT.point
     centre = middle(box)

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Container
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 import tomli_w
@@ -19,35 +18,46 @@ import tomli_w
 from robomill.arrays import FloatArray, digest
 from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
+from robomill.io.declared import from_table, to_table
+from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
 from robomill.io.projects import load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
-from robomill.io.tables import parse_toml
-from robomill.paper import BOX, Point
-from robomill.quantities import quantities
+from robomill.io.tables import Table, parse_toml, shown
+from robomill.paper import BOX
+from robomill.quantities import choice, quantities, settle, switch
+from robomill.quantities import quantity as number
 from robomill.robot.model import Robot
+from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
 from robomill.simulation.setup import SimulationSetup
+from robomill.units import unit_label
+from robomill.viz.picture import CAMERAS
 from robomill.workspace.quantities import COMPONENTS, map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
-LARGEST = 1e6  # of any number that says how something is looked at, in SI
+TABLES = ("view", "maps", "uncertainty")
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
-COMPLIANCE = quantities(Robot)["C_theta_all"]
-PRISMATIC_UNITS = {COMPLIANCE.unit: str(COMPLIANCE.sliding), "kN m/rad": "N/um"}  # as shown for joints that turn, slide
+PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "step": 50.0, "digits": 2}  # in {M}
+TILT: dict[str, Any] = {"unit": "deg", "step": 5.0, "default": 0.0}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class View:
     """How the project is looked at; saved with it, but not part of the history."""
 
-    units: str = "mm"
-    joint_unit: str = COMPLIANCE.unit
-    exaggeration: float = 10.0
-    station: float = 0.5
-    camera: str = "iso"
-    share_axis: str = "y"
-    theta: tuple[float, ...] | None = None
+    units: str = choice("Lengths", {"mm": "mm", "in": "inch"}, default="mm")
+    joint_unit: str = choice(
+        "Joint compliance", {unit: unit_label(unit) for unit in JOINT_UNITS}, default=COMPLIANCE.unit
+    )
+    exaggeration: float = number("Exaggeration", least=0.0, most=1e6, default=10.0)
+    station: float = number("Station", least=0.0, most=1.0, default=0.5)
+    camera: str = choice("Camera", CAMERAS, default="iso")
+    share_axis: str = choice("Shares of", {axis: f"in {axis.upper()}" for axis in "xyz"}, default="y")
+    theta: FloatArray | None = number("Joint angles", shape=(None,), optional=True)
+
+    def __post_init__(self) -> None:
+        settle(self, ProjectError, "View")
 
     @property
     def length(self) -> str:
@@ -60,7 +70,7 @@ class View:
         return "in/min" if self.units == "in" else "mm/min"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MapView:
     """What the maps look at, SI throughout; None means "as robomill proposes for this robot".
 
@@ -68,26 +78,49 @@ class MapView:
     """
 
     robot: str = ""
-    region: str = "largest"
-    lower: Point = BOX[0]
-    upper: Point = BOX[1]
-    step: float | None = None
-    A: float = 0.0
-    B: float = 0.0
-    normal: str = "z"
-    at: float | None = None
-    pair: tuple[float, float] | None = None
-    point: Point | None = None
+    region: str = choice(
+        "Region",
+        {
+            "paper": "The paper's box",
+            "largest": "Largest box in reach",
+            "reach": "Everything in reach",
+            "own": "My own numbers",
+        },
+        default="largest",
+    )
+    lower: FloatArray = number("From", default=BOX[0], **PLACE)
+    upper: FloatArray = number("To", default=BOX[1], **PLACE)
+    step: float | None = number("Step", "mm", above=0.0, step=5.0, digits=2, optional=True)
+    A: float = number("Tilt A", **TILT)
+    B: float = number("Tilt B", **TILT)
+    normal: str = choice("Plane", {"z": "XY", "y": "XZ", "x": "YZ"}, default="z")
+    at: float | None = number("Plane at", "mm", optional=True)
+    pair: FloatArray | None = number("Planes at", "mm", shape=(2,), optional=True)
+    point: FloatArray | None = number("At", optional=True, **PLACE)
     quantity: str = "det_J"
-    picture: str = "plane"
-    level: float = 0.5
-    sheet: str = "nine"
-    component: str = "yy"
+    picture: str = choice("Picture", {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}, default="plane")
+    level: float = number("Cells from", least=0.0, most=1.0, default=0.5)
+    sheet: str = choice(
+        "Picture",
+        {
+            "nine": "3 × 3 maps",
+            "one": "One map",
+            "shares": "By joint",
+            "dominant": "Who gives most",
+            "lines": "Path lines",
+            "compare": "Compare",
+        },
+        default="nine",
+    )
+    component: str = choice("Component for comparing and ranking", {c: f"C_{c}" for c in COMPONENTS}, default="yy")
     one: str = "C_soft"
-    shares: str = "direct"
-    common: bool = True
-    factors: tuple[float, ...] | None = None
+    shares: str = choice("Components", {"direct": "Direct (Fig. 6)", "cross": "Cross (Fig. 7)"}, default="direct")
+    common: bool = switch("One scale for the 3 × 3 maps", default=True)
+    factors: FloatArray | None = number("Times its stiffness", shape=(None,), above=0.0, optional=True)
     against: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        settle(self, ProjectError, "Maps")
 
     def of(self, robot: Robot) -> MapView:
         """This view where it was made for ``robot``, else a fresh one that keeps what suits any robot."""
@@ -147,11 +180,6 @@ def preset_setup(name: str) -> SimulationSetup:
     return load_setup(samples_dir() / name / "setup.toml")
 
 
-def is_stiffness(unit: str) -> bool:
-    """Whether the joints are shown by stiffness rather than compliance."""
-    return unit in ("kN m/rad", "N/um")
-
-
 _PART = re.compile(r"(?P<name>\w+)(?:\[(?P<index>[\d,\s]+)\])?$")
 
 
@@ -190,11 +218,11 @@ def _split(part: str) -> tuple[str, tuple[int, ...] | None]:
 
 def project_to_toml(project: Project) -> str:
     """The project as text that ``project_from_toml`` reads back to the same project."""
-    tables: dict[str, Any] = {"view": {**_plain(project.view), "preset": project.preset}}
-    if project.maps != MapView():
-        tables["maps"] = _plain(project.maps)
+    tables: dict[str, Any] = {"view": {**to_table(project.view), "preset": project.preset}}
+    if project.maps.robot:
+        tables["maps"] = to_table(project.maps)
     if project.known is not None:
-        tables["uncertainty"] = project.known.to_table()
+        tables["uncertainty"] = knowledge_to_table(project.known)
     return setup_to_toml(project.setup) + "\n" + tomli_w.dumps(tables)
 
 
@@ -204,66 +232,28 @@ def project_from_toml(text: str, view: View | None = None, maps: MapView | None 
     Raises ProjectError with the reason.
     """
     data = parse_toml(text, WHERE)
-    tables = {name: _table(data, name) for name in ("view", "maps", "uncertainty")}
+    own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in TABLES if name in data}
     setup = open_project(data, WHERE)
     known = None
-    if tables["uncertainty"] is not None:
-        known = Knowledge.from_table(tables["uncertainty"], setup.robot, setup.springs, f"{WHERE}: [uncertainty]")
-    seen = maps or MapView() if tables["maps"] is None else _looked(MapView, tables["maps"], "maps", setup.robot)
-    if tables["view"] is None:
+    if "uncertainty" in own:
+        known = knowledge_from_table(own["uncertainty"], setup.robot, setup.springs)
+    seen = maps or MapView()
+    if "maps" in own:
+        _in_units(own["maps"])
+        own["maps"].choice("quantity", tuple(map_quantities(setup.robot, "geometry")), seen.quantity)
+        seen = from_table(own["maps"], MapView)
+    if "view" not in own:
         return Project(setup, dataclasses.replace(view or View(), theta=None), maps=seen, knowledge=known)
-    preset = tables["view"].pop("preset", "")
-    looked = _looked(View, tables["view"], "view", setup.robot)
-    return Project(setup, looked, preset if isinstance(preset, str) else "", seen, known)
+    preset = own["view"].text("preset", "")
+    return Project(setup, from_table(own["view"], View), preset, seen, known)
 
 
-def _table(data: dict[str, Any], name: str) -> dict[str, Any] | None:
-    table = data.pop(name, None)
-    if table is None or isinstance(table, dict):
-        return table
-    raise ProjectError(f"{WHERE}: [{name}] is not a table; remove it or save the project again.")
-
-
-def _plain(value: Any) -> dict[str, Any]:
-    return {k: v for k, v in dataclasses.asdict(value).items() if v is not None}
-
-
-def _looked(kind: type, table: dict[str, Any], where: str, robot: Robot) -> Any:
-    """A View or a MapView from its table; every value is checked against the type of its field."""
-    hints = get_type_hints(kind)
-    choices = {**CHOICES, ("maps", "quantity"): map_quantities(robot, "geometry")}
-    for name, value in table.items():
-        if name not in hints:
-            raise ProjectError(f"{WHERE}: [{where}] has a key {name!r} that this robomill does not know; remove it.")
-        good, table[name] = _fits(hints[name], value)
-        if not good or table[name] not in choices.get((where, name), (table[name],)):
-            raise ProjectError(f"{WHERE}: [{where}] {name} is {value!r:.40}; remove it or save the project again.")
-    return kind(**table)
-
-
-def _fits(hint: Any, value: Any) -> tuple[bool, Any]:
-    """Whether a value of a TOML file is what a field of type ``hint`` holds, and that value."""
-    number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST
-    kinds = {str: isinstance(value, str), bool: isinstance(value, bool), float: number, float | None: number}
-    if hint in kinds:
-        return kinds[hint], float(value) if number and hint is not bool else value
-    inner = str if hint == tuple[str, ...] else float
-    if not isinstance(value, list) or not all(_fits(inner, v)[0] for v in value):
-        return False, value
-    fixed = {Point: 3, Point | None: 3, tuple[float, float] | None: 2}.get(hint, len(value))
-    return len(value) == fixed, tuple(map(inner, value))
-
-
-# Words that a field of the view or the maps may hold, where they are few.
-CHOICES: dict[tuple[str, str], Container[str]] = {
-    ("view", "units"): ("mm", "in"),
-    ("view", "joint_unit"): tuple(PRISMATIC_UNITS),
-    ("view", "camera"): ("iso", "along", "top", "front"),
-    ("view", "share_axis"): ("x", "y", "z"),
-    ("maps", "region"): ("paper", "largest", "reach", "own"),
-    ("maps", "normal"): ("x", "y", "z"),
-    ("maps", "picture"): ("plane", "pair", "solid"),
-    ("maps", "sheet"): ("nine", "one", "shares", "dominant", "lines", "compare"),
-    ("maps", "shares"): ("direct", "cross"),
-    ("maps", "component"): COMPONENTS,
-}
+def _in_units(table: Table) -> None:
+    """Files of older versions have what the maps look at in SI, without a unit in the key."""
+    for said in quantities(MapView).values():
+        if said.name != said.key and said.name in table.data:
+            old = table.data.pop(said.name)
+            listed = old if isinstance(old, list) else [old]
+            if all(isinstance(number, int | float) and not isinstance(number, bool) for number in listed):
+                listed = [shown(number, said.unit) for number in listed]
+            table.data[said.key] = listed if isinstance(old, list) else listed[0]

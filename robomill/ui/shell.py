@@ -11,16 +11,14 @@ from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import inputs, rendered, session
+from robomill.ui import declared, inputs, rendered, session
 from robomill.ui.keeping import autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
-from robomill.ui.project import PRISMATIC_UNITS, SUFFIX, Project, preset_setup, presets, project_to_toml
-from robomill.units import unit_label
+from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
-UNIT_CHOICES = {"mm": "mm", "in": "inch"}
 CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
 <g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">
@@ -61,7 +59,6 @@ export default function (component) {
 }
 """
 _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css="i { display: none }", js=THEME_WATCH)
-JOINT_UNITS = {unit: unit_label(unit) for unit in PRISMATIC_UNITS}
 
 
 def begin(title: str) -> Project:
@@ -98,8 +95,8 @@ def _sidebar() -> None:
         inputs.button("Undo", "undo", "undo", session.undo, disabled=not held.past and not held.older, width="stretch")
         inputs.button("Redo", "redo", "redo", session.redo, disabled=not held.future, width="stretch")
     _preset(held.project)
-    inputs.seen("Lengths", "view.units", UNIT_CHOICES)
-    inputs.seen("Joint compliance", "view.joint_unit", JOINT_UNITS, inputs.LISTED)
+    declared.seen("view.units")
+    declared.seen("view.joint_unit", inputs.LISTED)
     _files(held)
 
 

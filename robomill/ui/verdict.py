@@ -13,15 +13,14 @@ from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.tooth import LEFT_OUT
+from robomill.simulation.verdict import WORDS as JUDGED
 from robomill.simulation.verdict import Reading, Verdict, missed_words, unjudged_words
 from robomill.ui import cached, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_count, format_many, format_percent, format_si
 
 WORDS = {
-    "ok": "In tolerance",
-    "tight": "In tolerance, tight",
-    "out": "Out of tolerance",
+    **{level: words.capitalize() for level, words in JUDGED.items()},
     "unjudged": "Not judged",
     "unreached": "Out of reach",
     "missed": "Misses the stock",

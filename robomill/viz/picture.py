@@ -7,8 +7,7 @@ from typing import Literal
 
 from robomill.arrays import FloatArray
 
-Camera = Literal["iso", "top", "front", "along"]
-CAMERAS: dict[str, str] = {"iso": "Angled", "along": "Along the cut", "top": "From above", "front": "From the front"}
+CAMERAS = {"iso": "Angled", "along": "Along the cut", "top": "From above", "front": "From the front"}
 Layout = Literal["one", "pair"]
 Role = Literal["cutter", "shank", "spindle", "link", "joint"]
 
@@ -28,10 +27,11 @@ class SurfacePicture:
     """x (nx,), y (ny,) mm; z, ideal (nx, ny) mm heights, NaN where there is no material; error_um (nx, ny).
 
     ``z`` is drawn (it may be exaggerated; then ``captions`` say by how much), ``error_um`` colours it between
-    +-``limit_um``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm, where a section plane is drawn or,
-    with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows ideal and machined side by side under
-    one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand beside them (tool, arm), ``headroom`` mm
-    above the block stays in the picture for them, with ``whole`` they are seen from end to end.
+    +-``limit_um``; ``camera`` is one of ``CAMERAS``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm,
+    where a section plane is drawn or, with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows
+    ideal and machined side by side under one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand
+    beside them (tool, arm), ``headroom`` mm above the block stays in the picture for them, with ``whole`` they are
+    seen from end to end.
     """
 
     x: FloatArray
@@ -41,7 +41,7 @@ class SurfacePicture:
     error_um: FloatArray
     limit_um: float
     bottom: float
-    camera: Camera = "iso"
+    camera: str = "iso"
     dark: bool = False
     size: tuple[int, int] = (1280, 720)
     direction: tuple[float, float] = (1.0, 0.0)

@@ -8,11 +8,10 @@ import plotly.graph_objects as go
 from robomill.arrays import FloatArray
 from robomill.simulation.enlarged import Enlarged
 from robomill.units import from_si
-from robomill.viz.picture import Camera
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
 MAX_CELLS = 60_000
-EYES: dict[Camera, tuple[tuple[float, float, float], tuple[float, float, float]]] = {  # from where, and what is up
+EYES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {  # from where, and what is up
     "iso": ((-0.8, -1.15, 0.95), (0.0, 0.0, 1.0)),
     "along": ((-1.6, 0.0, 0.55), (0.0, 0.0, 1.0)),
     "top": ((0.0, 0.0, 1.8), (0.0, 1.0, 0.0)),
@@ -27,7 +26,7 @@ def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArr
 
 
 def surface_figure(
-    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, camera: Camera = "iso"
+    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, camera: str = "iso"
 ) -> go.Figure:
     """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse.
 

@@ -13,6 +13,8 @@ from robomill.identification.load_test import LoadTests
 from robomill.identification.model_error import Errors, ModelError, held, model_error
 from robomill.identification.propagation import uncertain_deflection
 from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
+from robomill.io.tables import Table
 from tests.identification.cables import Arm, Rig, as_csv, make
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
@@ -105,12 +107,12 @@ def test_what_a_band_is_made_of_is_said_and_saved():
     theta = np.random.default_rng(0).uniform(ROBOT.limits[:, 0] * 0.5, ROBOT.limits[:, 1] * 0.5, (20, 5))
     tests = simulated_tests(ROBOT, *three_directions(theta, 250.0), noise=4e-6, model_error=0.1)
     known = Knowledge.of(rm.identify(ROBOT, tests), ROBOT)
-    again = Knowledge.from_table(known.to_table(), ROBOT, (), "here")
+    again = knowledge_from_table(Table(knowledge_to_table(known), "here"), ROBOT, ())
     assert again.error == known.error == ModelError(known.error.share, known.error.per_newton, known.error.floor)
     narrow = known.noise_only()
     assert narrow.error is None
     assert narrow.made_of != known.made_of
-    assert Knowledge.from_table(narrow.to_table(), ROBOT, (), "here").error is None
+    assert knowledge_from_table(Table(knowledge_to_table(narrow), "here"), ROBOT, ()).error is None
     still = uncertain_deflection(ROBOT, theta[:1], [[0.0, 0.0, 0.0]], known)
     np.testing.assert_array_equal(still.by_model, 0.0)
 

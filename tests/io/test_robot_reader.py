@@ -95,7 +95,7 @@ BAD = [
         "k_theta_Nm_per_rad = [7.14, 0.0",
         "joint 2: the stiffness is 0; .*above",
     ),
-    ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0]]", "three rows.*found 2"),
+    ("rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]", "rotation = [[1, 0, 0], [0, 1, 0]]", "3 rows.*found 2"),
     (
         "rotation = [[0, 0, -1], [0, -1, 0], [-1, 0, 0]]",
         "rotation = [[1, 0, 0], [0, 1], [0, 0, 1]]",

@@ -36,6 +36,9 @@ def test_a_frame_is_three_rows_of_which_the_last_column_is_in_millimetres():
     np.testing.assert_allclose(T_MW[:, 3], [0.5, -0.25, 0.0125, 1.0], rtol=1e-15)
     with pytest.raises(ProjectError, match="zero_mm: this key is not known here"):
         part(frame=rows, zero_mm=[0, 0, 0])
+    for wrong in (rows[:1], rows[:2], rows + rows):
+        with pytest.raises(ProjectError, match=f"frame: expected the three rows of a frame, found {len(wrong)}"):
+            part(frame=wrong)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, -2.0, np.pi, np.radians(33.3)])

@@ -12,8 +12,8 @@ from random_arms import seven
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.robots import load_robot
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui.maps.sheets import SHEETS
 from robomill.ui.project import MapView
 from robomill.workspace.quantities import map_quantities
 
@@ -74,7 +74,7 @@ def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
     assert "holds the paper" in words(app)
 
 
-@pytest.mark.parametrize("sheet", SHEETS)
+@pytest.mark.parametrize("sheet", quantities(MapView)["sheet"].options)
 def test_compliance_sheets(app: AppTest, sheet: str) -> None:
     go(app, COMPLIANCE)
     look(app, sheet=sheet)
@@ -216,4 +216,19 @@ def test_inches(app: AppTest) -> None:
     kept.project = dataclasses.replace(kept.project, view=dataclasses.replace(kept.project.view, units="in"))
     go(app, COMPLIANCE)
     assert "(0.00, −51.18, 0.00) in" in words(app)
+    assert not app.exception
+
+
+def test_a_region_of_ones_own_is_typed_in_the_unit_of_lengths(app: AppTest) -> None:
+    go(app, COMPLIANCE)
+    look(app, region="own")
+    app.number_input(key="maps.lower[0]:mm").set_value(-500.0).run()
+    app.number_input(key="maps.step:mm").set_value(40.0).run()
+    app.number_input(key="maps.A:deg").set_value(10.0).run()
+    assert view(app).lower.tolist() == [-0.5, -1.6, -0.4]
+    assert (view(app).step, view(app).A) == (0.04, pytest.approx(np.radians(10.0)))
+    app.number_input(key="maps.step:mm").set_value(None).run()
+    assert view(app).step is None
+    app.number_input(key="maps.step:mm").set_value(0.0).run()
+    assert any("Step: found 0 mm; expected more than 0 mm" in e for e in errors(app))
     assert not app.exception

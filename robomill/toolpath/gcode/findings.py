@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from robomill.provenance import Finding, Level
 
-_ORDER = {"error": 0, "warning": 1, "suspicious": 2, "ignored": 3, "info": 4}
-
 NO_UNITS = "no-units"
 """The code of what is found where a program does not say its unit."""
 
@@ -24,4 +22,4 @@ class Findings:
     def freeze(self) -> tuple[Finding, ...]:
         """All findings, the grave ones first, then by line."""
         found = [Finding(level, line, message, n, code) for (code, level, message), (line, n) in self._found.items()]
-        return tuple(sorted(found, key=lambda f: (_ORDER[f.level], f.line, f.message)))
+        return tuple(sorted(found, key=lambda f: f.order))

@@ -12,10 +12,11 @@ from robomill.identification.comparison import OVERFIT, Comparison
 from robomill.identification.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
+from robomill.robot.stiffness import of_joint
+from robomill.robot.stiffness import shown as shown_in
 from robomill.ui import inputs, pieces
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import Bench, comparison_of
-from robomill.ui.project import PRISMATIC_UNITS
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import models_figure
 
@@ -87,11 +88,11 @@ def _side_by_side(
 ) -> None:
     """Joint values of every model in columns, with the remarks beneath."""
     head = ("", *(f"J{j}" for j in robot.joint_numbers), "")
-    units = [PRISMATIC_UNITS[joint_unit] if slides else joint_unit for slides in robot.chain.prismatic]
+    units = [of_joint(joint_unit, bool(slides)) for slides in robot.chain.prismatic]
     shown = [
         (
             result.choice.title,
-            *(words.number(float(words.shown(c, unit)), unit) for c, unit in zip(result.C_theta, units, strict=True)),
+            *(words.number(float(shown_in(c, unit)), unit) for c, unit in zip(result.C_theta, units, strict=True)),
             str(row["remark"]).capitalize(),
         )
         for result, row in zip(results, rows, strict=True)

@@ -11,8 +11,8 @@ from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
+from robomill.robot.stiffness import is_stiffness, of_joint, shown
 from robomill.ui.pieces import Tile
-from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import format_percent, format_si, format_value, from_si, unit_label
 from robomill.viz.identification import Intervals
 
@@ -22,17 +22,7 @@ SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
 
 def unit_of(parameter: Parameter, joint_unit: str) -> str:
     """The unit a parameter is shown in: the screen's for joints and bending, um/N for what shifts."""
-    if parameter.turns:
-        return joint_unit
-    return PRISMATIC_UNITS[joint_unit] if parameter.joint else "um/N"
-
-
-def shown(value: Any, unit: str) -> Any:
-    """A compliance (SI) in ``unit``, turned over where that is a stiffness."""
-    if not is_stiffness(unit):
-        return from_si(value, unit)
-    with np.errstate(divide="ignore"):
-        return from_si(1.0 / np.asarray(value, dtype=np.float64), unit)
+    return of_joint(joint_unit, not parameter.turns) if parameter.turns or parameter.joint else "um/N"
 
 
 def interval(low_high: FloatArray, unit: str) -> tuple[float, float]:

@@ -17,9 +17,10 @@ from robomill.improve.sensitivity import (
     scaled_shares,
     stiffened,
 )
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, running, session, shell
+from robomill.ui import cached, declared, inputs, pieces, running, session, shell
 from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
 from robomill.ui.point import InHand
@@ -27,10 +28,8 @@ from robomill.ui.project import MapView, Project
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.quantities import COMPONENTS
 
 UM = "um/N"
-WORDS = {c: f"C_{c}" for c in COMPONENTS}
 
 
 def tiles(
@@ -78,13 +77,13 @@ def _um(value: float) -> str:
     return format_si(value, UM, 3)
 
 
-def controls(robot: Robot, view: MapView, found: InHand, unit: str) -> None:
+def controls(robot: Robot, view: MapView, found: InHand) -> None:
     """Region, tilt, plane; component; point; scale."""
-    plane.controls(robot, view, unit)
-    inputs.seen("Component for comparing and ranking", "maps.component", WORDS, inputs.LISTED)
+    plane.controls(robot, view)
+    declared.seen("maps.component", inputs.LISTED)
     st.markdown("**The point in hand**")
-    plane.place_boxes("point", "XYZ", found.point, unit)
-    inputs.seen("Colours of the 3 × 3 maps", "maps.common", {True: "One scale", False: "Direct and cross apart"})
+    declared.draw(quantities(MapView)["point"], "maps.point", found.point, lambda point: session.see(point=point))
+    declared.seen("maps.common")
 
 
 def what_if(robot: Robot, view: MapView) -> None:
@@ -114,7 +113,7 @@ def what_if(robot: Robot, view: MapView) -> None:
 def _factor(robot: Robot, i: int, value: float) -> None:
     scale = session.maps().stiffening(robot)
     scale[i] = value
-    session.see(factors=None if (scale == 1.0).all() else tuple(scale.tolist()))
+    session.see(factors=None if (scale == 1.0).all() else scale)
 
 
 def _adopt(robot: Robot) -> None:

@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
-
-import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
-from robomill.paper import Point
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import fields, inputs, pieces, session
-from robomill.ui.box import NumberBox
+from robomill.ui import declared, fields, inputs, pieces, session
 from robomill.ui.project import MapView
-from robomill.units import UNITS, decimals, format_si, from_si, to_si, unit_label
+from robomill.units import decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import Grid
-
-REGIONS = {
-    "paper": "The paper's box",
-    "largest": "Largest box in reach",
-    "reach": "Everything in reach",
-    "own": "My own numbers",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,31 +48,28 @@ class Region:
         return fields.overview(self.robot, self.view, self.box)
 
 
-def picture(name: str, pictures: Mapping[str, str], show: Callable[[Region], None]) -> None:
-    """The choice ``name`` between the ``pictures`` of a page, and what ``show`` makes of the region in force."""
+def picture(name: str, show: Callable[[Region], None]) -> None:
+    """The choice ``name`` between the pictures of a page, and what ``show`` makes of the region in force."""
     project = session.project()
-    inputs.seen("Picture", f"maps.{name}", pictures, inputs.HIDDEN)
+    declared.seen(f"maps.{name}", inputs.HIDDEN)
     robot, view = project.setup.robot, session.maps()
     pieces.attempt(lambda: show(Region(robot, view, fields.region(robot, view), project.view.length)))
 
 
-def controls(robot: Robot, view: MapView, unit: str) -> None:
+def controls(robot: Robot, view: MapView) -> None:
     """Region, tilt and plane."""
-    inputs.choice(
-        "Region", "maps.region", REGIONS, view.region, lambda kind: _take_region(kind, robot, view), inputs.LISTED
-    )
+    region = quantities(MapView)["region"]
+    declared.draw(region, "maps.region", view.region, lambda kind: _take_region(kind, robot, view), inputs.LISTED)
     if view.region == "own":
-        _corners(view, unit)
-    left, right = st.columns(2)
-    with left:
-        inputs.value("maps.A", _box("Tilt A", "deg", 5.0), view.A, lambda v: session.see(A=v, point=None))
-    with right:
-        inputs.value("maps.B", _box("Tilt B", "deg", 5.0), view.B, lambda v: session.see(B=v, point=None))
+        declared.seen("maps.lower", at=None)
+        declared.seen("maps.upper", at=None)
+        declared.seen("maps.step", inputs.Look(placeholder="chosen by robomill"))
+    declared.in_row(("maps.A", "maps.B"), lambda tilt: declared.seen(tilt, point=None))
     known = fields.normals(robot)
     if len(known) == 1:
         pieces.note(f"This arm moves in one plane: only {next(iter(known.values()))} can be shown.")
     else:
-        inputs.seen("Plane", "maps.normal", known, at=None)
+        declared.seen("maps.normal", options=known, at=None)
     if robot.n > 6:
         pieces.note(
             f"This arm has {robot.n} axes and holds a place in many postures: a map shows one of them. How far the "
@@ -135,34 +120,6 @@ def _take_region(kind: str, robot: Robot, view: MapView) -> None:
         except WorkspaceError:
             session.see(region=kind, at=None)
             return
-        session.see(region=kind, at=None, lower=tuple(map(float, box.lower)), upper=tuple(map(float, box.upper)))
+        session.see(region=kind, at=None, lower=box.lower, upper=box.upper)
     else:
         session.see(region=kind, at=None, point=None)
-
-
-def _corners(view: MapView, unit: str) -> None:
-    for name, side in (("from", "lower"), ("to", "upper")):
-        place_boxes(side, [f"{axis} {name}" for axis in "XYZ"], getattr(view, side), unit, at=None)
-    inputs.value("maps.step", _box("Step (0 lets robomill choose)", unit, 5.0), view.step or 0.0, _put_step)
-
-
-def _box(label: str, unit: str, step: float) -> NumberBox:
-    return NumberBox(label, unit, step, min(UNITS[unit].digits, 2))
-
-
-def place_boxes(name: str, labels: Sequence[str], current: Point, unit: str, **more: Any) -> None:
-    """Three boxes for the place ``name`` of the map view, m; fields ``more`` change with it."""
-
-    def put(i: int, value_SI: float) -> None:
-        session.see(**{name: (*current[:i], value_SI, *current[i + 1 :]), **more})
-
-    for i, (label, column) in enumerate(zip(labels, st.columns(3), strict=True)):
-        with column:
-            box = _box(label, unit, 50.0 if unit == "mm" else 1.0)
-            inputs.value(f"maps.{name}.{i}", box, current[i], partial(put, i))
-
-
-def _put_step(step: float) -> None:
-    if step < 0:
-        raise WorkspaceError("Step: found a number below zero; type 0 to let robomill choose, or a spacing above 0.")
-    session.see(step=step or None)

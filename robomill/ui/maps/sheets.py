@@ -10,7 +10,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.ui import fields, inputs, pieces, session, shell
+from robomill.ui import declared, fields, inputs, pieces, session, shell
 from robomill.ui.maps import compare, lines, plane
 from robomill.ui.maps.plane import Region
 from robomill.ui.point import default_point
@@ -19,16 +19,7 @@ from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, 
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.quantities import COMPONENTS, map_quantities
 
-SHEETS = {
-    "nine": "3 × 3 maps",
-    "one": "One map",
-    "shares": "By joint",
-    "dominant": "Who gives most",
-    "lines": "Path lines",
-    "compare": "Compare",
-}
 MATRIX = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
-SHARES = {"direct": "Direct (Fig. 6)", "cross": "Cross (Fig. 7)"}
 ROWS = {"direct": ("xx", "yy", "zz"), "cross": ("xy", "xz", "yz")}
 UM = "um/N"
 
@@ -36,7 +27,7 @@ UM = "um/N"
 @st.fragment
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone, a click opens the point's report."""
-    plane.picture("sheet", SHEETS, _show)
+    plane.picture("sheet", _show)
 
 
 def _show(region: Region) -> None:
@@ -184,7 +175,7 @@ def _moved(change: FloatArray) -> str:
 
 def _shares(cut: Slice) -> None:
     robot = cut.region.robot
-    kind = inputs.seen("Components", "maps.shares", SHARES, inputs.HIDDEN)
+    kind = declared.seen("maps.shares", inputs.HIDDEN)
     now = cut.stiffer()
     index = [COMPONENTS.index(c) for c in ROWS[kind]]
     whole = from_si(cut.region.overview().shares[..., index], UM)
@@ -249,7 +240,7 @@ def _one(cut: Slice) -> None:
     robot = cut.region.robot
     known = map_quantities(robot, "compliance")
     titles = {name: what.title for name, what in known.items()}
-    chosen = inputs.seen("Quantity", "maps.one", titles, inputs.LISTED)
+    chosen = declared.seen("maps.one", inputs.LISTED, titles, "Quantity")
     what, now = known[chosen], cut.stiffer()
     whole = from_si(cut.region.overview().values(chosen), what.unit)
     title = f"{what.title}, {plane.title(cut.normal, cut.at, cut.region.unit)}"

@@ -14,7 +14,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
 from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
-from robomill.ui import fields, inputs, pieces, session, shell
+from robomill.ui import declared, fields, inputs, pieces, session, shell
 from robomill.ui.maps import plane
 from robomill.ui.maps.plane import Region
 from robomill.ui.point import in_hand, middle
@@ -39,8 +39,6 @@ from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
 from robomill.workspace.quantities import MapQuantity, map_quantities, map_quantity
 from robomill.workspace.reach import Box, against_paper
-
-PICTURES = {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}
 
 
 def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[pieces.Tile]:
@@ -111,12 +109,12 @@ def _why(known: ComplianceField) -> str:
     return f"at its middle, {reason}." if reason else "choose another plane."
 
 
-def controls(robot: Robot, view: MapView, unit: str) -> None:
+def controls(robot: Robot, view: MapView) -> None:
     """The left column: quantity, region, tilt, plane, the meaning of it all."""
     names = {name: what.title for name, what in map_quantities(robot, "geometry").items()}
-    what = map_quantity(robot, inputs.seen("Quantity", "maps.quantity", names, inputs.LISTED))
+    what = map_quantity(robot, declared.seen("maps.quantity", inputs.LISTED, names, "Quantity"))
     st.html(f'<p class="rm-note"><b>{formula_html(what.formula)}</b><br>{html.escape(what.meaning)}</p>')
-    plane.controls(robot, view, unit)
+    plane.controls(robot, view)
     pieces.note(pieces.subscripts(plane.tilt_note(robot)))
 
 
@@ -152,7 +150,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone."""
     shown = {"plane": _plane, "pair": _pair, "solid": _solid}
-    plane.picture("picture", PICTURES, lambda region: shown[region.view.picture](region))
+    plane.picture("picture", lambda region: shown[region.view.picture](region))
 
 
 def _plane(region: Region) -> None:
@@ -170,7 +168,8 @@ def _pair(region: Region) -> None:
         _sheet(region, normal, [low], "pair")
         pieces.note("The region has no depth: there is only one plane.")
         return
-    first, second = view.pair if view.pair and low <= min(view.pair) and max(view.pair) <= high else (low, high)
+    inside = view.pair is not None and low <= min(view.pair) and max(view.pair) <= high
+    first, second = map(float, view.pair) if view.pair is not None and inside else (low, high)
     left, right = st.columns(2, gap="large")
     name, step = normal.upper() + "ₘ", float(f"{(high - low) / 50:.1g}")
     for k, (column, at) in enumerate(((left, first), (right, second))):
@@ -183,8 +182,8 @@ def _pair(region: Region) -> None:
                 ends[2],
                 partial(_put_pair, k, unit, (first, second)),
             )
-    first, second = session.maps().pair or (first, second)
-    _sheet(region, normal, [first, second], "pair")
+    moved = session.maps().pair
+    _sheet(region, normal, [first, second] if moved is None else moved.tolist(), "pair")
 
 
 def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None:

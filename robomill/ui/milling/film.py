@@ -15,7 +15,6 @@ from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
 from robomill.viz.animation import FRAMES, MIME, Kind, encode, film_frame, film_samples
-from robomill.viz.picture import Camera
 from robomill.viz.views import headroom, surface_picture
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
@@ -31,7 +30,7 @@ class Film:
     kind: Kind
     frames: int
     times: float
-    camera: Camera
+    camera: str
     dark: bool
 
     def make(self, job: Job) -> bytes:
@@ -61,9 +60,8 @@ def panel(result: SimulationResult, dark: bool) -> None:
     with frames:
         count = int(session.kept(COUNT, 36))
         inputs.slider("Pictures", COUNT, inputs.Span(*FRAMES, 4, "%d"), count, partial(session.keep, COUNT))
-    camera: Any = view.camera
     with make:
-        film = Film(result, chosen, count, view.exaggeration, camera, dark)
+        film = Film(result, chosen, count, view.exaggeration, view.camera, dark)
         inputs.button("Make the film", "milling.film.make", "movie", _begin, film, width="stretch")
     _progress()
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 import streamlit as st
@@ -13,10 +12,10 @@ from robomill.io.meshes import FORMATS, mesh_bytes
 from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, rendered, session
+from robomill.ui import cached, declared, inputs, pieces, rendered, session
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si, format_times
-from robomill.viz.picture import CAMERAS, SurfacePicture
+from robomill.viz.picture import SurfacePicture
 from robomill.viz.posed import posed
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
@@ -45,8 +44,7 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     def turnable() -> None:
         shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
         if shown is not None:
-            camera: Any = view.camera
-            fig = surface_figure(shown, tolerance, view.length, dark=dark, height=height, camera=camera)
+            fig = surface_figure(shown, tolerance, view.length, dark=dark, height=height, camera=view.camera)
             pieces.figure(fig, "surface", alt="The machined surface, to be turned with the mouse.")
 
     if how == "turn":
@@ -69,11 +67,11 @@ def _controls() -> str:
     with first:
         how = inputs.pick("View", VIEW, HOW)
     with camera:
-        inputs.seen("Camera", "view.camera", CAMERAS, inputs.LISTED)
+        declared.seen("view.camera", inputs.LISTED)
     with times:
         known = view.exaggeration in EXAGGERATIONS
         options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: format_times(view.exaggeration, 6)}
-        inputs.seen("Exaggeration", "view.exaggeration", options, inputs.LISTED)
+        declared.seen("view.exaggeration", inputs.LISTED, options)
     if how != "turn":
         inputs.several("With", WITH, EXTRAS, _extras(), partial(session.keep, WITH), inputs.HIDDEN)
     return str(how)
@@ -90,7 +88,6 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
     pair = session.kept(VIEW, "one") == "pair"
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
-    camera: Any = view.camera
 
     def make() -> SurfacePicture:
         shown = cached.pictured(result.setup, view.exaggeration)
@@ -99,7 +96,7 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
         return surface_picture(
             result,
             so_far(result, shown, i) if "so_far" in extras else shown,
-            camera=camera,
+            camera=view.camera,
             dark=dark,
             station=station if extras & {"plane", "away"} else None,
             at=station,
@@ -112,10 +109,8 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
         )
 
     place = round(station, 6) if moves else None
-    return (
-        ("milling", result.setup.digest(), view.exaggeration, place, tuple(sorted(extras)), pair, camera, dark, SIZE),
-        make,
-    )
+    key = ("milling", result.setup.digest(), view.exaggeration, place, tuple(sorted(extras)), pair, view.camera)
+    return (*key, dark, SIZE), make
 
 
 def downloads(result: SimulationResult, i: int) -> None:

@@ -13,7 +13,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
-from robomill.ui import cached, inputs, pieces, session, shell
+from robomill.ui import cached, declared, inputs, pieces, session, shell
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_si, from_si
@@ -132,7 +132,7 @@ def shares(result: SimulationResult, i: int, dark: bool) -> None:
     title, pick = st.columns([1, 1.2], vertical_alignment="center")
     title.markdown("**What gives**")
     with pick:
-        inputs.seen("Shares of", "view.share_axis", {a: f"in {a.upper()}" for a in "xyz"}, inputs.HIDDEN)
+        declared.seen("view.share_axis", inputs.HIDDEN)
     axis = session.project().view.share_axis
     pieces.figure(
         shares_figure(result, axis, unit, dark=dark, i=i),

@@ -12,9 +12,10 @@ import streamlit as st
 from robomill.io.robots import load_robot, robot_names
 from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
 from robomill.robot.model import USER_SET, Robot
+from robomill.robot.stiffness import is_stiffness
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.box import NumberBox
-from robomill.ui.project import Project, is_stiffness
+from robomill.ui.project import Project
 from robomill.ui.robot import tables
 from robomill.units import format_many, format_si, unit_label
 

@@ -22,7 +22,7 @@ def configuration(project: Project, result: SimulationResult | None) -> FloatArr
     """(n,) the configuration looked at: the chosen one, or the cut's worst point, or home."""
     robot, chosen = project.setup.robot, project.view.theta
     if chosen is not None and len(chosen) == robot.n:
-        return np.clip(np.array(chosen), robot.limits[:, 0], robot.limits[:, 1])
+        return np.clip(chosen, robot.limits[:, 0], robot.limits[:, 1])
     return np.array(result.theta[result.worst] if result is not None and result.worst >= 0 else robot.home)
 
 
@@ -51,7 +51,7 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
         inputs.button(
             "At the cut", "pose.cut", "my_location", partial(session.look, theta=None), type="tertiary", disabled=idle
         )
-        home = partial(session.look, theta=tuple(robot.home.tolist()))
+        home = partial(session.look, theta=robot.home)
         inputs.button("Home", "pose.home", "home", home, type="tertiary")
     for i, number in enumerate(robot.joint_numbers):
         _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
@@ -65,7 +65,7 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
     def turn(angle: float) -> None:
         new = np.array(theta)
         new[i] = angle
-        session.look(theta=tuple(new.tolist()))
+        session.look(theta=new)
 
     name, slider, box = st.columns([0.14, 1, 0.5], vertical_alignment="center")
     name.markdown(f"**{label}**")

@@ -15,8 +15,8 @@ from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, quantities
 from robomill.robot.model import Robot
+from robomill.robot.stiffness import is_stiffness, meant, of_joint, shown
 from robomill.ui.inputs import empty
-from robomill.ui.project import PRISMATIC_UNITS, is_stiffness
 from robomill.units import from_si, parse_number, to_si, unit_label
 
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
@@ -56,8 +56,8 @@ def compliance_frame(robot: Robot, unit: str) -> pd.DataFrame:
     """
     values = []
     for C, u in zip(robot.C_theta_all, _joint_units(robot, unit), strict=True):
-        shown = C if not is_stiffness(u) else 1.0 / C if C > 0 else np.inf
-        values.append(f"{from_si(shown, u):.10g}" if np.isfinite(shown) else RIGID)
+        value = shown(C, u)
+        values.append(f"{value:.10g}" if np.isfinite(value) else RIGID)
     return pd.DataFrame({"joint": _names(robot), "value": pd.Series(values, dtype=object)})
 
 
@@ -91,9 +91,7 @@ def compliance_from_text(typed: Any, unit: str, where: str) -> float:
     if value < 0 or not np.isfinite(value) or (is_stiffness(unit) and value == 0):
         least = "a finite number greater than 0" if is_stiffness(unit) else "a finite number, 0 or more"
         raise RobotError(f"{where}: the {word} is {text[:40]}; expected {least} {unit_label(unit)}.")
-    if is_stiffness(unit):
-        return 1.0 / float(to_si(value, unit))
-    return value if is_si_text(text) else float(to_si(value, unit))
+    return value if is_si_text(text) and not is_stiffness(unit) else meant(value, unit)
 
 
 def is_si_text(typed: Any) -> bool:
@@ -142,7 +140,7 @@ def _names(robot: Robot) -> list[str]:
 
 
 def _joint_units(robot: Robot, unit: str) -> list[str]:
-    return [PRISMATIC_UNITS[unit] if p else unit for p in robot.prismatic]
+    return [of_joint(unit, bool(slides)) for slides in robot.prismatic]
 
 
 def _of_joints(robot: Robot, declared: Quantity) -> list[Quantity]:

@@ -15,7 +15,6 @@ from robomill.toolpath.apt import is_apt
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.program_view import LEVELS
 from robomill.units import format_count, format_si, from_si
 
 
@@ -89,8 +88,7 @@ def duration(seconds: float) -> str:
 
 def worst_first(findings: Sequence[Finding]) -> list[Finding]:
     """Findings in the order of the list: by level, then by line."""
-    order = list(LEVELS)
-    return sorted(findings, key=lambda f: (order.index(f.level), f.line))
+    return sorted(findings, key=lambda f: f.order)
 
 
 def finding_words(finding: Finding, most: int = 64) -> str:
