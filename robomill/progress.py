@@ -17,7 +17,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from typing import Any, TypeVar, cast
 
+import numpy as np
+
+Array = TypeVar("Array", bound=np.ndarray[Any, Any])
 SLICE_S = 0.04  # s: what a piece of work should take
 FEW = 16  # items of the first piece
 
@@ -36,9 +40,12 @@ class Progress:
     share: float = 0.0
     began: float = field(default_factory=time.monotonic)
 
-    def reach(self, share: float, stage: str = "") -> None:
-        """Say how much of the stage is done. Raises Cancelled where it is wanted no more."""
-        self.share, self.stage = min(max(float(share), 0.0), 1.0), stage or self.stage
+    def reach(self, share: float | None = None, stage: str = "") -> None:
+        """Say how much of the stage is done, where that is known. Raises Cancelled where it is wanted no more."""
+        if stage and stage != self.stage:
+            self.stage, self.share = stage, 0.0
+        if share is not None:
+            self.share = min(max(float(share), 0.0), 1.0)
         self.say(self)
         if self.stop():
             raise Cancelled
@@ -59,19 +66,32 @@ def watched(progress: Progress | None) -> Iterator[None]:
 
 def slices(count: int, stage: str, most: int = 1 << 20) -> Iterator[slice]:
     """0 to ``count`` in pieces that take less than a tenth of a second each, with a checkpoint before each; in pieces
-    of ``most`` where nobody waits."""
+    of ``most`` where nobody waits. Without a ``stage`` they are a part of another's work, and say no share of it."""
     begin, size = 0, FEW if _watching.get() is not None else most
     while begin < count:
-        checkpoint(begin / count, stage)
+        checkpoint(begin / count if stage else None, stage)
         before = time.monotonic()
         yield slice(begin, min(begin + size, count))
         begin += size
         if _watching.get() is not None:
             faster = SLICE_S / max(time.monotonic() - before, 1e-9)
-            size = int(min(max(size * min(faster, 4.0), 1), most))
+            size = int(min(max(size * min(faster, 2.0), 1), most))
 
 
-def checkpoint(share: float = 0.0, stage: str = "") -> None:
+def gathered(count: int, stage: str, make: Callable[[slice], Array]) -> Array:
+    """(count, ...) of what ``make`` answers, (k, ...) for each of the ``slices`` of ``count``."""
+    whole: Any = make(slice(0, 0)) if count == 0 else None
+    for some in slices(count, stage):
+        part = make(some)
+        if len(part) == count:
+            return part
+        if whole is None:
+            whole = np.empty((count, *part.shape[1:]), dtype=part.dtype)
+        whole[some] = part
+    return cast("Array", whole)
+
+
+def checkpoint(share: float | None = None, stage: str = "") -> None:
     """Say that ``share`` of ``stage`` is done. Raises Cancelled where it is wanted no more."""
     progress = _watching.get()
     if progress is not None:

@@ -14,11 +14,14 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.edge import EdgeTerm
 from robomill.cutting.engaged import FACING, nose_pieces, pushes, sector_edges
 from robomill.cutting.tool import DISH, Cutter
+from robomill.progress import slices
 
 #: Pieces of the flank over which the lag of the helix is taken as one.
 SLICES = 36
 #: Instants of one tooth pitch.
 INSTANTS = 120
+#: Cuts that are looked at together, to bound the memory.
+CASES = 2048
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,18 +51,25 @@ class Course:
         sector = np.stack([a_p, 0.0 * a_p, a_p, face], axis=1)
         return cls(c, feed, arc, np.stack([sector, sector], axis=1))
 
-    def at(self, index: IntArray) -> Course:
+    def at(self, index: IntArray | slice) -> Course:
         """Some of the cuts."""
         return Course(self.c[index], self.feed[index], self.arc[index], self.sectors[index])
 
-    def kinds(self) -> tuple[Course, IntArray]:
-        """One cut of each kind, and the kind (k,) of every cut: alike are those of which each number is the same to a
-        thousandth of the largest of its own cut."""
-        split = np.cumsum([1, 2, 2])
-        each = (self.c[:, None], self.feed, self.arc, self.sectors.reshape(len(self.c), -1))
-        numbers, kind = np.unique(np.concatenate([_to_ten_bits(x) for x in each], axis=1), axis=0, return_inverse=True)
-        c, feed, arc, sectors = np.split(numbers, split, axis=1)
-        return Course(c[:, 0], feed, arc, sectors.reshape(-1, *self.sectors.shape[1:])), kind.ravel()
+    @classmethod
+    def kinds(cls, conditions: CutConditions, cutter: Cutter, index: IntArray) -> tuple[Self, IntArray]:
+        """One cut of each kind among some steps (k,), and the kind (k,) of each: alike are those of which each number
+        is the same to a thousandth of the largest of its own cut."""
+        known: dict[bytes, int] = {}
+        kind, sectors = np.empty(len(index), dtype=np.int64), 0
+        for some in slices(len(index), "Kinds of cuts", CASES):
+            cuts = cls.of(conditions, cutter, index[some])
+            sectors = cuts.sectors.shape[1]
+            each = (cuts.c[:, None], cuts.feed, cuts.arc, cuts.sectors.reshape(len(cuts.c), -1))
+            rows = np.concatenate([_to_ten_bits(x) for x in each], axis=1) + 0.0  # one zero only
+            kind[some] = [known.setdefault(row.tobytes(), len(known)) for row in rows]
+        numbers = np.frombuffer(b"".join(known), dtype=np.float64).reshape(len(known), -1)
+        c, feed, arc, rest = np.split(numbers, np.cumsum([1, 2, 2]), axis=1)
+        return cls(c[:, 0], feed, arc, rest.reshape(-1, sectors, 4)), kind
 
     def slices(self, cutter: Cutter) -> Iterator[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
         """The cutter from its tip up, in slices of the nose and of the flank: where each begins and ends along the axis

@@ -12,12 +12,13 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats
+from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.cutting.conditions import PLUNGE, CutConditions
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
+from robomill.progress import gathered
 from robomill.provenance import Finding, Provenance
 from robomill.quantities import described, settle
 
@@ -179,22 +180,29 @@ def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
     Raises CuttingError for shapes that differ.
     """
     step, axis = _ways(way, k)
-    across = _across(step, axis)
-    moving = feed_share(step, axis) > PLUNGE
-    moving &= np.linalg.norm(across, axis=1) > 0.0
-    x, y, _ = np.eye(3)
-    fallback = np.where(np.abs(axis[:, :1]) > 0.9, y, x)
-    feed = fallback
-    if moving.any():
-        index = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), -1))
-        index[index < 0] = np.flatnonzero(moving)[0]
-        feed = across[index]
-        # A direction carried over to a step whose axis has turned need not lie across that axis, or may lie along it.
-        lying = np.linalg.norm(np.cross(feed, axis), axis=1, keepdims=True)
-        feed = np.where(lying > PLUNGE * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
-    feed = _across(feed, axis)
-    feed = feed / np.linalg.norm(feed, axis=1, keepdims=True)
-    return np.stack([feed, np.cross(axis, feed), axis], axis=-1)
+    m = len(step)
+
+    def moves(some: slice) -> BoolArray:
+        lies_across = np.linalg.norm(_across(step[some], axis[some]), axis=1) > 0.0
+        return np.asarray(lies_across & (feed_share(step[some], axis[some]) > PLUNGE))
+
+    moving = gathered(m, "", moves)
+    index = np.maximum.accumulate(np.where(moving, np.arange(m), -1))
+    index[index < 0] = np.argmax(moving) if m else 0
+
+    def frames(some: slice) -> FloatArray:
+        here = axis[some]
+        feed = fallback = np.where(np.abs(here[:, :1]) > 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+        if moving.any():
+            feed = _across(step[index[some]], axis[index[some]])
+            # A direction carried over to a step whose axis has turned need not lie across that axis, or lie along it.
+            lying = np.linalg.norm(np.cross(feed, here), axis=1, keepdims=True)
+            feed = np.where(lying > PLUNGE * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
+        feed = _across(feed, here)
+        feed = feed / np.linalg.norm(feed, axis=1, keepdims=True)
+        return np.stack([feed, np.cross(here, feed), here], axis=-1)
+
+    return gathered(m, "", frames)
 
 
 def _ways(way: ArrayLike, k: ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions, beyond_flutes
-from robomill.cutting.course import Course, force_over_pitch
+from robomill.cutting.course import CASES, Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
@@ -20,13 +20,12 @@ from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
+from robomill.progress import checkpoint, slices
 from robomill.provenance import Finding, Provenance
 from robomill.quantities import quantity, switch
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
 DRILL_THRUST = 0.5
-#: Cuts whose revolution is computed at once, to bound the memory.
-CASES = 2048
 
 
 def _share(part: str) -> Any:
@@ -179,16 +178,16 @@ class ProcessForce(ForceModel):
             index = np.flatnonzero(made & np.isfinite(mean).all(axis=1) & conditions.engaged)
             if not index.size:
                 continue
-            course, kind = Course.of(conditions, cutter, index).kinds()
+            course, kind = Course.kinds(conditions, cutter, index)
             order = np.argsort(kind, kind="stable")
-            for start in range(0, len(course.c), CASES):
-                cases = np.arange(start, min(start + CASES, len(course.c)))
+            for cases in slices(len(course.c), "Force over a turn", CASES):
                 turns = force_over_pitch(edge_terms(self.row, cutter), cutter, course.at(cases))
                 turns[..., 2] *= self.axial
                 turns -= turns.mean(axis=-2, keepdims=True)
-                rows = order[slice(*np.searchsorted(kind[order], [start, start + len(cases)]))]
+                rows = order[slice(*np.searchsorted(kind[order], [cases.start, cases.stop]))]
                 for some in np.array_split(rows, len(rows) // CASES + 1):
-                    about, case = mean[index[some]], kind[some] - start
+                    checkpoint()
+                    about, case = mean[index[some]], kind[some] - cases.start
                     spread.low[index[some]] = about + turns.min(-2)[case]
                     spread.high[index[some]] = about + turns.max(-2)[case]
                     course_of = about[:, None] + turns[case]
@@ -205,8 +204,9 @@ class ProcessForce(ForceModel):
         result = np.zeros((len(conditions), 3))
         for cutter, made in tooling.steps_of_each():
             index = np.flatnonzero(made & conditions.engaged)
-            if index.size:
-                result[index] = _mean_of(material, cutter, conditions, (index, c[index]))
+            for some in slices(len(index), "Force"):
+                i = index[some]
+                result[i] = _mean_of(material, cutter, conditions, (i, c[i]))
         result[:, 2] *= self.axial
         return result
 

@@ -8,6 +8,7 @@ from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.kinematics.decoupled import Answer, Decoupled, Rules
 from robomill.kinematics.forward import rows
 from robomill.kinematics.transforms import rotation_z, transform
+from robomill.progress import slices
 from robomill.robot.model import Robot
 
 SPIN_STEPS = 24
@@ -33,7 +34,10 @@ def nearest(robot: Robot, arm: Decoupled, T_MT: FloatArray, goal: FloatArray, ru
     m = len(T_MT)
     answer = Answer(np.empty((m, robot.n)), np.empty(m, dtype=np.int64), np.empty((m, 3)))
     poses, goals = np.ascontiguousarray(T_MT), np.ascontiguousarray(goal)
-    inverse_kernels.nearest_of(poses, arm, robot.chain, rules, goals, answer)
+    for some in slices(m, ""):
+        of = goals if len(goals) == 1 else goals[some]
+        into = Answer(answer.theta[some], answer.branch[some], answer.fit[some])
+        inverse_kernels.nearest_of(poses[some], arm, robot.chain, rules, of, into)
     return answer
 
 
@@ -42,12 +46,16 @@ def every(robot: Robot, arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, B
     from robomill.kinematics import inverse_kernels
 
     theta, sound = np.empty((len(T_MT), 8, robot.n)), np.empty((len(T_MT), 8), dtype=bool)
-    inverse_kernels.every_of(np.ascontiguousarray(T_MT), arm, robot.chain, theta, sound)
+    poses = np.ascontiguousarray(T_MT)
+    for some in slices(len(poses), "How the arm can stand"):
+        inverse_kernels.every_of(poses[some], arm, robot.chain, theta[some], sound[some])
     return theta, sound
 
 
 def spun(T_MT: FloatArray, angle: float) -> FloatArray:
     """Poses (..., 4, 4) turned about their own z axis by ``angle`` rad."""
+    if angle == 0.0:
+        return T_MT
     return T_MT @ transform(rotation_z(angle), np.zeros(3))
 
 

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions
+from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions, Way
 from robomill.kinematics.transforms import turn_between
+from robomill.progress import checkpoint, slices
 from robomill.robot.model import Robot
 from robomill.units import to_si
 
@@ -40,6 +41,7 @@ def easy_turn(T_MT: FloatArray, whole: bool) -> FloatArray:
     By the tip's way and the turn of the tool axis, or of the ``whole`` tool where its spin is commanded, too.
     """
     way = np.linalg.norm(np.diff(T_MT[:, :3, 3], axis=0), axis=1)
+    checkpoint()
     turn = turn_between(T_MT[:-1, :3, :3], T_MT[1:, :3, :3], whole)
     return np.append(0.0, EASY_PER_LENGTH * way + EASY_PER_TURN * turn)[: len(T_MT)]
 
@@ -60,5 +62,16 @@ def join(robot: Robot, theta: FloatArray, possible: BoolArray, T_MT: FloatArray,
         frozen(FROM_HOME * ARM_ORDER),
     )
     joined, index = theta[:, 0].copy(), np.empty(m, dtype=np.int64)  # where nothing is possible: an attempt
-    cost = joining_kernels.shortest(course, joining_kernels.most_nodes(course), joined, index)
+    most = joining_kernels.most_nodes(course)
+    way = Way(
+        np.empty((2, most, n)),
+        np.empty(most, dtype=np.int64),
+        np.zeros((2, most)),
+        np.zeros((m, most), dtype=np.int16),
+        np.array([-1, 0, 0]),
+        np.zeros(1),
+    )
+    for some in slices(m, "How the arm stands"):
+        joining_kernels.go_on(course, some.start, some.stop, way, index)
+    cost = joining_kernels.come_back(course, way, joined, index)
     return Joined(joined, index, int((index < 0).sum()), cost)

@@ -12,7 +12,7 @@ import numpy as np
 from robomill.compiled import Out2, OutInt1, kernel, part
 from robomill.kinematics.decoupled import LIMIT_SLACK
 from robomill.kinematics.inverse_kernels import TURN
-from robomill.kinematics.path_solutions import FROM_HOME, PathSolutions
+from robomill.kinematics.path_solutions import BEFORE, FROM_HOME, KNOWN, NEW, PathSolutions, Way
 
 STANDS_OUT = 1e3  # rad: what is turned beyond the easy turn counts before all other motion
 
@@ -81,19 +81,18 @@ def most_nodes(course: PathSolutions) -> int:
 
 
 @kernel
-def shortest(course: PathSolutions, most: int, theta: Out2, index: OutInt1) -> float:
-    """theta (m, n) and branch index (m,) of the way that costs least, and its cost; -1 where a pose has no node.
+def go_on(course: PathSolutions, begin: int, end: int, way: Way, index: OutInt1) -> None:
+    """The shortest ways to every node of poses ``begin`` to ``end``; index (m,) is the pose that each goes on from.
 
-    Such poses are bridged: the way goes on from the last pose that has one. ``most`` nodes a pose at most.
+    Poses without a node are bridged, and -1: the way goes on from the last pose that has one.
     """
-    m, n = theta.shape
+    n = len(course.start)
     lowest, count = np.empty(n, np.int64), np.empty(n, np.int64)
-    node, branch = np.empty((2, most, n)), np.empty(most, np.int64)
-    total, came = np.zeros((2, most)), np.zeros((m, most), np.int16)
-    before, known, new, easy = -1, 0, 0, 0.0  # the last pose with nodes, how many, and where the new ones go
-    for i in range(m):
-        easy += course.easy[i]
-        nodes = nodes_of(course, i, lowest, count, node[new], branch)
+    node, total, at = way.node, way.total, way.at
+    for i in range(begin, end):
+        way.easy[0] += course.easy[i]
+        new, before = at[NEW], at[BEFORE]
+        nodes = nodes_of(course, i, lowest, count, node[new], way.branch)
         index[i] = -1 if nodes == 0 else before
         if nodes == 0:
             continue
@@ -101,28 +100,34 @@ def shortest(course: PathSolutions, most: int, theta: Out2, index: OutInt1) -> f
         for k in range(nodes):
             here = node[new, k]
             if before < 0:
-                total[new, k] = first_cost(here, course.start, course.first[branch[k]])
+                total[new, k] = first_cost(here, course.start, course.first[way.branch[k]])
                 continue
             best = np.inf
-            for q in range(known):
+            for q in range(at[KNOWN]):
                 if total[old, q] < best:
-                    cost = total[old, q] + step_cost(here, node[old, q], easy)
+                    cost = total[old, q] + step_cost(here, node[old, q], way.easy[0])
                     if cost < best:
-                        best, came[i, k] = cost, q
+                        best, way.came[i, k] = cost, q
             total[new, k] = best
-        before, known, new, easy = i, nodes, old, 0.0
-    if before < 0:
+        at[BEFORE], at[KNOWN], at[NEW], way.easy[0] = i, nodes, old, 0.0
+
+
+@kernel
+def come_back(course: PathSolutions, way: Way, theta: Out2, index: OutInt1) -> float:
+    """theta (m, n) and branch index (m,) of the way that costs least, and its cost; -1 where a pose has no node."""
+    n = len(course.start)
+    lowest, count = np.empty(n, np.int64), np.empty(n, np.int64)
+    i, last, k = way.at[BEFORE], 1 - way.at[NEW], 0
+    if i < 0:
         return 0.0
-    k = 0
-    for q in range(known):
-        if total[1 - new, q] < total[1 - new, k]:
+    for q in range(way.at[KNOWN]):
+        if way.total[last, q] < way.total[last, k]:
             k = q
-    cost = total[1 - new, k]
-    i = before
+    cost = way.total[last, k]
     while i >= 0:
         earlier = index[i]
-        nodes_of(course, i, lowest, count, node[0], branch)
+        nodes_of(course, i, lowest, count, way.node[0], way.branch)
         for j in range(n):
-            theta[i, j] = node[0, k, j]
-        index[i], k, i = branch[k], came[i, k], earlier
+            theta[i, j] = way.node[0, k, j]
+        index[i], k, i = way.branch[k], way.came[i, k], earlier
     return cost

@@ -16,6 +16,7 @@ from robomill.kinematics.decoupled import RESIDUAL
 from robomill.kinematics.forward import BLOCK, tool_pose
 from robomill.kinematics.jacobian import pose_and_jacobian
 from robomill.kinematics.result import Mode
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 
 STARTS = 64  # starts a pose is given before it counts as not found
@@ -113,6 +114,7 @@ def descend(robot: Robot, T_MT: FloatArray, theta: FloatArray, mode: Mode) -> tu
     before = error.copy()
     active = np.arange(len(theta))
     for step in range(STEPS + 1):
+        checkpoint()
         pose, J = pose_and_jacobian(robot, theta[active])
         e, J = _task(pose, J, T_MT[active], mode)
         size = np.abs(e).max(axis=1)

@@ -11,6 +11,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.kinematics.choice import every, overshoot, spun, turn
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, decoupled, shortfall
 from robomill.kinematics.forward import rows
+from robomill.progress import slices
 from robomill.robot.model import Robot
 from robomill.units import format_si, to_si
 
@@ -99,7 +100,9 @@ def misfit(robot: Robot, theta: FloatArray, T_MT: FloatArray, mode: Mode) -> tup
     from robomill.kinematics import kernels
 
     shift, angle = np.empty(len(theta)), np.empty(len(theta))
-    kernels.misfit_of(rows(theta), robot.chain, np.ascontiguousarray(T_MT), mode == "pose", shift, angle)
+    theta, poses = rows(theta), np.ascontiguousarray(T_MT)
+    for some in slices(len(theta), ""):
+        kernels.misfit_of(theta[some], robot.chain, poses[some], mode == "pose", shift[some], angle[some])
     return shift, angle
 
 

@@ -11,6 +11,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_along, feed_share
 from robomill.errors import SetupError
+from robomill.progress import gathered
 from robomill.provenance import Finding
 from robomill.simulation.samples import clock, ways
 from robomill.simulation.setup import SimulationSetup
@@ -34,8 +35,8 @@ def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) 
         s=path.s,
         t=record_time(setup, path) if setup.force.in_time else path.t,
         cutting=path.cutting & reached,
-        across=feed_share(way, path.k),
-        along=feed_along(way, path.k),
+        across=gathered(len(path), "", lambda some: feed_share(way[some], path.k[some])),
+        along=gathered(len(path), "", lambda some: feed_along(way[some], path.k[some])),
         ccw=path.ccw,
         block=path.block,
     )

@@ -7,6 +7,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.decoupled import decoupled
+from robomill.progress import gathered
 from robomill.provenance import Finding
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -23,10 +24,11 @@ def total_compliance(setup: SimulationSetup, path: Toolpath, C_joint: FloatArray
 
     NaN outside the map and where the tool stands more than ``MOST_TURNED`` off the one it was measured with.
     """
-    C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
-    if setup.measured_map is None:
+    C = gathered(len(path), "Compliance", lambda some: C_joint[some].sum(axis=-3) + C_spring[some].sum(axis=-3))
+    field = setup.measured_map
+    if field is None:
         return C
-    measured = setup.measured_map.compliance(setup.in_base(path.p))
+    measured = gathered(len(path), "Measured map", lambda some: field.compliance(setup.in_base(path.p[some])))
     measured[turned(setup, path) > MOST_TURNED] = np.nan
     return np.where(path.cutting[:, None, None], measured, C)
 
@@ -35,8 +37,12 @@ def turned(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m,) rad at feed: how far the tool stands off the one the map was measured with; 0 elsewhere, or without one."""
     if setup.measured_map is None:
         return np.zeros(len(path))
-    angle = setup.measured_map.turned(setup.in_base(path.p), path.k @ setup.T_MW[:3, :3].T)
-    return np.where(path.cutting, angle, 0.0)
+    field, R = setup.measured_map, setup.T_MW[:3, :3].T
+
+    def angle(some: slice) -> FloatArray:
+        return field.turned(setup.in_base(path.p[some]), path.k[some] @ R)
+
+    return np.where(path.cutting, gathered(len(path), "Measured map", angle), 0.0)
 
 
 def beyond_map(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> tuple[Unjudged, ...]:

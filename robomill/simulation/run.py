@@ -21,7 +21,7 @@ from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_ki
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
-from robomill.progress import checkpoint
+from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_conditions, told_conditions
 from robomill.simulation.mapped import beyond_map, total_compliance
@@ -50,10 +50,12 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     checkpoint(0.0, "Compliance")
     C_joint, C_spring = compliances(setup, path, ik.theta)
     C = total_compliance(setup, path, C_joint, C_spring)
+    checkpoint(stage="Force and deflection")
     sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
     bent = Bent(setup, path, told_conditions(setup, path, ik.reached), C, feed_directions(setup, path), offset)
     conditions, F, unjudged, coupling = forces(bent)
+    checkpoint(0.0, "Deflection")
     return SimulationResult(
         setup=setup,
         path=path,
@@ -64,8 +66,8 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
         conditions=conditions,
         R_MF=bent.R_MF,
         F=F,
-        delta_joint=deflection(C_joint, F),
-        delta_spring=deflection(C_spring, F),
+        delta_joint=gathered(len(path), "Deflection", lambda some: deflection(C_joint[some], F[some])),
+        delta_spring=gathered(len(path), "Deflection", lambda some: deflection(C_spring[some], F[some])),
         delta=_known(bent.delta(F), unjudged),
         sag=sag,
         coupling=coupling,
@@ -108,10 +110,13 @@ def compliances(setup: SimulationSetup, path: Toolpath, theta: FloatArray) -> tu
     m = len(path)
     C_joint, C_spring = np.empty((m, setup.robot.n, 3, 3)), np.empty((m, len(setup.springs), 3, 3))
     for tool in held(setup, path):
-        at = theta[tool.steps]
-        J = geometric_jacobian(tool.robot, at)
-        C_joint[tool.steps] = joint_contributions(J[..., :3, :], setup.robot.C_theta)
-        C_spring[tool.steps] = extra_contributions(tool.springs, joint_frames(tool.robot, at))
+        steps = np.flatnonzero(tool.steps)
+        for some in slices(len(steps), "Compliance"):
+            i = steps[some]
+            J = geometric_jacobian(tool.robot, theta[i])
+            C_joint[i] = joint_contributions(J[..., :3, :], setup.robot.C_theta)
+            if tool.springs:
+                C_spring[i] = extra_contributions(tool.springs, joint_frames(tool.robot, theta[i]))
     return C_joint, C_spring
 
 
@@ -119,7 +124,9 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
     """(m, n, 3) m: shares of the joints in the sag of the tip."""
     sag = np.empty((len(path), setup.robot.n, 3))
     for tool in held(setup, path):
-        sag[tool.steps] = gravity_sag(tool.robot, theta[tool.steps], links)
+        steps = np.flatnonzero(tool.steps)
+        for some in slices(len(steps), "Sag"):
+            sag[steps[some]] = gravity_sag(tool.robot, theta[steps[some]], links)
     return sag
 
 
@@ -144,14 +151,19 @@ def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:
 
 def tool_poses(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m, 4, 4) T_MT along the path, for the first tool's length."""
-    return np.asarray(setup.T_MW @ tool_frames(path, farther(setup, path)))
+    back = farther(setup, path)
+    return gathered(
+        len(path), "Poses", lambda some: np.asarray(setup.T_MW @ tool_frames(path.p[some], path.k[some], back[some]))
+    )
 
 
-def tool_frames(path: Toolpath, back: FloatArray | float = 0.0) -> FloatArray:
-    """(m, 4, 4) T_WT: the point ``back`` (m,) m behind the tip p, z_T = k, spin about z_T as R_x(A) R_y(B) gives it."""
-    return pose_from_world(np.column_stack([path.p + np.reshape(back, (-1, 1)) * path.k, tilt_from_axis(path.k)]))
+def tool_frames(p: FloatArray, k: FloatArray, back: FloatArray) -> FloatArray:
+    """(m, 4, 4) T_WT: the point ``back`` (m,) m behind the tip p (m, 3) m, z_T = k (m, 3), spin about z_T as
+    R_x(A) R_y(B) gives it."""
+    return pose_from_world(np.column_stack([p + back[:, None] * k, tilt_from_axis(k)]))
 
 
 def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m, 3, 3) R_MF, columns feed, feed-normal, axial in {M}."""
-    return setup.T_MW[:3, :3] @ feed_frame(ways(path), path.k)
+    frames = feed_frame(ways(path), path.k)
+    return gathered(len(path), "Ways of the feed", lambda some: np.asarray(setup.T_MW[:3, :3] @ frames[some]))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.progress import checkpoint
 from robomill.surface.passes import moves_of
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import CORNER, resample
@@ -66,10 +67,12 @@ def ways(path: Toolpath) -> FloatArray:
     """
     length, d = path.step_length[:, None], np.diff(path.p, axis=0, prepend=path.p[:1])
     d = np.divide(d, length, out=np.zeros_like(d), where=length > 0.0)
+    checkpoint()
     move = moves_of(path.step_length == 0.0, path.cutting)
     at_feed = path.cutting & (path.step_length > 0.0)
     on = at_feed[:-1] & at_feed[1:] & (path.block[:-1] == path.block[1:])
     on = np.append(on & (np.einsum("mi,mi->m", d[:-1], d[1:]) > np.cos(CORNER)), False)
+    checkpoint()
     way = np.where(on[:, None], d + np.roll(d, -1, axis=0), d)
     way /= np.where(on, np.linalg.norm(way, axis=1), 1.0)[:, None]
     end = np.flatnonzero(~on & np.append(False, on[:-1]))

@@ -34,9 +34,11 @@ def tooth(result: SimulationResult) -> Tooth | None:
     """Extremes over a turn of the deviation in the axes of the cut; None where no turn or no spring that follows it is
     known. They are static: what a spring and its mass do in time is left out.
     """
-    peak = peak_force(result)
     follow = [k for k, spring in enumerate(result.setup.springs) if spring.follows_tooth]
-    if peak is None or not follow or result.setup.measured_map is not None:
+    if not follow or result.setup.measured_map is not None:
+        return None
+    peak = peak_force(result)
+    if peak is None:
         return None
     C = result.C_spring[:, follow].sum(axis=1)
     own = np.einsum("mji,mjk,mki->mi", result.R_MF, C, result.R_MF)  # across and along the tool: no cross terms

@@ -9,6 +9,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.errors import SurfaceError
+from robomill.progress import checkpoint
 from robomill.surface.zmap import ZMap
 from robomill.units import format_si
 
@@ -118,7 +119,9 @@ def surface_error(ideal: ZMap, machined: ZMap, reach: float) -> FloatArray:
         return error
     sign, height = np.sign(error[i, j]), machined.z[i, j]
     best = np.abs(error[i, j])
-    for di, dj, distance in _offsets(ideal.dx, ideal.dy, min(reach, float(best.max()))):
+    offsets = _offsets(ideal.dx, ideal.dy, min(reach, float(best.max())))
+    for n, (di, dj, distance) in enumerate(offsets):
+        checkpoint(n / len(offsets), "Error of the surface")
         open_ = np.flatnonzero(best > distance)
         if len(open_) == 0:
             break

@@ -16,6 +16,7 @@ from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.progress import checkpoint
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock, stock_span
 from robomill.surface.swept import CutPath, Heights, Station, SweptPath, station_at, swept_path
@@ -84,7 +85,9 @@ def groove_sections(
     told, left, sure = (swept_path(stock, tooling, p, path.k, used) for p in (ideal, moved, known))
     paths = told, left, sure
     s, found = np.cumsum(np.append(0.0, np.where(used[1:], np.linalg.norm(np.diff(ideal, axis=0), axis=1), 0.0))), []
-    for station in np.atleast_1d(np.asarray(stations, dtype=float)):
+    places = np.atleast_1d(np.asarray(stations, dtype=float))
+    for n, station in enumerate(places):
+        checkpoint(n / len(places), "Sections")
         place = station_at(ideal, used, float(station))
         i, f = place.entry, place.fraction
         tip = moved[i - 1] + f * (moved[i] - moved[i - 1])

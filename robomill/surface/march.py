@@ -224,6 +224,7 @@ class March:
             rows[self.steps[some]], sectors[self.steps[some]] = self._march(
                 state, n, self._ends[some], (run[some], begins[some], self._stops[some]), (True, True)
             )
+        sectors.flags.writeable = False  # kept as they are
         return rows, sectors, int(state[0].columns.lost[0])
 
     def _stop_after(self, first: int) -> int:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.progress import checkpoint, slices
 from robomill.surface.zmap import ZMap
 
 NEAREST = 2e-3  # share of a side: a wall point keeps this far from its ends, so that no triangle vanishes
@@ -65,8 +66,11 @@ def to_mesh(zmap: ZMap, *, max_faces: int = 2_000_000) -> Mesh:
     nx, ny = z.shape
     skin = _Skin(x, y, z, np.arange(nx * ny).reshape(nx, ny))
     top = np.column_stack([np.repeat(x, ny), np.tile(y, nx), z.ravel()])
+    checkpoint(0.0, "Solid")
     sides, walls, owner = _wall_points(skin, *_crossings(zmap, skin, i, j))
+    checkpoint(0.3, "Solid")
     faces, middles, of_middle = _skin_faces(skin, sides, len(top) + len(walls))
+    checkpoint(0.8, "Solid")
     vertices = np.concatenate([top, walls, middles])
     owners = np.concatenate([skin.number.ravel(), owner, of_middle])
     around, feet = _around(skin, sides)
@@ -84,6 +88,7 @@ def to_mesh(zmap: ZMap, *, max_faces: int = 2_000_000) -> Mesh:
     ]
     base = np.column_stack([low_after, low, np.full(len(low), hub)])[moves]
     ground = np.concatenate([foot, [[x.mean(), y.mean(), zmap.bottom]]])
+    checkpoint(0.9, "Solid")
     return Mesh(
         np.concatenate([vertices, ground]),
         np.concatenate([faces, *skirt, base]),
@@ -131,6 +136,7 @@ def _crossed(
         off = (wall[:, 2] - (v[at] - centre[:, 1]) * wall[:, 1]) / wall[:, 0]
     found = np.full((len(u) - 1, len(v)), np.nan)
     for reach, shift in PLACES:
+        checkpoint()
         rows = np.flatnonzero((kept[at] == line) & (np.abs(off) <= reach * step))
         place = centre[rows, 0] + off[rows]
         side = np.clip(np.searchsorted(u, place) - 1 + shift, 0, len(u) - 2)
@@ -151,6 +157,7 @@ def _wall_points(skin: _Skin, x_share: FloatArray, y_share: FloatArray) -> tuple
     count = skin.number.size
     sides, points, owners = [], [], []
     for share, (di, dj) in ((x_share, (1, 0)), (y_share, (0, 1))):
+        checkpoint()
         i, j = np.nonzero(np.isfinite(share))
         t = share[i, j]
         x = skin.x[i] + t * (skin.x[i + di] - skin.x[i])
@@ -175,14 +182,17 @@ def _skin_faces(skin: _Skin, sides: _Sides, count: int) -> tuple[IntArray, Float
     corner = np.stack([q.ravel() for q in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:])], axis=1)
     x_side, y_side = sides
     first = np.stack([q.ravel() for q in (x_side[:, :-1], y_side[1:], x_side[:, 1:], y_side[:-1])], axis=1)
+    checkpoint(0.4, "Solid")
     crossed = first >= 0
     forward = np.array([0, 0, 1, 1])  # the third and fourth side run against their axis
     near, far = np.where(crossed, first + forward, -1), np.where(crossed, first + 1 - forward, -1)
     how_many = crossed.sum(axis=1)
+    checkpoint(0.5, "Solid")
     a, b, c, d = corner[how_many == 0].T
     faces = [np.column_stack([a, b, c]), np.column_stack([a, c, d])]
     two = how_many == 2
     for apart in (1, 2):
+        checkpoint()
         starts = crossed & np.roll(crossed, -apart, axis=1) & two[:, None]
         starts[:, 2:] &= apart == 1  # of two opposite sides either could be the first
         square, start = np.nonzero(starts)
@@ -191,10 +201,11 @@ def _skin_faces(skin: _Skin, sides: _Sides, count: int) -> tuple[IntArray, Float
         faces += _two_sided(q, p, f, apart)
     odd = np.flatnonzero((how_many == 1) | (how_many > 2))
     middles = 0.5 * (_place(skin, corner[odd, 0]) + _place(skin, corner[odd, 2]))
-    for middle, index in enumerate(odd, count):
-        loop = np.column_stack([corner[index], near[index], far[index]]).ravel()
-        loop = loop[loop >= 0]
-        faces.append(np.column_stack([loop, np.roll(loop, -1), np.full(len(loop), middle)]))
+    for some in slices(len(odd), "Corners of walls"):
+        for middle, index in enumerate(odd[some], count + some.start):
+            loop = np.column_stack([corner[index], near[index], far[index]]).ravel()
+            loop = loop[loop >= 0]
+            faces.append(np.column_stack([loop, np.roll(loop, -1), np.full(len(loop), middle)]))
     return np.concatenate(faces), middles, corner[odd, 0]
 
 

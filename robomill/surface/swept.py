@@ -12,6 +12,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.progress import checkpoint
 from robomill.surface.passes import feed_passes
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock
@@ -77,6 +78,7 @@ class SweptPath:
         near = [(cutter_shape(body.cutter), *body.near((centre, normal, reach), top)) for body in self.bodies]
 
         def height(w: FloatArray) -> FloatArray:
+            checkpoint()
             z = stock_top(w)
             for shape, ends, axes in near:
                 lower_along(shape, ends, axes, centre[0] + w * normal[0], centre[1] + w * normal[1], z)
@@ -89,6 +91,7 @@ def swept_path(stock: Stock, tooling: Tooling, p: FloatArray, k: ArrayLike | Non
     """The feed moves of a path p (m, 3) m with tool axes k; moves with an end that is not finite are left out."""
     bodies = []
     for cutter, made in tooling.steps_of_each():
+        checkpoint()
         moves, _ = feed_passes(p, k, cutting & made)
         middle = moves.axes[:, :3] + moves.axes[:, 3:]
         bodies.append(Body(cutter, moves.ends, middle / np.linalg.norm(middle, axis=1, keepdims=True)))

@@ -10,6 +10,7 @@ import numpy as np
 from robomill import budgets
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import ToolpathError
+from robomill.progress import checkpoint
 from robomill.toolpath.path import PER_MOVE, Toolpath
 from robomill.units import format_short, to_si
 from robomill.vectors import angle_between
@@ -31,16 +32,20 @@ def resample(path: Toolpath, step: float) -> Toolpath:
     starts = _begins(path)
     total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
     check_samples(path, step, total, budgets.samples())
+    checkpoint(0.0, "Samples")
     counts = np.maximum(pieces, 1.0).astype(np.int64)
     samples = counts + starts
     owner = np.repeat(np.arange(len(path)), samples)
     first = np.repeat(np.cumsum(samples) - samples, samples)
+    checkpoint(0.2, "Samples")
     index = np.arange(len(owner)) - first + 1 - starts[owner]
     fraction = index / counts[owner]
     before = np.maximum(owner - 1, 0)
+    checkpoint(0.4, "Samples")
     p = path.p[before] + fraction[:, None] * (path.p[owner] - path.p[before])
     last = index == counts[owner]
     p[last] = path.p[owner[last]]
+    checkpoint(0.6, "Samples")
     carried = {name: getattr(path, name)[owner] for name in PER_MOVE}
     carried["dwell"] = np.where(np.arange(len(owner)) == first, carried["dwell"], 0.0)
     return dataclasses.replace(

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import wraps
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
-
-import streamlit as st
 
 from robomill.arrays import digest
 from robomill.kinematics.spin import OverSpin
@@ -16,7 +14,8 @@ from robomill.simulation.run import deviation_over_spin, simulate
 from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
-from robomill.ui.commons import Commons
+from robomill.ui import beside
+from robomill.ui.commons import NOTHING, Commons
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -26,22 +25,21 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 commons = Commons()
 
 
-def shared(key: Callable[..., Any], words: str = "") -> Callable[[Function], Function]:
+def shared(key: Callable[..., Any], doing: str = "") -> Callable[[Function], Function]:
     """Keeps the answers of a function for everyone on the server, by the fingerprint of ``key(*arguments)``.
 
-    ``words`` are shown while one is made; a refusal is not kept.
+    A refusal is not kept. What is ``doing`` may take long: a page has it made beside itself, and ``Underway`` is raised
+    while it is not there.
     """
 
     def keep(function: Function) -> Function:
         @wraps(function)
         def asked(*arguments: Any) -> Any:
-            def made() -> Any:
-                if not words:
-                    return function(*arguments)
-                with st.spinner(f"{words} ..."):
-                    return function(*arguments)
-
-            return commons.get(name_of(function, key(*arguments)), made)
+            name = name_of(function, key(*arguments))
+            make = partial(commons.get, name, partial(function, *arguments))
+            if not doing or not beside.on_a_page() or commons.find(name, NOTHING) is not NOTHING:
+                return make()
+            return beside.made(".".join(name), name, make, doing, group=name[0])
 
         return cast("Function", asked)
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import streamlit as st
 
+from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
@@ -19,16 +20,27 @@ EVERY_S = 0.4
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
 
 
+class Underway(Exception):  # noqa: N818 - no error
+    """What a part of a page needs is being made beside it, or was stopped; ``show`` says so in its place."""
+
+    def __init__(self, show: Callable[[], Any]) -> None:
+        super().__init__()
+        self.show = show
+
+
 @dataclass(eq=False)
 class Job:
     """``work(job)`` made in a thread; it says its ``share`` (0 to 1) by ``reach`` and ends early once ``stop`` is set.
 
     What the work says of its progress (``robomill.progress``) arrives here too. ``about`` is what it is made of;
-    ``made`` what it answered, ``error`` why it was refused.
+    ``made`` what it answered, ``error`` why it was refused. Of one ``group`` is what a new one may supersede; ``run``
+    is the run of the page that asked last.
     """
 
     work: Callable[[Job], Any]
     about: Any
+    group: str = ""
+    run: int = 0
     share: float = 0.0
     stage: str = ""
     made: Any = None
@@ -111,7 +123,8 @@ def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | Non
         st.rerun()
         return
     job.seen = time.monotonic()
-    bar, cancel = st.columns([4, 1], vertical_alignment="center")
-    bar.progress(job.share, words(job))
-    with cancel:
-        inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="stretch")
+    with st.container(key=f"job-{digest(key)[:8]}"):
+        bar, cancel = st.columns([4, 1], vertical_alignment="center")
+        bar.progress(job.share, words(job))
+        with cancel:
+            inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="stretch")

@@ -13,6 +13,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.provenance import Provenance
+from robomill.ui.job import Underway
 from robomill.ui.markup import Html, as_html, as_markdown
 from robomill.units import split_unit
 
@@ -168,12 +169,14 @@ def split(spec: Sequence[float], name: str, gap: Any = "medium") -> list[Any]:
 
 
 def attempt(function: Callable[..., Value], *args: Any) -> Value | None:
-    """``function(*args)``, or its refusal shown and None. Anything but a refusal is a bug and is raised."""
+    """``function(*args)``, or its refusal shown, or how far it is, and None. Anything else is a bug and is raised."""
     try:
         return function(*args)
     except RobomillError as exc:
         error(exc)
-        return None
+    except Underway as now:
+        now.show()
+    return None
 
 
 def figure(

@@ -55,7 +55,8 @@ class Store:
     start afresh then. ``seeded`` are the widgets of ``page`` that have been given their value: a widget that returns
     with its page has lost it. ``older`` are project files of an earlier session, to be gone back to after ``past``.
     ``keeper`` is called after every change. ``returned``: the page was open before this session was (its server had
-    forgotten it), and what its widgets hold beside the project is the edit of that moment.
+    forgotten it), and what its widgets hold beside the project is the edit of that moment. ``runs`` counts the
+    runs of pages.
     """
 
     project: Project
@@ -68,6 +69,7 @@ class Store:
     last_label: str = ""
     last_time: float = 0.0
     page: str = ""
+    runs: int = 0
     seeded: set[str] = field(default_factory=set)
     older: list[str] = field(default_factory=list)
     keeper: Callable[[Store], None] | None = None
@@ -90,6 +92,7 @@ def store() -> Store:
 def enter(page: str) -> None:
     """Say which page is running, so that widgets shared by pages are seeded again after a page change."""
     held = store()
+    held.runs += 1
     if held.page != page:
         held.returned = held.returned and not held.page
         held.page = page

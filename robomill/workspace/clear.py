@@ -15,6 +15,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 from robomill.workspace.reach import Box, largest_box
@@ -31,7 +32,8 @@ def largest_clear_box(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) 
     next largest is tried.
     """
     clear = clear_cells(robot, grid, A, B)
-    for _ in range(ROUNDS):
+    for done in range(ROUNDS):
+        checkpoint(done / ROUNDS, "Boxes without a singularity")
         box = _largest_box_cells(clear, grid)
         if box is None:
             return None

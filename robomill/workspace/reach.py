@@ -12,6 +12,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 
@@ -50,6 +51,7 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
     for A, B in tilts:
         left = np.flatnonzero(mask)
         for start in range(0, len(left), BLOCK):
+            checkpoint(start / len(left), "Reach")
             rows = left[start : start + BLOCK]
             x_M = np.concatenate([points[rows], np.broadcast_to([A, B], (len(rows), 2))], axis=1)
             mask[rows] = inverse_kinematics(robot, pose_from_world(x_M)).reached
@@ -76,6 +78,7 @@ def largest_box(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
             continue
         slabs = np.ones((len(layers), nx + 1, ny), dtype=bool)
         for w in range(1, nx + 1):
+            checkpoint((h - 1) / nz, "Boxes")
             slabs = slabs[:, :-1] & layers[:, w - 1 :]
             widths = _extents(low[0], high[0], w)
             if not slabs.any():

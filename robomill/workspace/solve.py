@@ -9,6 +9,7 @@ from robomill.kinematics.dexterity import square_matrix
 from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 from robomill.workspace.laws import Laws
@@ -29,6 +30,7 @@ def solve_grid(robot: Robot, grid: Grid, A: float, B: float) -> tuple[FloatArray
     laws = Laws(np.empty((m, 6, n)), np.empty((m, n, 6)), np.empty(m))
     poses = np.array(np.broadcast_to(pose, (min(m, BLOCK), 4, 4)))
     for start in range(0, m, BLOCK):
+        checkpoint(start / m, "Map")
         block = slice(start, min(start + BLOCK, m))
         T_MT = poses[: block.stop - start]
         T_MT[:, :3, 3] = points[block]

@@ -195,8 +195,9 @@ def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_
 
 def test_cuts_alike_to_a_thousandth_are_one_kind():
     depth = 1e-3 * np.array([2.0, 2.0005, 1.0, 1.9, 2.0])
-    course = Course.of(CutConditions.steady(0.03, 200.0, depth), MILL, np.arange(5))
-    one_of_each, kind = course.kinds()
+    conditions = CutConditions.steady(0.03, 200.0, depth)
+    course = Course.of(conditions, MILL, np.arange(5))
+    one_of_each, kind = Course.kinds(conditions, MILL, np.arange(5))
     assert len(one_of_each.c) == 3
     assert kind[0] == kind[1] == kind[4]
     assert len({kind[0], kind[2], kind[3]}) == 3

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from robomill import progress
-from robomill.progress import Cancelled, Progress, checkpoint, slices, watched
+from robomill.progress import Cancelled, Progress, checkpoint, gathered, slices, watched
 
 
 def test_pieces_cover_everything_once_in_order_watched_or_not() -> None:
@@ -65,3 +66,23 @@ def test_watching_within_watching_is_the_inner_one_s() -> None:
         checkpoint(0.25, "outer")
     assert (inner.stage, inner.share) == ("inner", 0.5)
     assert (outer.stage, outer.share) == ("outer", 0.25)
+
+
+def test_what_is_gathered_is_what_one_piece_would_be() -> None:
+    for count in (0, 1, 16, 17, 1000):
+        expected = np.stack([np.arange(count), np.arange(count) ** 2], axis=1)
+        for progress_ in (None, Progress()):
+            with watched(progress_):
+                found = gathered(count, "Squares", lambda some, whole=expected: whole[some].copy())
+            np.testing.assert_array_equal(found, expected)
+            assert found.dtype == expected.dtype
+
+
+def test_a_part_of_the_work_says_no_share_and_a_new_stage_begins_at_nothing() -> None:
+    said: list[tuple[str, float]] = []
+    with watched(Progress(say=lambda now: said.append((now.stage, now.share)))):
+        checkpoint(0.5, "Map")
+        assert [some.stop for some in slices(3, "")] == [3]
+        checkpoint()
+        checkpoint(stage="Surface")
+    assert said == [("Map", 0.5), ("Map", 0.5), ("Map", 0.5), ("Surface", 0.0)]

@@ -8,7 +8,7 @@ import pytest
 from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import NumberInput
 
-from robomill.ui import rendered, running
+from robomill.ui import beside, rendered
 from robomill.ui.session import KEY, Store
 from robomill.viz.render_queue import RenderQueue
 from robomill.viz.worker import NO_OPENGL, RenderWorker
@@ -27,7 +27,7 @@ class NoPictures(RenderWorker):
 @pytest.fixture
 def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
     """The start page, run once."""
-    monkeypatch.setattr(running, "FIRST_S", 60.0)  # pages are looked at with their runs
+    monkeypatch.setattr(beside, "FIRST_S", 60.0)  # pages are looked at with their runs
     queue = RenderQueue(NoPictures())
     monkeypatch.setattr(rendered, "queue", lambda: queue)
     return AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()

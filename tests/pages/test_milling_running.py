@@ -14,7 +14,7 @@ from robomill import progress
 from robomill.errors import SetupError
 from robomill.progress import checkpoint
 from robomill.simulation.run import simulate
-from robomill.ui import cached, job, running
+from robomill.ui import beside, cached, job, running
 from robomill.ui.job import Job
 
 
@@ -44,7 +44,7 @@ def slow(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Slow]:
     go(app, "6_Milling")  # the run before
     monkeypatch.setattr(cached, "simulate", made)
     monkeypatch.setattr(running, "run_seconds", lambda setup: 5.0)
-    monkeypatch.setattr(running, "FIRST_S", 0.2)
+    monkeypatch.setattr(beside, "FIRST_S", 0.2)
     yield made
     made.go.set()
 
@@ -56,7 +56,7 @@ def edit(app: AppTest, tolerance: float) -> AppTest:
 
 
 def running_job(app: AppTest) -> Job:
-    found = store(app).values[running.KEY]
+    found = store(app).values[running.PLACE]
     assert isinstance(found, Job)
     return found
 
@@ -67,12 +67,12 @@ def test_progress_over_the_run_before_and_then_the_new_one(app: AppTest, slow: S
     assert app.button(key="run.cancel")
     assert running.GREYED in words(app)
     assert "0.23 mm" in words(app)  # of the run before
-    assert store(app).values[running.KEY].stage == "Marching"
+    assert store(app).values[running.PLACE].stage == "Marching"
     slow.go.set()
     assert running_job(app).done.wait(30)
     app.run()
     assert running.GREYED not in words(app)
-    assert running.KEY not in store(app).values
+    assert running.PLACE not in store(app).values
     assert "of 0.10 mm" in words(app)
     assert not app.exception
 
@@ -85,14 +85,14 @@ def test_cancel_stops_the_work_and_offers_to_run(app: AppTest, slow: Slow) -> No
     assert slow.ended.is_set()
     app.run()
     assert slow.count == 1
-    assert "Not computed yet" in words(app)
+    assert "not computed yet" in words(app)
     slow.go.set()
     app.button(key="run.ask").click().run()
-    if running.KEY in store(app).values:
+    if running.PLACE in store(app).values:
         assert running_job(app).done.wait(30)
         app.run()
     assert slow.count == 2
-    assert "Not computed yet" not in words(app)
+    assert "not computed yet" not in words(app)
     assert not app.exception
 
 
@@ -125,7 +125,7 @@ def test_a_refusal_of_the_long_run_is_shown(app: AppTest, monkeypatch: pytest.Mo
         raise SetupError("Nothing fits here.")
 
     monkeypatch.setattr(cached, "simulate", refuses)
-    monkeypatch.setattr(running, "FIRST_S", 30.0)
+    monkeypatch.setattr(beside, "FIRST_S", 30.0)
     edit(app, 0.1e-3)
     assert "Nothing fits here." in errors(app)
     assert not app.exception

@@ -104,7 +104,7 @@ def test_a_big_program_is_read_and_run_beside_the_page(app: AppTest, monkeypatch
         app.run()
     assert not app.exception
     assert store(app).project.setup.source == GCodeSource(text, "big.nc")
-    run = store(app).values[running.KEY]
+    run = store(app).values[running.PLACE]
     assert not run.done.is_set()
     app.button(key="run.cancel").click().run()
     assert run.done.wait(30)
