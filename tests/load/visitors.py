@@ -125,8 +125,8 @@ class Visitor:
             whole = box.data_type == box.INT
             value = box.value if box.set_value else box.default
             self._keep(Box(box.id, "number", value, *limits, box.step, whole, delta.fragment_id))
-        if kind == "slider" and not element.slider.disabled and len(element.slider.default) == 1:
-            box = element.slider
+        box = element.slider
+        if kind == "slider" and box.type == box.SLIDER and not box.disabled and len(box.default) == 1:
             value = box.value[0] if box.set_value else box.default[0]
             self._keep(Box(box.id, "slider", value, box.min, box.max, box.step, False, delta.fragment_id))
 
