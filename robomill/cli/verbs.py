@@ -94,6 +94,8 @@ def run_map(arguments: Any) -> int:
 
 
 def run_identify(arguments: Any) -> int:
+    import tomli_w
+
     from robomill.identification.estimate import identify
     from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
@@ -102,6 +104,7 @@ def run_identify(arguments: Any) -> int:
     from robomill.io.load_tests import read_load_tests
     from robomill.io.results import write_file
     from robomill.io.robots import load_robot, robot_to_toml
+    from robomill.io.springs import spring_to_table
     from robomill.report.plain import identification_lines
 
     robot = load_robot(arguments.robot)
@@ -118,13 +121,20 @@ def run_identify(arguments: Any) -> int:
     result = identify(robot, tests, arguments.model, treatment)
     record, findings = identification_record(robot, tests, result)
     record["findings"] = [finding.record() for finding in findings]
+    record["springs"] = [spring_to_table(spring) for spring in result.springs(robot)]
+    lines = identification_lines(record)
     if arguments.out:
-        write_file(arguments.out, robot_to_toml(result.applied_to(robot)))
+        write_file(arguments.out, robot_to_toml(result.adopted(robot, Path(arguments.tests).name, robot, ())[0]))
+        if record["springs"]:
+            lines += [
+                "a robot's file holds its joints only; for the set-up, beside them:",
+                tomli_w.dumps({"springs": record["springs"]}).rstrip(),
+            ]
     if arguments.sheet:
         plan = next_best(robot, tests, result, count=arguments.next)
         record["next"] = plan.rows()
         write_file(arguments.sheet, measuring_sheet(plan, Path(arguments.tests).name))
-    return say(arguments, record, identification_lines(record))
+    return say(arguments, record, lines)
 
 
 def run_simulate(arguments: Any) -> int:

@@ -33,7 +33,7 @@ def read_source(source: Source) -> tuple[bytes, str]:
 
 def split_lines(text: str) -> list[str]:
     """Lines as the reader counts them, whatever ends them; the empty one after the last end is none."""
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = _plain_ends(text.encode("utf-8", "surrogateescape")).decode("utf-8", "surrogateescape").split("\n")
     return lines if lines[-1] else lines[:-1]
 
 
@@ -75,9 +75,12 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
     control = sum(head.count(bytes([c])) for c in range(32) if c not in (9, 10, 12, 13, 27))
     if control * 100 > len(head):
         raise GCodeError(f"{name}: found a binary file; expected program text.")
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return data
+    return _plain_ends(data)
+
+
+def _plain_ends(data: bytes) -> bytes:
+    """Lines that end as any machine ends them, each with "\n"."""
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
 
 
 def _recode(data: bytes, encoding: str, name: str) -> bytes:

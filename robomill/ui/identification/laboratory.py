@@ -21,7 +21,7 @@ from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
 from robomill.ui.box import NumberBox
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import SAMPLE_ROBOT, Bench, Trial, robot_of
+from robomill.ui.identification.bench import Bench, Trial, robot_of
 from robomill.ui.identification.plan import theta_columns
 from robomill.ui.project import View
 from robomill.units import format_number, format_percent, format_si, from_si
@@ -120,8 +120,8 @@ def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
 def _open(bench: Bench, robot: Robot) -> None:
     """A new exercise with ``robot``, which begins at a pose that it reaches."""
     _begin(bench, Laboratory(robot, seed=SEED))
-    pose = Trial.pose if robot.name == SAMPLE_ROBOT else world_from_pose(tool_pose(robot, robot.home)).tolist()
-    bench.trial = Trial(tuple(pose))
+    reached = bool(inverse_kinematics(robot, pose_from_world(Trial.pose)).reached)
+    bench.trial = Trial() if reached else Trial(tuple(world_from_pose(tool_pose(robot, robot.home)).tolist()))
 
 
 def _begin(bench: Bench, lab: Laboratory) -> None:

@@ -58,9 +58,11 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
 
 
 def verdict_link(result: SimulationResult) -> None:
-    """The verdict as a sentence that leads to its place."""
-    how = {"type": "tertiary", "disabled": result.worst < 0, "help": "Go there: code line, arm, force and section"}
-    inputs.button(result.verdict.sentence, "milling.verdict", "my_location", _land, result, **how)
+    """The way to where the tip is off most, and what the verdict counts."""
+    if result.worst >= 0:
+        how = {"type": "tertiary", "help": "Code line, arm, force and section there"}
+        label = f"Where the tip is off most: line {result.worst_block}"
+        inputs.button(label, "milling.verdict", "my_location", _land, result, **how)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
 
 
