@@ -8,8 +8,9 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
+from robomill.ui.bench import Bench
 from robomill.ui.identification import cut, inputs, laboratory, measured_map, models, plan, points, results, words
-from robomill.ui.identification.bench import Bench, bench, fit_of, robot_of, tests_of
+from robomill.ui.identification.bench import fit_of, robot_of, tests_of
 
 
 def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
@@ -58,4 +59,4 @@ project = ui.begin("Identification")
 top = st.container()
 section = inputs.choose("section", inputs.SECTIONS)
 show = {"tests": load_tests, "map": measured_map.page, "laboratory": laboratory.page}[section]
-show(bench(), project.view, ui.dark(), top)
+show(project.bench, project.view, ui.dark(), top)

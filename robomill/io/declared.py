@@ -49,6 +49,9 @@ CODECS: dict[Any, Codec] = {
     tuple[str, ...]: Codec(
         ("{name}",), lambda table, name, _: tuple(table.words(name)), lambda name, words: {name: list(words)}
     ),
+    tuple[int, ...]: Codec(
+        ("{name}",), lambda table, name, _: tuple(table.wholes(name)), lambda name, numbers: {name: list(numbers)}
+    ),
     Provenance: Codec(
         ("source",),
         lambda table, name, _: table.provenance("source"),

@@ -37,8 +37,8 @@ def knowledge_to_table(known: Knowledge) -> dict[str, Any]:
 
 def knowledge_from_table(table: Table, robot: Robot, springs: Sequence[Spring]) -> Knowledge:
     """What a project file knows of the compliances in it. Raises ProjectError naming the key."""
-    joints = table.numbers("bending_joints", None, "1", (2, 3))
-    model = Model(table.choice("model", tuple(MODELS)), tuple(map(int, joints)), table.flag("bending_turned", False))
+    joints = tuple(table.wholes("bending_joints", (2, 3)))
+    model = Model(table.choice("model", tuple(MODELS)), joints, table.flag("bending_turned", False))
     try:
         p = len(model.parameters(robot))
     except LoadTestError as refused:

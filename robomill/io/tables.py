@@ -133,6 +133,13 @@ class Table:
             raise self.refuse(key, f"expected a whole number, found {value!r:.40}.")
         return value
 
+    def wholes(self, key: str, default: Any = MISSING) -> Any:
+        """A list of whole numbers (``default`` as it is)."""
+        value = self._get(key, default)
+        if value is not default and not (isinstance(value, list) and all(type(item) is int for item in value)):
+            raise self.refuse(key, f"expected a list of whole numbers, found {value!r:.40}.")
+        return value
+
     def number(self, key: str, unit: str, default: Any = MISSING) -> Any:
         """The value in SI (``default`` is returned as it is)."""
         value = self._get(key, default)

@@ -1,7 +1,7 @@
 """The project: one frozen value that holds everything a person decided, and its file.
 
-The file is the set-up of ``io.projects`` with the tables ``[view]``, ``[maps]`` and ``[uncertainty]`` after it; a file
-that lacks them, or a bare set-up, opens as well.
+The file is the set-up of ``io.projects`` with the tables ``[view]``, ``[maps]``, ``[experiments]`` and
+``[uncertainty]``; a file that lacks them, or a bare set-up, opens as well.
 """
 
 from __future__ import annotations
@@ -29,13 +29,14 @@ from robomill.quantities import quantity as number
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
 from robomill.simulation.setup import SimulationSetup
+from robomill.ui.bench import Bench
 from robomill.units import unit_label
 from robomill.viz.picture import CAMERAS
 from robomill.workspace.quantities import COMPONENTS, map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
-TABLES = ("view", "maps", "uncertainty")
+TABLES = ("view", "maps", "experiments", "uncertainty")
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
 PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "step": 50.0, "digits": 2}  # in {M}
@@ -139,13 +140,14 @@ class MapView:
 
 @dataclass(frozen=True, eq=False)
 class Project:
-    """The set-up, how it and its maps are looked at, the preset it began with, and what an identification knows."""
+    """The set-up, how it and its maps are looked at, the preset it began with, load tests and what they let know."""
 
     setup: SimulationSetup
     view: View = field(default_factory=View)
     preset: str = DEFAULT_PRESET
     maps: MapView = field(default_factory=MapView)
     knowledge: Knowledge | None = None
+    bench: Bench = field(default_factory=Bench)
 
     @property
     def known(self) -> Knowledge | None:
@@ -165,7 +167,7 @@ class Project:
 
     def digest(self) -> str:
         """Fingerprint of what is remembered for undo: everything but the looking."""
-        return digest((self.setup.digest(), self.known))
+        return digest((self.setup.digest(), self.known, self.bench.digest()))
 
 
 def presets() -> list[str]:
@@ -221,13 +223,17 @@ def project_to_toml(project: Project) -> str:
     tables: dict[str, Any] = {"view": {**to_table(project.view), "preset": project.preset}}
     if project.maps.robot:
         tables["maps"] = to_table(project.maps)
+    if project.bench.digest() != Bench().digest():
+        tables["experiments"] = to_table(project.bench.kept())
     if project.known is not None:
         tables["uncertainty"] = knowledge_to_table(project.known)
     return setup_to_toml(project.setup) + "\n" + tomli_w.dumps(tables)
 
 
-def project_from_toml(text: str, view: View | None = None, maps: MapView | None = None) -> Project:
-    """A project from its file; what the file does not say of the looking is as in ``view`` and ``maps``.
+def project_from_toml(
+    text: str, view: View | None = None, maps: MapView | None = None, bench: Bench | None = None
+) -> Project:
+    """A project from its file; what a bare set-up does not say is as in ``view``, ``maps`` and ``bench``.
 
     Raises ProjectError with the reason.
     """
@@ -243,9 +249,11 @@ def project_from_toml(text: str, view: View | None = None, maps: MapView | None 
         own["maps"].choice("quantity", tuple(map_quantities(setup.robot, "geometry")), seen.quantity)
         seen = from_table(own["maps"], MapView)
     if "view" not in own:
-        return Project(setup, dataclasses.replace(view or View(), theta=None), maps=seen, knowledge=known)
+        looked = dataclasses.replace(view or View(), theta=None)
+        return Project(setup, looked, maps=seen, knowledge=known, bench=bench or Bench())
     preset = own["view"].text("preset", "")
-    return Project(setup, from_table(own["view"], View), preset, seen, known)
+    bench = from_table(own["experiments"], Bench) if "experiments" in own else Bench()
+    return Project(setup, from_table(own["view"], View), preset, seen, known, bench)
 
 
 def _in_units(table: Table) -> None:

@@ -22,6 +22,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
+from robomill.ui.bench import Bench
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
 
 KEY = "robomill"
@@ -182,6 +183,13 @@ def see(**fields: Any) -> None:
     held.put(held.project.replace(maps=dataclasses.replace(maps(), **fields)))
 
 
+def experiment(bench: Bench, label: str = "") -> None:
+    """Put another bench of load tests in force; remembered for undo as ``change`` is."""
+    held = store()
+    if bench.digest() != held.project.bench.digest():
+        replace(held.project.replace(bench=bench), label)
+
+
 def know(found: Knowledge) -> None:
     """Say how sure the compliances in force are, where that has changed; undo leads back with the compliances."""
     held = store()
@@ -227,7 +235,8 @@ def _recall(held: Store) -> None:
 def open_preset(name: str) -> None:
     """Start from a sample; undo leads back."""
     held = store()
-    replace(Project(preset_setup(name), held.project.view, name, held.project.maps))
+    now = held.project
+    replace(Project(preset_setup(name), now.view, name, now.maps, bench=now.bench))
     look(theta=None)
     _forget(held)
 
@@ -235,7 +244,7 @@ def open_preset(name: str) -> None:
 def open_text(text: str) -> str:
     """Open a project file; returns "" or the reason why it was refused (the current project then stays)."""
     try:
-        new = project_from_toml(text, project().view, project().maps)
+        new = project_from_toml(text, project().view, project().maps, project().bench)
     except RobomillError as exc:
         return str(exc)
     replace(new)

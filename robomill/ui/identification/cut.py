@@ -16,9 +16,9 @@ from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
-from robomill.ui.box import NumberBox
-from robomill.ui.identification.bench import Bench
-from robomill.ui.identification.inputs import BANDS, adopted, field, knowledge
+from robomill.ui.bench import Bench
+from robomill.ui.identification.bench import field
+from robomill.ui.identification.inputs import adopted, knowledge
 from robomill.units import format_si, from_si
 from robomill.viz.deviation import band_figure
 
@@ -66,11 +66,11 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
     with first:
         axis = inputs.pick("Deviation", "identification.component", {"": "Size", "x": "X", "y": "Y", "z": "Z"})
     with made:
-        inputs.choice("Band", "identification.band", BANDS, bench.band, bench.writer("band"), inputs.LISTED)
+        field(bench, "band", inputs.LISTED)
     with second:
-        field(bench, "force_unsure", NumberBox("Force known to ±", "N", 5.0, 0, low=0, high=1000))
+        field(bench, "force_unsure")
     with third:
-        field(bench, "length_unsure", NumberBox("Link lengths to ±", "mm", 0.5, 2, low=0, high=50))
+        field(bench, "length_unsure")
     try:
         found, known = predicted(bench, robot, result)
         now = cut_of(robot)

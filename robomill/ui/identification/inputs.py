@@ -11,7 +11,7 @@ from robomill.errors import LoadTestError, RobomillError
 from robomill.files import TABLE
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import MODELS, Model
+from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import TEMPLATES, load_test_template
 from robomill.io.load_tests import read_findings
@@ -21,8 +21,8 @@ from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import NumberBox
-from robomill.ui.identification.bench import SAMPLES, Bench, take_sample
+from robomill.ui.bench import MOST_KEPT, OWN, SAMPLES, THE_PROJECTS, Bench
+from robomill.ui.identification.bench import decide, decided, field, put_sample, put_tests
 from robomill.ui.identification.words import summary
 
 SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual laboratory"}
@@ -34,18 +34,9 @@ VIEWS = {
     "next": "Measure next",
     "cut": "In the cut",
 }
-TREATMENTS = {
-    "fit_points": (
-        "Points fitted beside the compliances",
-        {"none": "None: as stated", "force": "Load point", "gauge": "Gauge point", "both": "Load and gauge point"},
-    ),
-    "weights": ("What counts how much", {"equal": "Every reading alike", "size": "Every test by its relative error"}),
-    "leave_out": ("Left out together", {"pose": "Poses, spread over all", "neighbours": "Neighbouring poses"}),
-}
-BANDS = {"model": "Noise and error of the model", "noise": "Noise of the fit only"}
 MAX_MB = 50
 EDITABLE = 60_000
-OWN = "own"
+USED = "identification.use"
 
 
 def choose(key: str, options: dict[str, str]) -> str:
@@ -55,42 +46,34 @@ def choose(key: str, options: dict[str, str]) -> str:
 
 def source(bench: Bench, robot: Robot) -> None:
     """A sample, a file, or pasted rows; refused text stays with its sentence."""
-    samples = {**SAMPLES, OWN: bench.name} if not bench.sample else SAMPLES
-    inputs.choice(
-        "Load tests",
-        "identification.sample",
-        samples,
-        bench.sample or OWN,
-        lambda name: None if name == OWN else take_sample(bench, name),
-        inputs.LISTED,
-    )
-    upload("Your load tests (CSV)", "identification.file", bench.take, bench.revision)
+    samples = {**SAMPLES, OWN: bench.name} if bench.sample == OWN else SAMPLES
+    inputs.choice("Load tests", "identification.sample", samples, bench.sample, put_sample, inputs.LISTED)
+    upload("Your load tests (CSV)", "identification.file", put_tests)
     _templates(robot)
     if len(bench.text) > EDITABLE:
-        pieces.note(f"{bench.name}: {len(bench.text.splitlines()):,} lines; files of this size are edited outside.")
+        kept = "" if len(bench.text) <= MOST_KEPT else " and not kept with the project"
+        lines = len(bench.text.splitlines())
+        pieces.note(f"{bench.name}: {lines:,} lines; files of this size are edited outside{kept}.")
         return
-    with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=not bench.sample):
+    with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=bench.sample == OWN):
         inputs.text(
             "Header with units, then one row a test",
             "identification.rows",
             bench.text,
-            lambda rows: bench.take(rows, "pasted rows"),
+            lambda rows: put_tests(rows, "pasted rows"),
             lines=8,
             height=220,
         )
         pieces.note("Commas, semicolons or tabs, as copied from a spreadsheet. Lines with # are remarks.")
 
 
-def upload(label: str, key: str, take: Callable[[str, str], None], revision: int) -> None:
-    """A file that is put on the bench as text; what is not text is refused in a sentence.
-
-    ``revision`` changes when the file was taken: the box is empty again then.
-    """
+def upload(label: str, key: str, take: Callable[[str, str], None]) -> None:
+    """A file that is put on the bench as text; what is not text is refused in a sentence."""
 
     def text_of(data: bytes, name: str) -> None:
         take(read_text(data, LoadTestError, TABLE, name)[0], name)
 
-    inputs.upload(label, key, text_of, most_MB=MAX_MB, fresh=revision)
+    inputs.upload(label, key, text_of, most_MB=MAX_MB, fresh=session.store().revision)
 
 
 def _templates(robot: Robot) -> None:
@@ -104,35 +87,29 @@ def _templates(robot: Robot) -> None:
 
 def robot_choice(bench: Bench) -> None:
     """Which robot was measured: the project's, or a preset."""
-    titles = {"": f"The project's: {session.project().setup.robot.name}", **{n: n for n in robot_names()}}
-    write = bench.writer("robot_name")
-    inputs.choice("Robot measured", "identification.robot", titles, bench.robot_name, write, inputs.LISTED)
+    own = session.project().setup.robot.name
+    titles = {THE_PROJECTS: f"The project's: {own}", **{n: n for n in robot_names()}}
+    now = bench.robot_name(own)
+    inputs.choice("Robot measured", "identification.robot", titles, now, decided("robot"), inputs.LISTED)
 
 
 def model_choice(bench: Bench, robot: Robot) -> None:
     """Which springs are fitted, where links bend, and whether tests that do not fit weigh less."""
-    titles = {name: family.title for name, family in MODELS.items()}
-    inputs.choice("What gives", "identification.model", titles, bench.model, bench.writer("model"), inputs.LISTED)
+    field(bench, "model", inputs.LISTED)
     if Model(bench.model).has("joint"):
-        inputs.switch(
-            "Let the tests say where links bend",
-            "identification.bending_auto",
-            bench.bending_auto,
-            bench.writer("bending_auto"),
-        )
+        field(bench, "bending_auto")
     if Model(bench.model).has("bending") and not bench.bending_auto:
         inputs.several(
             "Links bend at joints",
             "identification.bending",
             {j: str(j) for j in robot.joint_numbers},
             [j for j in bench.bending if j in robot.joint_numbers],
-            lambda joints: setattr(bench, "bending", tuple(sorted(joints))),
+            lambda joints: decide(bending=tuple(sorted(joints))),
         )
-    inputs.switch("Weigh down tests that do not fit", "identification.robust", bench.robust, bench.writer("robust"))
+    field(bench, "robust")
     with st.expander("How the tests are treated", icon=":material/tune:", expanded=bench.fit_points != "none"):
-        for name, (label, options) in TREATMENTS.items():
-            now, write = getattr(bench, name), bench.writer(name)
-            inputs.choice(label, f"identification.treatment.{name}", options, now, write, inputs.LISTED)
+        for name in ("fit_points", "weights", "leave_out"):
+            field(bench, name, inputs.LISTED)
 
 
 def said(tests: LoadTests | JointTests | None, refusal: RobomillError | None, found: tuple[Finding, ...]) -> None:
@@ -206,11 +183,8 @@ def knowledge(bench: Bench, robot: Robot, result: IdentificationResult) -> Knowl
 
 def _use(bench: Bench, fitted: SimulationSetup, robot: Robot, result: IdentificationResult) -> None:
     known = knowledge(bench, robot, result)
-    session.change(robot=fitted.robot, springs=fitted.springs, measured_map=None)
+    project = session.project()
+    if bench.robot_name(project.setup.robot.name) != THE_PROJECTS:
+        session.experiment(bench.replace(robot=THE_PROJECTS), USED)
+    session.change(label=USED, robot=fitted.robot, springs=fitted.springs, measured_map=None)
     session.know(known)
-    bench.robot_name = ""
-
-
-def field(bench: Bench, name: str, box: NumberBox) -> None:
-    """The box of a number of the bench."""
-    inputs.value(f"identification.{name}", box, getattr(bench, name), bench.writer(name))

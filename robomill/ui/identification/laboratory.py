@@ -2,60 +2,122 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
-from robomill.errors import RobomillError
-from robomill.identification.laboratory import Laboratory
+from robomill.arrays import FloatArray
+from robomill.errors import LoadTestError, RobomillError
+from robomill.identification.laboratory import MAX_LOAD, Laboratory
 from robomill.identification.load_test import LoadTests
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import load_tests_to_csv
 from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
+from robomill.paper import SLOT
+from robomill.quantities import choice, quantities, quantity, settle, whole
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces, session
-from robomill.ui.box import NumberBox
+from robomill.ui import declared, inputs, pieces, session
+from robomill.ui.bench import Bench
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import Bench, Trial, robot_of
+from robomill.ui.identification.bench import robot_of
 from robomill.ui.identification.plan import theta_columns
 from robomill.ui.project import View
 from robomill.units import format_number, format_percent, format_si, from_si
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
 
-POSE = (*(NumberBox(name, "mm", 50.0, 1) for name in "XYZ"), *(NumberBox(name, "deg", 5.0, 1) for name in "AB"))
-SEED = 1
+KEY = "identification.lab"
+
+
+@dataclass(frozen=True, eq=False)
+class Rules:
+    """What hides the robot, how far the dial gauge is off (one standard deviation, m), how many readings there are."""
+
+    seed: int = whole("Number", least=0, most=9999, default=1)
+    noise: float = quantity("Noise", "um", least=0.0, most=500e-6, step=1.0, default=Laboratory.noise)
+    budget: int = whole("Budget", least=1, most=500, default=Laboratory.budget)
+
+    def __post_init__(self) -> None:
+        settle(self, LoadTestError)
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What is measured next: the tip (3,) m in {M} and the tilt A, B rad; the load, N, along an axis of {M}."""
+
+    tip: FloatArray = quantity("Tip", "mm", shape=(3,), axes=tuple("XYZ"), step=50.0, digits=1, default=SLOT.point)
+    tilt: FloatArray = quantity("Tilt", "deg", shape=(2,), axes=tuple("AB"), step=5.0, digits=1, default=(0.0, 0.0))
+    load: float = quantity("Load", "N", above=0.0, most=MAX_LOAD, step=50.0, digits=0, default=250.0)
+    axis: str = choice("Direction", {axis: f"+{axis}" for axis in "XYZ"}, default="Y")
+
+    def __post_init__(self) -> None:
+        settle(self, LoadTestError)
+
+    @property
+    def pose(self) -> FloatArray:
+        """(5,) X, Y, Z, A, B."""
+        return np.concatenate([self.tip, self.tilt])
+
+    @property
+    def F(self) -> FloatArray:
+        """(3,) N in {M}."""
+        return np.eye(3)["XYZ".index(self.axis)] * self.load
+
+
+@dataclass(eq=False)
+class Exercise:
+    """An exercise under way, in the session only: it is no part of the project. ``rules`` are those of the next one."""
+
+    laboratory: Laboratory
+    trial: Trial
+    rules: Rules = field(default_factory=Rules)
+    handed_in: bool = False
+
+
+def exercise(robot: Robot) -> Exercise:
+    """The exercise with ``robot``; a new one begins at the paper's point, or where the arm stands at home."""
+    held: Exercise | None = session.kept(KEY)
+    if held is None or held.laboratory.robot.name != robot.name:
+        trial, rules = Trial(), Rules()
+        if not inverse_kinematics(robot, pose_from_world(trial.pose)).reached:
+            home = world_from_pose(tool_pose(robot, robot.home))
+            trial = Trial(tip=home[:3], tilt=home[3:])
+        held = Exercise(_laboratory(robot, rules), trial, rules)
+        session.keep(KEY, held)
+    return held
+
+
+def _laboratory(robot: Robot, rules: Rules) -> Laboratory:
+    return Laboratory(robot, rules.seed, rules.noise, budget=rules.budget)
 
 
 def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: what is left (its sentence at the ``top``), the pose, the readings, the fit, the score."""
     robot = robot_of(bench)
-    if bench.laboratory is None or bench.laboratory.robot.name != robot.name:
-        _open(bench, robot)
-    lab = bench.laboratory
-    assert lab is not None
+    now = exercise(robot)
+    lab = now.laboratory
     result, reason = _fit(lab)
     done = _taken(lab)
     task = (
         "The compliances of this robot's joints are hidden. Hang weights on the tool, read the dial gauge, find them."
     )
     with top:
-        pieces.headline("Virtual laboratory", title(lab, result, bench.handed_in), "" if done else task)
-    pieces.tiles(tiles(lab, result, bench.handed_in))
+        pieces.headline("Virtual laboratory", title(lab, result, now.handed_in), "" if done else task)
+    pieces.tiles(tiles(lab, result, now.handed_in))
     left, right = pieces.split([1, 1.9], "laboratory", gap="large")
     with left:
-        _rules(bench, robot, lab)
-        _measure(bench, lab)
+        _rules(now, robot)
+        _measure(now)
     with right:
         with st.container(border=True):
-            _arm(robot, bench.trial, dark, 330 if done else 450)
+            _arm(robot, now.trial, dark, 330 if done else 450)
         if result is not None:
-            truth = lab.reveal() if bench.handed_in else None
+            truth = lab.reveal() if now.handed_in else None
             with st.container(border=True):
                 for k, drawn in enumerate(words.intervals(result, _bare(robot), view.joint_unit, truth)):
                     pieces.figure(
@@ -63,10 +125,10 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
                         f"lab-intervals-{k}",
                         name="laboratory",
                         table=lambda: words.parameter_columns(result, _bare(robot), view.joint_unit),
-                        caption="Crosses: the truth." if bench.handed_in else "Bars: 95 % intervals.",
+                        caption="Crosses: the truth." if now.handed_in else "Bars: 95 % intervals.",
                         alt="What the readings say of each joint.",
                     )
-            _hand_in(bench, lab, result)
+            _hand_in(now, result)
         elif done:
             pieces.said("info", reason, "lightbulb")
         _readings(robot, lab.tests)
@@ -117,81 +179,53 @@ def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
     ]
 
 
-def _open(bench: Bench, robot: Robot) -> None:
-    """A new exercise with ``robot``, which begins at a pose that it reaches."""
-    _begin(bench, Laboratory(robot, seed=SEED))
-    reached = bool(inverse_kinematics(robot, pose_from_world(Trial.pose)).reached)
-    bench.trial = Trial() if reached else Trial(tuple(world_from_pose(tool_pose(robot, robot.home)).tolist()))
-
-
-def _begin(bench: Bench, lab: Laboratory) -> None:
-    bench.laboratory, bench.handed_in = lab, False
-
-
-def _rules(bench: Bench, robot: Robot, lab: Laboratory) -> None:
+def _rules(now: Exercise, robot: Robot) -> None:
     """Number of the hidden robot, noise and budget; a new exercise begins with the button."""
-    boxes = {
-        "seed": (NumberBox("Number", whole=True, low=0, high=9999), lab.seed),
-        "noise": (NumberBox("Noise", "um", 1.0, 1, low=0, high=500), lab.noise),
-        "budget": (NumberBox("Budget", whole=True, low=1, high=500), lab.budget + _taken(lab)),
-    }
 
-    def asked(name: str) -> Any:
-        return session.kept(f"identification.lab.{name}", boxes[name][1])
+    def write(name: str, value: Any) -> None:
+        now.rules = replace(now.rules, **{name: value})
 
-    with st.expander(f"Hidden robot no. {lab.seed}", icon=":material/science:"):
+    def anew() -> None:
+        now.laboratory, now.handed_in = _laboratory(robot, now.rules), False
+
+    with st.expander(f"Hidden robot no. {now.laboratory.seed}", icon=":material/science:"):
         pieces.note("The same number hides the same robot from everyone in the class.")
-        for column, (name, (box, _)) in zip(st.columns(3), boxes.items(), strict=True):
-            key = f"identification.lab.{name}"
-            with column:
-                inputs.value(key, box, asked(name), partial(session.keep, key))
-
-        def anew() -> None:
-            _begin(bench, Laboratory(robot, **{name: asked(name) for name in boxes}))
-
+        declared.fields(now.rules, KEY, write)
         inputs.button("Begin anew", "identification.lab.begin", "restart_alt", anew, width="stretch")
 
 
-def _measure(bench: Bench, lab: Laboratory) -> None:
+def _measure(now: Exercise) -> None:
     """Pose, weight and direction, and the two buttons that spend readings."""
 
-    def write(**changed: Any) -> None:
-        bench.trial = replace(bench.trial, **changed)
+    def draw(name: str) -> None:
+        def write(value: Any) -> None:
+            now.trial = replace(now.trial, **{name: value})
 
-    def move(i: int, value: float) -> None:
-        pose = bench.trial.pose
-        write(pose=(*pose[:i], value, *pose[i + 1 :]))
+        declared.draw(quantities(Trial)[name], f"{KEY}.{name}", getattr(now.trial, name), write)
 
-    trial = bench.trial
-    st.markdown("**Put the tool tip at**")
-    for i, (box, column) in enumerate(zip(POSE, [*st.columns(3), *st.columns(3)], strict=False)):
-        with column:
-            inputs.value(f"identification.lab.{box.label}", box, trial.pose[i], partial(move, i))
-    st.markdown("**Hang on it**")
+    st.markdown("**Put the tool tip at, and hang on it**")
+    for name in ("tip", "tilt"):
+        draw(name)
     left, right = st.columns([1, 1.6])
     with left:
-        load = NumberBox("Load", "N", 50.0, 0)
-        inputs.value("identification.lab.load", load, trial.load, lambda v: write(load=v))
+        draw("load")
     with right:
-        axes = {axis: f"+{axis}" for axis in "XYZ"}
-        inputs.choice("Direction", "identification.lab.axis", axes, trial.axis, lambda v: write(axis=v))
-    spent = lab.budget == 0 or bench.handed_in
+        draw("axis")
+    lab = now.laboratory
+    spent = lab.budget == 0 or now.handed_in
     first, second = st.columns(2)
     with first:
-        one = ("identification.lab.measure", "straighten", _push, bench, False)
+        one = ("identification.lab.measure", "straighten", _push, now, now.trial.F)
         inputs.button("Measure", *one, type="primary", width="stretch", disabled=spent)
     with second:
-        three = ("identification.lab.three", "", _push, bench, True)
+        three = ("identification.lab.three", "", _push, now, np.eye(3) * now.trial.load)
         inputs.button("Along X, Y and Z", *three, width="stretch", disabled=spent or lab.budget < 3)
-    if spent and not bench.handed_in:
+    if spent and not now.handed_in:
         pieces.note("The budget is spent: hand in what you have.")
 
 
-def _push(bench: Bench, three: bool) -> None:
-    assert bench.laboratory is not None
-    trial = bench.trial
-    F = np.eye(3) * trial.load if three else trial.F
-    bench.laboratory = bench.laboratory.measure_at(np.array(trial.pose), F)
+def _push(now: Exercise, F: FloatArray) -> None:
+    now.laboratory = now.laboratory.measure_at(now.trial.pose, F)
 
 
 def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
@@ -202,7 +236,7 @@ def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
 
 
 def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
-    solved = inverse_kinematics(robot, pose_from_world(np.array(trial.pose)))
+    solved = inverse_kinematics(robot, pose_from_world(trial.pose))
     if not bool(solved.reached):
         pieces.said("info", f"This pose cannot be measured: {solved.reason()}.", "block")
         return
@@ -220,10 +254,11 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
     )
 
 
-def _hand_in(bench: Bench, lab: Laboratory, result: IdentificationResult) -> None:
-    if not bench.handed_in:
-        show = (bench.writer("handed_in"), True)
-        inputs.button("Hand in and see the truth", "identification.lab.hand_in", "flag", *show)
+def _hand_in(now: Exercise, result: IdentificationResult) -> None:
+    lab = now.laboratory
+    if not now.handed_in:
+        show = partial(setattr, now, "handed_in", True)
+        inputs.button("Hand in and see the truth", "identification.lab.hand_in", "flag", show)
         pieces.note(result.explain(result.weakest_joint))
         return
     score = lab.score(result)

@@ -16,8 +16,9 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import cached, inputs, pieces, session, uncertainty
-from robomill.ui.identification.bench import MAP_SAMPLES, Bench, field_of, robot_of, sample_text
-from robomill.ui.identification.inputs import OWN, robot_choice, upload
+from robomill.ui.bench import MAP_SAMPLES, OWN, Bench
+from robomill.ui.identification.bench import field_of, put_map, put_map_sample, robot_of
+from robomill.ui.identification.inputs import robot_choice, upload
 from robomill.ui.project import View
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.deviation import both_figure
@@ -58,20 +59,20 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
 
 
 def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
-    samples = {**MAP_SAMPLES, OWN: bench.map_name} if not bench.map_sample else MAP_SAMPLES
+    samples = {**MAP_SAMPLES, OWN: bench.map_name} if bench.map_sample == OWN else MAP_SAMPLES
     first, second, third = pieces.split([1, 1.1, 1], "map-inputs", gap="large")
     with first:
         inputs.choice(
             "Measured compliances",
             "identification.map.sample",
             samples,
-            bench.map_sample or OWN,
-            lambda n: None if n == OWN else bench.take_map(sample_text(n), f"{n}.csv", n),
+            bench.map_sample,
+            put_map_sample,
             inputs.LISTED,
         )
         robot_choice(bench)
     with second:
-        upload("Your measured map (CSV)", "identification.map.file", bench.take_map, bench.map_revision)
+        upload("Your measured map (CSV)", "identification.map.file", put_map)
         pieces.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
         options = {f"C_{c}": f"C {c}" for c in COMPONENTS}

@@ -15,8 +15,9 @@ from robomill.robot.model import Robot
 from robomill.robot.stiffness import of_joint
 from robomill.robot.stiffness import shown as shown_in
 from robomill.ui import inputs, pieces
+from robomill.ui.bench import Bench
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import Bench, comparison_of
+from robomill.ui.identification.bench import comparison_of, decided
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import models_figure
 
@@ -56,7 +57,7 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
         pieces.note(f"{MODELS[name].title}: {reason}")
     _side_by_side(results, rows, robot, joint_unit)
     if bench.model != best.model:
-        take = (bench.writer("model"), best.model)
+        take = (decided("model"), best.model)
         inputs.button(f"Take {best.choice.title.lower()}", "identification.take_best", "thumb_up", *take)
 
 

@@ -17,14 +17,12 @@ from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.load_tests import read_load_tests
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces, session
-from robomill.ui.box import NumberBox
-from robomill.ui.identification.bench import Bench, tests_of
+from robomill.ui.bench import Bench
+from robomill.ui.identification.bench import decided, field, put_tests, remembered, tests_of
 from robomill.ui.identification.cut import cut_of
-from robomill.ui.identification.inputs import field, upload
+from robomill.ui.identification.inputs import upload
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.identification import gain_figure
-
-GOALS = {"joint": "One joint", "all": "All of them", "path": "The project's cut"}
 
 
 def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
@@ -66,28 +64,25 @@ def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit:
     upload(
         "Filled-in sheet (CSV)",
         "identification.filled",
-        lambda text, name: _take_sheet(bench, robot, text, name),
-        bench.revision,
+        lambda text, name: put_tests(*joined(bench, robot, text, name)),
     )
 
 
 def _goal_inputs(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     first, second, third, fourth, fifth = pieces.split([1.5, 1.1, 1, 1, 1], "goal", gap="small")
     with first:
-        inputs.choice(
-            "Make more certain", "identification.goal", GOALS, bench.goal, bench.writer("goal"), inputs.LISTED
-        )
+        field(bench, "goal", inputs.LISTED)
     if bench.goal == "joint":
         joints = {j: f"Joint {j}" for j in robot.joint_numbers}
         now = _joint(bench, robot, result)
         with second:
-            inputs.choice("Joint", "identification.goal_joint", joints, now, bench.writer("goal_joint"), inputs.LISTED)
+            inputs.choice("Joint", "identification.goal_joint", joints, now, decided("goal_joint"), inputs.LISTED)
     with third:
-        field(bench, "count", NumberBox("More tests", whole=True, low=1, high=30))
+        field(bench, "count")
     with fourth:
-        field(bench, "load", NumberBox("Load", "N", 50.0, 0, low=1, high=5000))
+        field(bench, "load")
     with fifth:
-        field(bench, "tilt", NumberBox("Tilt up to", "deg", 5.0, 0, low=0, high=90))
+        field(bench, "tilt")
     pieces.note(
         "Chosen among 300 poses within the joint limits and "
         f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."
@@ -100,9 +95,10 @@ def _joint(bench: Bench, robot: Robot, result: IdentificationResult) -> int:
     return result.weakest_joint if result.has_joints else robot.joint_numbers[0]
 
 
-def _take_sheet(bench: Bench, robot: Robot, text: str, name: str) -> None:
+def joined(bench: Bench, robot: Robot, text: str, name: str) -> tuple[str, str]:
+    """The tests with the rows of a sheet that was filled in, and what they are called then."""
     read_load_tests(text + "\n", robot)  # refused here with row and column of the sheet, before it joins anything
-    bench.take(append_rows(bench.text, text, LAYOUT, name), f"{bench.name} + {name}")
+    return append_rows(bench.text, text, LAYOUT, name), f"{bench.name} + {name}"
 
 
 def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
@@ -123,7 +119,7 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
         # The fit is kept beside the plan so that its identity stays its own.
         return result, next_best(robot, tests, result, found, count=bench.count, goal=goal)
 
-    return bench.remembered(key, make)[1]
+    return remembered(key, make)[1]
 
 
 def plan_columns(robot: Robot, plan: Plan, unit: str) -> dict[str, Any]:

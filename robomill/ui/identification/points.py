@@ -13,7 +13,8 @@ from robomill.identification.pull_words import pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces
-from robomill.ui.identification.bench import Bench, lines_of, used_tests
+from robomill.ui.bench import Bench
+from robomill.ui.identification.bench import decided, lines_of, used_tests
 from robomill.units import format_many, format_si, from_si, unit_label
 from robomill.viz.identification import gaps_figure
 
@@ -46,10 +47,10 @@ def offer(bench: Bench, result: IdentificationResult) -> None:
     """The button that fits the points that are worth it (its sentence is among the findings), or the way back."""
     if result.offer is not None:
         names = " and ".join(TITLES[point.point] for point in result.offer.points)
-        fit = (bench.writer("fit_points"), result.offer.fit_points)
+        fit = (decided("fit_points"), result.offer.fit_points)
         inputs.button(f"Fit the {names}", "identification.offer", "my_location", *fit, width="stretch")
     elif result.points:
-        back = (bench.writer("fit_points"), "none")
+        back = (decided("fit_points"), "none")
         inputs.button("Take the points as stated", "identification.stated", "undo", *back, width="stretch")
 
 

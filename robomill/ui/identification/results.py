@@ -10,8 +10,9 @@ import streamlit as st
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces
+from robomill.ui.bench import Bench
 from robomill.ui.identification import words
-from robomill.ui.identification.bench import Bench
+from robomill.ui.identification.bench import decide, decided
 from robomill.ui.markup import Html, as_html
 from robomill.units import format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
@@ -159,13 +160,13 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
         "identification.excluded",
         {row: str(row) for row in flagged},
         bench.excluded,
-        lambda chosen: setattr(bench, "excluded", tuple(sorted(chosen))),
+        lambda chosen: decide(excluded=tuple(sorted(chosen))),
     )
     left, right = st.columns(2)
-    leave_out = bench.writer("excluded")
+    leave_out = decided("excluded")
     these = "this row" if len(rows) == 1 else f"these {len(rows)} rows"
     with left:
-        out = ("identification.leave_out", "filter_alt", leave_out, flagged)
+        out = ("identification.leave_these_out", "filter_alt", leave_out, flagged)
         inputs.button(f"Leave out {these} and refit", *out, disabled=not rows, width="stretch")
     with right:
         every = ("identification.use_all", "undo", leave_out, ())
