@@ -11,8 +11,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.edge import EdgeTerm
-from robomill.cutting.engaged import FACING, nose_pieces, pushes, sector_edges
+from robomill.cutting.edge import EdgeTerm, moments, push
+from robomill.cutting.engaged import FACING, nose_pieces, sector_edges
 from robomill.cutting.tool import DISH, Cutter
 from robomill.progress import slices
 
@@ -110,7 +110,6 @@ def force_over_pitch(
     pitch, sense = 2.0 * np.pi / cutter.flutes, 1.0 if cutter.hand == "right" else -1.0
     turn = ((np.arange(instants) + 0.5) / instants + np.arange(cutter.flutes)[:, None]).ravel() * pitch
     lag = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
-    pushed = [(term.exponent, *pushes(term, cutter)) for term in terms]
     force = np.zeros((len(course.c), instants, 3))
     sectors = course.sectors
     thick = sectors[..., 2] - sectors[..., 1]
@@ -126,12 +125,11 @@ def force_over_pitch(
         facing = course.feed[:, :1] * sine * s - course.feed[:, 1:] * t
         engaged = np.where(inside & (facing > FACING), engaged, 0.0)
         h = course.c[:, None] * np.maximum(facing, FACING)
-        for exponent, Kt, Kr, Ka in pushed:
-            load = (engaged * h**exponent).reshape(len(phi), cutter.flutes, instants)
-            push = (-Kt * cosine - (Kr * s + Ka * t) * sine, Kt * sine - (Kr * s + Ka * t) * cosine)
-            for n in range(2):
-                force[..., n] += (load * push[n].reshape(load.shape)).sum(axis=1)
-            force[..., 2] += (Kr * t - Ka * s) * load.sum(axis=1)
+        unit = moments(1.0, s, t, sine, cosine)
+        for term in terms:
+            load = engaged * h**term.exponent
+            for n, share in enumerate(push(term, cutter, unit)):
+                force[..., n] += (load * share).reshape(len(phi), cutter.flutes, instants).sum(axis=1)
 
     def seen(height: FloatArray) -> tuple[FloatArray, IntArray]:
         """Angles of the teeth at a height (k, 1) m, and the sectors they are in."""

@@ -9,20 +9,27 @@ with h = c sin(phi) sin(kappa) and db = dz / sin(kappa): c is the feed per tooth
 (clockwise from the left of the feed) and kappa the angle between the tool axis and the normal of the cutter's
 surface (90 deg on a cylinder). Mechanistic models have the terms e = 1 (chip) and e = 0 (edge), Kienzle's has
 e = 1 - mc. Source: Altintas, Manufacturing Automation, ch. 2; Engin and Altintas 2001 for general cutters.
-Here the arc is the same over the depth, as in a slot; ``engaged`` has the part of the cutter as it is.
-Axes of all results: feed, feed-normal (left), axial (z_T).
+
+``moments`` and ``push`` are the one statement of which way these act: whatever sums edges up (an arc that is the same
+over the depth here, the part of the cutter as it is in ``engaged``, a kernel, a turn of the teeth in ``course``) ends
+in them. Axes of all results: feed, feed-normal (left), axial (z_T).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
+from robomill.compiled import part
 from robomill.cutting.tool import Cutter
+
+MOMENTS = 8
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,35 @@ class EdgeTerm:
     Kt: float
     Kr: float
     Ka: float
+
+
+@part
+def moments(load: Any, upright: Any, lying: Any, sine: Any, cosine: Any, plain: Any = 1.0) -> tuple[Any, ...]:
+    """The sums that a force follows from, of edges at an angle whose ``sine`` and ``cosine`` these are: ``load`` is the
+    sum of h^e ds over them, ``upright`` and ``lying`` that times sin(kappa) and times cos(kappa).
+
+    Over an arc, the integrals of (sin, cos, 1) sin^e(phi) stand for ``sine``, ``cosine`` and ``plain``.
+    """
+    return (
+        load * cosine,
+        load * sine,
+        upright * sine,
+        upright * cosine,
+        lying * plain,
+        lying * sine,
+        lying * cosine,
+        upright * plain,
+    )
+
+
+def push(term: EdgeTerm, cutter: Cutter, sums: Sequence[Any]) -> tuple[Any, Any, Any]:
+    """What edges with these ``moments`` push the tool with, by one term of the law: feed, feed-normal, axial."""
+    Kt, Kr, Ka = (term.Kt if cutter.hand == "right" else -term.Kt), term.Kr, cutter.pull * term.Ka
+    return (
+        -(Kt * sums[0] + Kr * sums[2] + Ka * sums[5]),
+        Kt * sums[1] - Kr * sums[3] - Ka * sums[6],
+        Kr * sums[4] - Ka * sums[7],
+    )
 
 
 def sine_integral(q: float, angle: ArrayLike) -> FloatArray:
@@ -81,19 +117,6 @@ def depth_moment(cutter: Cutter, depth: ArrayLike, p: float, q: int) -> FloatArr
     return side + rho * np.sin(kappa) ** (p + 2.0) / (p + 2.0)
 
 
-def depth_sums(
-    term: EdgeTerm, cutter: Cutter, depth: FloatArray, pull: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Tangential, radial (into the axis) and axial (along +z_T) force per h-power, summed over the depth."""
-    e = term.exponent
-    upright = depth_moment(cutter, depth, e, 0)
-    lying = depth_moment(cutter, depth, e - 1.0, 1)
-    tangential = term.Kt * depth_moment(cutter, depth, e - 1.0, 0)
-    radial = term.Kr * upright + pull * term.Ka * lying
-    axial = term.Kr * lying - pull * term.Ka * upright
-    return tangential, radial, axial
-
-
 def mean_force(
     terms: tuple[EdgeTerm, ...],
     cutter: Cutter,
@@ -108,18 +131,11 @@ def mean_force(
     mill in a slot: F_x = -N a (Krc c/4 + Kre/pi), F_y = N a (Ktc c/4 + Kte/pi), |F_z| = N a (Kac c/pi + Kae/2).
     """
     c, a_p, st, ex = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (c, a_p, phi_st, phi_ex)))
-    mirror = cutter.hand == "left"
-    if mirror:  # a left-hand cutter is a right-hand one seen in a mirror along the feed
-        st, ex = np.pi - ex, np.pi - st
     force = np.zeros((*c.shape, 3))
     for term in terms:
-        plain, sine, cosine = arc_moments(term.exponent, st, ex)
-        load = c**term.exponent
-        tangential, radial, axial = (load * part for part in depth_sums(term, cutter, a_p, cutter.pull))
-        force[..., 0] -= tangential * cosine + radial * sine
-        force[..., 1] += tangential * sine - radial * cosine
-        force[..., 2] += axial * plain
-    force *= cutter.flutes / (2.0 * np.pi)
-    if mirror:
-        force[..., 1] *= -1.0
-    return force
+        e = term.exponent
+        plain, sine, cosine = arc_moments(e, st, ex)
+        load, upright, lying = (depth_moment(cutter, a_p, *pq) for pq in ((e - 1.0, 0), (e, 0), (e - 1.0, 1)))
+        sums = moments(load, upright, lying, sine, cosine, plain)
+        force += np.stack(push(term, cutter, sums), axis=-1) * (c**e)[..., None]
+    return np.asarray(force * (cutter.flutes / (2.0 * np.pi)))

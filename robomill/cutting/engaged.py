@@ -2,17 +2,11 @@
 
 At a point of the cutter's surface at angle phi (clockwise from the left of the feed), whose normal leans kappa from the
 axis, with the unit feed v: the chip is h = c (v . n), c being the feed per tooth, and a piece of edge ds carries, for
-every term (e, Kt, Kr, Ka) of the law, Kt h^e ds against the tooth's motion, Kr h^e ds along -n and Ka h^e ds along the
-surface, towards the part where the helix pulls (``edge``). With w = (v . n)^e dphi ds the sums are, over all that is
-engaged,
-
-    w cos(phi), w sin(phi);  w sin(kappa) sin(phi), w sin(kappa) cos(phi), w cos(kappa);
-    w cos(kappa) sin(phi), w cos(kappa) cos(phi), w sin(kappa)
-
-so that any coefficients of the same exponents can be applied afterwards. The chip is that of the full
-feed, across and along the axis, so that chips add up to the volume removed; the flat end of a mill takes part where the
-feed goes down by more than its ``DISH``. Source: Engin and Altintas 2001; the feed along the axis as in Ozturk and
-Budak 2007 (5-axis ball-end milling).
+every term of the law, a load h^e ds (``edge``). With w = (v . n)^e dphi ds the ``moments`` are summed over all that is
+engaged, so that any coefficients of the same exponents can be applied afterwards. The chip is that of the full feed,
+across and along the axis, so that chips add up to the volume removed; the flat end of a mill takes part where the feed
+goes down by more than its ``DISH``. Source: Engin and Altintas 2001; the feed along the axis as in Ozturk and Budak
+2007 (5-axis ball-end milling).
 """
 
 from __future__ import annotations
@@ -24,11 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
-from robomill.cutting.edge import EdgeTerm
+from robomill.cutting.edge import MOMENTS, EdgeTerm, moments, push
 from robomill.cutting.tool import DISH, Cutter
 from robomill.errors import CuttingError
 
-MOMENTS = 8
 PANELS = 12  # of a half turn that an engaged part is summed over
 ANGLES, PIECES = 720, 64  # of the turn and of a rounded nose, for a full slot
 FACING = 1e-6  # share of the feed: a surface that faces it by less does not cut
@@ -79,17 +72,8 @@ class EngagedPart:
         c = np.asarray(c, dtype=np.float64)
         force = np.zeros((len(self), 3))
         for term in terms:
-            M = self.of(term.exponent) * (c**term.exponent)[:, None]
-            Kt, Kr, Ka = pushes(term, cutter)
-            force[:, 0] -= Kt * M[:, 0] + Kr * M[:, 2] + Ka * M[:, 5]
-            force[:, 1] += Kt * M[:, 1] - Kr * M[:, 3] - Ka * M[:, 6]
-            force[:, 2] += Kr * M[:, 4] - Ka * M[:, 7]
+            force += np.stack(push(term, cutter, self.of(term.exponent).T * c**term.exponent), axis=-1)
         return np.asarray(force * (cutter.flutes / (2.0 * np.pi)))
-
-
-def pushes(term: EdgeTerm, cutter: Cutter) -> tuple[float, float, float]:
-    """A term's coefficients with the signs of a cutter's hand (tangential) and helix (along the edge)."""
-    return (term.Kt if cutter.hand == "right" else -term.Kt), term.Kr, cutter.pull * term.Ka
 
 
 def sector_edges(count: int) -> FloatArray:
@@ -122,9 +106,7 @@ def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatAr
     ds = np.concatenate([[face], nose.ds, [max(a_p - cutter.nose_height, 0.0)]])
     facing = np.sqrt(max(1.0 - along * along, 0.0)) * sine * np.sin(kappa) - along * np.cos(kappa)
     w = np.where(facing > FACING, np.maximum(facing, FACING) ** e, 0.0) * ds * (2.0 * np.pi / ANGLES)
-    up, lying = w * np.sin(kappa), w * np.cos(kappa)
-    sums = (w * cosine, w * sine, up * sine, up * cosine, lying, lying * sine, lying * cosine, up)
-    return np.array([each.sum() for each in sums])
+    return np.array([each.sum() for each in moments(w, w * np.sin(kappa), w * np.cos(kappa), sine, cosine)])
 
 
 class NosePieces(NamedTuple):

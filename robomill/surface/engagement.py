@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray, frozen
-from robomill.cutting.engaged import MOMENTS, EngagedPart
+from robomill.cutting.edge import MOMENTS
+from robomill.cutting.engaged import EngagedPart
 from robomill.surface.march import March
 
 

@@ -19,7 +19,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
-from robomill.cutting.engaged import FACING, MOMENTS, PANELS
+from robomill.cutting.edge import MOMENTS, moments
+from robomill.cutting.engaged import FACING, PANELS
 from robomill.cutting.tool import DISH
 from robomill.surface.envelope_kernels import Shape
 from robomill.surface.material_kernels import FAR, World, standing, top_over
@@ -333,16 +334,10 @@ def add_pieces(room: Room, count: int, total: FloatArray) -> None:
         if phi != row[PHI]:
             sine, cosine = math.sin(phi), math.cos(phi)
         for n in range(exponents):
-            sums, moments = row[SUMS + 3 * n :], total[MOMENTS * n :]
-            plain, upright, lying = width * sums[0], width * sums[1], width * sums[2]
-            moments[0] += plain * cosine
-            moments[1] += plain * sine
-            moments[2] += upright * sine
-            moments[3] += upright * cosine
-            moments[4] += lying
-            moments[5] += lying * sine
-            moments[6] += lying * cosine
-            moments[7] += upright
+            sums = row[SUMS + 3 * n :]
+            each = moments(width * sums[0], width * sums[1], width * sums[2], sine, cosine)
+            for q in range(MOMENTS):
+                total[MOMENTS * n + q] += each[q]
         if row[HEIGHT] > 0.0:
             sector[1] += width * row[HEIGHT]
             sector[2] += width * row[HEIGHT] * row[LOWEST]

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
-from robomill.cutting.engaged import FACING, MOMENTS, PANELS
+from robomill.cutting.edge import MOMENTS
+from robomill.cutting.engaged import FACING, PANELS
 from robomill.cutting.force import feed_frame
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling

@@ -1,5 +1,6 @@
 """Milling force: closed forms against brute force over the tooth angle, symmetries, and the paper's six rows."""
 
+import itertools
 import math
 
 import numpy as np
@@ -8,7 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.edge import EdgeTerm, arc_moments, depth_moment, mean_force, sine_integral
+from robomill.cutting.edge import (
+    MOMENTS,
+    EdgeTerm,
+    arc_moments,
+    depth_moment,
+    mean_force,
+    moments,
+    push,
+    sine_integral,
+)
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.kienzle import KienzleForce
@@ -275,6 +285,25 @@ def test_what_has_no_model_is_said_and_not_a_number():
         **{**{n: getattr(SLOT, n) for n in ("v_f", "a_p", "phi_st", "phi_ex", "cutting", "s", "t")}, "n_s": np.nan}
     )
     assert [each.code for each in mill.unjudged(unknown)] == ["spindle_speed"]
+
+
+def test_a_bit_of_edge_pushes_along_its_three_directions():
+    """Each coefficient alone against its direction: the tooth's motion, the normal, and down the edge."""
+    phi, kappa = 0.7, 0.4
+    outward, up = np.array([math.sin(phi), math.cos(phi), 0.0]), np.array([0.0, 0.0, 1.0])
+    motion = np.array([math.cos(phi), -math.sin(phi), 0.0])  # of a right-hand tooth, clockwise from the left
+    normal = math.sin(kappa) * outward - math.cos(kappa) * up
+    down = -math.sin(kappa) * up - math.cos(kappa) * outward
+    sums = moments(2.0, 2.0 * math.sin(kappa), 2.0 * math.cos(kappa), math.sin(phi), math.cos(phi))
+    assert len(sums) == MOMENTS
+    for hand, helix in itertools.product(("right", "left"), repeat=2):
+        cutter, turns = MILL.replace(hand=hand, helix=helix), 1.0 if hand == "right" else -1.0
+        pulls = 1.0 if hand == helix else -1.0
+        for K, way in (("Kt", -turns * motion), ("Kr", -normal), ("Ka", pulls * down)):
+            term = EdgeTerm(1.0, **{"Kt": 0.0, "Kr": 0.0, "Ka": 0.0, K: 5.0})
+            np.testing.assert_allclose(push(term, cutter, sums), 10.0 * way, atol=1e-15)
+    straight = push(EdgeTerm(1.0, 0.0, 0.0, 5.0), MILL.replace(helix_angle=0.0), sums)
+    np.testing.assert_array_equal(straight, 0.0)
 
 
 def test_moments_of_an_empty_arc_and_of_no_depth():

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from robomill.cutting.edge import EdgeTerm
-from robomill.cutting.engaged import FACING, EngagedPart, full_slot, nose_pieces, pushes, sector_edges
+from robomill.cutting.engaged import FACING, EngagedPart, full_slot, nose_pieces, sector_edges
 from robomill.cutting.tool import DISH
 from robomill.errors import CuttingError
 from tests.cutting.cutters import CUTTERS, MILL
@@ -42,22 +41,6 @@ def test_a_part_touches_where_any_of_its_sums_is_not_zero():
     np.testing.assert_array_equal(part.of(0.0)[1], [0, 0, 0, 0, 0, 0, 1e-12, 0])
     with pytest.raises(CuttingError, match=r"\(1.0, 0.0\); the force law has 0.74"):
         part.of(0.74)
-
-
-def test_the_hand_turns_the_tangential_and_the_helix_the_axial_push():
-    term = EdgeTerm(1.0, 5.0, 3.0, 2.0)
-    ways = {
-        (hand, helix): pushes(term, MILL.replace(hand=hand, helix=helix))
-        for hand in ("right", "left")
-        for helix in ("right", "left")
-    }
-    assert ways == {
-        ("right", "right"): (5.0, 3.0, 2.0),
-        ("right", "left"): (5.0, 3.0, -2.0),
-        ("left", "left"): (-5.0, 3.0, 2.0),
-        ("left", "right"): (-5.0, 3.0, -2.0),
-    }
-    assert pushes(term, MILL.replace(helix_angle=0.0)) == (5.0, 3.0, 0.0)
 
 
 def profile(cutter, depth):

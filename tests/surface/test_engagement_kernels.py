@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from robomill.cutting.engaged import MOMENTS, PANELS, full_slot, sector_edges
+from robomill.cutting.edge import MOMENTS
+from robomill.cutting.engaged import PANELS, full_slot, sector_edges
 from robomill.cutting.tool import DISH, Cutter
 from robomill.surface import engagement_kernels as kernels
 from robomill.surface.engagement_kernels import (
