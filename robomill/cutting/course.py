@@ -12,7 +12,7 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.edge import EdgeTerm, moments, push
-from robomill.cutting.engaged import FACING, nose_pieces, sector_edges
+from robomill.cutting.engaged import FACING, nose_of, sector_edges
 from robomill.cutting.tool import DISH, Cutter
 from robomill.progress import slices
 
@@ -75,7 +75,7 @@ class Course:
         """The cutter from its tip up, in slices of the nose and of the flank: where each begins and ends along the axis
         (k, 1) m, the angle of its normal from the axis, and its length along the profile (k, 1) m."""
         top, end = self.sectors[..., 2].max(axis=1)[:, None], cutter.nose_height
-        yield from zip(*nose_pieces(cutter, top), strict=True)
+        yield from zip(*nose_of(cutter, top), strict=True)
         step = np.maximum(top - end, 0.0) / SLICES
         for i in range(SLICES if step.any() else 0):
             yield end + i * step, end + (i + 1) * step, np.full(step.shape, 0.5 * np.pi), step

@@ -17,7 +17,6 @@ in them. Axes of all results: feed, feed-normal (left), axial (z_T).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +26,8 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.compiled import part
+from robomill.cutting.profile_kernels import depth_moment
+from robomill.cutting.sines import sine_integral
 from robomill.cutting.tool import Cutter
 
 MOMENTS = 8
@@ -61,7 +62,7 @@ def moments(load: Any, upright: Any, lying: Any, sine: Any, cosine: Any, plain: 
     )
 
 
-def push(term: EdgeTerm, cutter: Cutter, sums: Sequence[Any]) -> tuple[Any, Any, Any]:
+def push(term: EdgeTerm, cutter: Cutter, sums: Sequence[Any] | FloatArray) -> tuple[Any, Any, Any]:
     """What edges with these ``moments`` push the tool with, by one term of the law: feed, feed-normal, axial."""
     Kt, Kr, Ka = (term.Kt if cutter.hand == "right" else -term.Kt), term.Kr, cutter.pull * term.Ka
     return (
@@ -69,25 +70,6 @@ def push(term: EdgeTerm, cutter: Cutter, sums: Sequence[Any]) -> tuple[Any, Any,
         Kt * sums[1] - Kr * sums[3] - Ka * sums[6],
         Kr * sums[4] - Ka * sums[7],
     )
-
-
-def sine_integral(q: float, angle: ArrayLike) -> FloatArray:
-    """Integral of sin^q from 0 to ``angle`` (...,) in 0..pi rad, for q > -1 (a beta integral)."""
-    phi = np.asarray(angle, dtype=np.float64)
-    if q == 0.0:
-        return phi
-    if q == 1.0:
-        return 2.0 * np.sin(0.5 * phi) ** 2
-    if q == 2.0:
-        return 0.5 * (phi - np.sin(phi) * np.cos(phi))
-    from scipy.special import beta, betainc
-
-    a = 0.5 * (q + 1.0)
-    quarter = 0.5 * beta(a, 0.5)
-    sine2, cosine2 = np.sin(phi) ** 2, np.cos(phi) ** 2
-    # From whichever end is near, so that neither loses digits beside pi/2.
-    rising = quarter * np.where(sine2 < 0.5, betainc(a, 0.5, sine2), 1.0 - betainc(0.5, a, cosine2))
-    return np.where(phi <= 0.5 * np.pi, rising, 2.0 * quarter - rising)
 
 
 def arc_moments(e: float, phi_st: FloatArray, phi_ex: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -98,23 +80,6 @@ def arc_moments(e: float, phi_st: FloatArray, phi_ex: FloatArray) -> tuple[Float
     start, end = (np.sin(np.minimum(phi, np.pi - phi)) for phi in (phi_st, phi_ex))
     cosine = (np.maximum(end, 0.0) ** (e + 1.0) - np.maximum(start, 0.0) ** (e + 1.0)) / (e + 1.0)
     return plain, sine, cosine
-
-
-def depth_moment(cutter: Cutter, depth: ArrayLike, p: float, q: int) -> FloatArray:
-    """Integral over z from the tip to ``depth`` (...,) m of sin^p(kappa) cos^q(kappa), q = 0 or 1; p > -2 on a nose."""
-    a = np.asarray(depth, dtype=np.float64)
-    nose = np.minimum(a, cutter.nose_height)
-    side = (a - nose) if q == 0 else np.zeros_like(a)
-    if cutter.nose_height == 0.0:
-        return side
-    if cutter.conical:
-        half = cutter.half_angle
-        return side + nose * math.cos(half) ** p * math.sin(half) ** q
-    rho = cutter.corner_radius
-    kappa = 2.0 * np.arcsin(np.sqrt(np.clip(nose / (2.0 * rho), 0.0, 0.5)))
-    if q == 0:
-        return side + rho * sine_integral(p + 1.0, kappa)
-    return side + rho * np.sin(kappa) ** (p + 2.0) / (p + 2.0)
 
 
 def mean_force(
@@ -135,7 +100,7 @@ def mean_force(
     for term in terms:
         e = term.exponent
         plain, sine, cosine = arc_moments(e, st, ex)
-        load, upright, lying = (depth_moment(cutter, a_p, *pq) for pq in ((e - 1.0, 0), (e, 0), (e - 1.0, 1)))
+        load, upright, lying = (depth_moment(cutter.solid, a_p, *pq) for pq in ((e - 1.0, 0), (e, 0), (e - 1.0, 1)))
         sums = moments(load, upright, lying, sine, cosine, plain)
         force += np.stack(push(term, cutter, sums), axis=-1) * (c**e)[..., None]
     return np.asarray(force * (cutter.flutes / (2.0 * np.pi)))

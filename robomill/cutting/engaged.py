@@ -12,13 +12,13 @@ goes down by more than its ``DISH``. Source: Engin and Altintas 2001; the feed a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.cutting.edge import MOMENTS, EdgeTerm, moments, push
+from robomill.cutting.profile_kernels import nose_pieces
 from robomill.cutting.tool import DISH, Cutter
 from robomill.errors import CuttingError
 
@@ -101,35 +101,18 @@ def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatAr
     phi = (np.arange(ANGLES) + 0.5) * (2.0 * np.pi / ANGLES)
     sine, cosine = np.sin(phi)[:, None], np.cos(phi)[:, None]
     face = cutter.flat_radius if along < -DISH else 0.0
-    nose = nose_pieces(cutter, a_p)
-    kappa = np.concatenate([[0.0], nose.kappa, [0.5 * np.pi]])
-    ds = np.concatenate([[face], nose.ds, [max(a_p - cutter.nose_height, 0.0)]])
+    _, _, leans, lengths = nose_of(cutter, a_p)
+    kappa = np.concatenate([[0.0], leans, [0.5 * np.pi]])
+    ds = np.concatenate([[face], lengths, [max(a_p - cutter.nose_height, 0.0)]])
     facing = np.sqrt(max(1.0 - along * along, 0.0)) * sine * np.sin(kappa) - along * np.cos(kappa)
     w = np.where(facing > FACING, np.maximum(facing, FACING) ** e, 0.0) * ds * (2.0 * np.pi / ANGLES)
     return np.array([each.sum() for each in moments(w, w * np.sin(kappa), w * np.cos(kappa), sine, cosine)])
 
 
-class NosePieces(NamedTuple):
-    """Pieces of the profile between the end face and the flank: heights where each begins and ends, its angle from
-    the axis and its length, (q, ...) each."""
-
-    low: FloatArray
-    high: FloatArray
-    kappa: FloatArray
-    ds: FloatArray
-
-
-def nose_pieces(cutter: Cutter, top: ArrayLike) -> NosePieces:
-    """The nose up to heights ``top`` (...) m, its own at most, in equal pieces: of a cone or an arc; none of a flat
-    mill."""
-    high = np.clip(top, 0.0, cutter.nose_height)
-    if cutter.nose_height == 0.0:
-        return NosePieces(*np.zeros((4, 0, *high.shape)))
-    if cutter.conical:
-        edges = np.linspace(0.0, high, PIECES + 1, dtype=np.float64)
-        kappa = np.full(edges[1:].shape, 0.5 * np.pi - cutter.half_angle)
-        return NosePieces(edges[:-1], edges[1:], kappa, np.diff(edges, axis=0) / np.sin(kappa))
-    rho = cutter.corner_radius
-    edges = np.linspace(0.0, np.arccos(1.0 - high / rho), PIECES + 1, dtype=np.float64)
-    height = np.asarray(rho * (1.0 - np.cos(edges)), dtype=np.float64)
-    return NosePieces(height[:-1], height[1:], 0.5 * (edges[:-1] + edges[1:]), np.diff(edges, axis=0) * rho)
+def nose_of(cutter: Cutter, top: ArrayLike) -> FloatArray:
+    """The nose up to heights ``top`` (...) m, its own at most, in equal pieces (4, q, ...): where each begins and ends
+    above the tip, its normal's angle from the axis and its length; none of a flat mill."""
+    high = np.asarray(top, dtype=np.float64)
+    pieces = np.empty((4, PIECES if cutter.nose_height > 0.0 else 0, high.size))
+    nose_pieces(np.ascontiguousarray(high).ravel(), cutter.solid, pieces)
+    return pieces.reshape(4, pieces.shape[1], *high.shape)

@@ -218,7 +218,7 @@ def edge_terms(material: Material, cutter: Cutter) -> tuple[EdgeTerm, ...]:
     makes the handbook's thrust 0.5 k_c f (D / 2) sin(half the point angle) (Sandvik Coromant, Metal cutting technology:
     drilling formulas). The chisel edge and the margins are left out.
     """
-    if cutter.kind != "drill":
+    if not cutter.family.drills:
         return material.terms
     return tuple(EdgeTerm(term.exponent, term.Kt, DRILL_THRUST * term.Kt, 0.0) for term in material.terms)
 

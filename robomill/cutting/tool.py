@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
+from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
 from robomill.quantities import choice, quantity, settle, whole
 from robomill.units import format_si, to_si
@@ -23,14 +25,15 @@ HANDS = {"right": "right", "left": "left"}
 
 
 @dataclass(frozen=True)
-class Shape:
-    """A family of cutters: what people call it, which numbers it needs beside those of every cutter, and the angle of
-    its point to start from."""
+class Family:
+    """A family of cutters: what people call it, which numbers it needs beside those of every cutter, the angle of its
+    point to start from, and whether it drills: pushed along its axis, it does not cut sideways."""
 
     short: str
     title: str
     needs: tuple[str, ...] = ()
     point: float = to_si(90.0, "deg")
+    drills: bool = False
 
     def first(self, diameter: float) -> dict[str, float]:
         """A value to start from for each number in ``needs``, for a cutter of that diameter."""
@@ -38,12 +41,12 @@ class Shape:
         return {name: first[name] for name in self.needs}
 
 
-SHAPES: dict[str, Shape] = {
-    "flat": Shape("Flat", "flat end mill"),
-    "ball": Shape("Ball", "ball-nose mill"),
-    "bull": Shape("Bull", "bull-nose mill", ("corner_radius",)),
-    "chamfer": Shape("Chamfer", "chamfer mill", ("tip_angle", "tip_diameter")),
-    "drill": Shape("Drill", "drill", ("tip_angle",), point=to_si(118.0, "deg")),
+FAMILIES: dict[str, Family] = {
+    "flat": Family("Flat", "flat end mill"),
+    "ball": Family("Ball", "ball-nose mill"),
+    "bull": Family("Bull", "bull-nose mill", ("corner_radius",)),
+    "chamfer": Family("Chamfer", "chamfer mill", ("tip_angle", "tip_diameter")),
+    "drill": Family("Drill", "drill", ("tip_angle",), point=to_si(118.0, "deg"), drills=True),
 }
 
 
@@ -59,7 +62,7 @@ class Cutter:
     Raises CuttingError for a cutter that cannot be.
     """
 
-    kind: str = choice("Kind", {kind: shape.short for kind, shape in SHAPES.items()})
+    kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
     diameter: float = quantity("Diameter", "mm", least=1e-6, step=1.0)
     corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, step=0.25)
     flutes: int = whole("Flutes", default=2, least=1)
@@ -118,16 +121,16 @@ class Cutter:
                     where="corner_radius",
                 )
             object.__setattr__(self, "corner_radius", self.radius)
-        elif "corner_radius" not in self.shape.needs:
+        elif "corner_radius" not in self.family.needs:
             if self.corner_radius != 0.0:
                 raise CuttingError(
-                    f"A {self.shape.title} has no corner radius, found {format_si(self.corner_radius, 'mm')}: "
+                    f"A {self.family.title} has no corner radius, found {format_si(self.corner_radius, 'mm')}: "
                     "set it to 0 or choose a bull-nose mill.",
                     where="corner_radius",
                 )
         elif self.corner_radius == 0.0:
             raise CuttingError(
-                f"A {self.shape.title} needs a corner radius greater than 0: give one or choose a flat end mill.",
+                f"A {self.family.title} needs a corner radius greater than 0: give one or choose a flat end mill.",
                 where="corner_radius",
             )
         elif self.corner_radius > self.radius:
@@ -141,11 +144,11 @@ class Cutter:
         if not self.conical:
             if self.tip_angle is not None or self.tip_diameter != 0.0:
                 raise CuttingError(
-                    f"A {self.shape.title} has no tip angle or tip diameter: leave them out.", where="tip_angle"
+                    f"A {self.family.title} has no tip angle or tip diameter: leave them out.", where="tip_angle"
                 )
         elif self.tip_angle is None:
             raise CuttingError(
-                f"A {self.shape.title} needs a tip angle between 0° and 180° (the full cone), found none.",
+                f"A {self.family.title} needs a tip angle between 0° and 180° (the full cone), found none.",
                 where="tip_angle",
             )
         elif self.tip_diameter >= self.diameter:
@@ -156,14 +159,13 @@ class Cutter:
             )
 
     @property
-    def shape(self) -> Shape:
-        """Its family."""
-        return SHAPES[self.kind]
+    def family(self) -> Family:
+        return FAMILIES[self.kind]
 
     @property
     def conical(self) -> bool:
         """Whether its nose is a cone; the others are round (a flat mill with radius 0)."""
-        return "tip_angle" in self.shape.needs
+        return "tip_angle" in self.family.needs
 
     @property
     def half_angle(self) -> float:
@@ -180,12 +182,17 @@ class Cutter:
         """Radius of the flat end face, m: R (flat), 0 (ball), R - corner radius (bull), tip radius (chamfer)."""
         return 0.5 * self.tip_diameter if self.conical else max(self.radius - self.corner_radius, 0.0)
 
+    @cached_property
+    def solid(self) -> Shape:
+        """Its profile in numbers."""
+        if self.conical:
+            return conical(self.radius, self.flat_radius, self.half_angle)
+        return round_nosed(self.radius, self.corner_radius)
+
     @property
     def nose_height(self) -> float:
         """Height above the tip at which the full radius is reached, m; from there on the side is a cylinder."""
-        if self.conical:
-            return (self.radius - self.flat_radius) / math.tan(self.half_angle)
-        return self.corner_radius
+        return profile(self.solid, self.radius)
 
     @property
     def pull(self) -> int:
@@ -202,28 +209,21 @@ class Cutter:
     def title(self) -> str:
         """For people, e.g. ``"8.00 mm flat end mill, 3 flutes"``."""
         plural = "flute" if self.flutes == 1 else "flutes"
-        return f"{format_si(self.diameter, 'mm', 2)} {self.shape.title}, {self.flutes} {plural}"
+        return f"{format_si(self.diameter, 'mm', 2)} {self.family.title}, {self.flutes} {plural}"
 
     def profile(self, r: ArrayLike) -> FloatArray:
         """Height (m) of the cutting surface above the tip at radius ``r`` (...) m; inf for r < 0 or r > R."""
         radius = np.asarray(r, dtype=np.float64)
-        beyond = np.maximum(radius - self.flat_radius, 0.0)
-        if self.conical:
-            height = beyond / math.tan(self.half_angle)
-        else:
-            rho = self.corner_radius
-            height = rho - np.sqrt(np.maximum((rho - beyond) * (rho + beyond), 0.0))
-        return np.where((radius >= 0.0) & (radius <= self.radius), height, np.inf)
+        height = np.empty(radius.size)
+        heights(np.ascontiguousarray(radius).ravel(), self.solid, height)
+        return np.where((radius >= 0.0) & (radius <= self.radius), height.reshape(radius.shape), np.inf)
 
     def radius_at(self, height: ArrayLike) -> FloatArray:
         """Radius (m) of the cutter ``height`` (...) m above the tip, the inverse of ``profile``; NaN below the tip."""
         z = np.asarray(height, dtype=np.float64)
-        inside = np.clip(z, 0.0, self.nose_height)
-        if self.conical:
-            radius = self.flat_radius + inside * math.tan(self.half_angle)
-        else:
-            radius = self.flat_radius + np.sqrt(inside * (2.0 * self.corner_radius - inside))
-        return np.where(z < 0.0, np.nan, radius)
+        radius = np.empty(z.size)
+        radii(np.ascontiguousarray(np.maximum(z, 0.0)).ravel(), self.solid, radius)
+        return np.where(z >= 0.0, radius.reshape(z.shape), np.nan)
 
     def replace(self, **changes: Any) -> Cutter:
         """A checked copy with fields changed."""
@@ -234,4 +234,4 @@ class Cutter:
     def reshaped(self, kind: str) -> Cutter:
         """The same cutter of another shape, with a first value for each number that one needs."""
         plain: dict[str, Any] = {"corner_radius": 0.0, "tip_angle": None, "tip_diameter": 0.0}
-        return replace(self, kind=kind, **(plain | SHAPES[kind].first(self.diameter)))
+        return replace(self, kind=kind, **(plain | FAMILIES[kind].first(self.diameter)))

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import In1, In2, InInt1, Out1, Out2, Out3, OutInt1, kernel, part
-from robomill.surface.envelope_kernels import FLAT, Move, Shape, clip, move_between, nearest, row_interval, swept_height
+from robomill.cutting.profile_kernels import FLAT, Shape, clip
+from robomill.surface.envelope_kernels import Move, move_between, nearest, row_interval, swept_height
 from robomill.surface.tilt_kernels import (
     UPRIGHT,
     TiltedMoves,

@@ -21,11 +21,20 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.edge import MOMENTS, moments
 from robomill.cutting.engaged import FACING, PANELS
+from robomill.cutting.profile_kernels import (
+    END,
+    FLANK,
+    GAUSS,
+    Shape,
+    edge_sums,
+    on_profile,
+    piece_between,
+    stretch_ends,
+)
 from robomill.cutting.tool import DISH
-from robomill.surface.envelope_kernels import Shape
 from robomill.surface.material_kernels import FAR, World, standing, top_over
 from robomill.surface.rib_kernels import COSINE, HALF, PHI, SINE, Walk, gap_end, is_plain, jumps, next_change, walk_on
-from robomill.surface.step_kernels import END, FLANK, GAUSS, Step, edge_sums, on_profile, piece_between, stretch_ends
+from robomill.surface.step_kernels import Step
 
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 HALVINGS = 8  # of the angle across which the engaged length jumps

@@ -13,6 +13,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.cutting.edge import MOMENTS
 from robomill.cutting.engaged import FACING, PANELS
 from robomill.cutting.force import feed_frame
+from robomill.cutting.profile_kernels import valley
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
@@ -155,7 +156,6 @@ class March:
     def _state(self, first: BoolArray) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run."""
-        from robomill.surface.envelope_kernels import cutter_shape
         from robomill.surface.material_kernels import AXIS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
 
         cells = stock_grid(self.stock, self.cell)
@@ -165,7 +165,7 @@ class March:
         names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
         columns = Columns(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
-        shapes = np.array([[float(n) for n in cutter_shape(cutter)] for cutter in self.tooling.cutters])
+        shapes = np.array([[float(n) for n in cutter.solid] for cutter in self.tooling.cutters])
         runs = np.zeros((int(first.sum()), RUN))
         runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
         runs[:, AXIS:MOVE] = self._axes[1][first]
@@ -205,9 +205,7 @@ class March:
         size = max(cells.dx, cells.dy)
         if layered:
             return 0.5 * size
-        round_ = [size**2 / cutter.corner_radius for cutter in self.tooling.cutters if cutter.corner_radius]
-        sharp = [0.5 * size / np.tan(cutter.half_angle) for cutter in self.tooling.cutters if cutter.conical]
-        return float(max([0.01 * size, *round_, *sharp]))
+        return max(0.01 * size, *(valley(cutter.solid, size) for cutter in self.tooling.cutters))
 
     def run(self) -> tuple[FloatArray, np.ndarray, int]:
         """Meet and cut every step: rows (m, 8 n_e + 6) and sectors (m, s, 4) of what they meet, and how often a gap

@@ -11,20 +11,10 @@ from numpy.typing import NDArray
 from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
+from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, radius_at, shape_of
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import Room, add_part
-from robomill.surface.envelope_kernels import (
-    FLAT,
-    Move,
-    Shape,
-    nearest,
-    profile,
-    profile_within,
-    radius_at,
-    row_interval,
-    shape_of,
-    swept_height,
-)
+from robomill.surface.envelope_kernels import Move, nearest, row_interval, swept_height
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,

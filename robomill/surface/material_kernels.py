@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
-from robomill.surface.envelope_kernels import Move, move_between, nearest, profile, shape_of, swept_height
+from robomill.cutting.profile_kernels import profile, shape_of
+from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]

@@ -77,8 +77,6 @@ class Outline:
     @cached_property
     def _tracks(self) -> tuple[Tracks, Tracks]:
         """Told and left, in one order: by the squares in which the moves were told to be."""
-        from robomill.surface.envelope_kernels import cutter_shape
-
         middle = 0.5 * (self.told[:, :2] + self.told[:, 3:5])
         half = 0.5 * float(np.linalg.norm(self.told[:, 3:] - self.told[:, :3], axis=1).max())
         moved = float(np.abs(self.left - self.told).max())
@@ -91,7 +89,7 @@ class Outline:
         number = square[:, 0] * count[1] + square[:, 1]
         order = np.argsort(number, kind="stable")
         first = np.searchsorted(number[order], np.arange(count[0] * count[1] + 1)).astype(np.int64)
-        shapes = np.array([cutter_shape(cutter) for cutter in self.cutters], dtype=float)
+        shapes = np.array([cutter.solid for cutter in self.cutters], dtype=float)
         cutter = np.ascontiguousarray(self.cutter[order], dtype=np.int64)
         told, left = (
             Tracks(np.ascontiguousarray(ends[order]), shapes, cutter, first, corner, size, count)

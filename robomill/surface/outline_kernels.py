@@ -12,17 +12,8 @@ import math
 from typing import NamedTuple
 
 from robomill.compiled import In1, In2, Out1, Out2, OutInt1, kernel, part
-from robomill.surface.envelope_kernels import (
-    CHAMFER,
-    FLAT,
-    Shape,
-    clip,
-    move_between,
-    nearest,
-    radius_at,
-    shape_of,
-    swept_height,
-)
+from robomill.cutting.profile_kernels import clip, radius_at, shape_of, upright_part
+from robomill.surface.envelope_kernels import move_between, nearest, swept_height
 
 ROUNDS = 6  # of growing the union along a line: a wall seldom stands behind more than two tracks
 TOUCH = 1e-7  # m: tracks this close are one
@@ -169,17 +160,6 @@ def carried(told: Tracks, left: Tracks, place: In1, out: float, deep: bool) -> f
                 if depth > deepest and (deep or behind):
                     deepest, found = depth, depth - inside(told, n, place, out)[0]
     return found if deep else deepest
-
-
-@part
-def upright_part(shape: Shape, r: float) -> float:
-    """Part along the axis of the normal of a cutter's surface at radius r: 1 on its flat."""
-    e = max(r - shape.r0, 0.0)
-    if e == 0.0 or shape.kind == FLAT:
-        return 1.0
-    if shape.kind == CHAMFER:
-        return 1.0 / math.sqrt(1.0 + shape.slope * shape.slope)
-    return math.sqrt(max(shape.rc * shape.rc - e * e, 0.0)) / shape.rc
 
 
 class Floor(NamedTuple):

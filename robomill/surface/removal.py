@@ -34,10 +34,9 @@ class EdgeCells:
 def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -> EdgeCells:
     """Cut moves ``ends`` (n, 6) m (start, end) of an upright cutter into ``z`` (nx, ny) m, in place."""
     from robomill.surface.cells_kernels import EdgeRecord, Heights, cut_moves, settle
-    from robomill.surface.envelope_kernels import cutter_shape
 
     ends = np.ascontiguousarray(ends)
-    shape, reach = cutter_shape(cutter), cutter.radius + cells.dx
+    shape, reach = cutter.solid, cutter.radius + cells.dx
     low = np.minimum(ends[:, 0], ends[:, 3]) - reach
     high = np.maximum(ends[:, 0], ends[:, 3]) + reach
     size = rows_of_tile(z.shape), z.shape[1]
@@ -66,11 +65,10 @@ def cut_tilted(z: FloatArray, cells: Cells, cutter: Cutter, moves: tuple[FloatAr
     Returns the cells (nx, ny) left with an overhang. Voids below the material that later moves lay open are open.
     """
     from robomill.surface.cells_kernels import Heights, Hidden, cut_tilted_moves
-    from robomill.surface.envelope_kernels import cutter_shape
     from robomill.surface.tilt_kernels import TiltedMoves, plan_boxes
 
     ends, axes = (np.ascontiguousarray(a) for a in moves)
-    shape, top, rows = cutter_shape(cutter), float(z.max()), rows_of_tile(z.shape)
+    shape, top, rows = cutter.solid, float(z.max()), rows_of_tile(z.shape)
     boxes = np.empty((len(ends), 4))
     plan_boxes(cutter.radius, ends, axes, top, boxes)
     tilted = TiltedMoves(ends, axes, boxes)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import called, part
 from robomill.cutting.engaged import PANELS
-from robomill.surface.envelope_kernels import FLAT, Shape
+from robomill.cutting.profile_kernels import FLAT, Shape
 from robomill.surface.material_kernels import NOBODY, World, cell_of
 from robomill.surface.step_kernels import Step
 

@@ -72,10 +72,9 @@ class SweptPath:
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
         from robomill.surface.cells_kernels import lower_along
-        from robomill.surface.envelope_kernels import cutter_shape
 
         stock_top, top = skin_on_line(self.stock, centre, normal), float(self.stock.upper[2])
-        near = [(cutter_shape(body.cutter), *body.near((centre, normal, reach), top)) for body in self.bodies]
+        near = [(body.cutter.solid, *body.near((centre, normal, reach), top)) for body in self.bodies]
 
         def height(w: FloatArray) -> FloatArray:
             checkpoint()

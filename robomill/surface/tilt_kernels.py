@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import In2, Out2, called, kernel, part
-from robomill.surface.envelope_kernels import Move, Shape, move_between, row_interval, swept_height
+from robomill.cutting.profile_kernels import Shape
+from robomill.surface.envelope_kernels import Move, move_between, row_interval, swept_height
 
 UPRIGHT = 1e-9  # an axis that leans less than this (sine) is upright
 GOLDEN = 0.6180339887498949

@@ -13,17 +13,17 @@ from robomill.cutting.edge import (
     MOMENTS,
     EdgeTerm,
     arc_moments,
-    depth_moment,
     mean_force,
     moments,
     push,
-    sine_integral,
 )
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import alternatives
+from robomill.cutting.profile_kernels import depth_moment
+from robomill.cutting.sines import sine_integral
 from robomill.cutting.tool import Cutter
 from robomill.io.materials import load_material, sample_materials
 from tests.cutting.cutters import CHIP, CUTTERS, MILL, REF190, SLOT
@@ -308,4 +308,4 @@ def test_a_bit_of_edge_pushes_along_its_three_directions():
 
 def test_moments_of_an_empty_arc_and_of_no_depth():
     assert np.all(np.array(arc_moments(0.0, np.array(1.2), np.array(1.2))) == 0.0)
-    assert all(depth_moment(cutter, 0.0, -1.0, q) == 0.0 for cutter in CUTTERS for q in (0, 1))
+    assert all(depth_moment(cutter.solid, 0.0, -1.0, q) == 0.0 for cutter in CUTTERS for q in (0, 1))

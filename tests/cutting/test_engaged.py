@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from robomill.cutting.engaged import FACING, EngagedPart, full_slot, nose_pieces, sector_edges
+from robomill.cutting.engaged import FACING, EngagedPart, full_slot, nose_of, sector_edges
 from robomill.cutting.tool import DISH
 from robomill.errors import CuttingError
 from tests.cutting.cutters import CUTTERS, MILL
@@ -114,7 +114,7 @@ def test_a_surface_that_faces_the_feed_by_less_than_a_millionth_does_not_cut():
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_pieces_of_a_nose_lie_on_its_profile(cutter, share):
     top = share * cutter.nose_height
-    low, high, kappa, ds = nose_pieces(cutter, top)
+    low, high, kappa, ds = nose_of(cutter, top)
     if top == 0.0:
         assert not np.concatenate([low, high, ds]).any()
         return

@@ -15,7 +15,7 @@ from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import Material
-from robomill.cutting.tool import SHAPES, Cutter
+from robomill.cutting.tool import FAMILIES, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.io.materials import load_material
@@ -100,9 +100,9 @@ def test_many_different_cuts_are_as_one_by_one(monkeypatch):
             np.testing.assert_allclose(getattr(together, name)[i], getattr(alone, name)[0], rtol=1e-12)
 
 
-@pytest.mark.parametrize("kind", SHAPES)
+@pytest.mark.parametrize("kind", FAMILIES)
 def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
-    for start in SHAPES:
+    for start in FAMILIES:
         cutter = Cutter("flat", 8e-3, flutes=3, stick_out=30e-3).reshaped(start).reshaped(kind)
         assert (cutter.kind, cutter.diameter, cutter.flutes, cutter.stick_out) == (kind, 8e-3, 3, 30e-3)
         expected = {"flat": 0.0, "ball": 4e-3, "bull": 1e-3, "chamfer": 0.0, "drill": 0.0}[kind]

@@ -22,7 +22,7 @@ from robomill.surface.cells_kernels import (
     settle,
     union_share,
 )
-from robomill.surface.envelope_kernels import cutter_shape, move_between
+from robomill.surface.envelope_kernels import move_between
 from robomill.surface.tilt_kernels import TiltedMoves
 
 MM = 1e-3
@@ -141,7 +141,7 @@ WALK = np.array([[4, 2, -2, 15, 6, -2], [15, 6, -2, 18, 6, -4], [18, 6, -4, 8, 9
 def test_moves_into_a_tile_leave_the_lowest_stamp_at_every_centre(kind, order):
     cutter, cells = CUTTERS[kind], tile()
     ends, edge = np.ascontiguousarray(WALK[order]), record(cells)
-    cut_moves.plain(cutter_shape(cutter), ends, np.arange(len(ends)), cells, edge)
+    cut_moves.plain(cutter.solid, ends, np.arange(len(ends)), cells, edge)
     count = int(edge.noted[0])
     mean, wall, noted = np.empty(count), np.empty((count, 6)), edge.cells[:count].copy()
     settle.plain(cells, edge, mean, wall)
@@ -166,7 +166,7 @@ def test_moves_into_a_tile_leave_the_lowest_stamp_at_every_centre(kind, order):
 
 def test_only_chosen_moves_are_cut():
     cells, edge = tile(), record(tile())
-    cut_moves.plain(cutter_shape(CUTTERS["flat"]), WALK, np.array([1]), cells, edge)
+    cut_moves.plain(CUTTERS["flat"].solid, WALK, np.array([1]), cells, edge)
     x, y = places(cells)
     assert (cells.z[beside(WALK[1], x, y) > 5 * MM] == 0.0).all()
     assert (cells.z < 0.0).any()
@@ -178,7 +178,7 @@ def test_heights_along_a_line_are_the_lowest_stamps_upright_or_leaning(kind):
     x = np.linspace(2.0, 20.0, 37) * MM
     y = 0.4 * x + 0.31 * MM
     z = np.zeros(37)
-    lower_along.plain(cutter_shape(cutter), WALK, np.tile(UP, (4, 1)), x, y, z)
+    lower_along.plain(cutter.solid, WALK, np.tile(UP, (4, 1)), x, y, z)
     expected, near = stamped(cutter, WALK, x, y)
     sure = np.abs(near - 4 * MM) > 0.02 * MM
     np.testing.assert_allclose(z[sure], np.minimum(expected, 0.0)[sure], atol=6e-6)
@@ -187,7 +187,7 @@ def test_heights_along_a_line_are_the_lowest_stamps_upright_or_leaning(kind):
     for upright in (0, 2):
         axes[:upright] = UP
         leaning = np.zeros(37)
-        lower_along.plain(cutter_shape(cutter), WALK, axes, x, y, leaning)
+        lower_along.plain(cutter.solid, WALK, axes, x, y, leaning)
         np.testing.assert_allclose(leaning[sure], z[sure], atol=2e-5)
 
 
@@ -198,7 +198,7 @@ def test_a_leaning_cutter_leaves_what_it_does_not_reach_from_above_as_a_void():
     ends = np.array([[5.0, -50, -20, 5, 50, -20]]) * MM
     moves = TiltedMoves(ends, k[None], np.array([[0.0, 39.0, -1.0, 1.0]]) * MM)
     hidden = Hidden(np.full((40, 3), np.inf), np.full((40, 3), -np.inf))
-    cut_tilted_moves.plain(cutter_shape(CUTTERS["flat"]), moves, np.array([0]), cells, hidden)
+    cut_tilted_moves.plain(CUTTERS["flat"].solid, moves, np.array([0]), cells, hidden)
     reach = 4 * MM * np.sqrt(2.0)
     for i, x in enumerate(np.arange(40) * MM):
         # In the plane of the lean: the sides are the lines z + 20 = (x - 5) -+ reach, the end the line z + 20 = 5 - x.

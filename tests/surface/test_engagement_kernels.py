@@ -9,6 +9,7 @@ import pytest
 
 from robomill.cutting.edge import MOMENTS
 from robomill.cutting.engaged import PANELS, full_slot, sector_edges
+from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stretch_ends
 from robomill.cutting.tool import DISH, Cutter
 from robomill.surface import engagement_kernels as kernels
 from robomill.surface.engagement_kernels import (
@@ -28,10 +29,9 @@ from robomill.surface.engagement_kernels import (
     measure_stretch,
     panel_end,
 )
-from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.material_kernels import Block, Columns, Mesh, World
 from robomill.surface.rib_kernels import Walk, jumps
-from robomill.surface.step_kernels import END, FLANK, NOSE, on_profile, step_at, stretch_ends
+from robomill.surface.step_kernels import step_at
 
 MM = 1e-3
 NO_WALK = Walk(0.0, 0.0, 0.0, 1.0)
@@ -156,7 +156,7 @@ def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
 def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth):
     """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it."""
     cutter, room, world = CUTTERS[name], room_for(), block_world(layers=6)
-    shape, step = cutter_shape(cutter), fed_at(depth, along)
+    shape, step = cutter.solid, fed_at(depth, along)
     lay_out(room, shape, step, world)
     first = 0
     for stretch, most in ((END, 8), (NOSE, 9), (FLANK, 96)):
@@ -180,9 +180,9 @@ def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth)
 
 def test_the_flank_of_an_upright_tool_in_one_layer_is_not_looked_at_in_places():
     room = room_for()
-    lay_out(room, cutter_shape(CUTTERS["flat"]), fed_at(2 * MM), block_world())
+    lay_out(room, CUTTERS["flat"].solid, fed_at(2 * MM), block_world())
     assert not room.places.any()
-    lay_out(room, cutter_shape(CUTTERS["flat"]), fed_at(2 * MM, axis=(0.0, 0.6, 0.8)), block_world())
+    lay_out(room, CUTTERS["flat"].solid, fed_at(2 * MM, axis=(0.0, 0.6, 0.8)), block_world())
     assert room.places.any()
     reach = (2 * MM + 4 * MM * 0.6) / 0.8  # the rim that leans towards the material meets its top from further down
     assert room.stretches[FLANK, 1] == pytest.approx(reach)
@@ -196,7 +196,7 @@ SPANS = [[(0.4, 1.3)], [(0.0, 0.7), (1.9, 2.6)], [(0.9, 9.9)], [(-1.0, 9.9)], [(
 def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch, spans):
     """Material in layers of known heights along the axis (mm), as deep as the nearest end of its layer."""
     cutter, depth = CUTTERS["ball" if stretch == NOSE else "flat"], 3 * MM
-    shape, step = cutter_shape(cutter), fed_at(depth)
+    shape, step = cutter.solid, fed_at(depth)
     room, world = room_for(), block_world(layers=6, dx=0.25 * MM)
     lay_out(room, shape, step, world)
 
@@ -239,7 +239,7 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     world = world._replace(block=world.block._replace(**limits))
     halves = 2 if along < -1e-6 else 1
     total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
-    add_part(room_for(halves), world, cutter_shape(cutter), step, total, sectors)
+    add_part(room_for(halves), world, cutter.solid, step, total, sectors)
     return total[: 2 * MOMENTS].reshape(2, MOMENTS), total[2 * MOMENTS :], sectors.reshape(-1, 4)
 
 

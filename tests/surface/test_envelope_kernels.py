@@ -5,16 +5,7 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.envelope_kernels import (
-    BALL,
-    FLAT,
-    cutter_shape,
-    move_between,
-    profile,
-    radius_at,
-    row_interval,
-    swept_height,
-)
+from robomill.surface.envelope_kernels import move_between, row_interval, swept_height
 
 CUTTERS = {
     "flat": Cutter("flat", 0.008),
@@ -53,7 +44,7 @@ def depth_in_track(a, b, R, x, y):
 @pytest.mark.parametrize("move", MOVES)
 def test_envelope_is_the_lowest_stamp(cutter, move):
     a, b = (np.array(end) for end in MOVES[move])
-    shape, moved = cutter_shape(CUTTERS[cutter]), move_between(*a, *b)
+    shape, moved = CUTTERS[cutter].solid, move_between(*a, *b)
     rng = np.random.default_rng(3)
     x, y = rng.uniform(-0.005, 0.026, 300), rng.uniform(-0.013, 0.015, 300)
     z, d = heights(shape, moved, x, y), depth_in_track(a, b, CUTTERS[cutter].radius, x, y)
@@ -69,7 +60,7 @@ def test_envelope_is_the_lowest_stamp(cutter, move):
 
 @pytest.mark.parametrize("cutter", CUTTERS)
 def test_direction_of_travel_does_not_matter(cutter):
-    shape = cutter_shape(CUTTERS[cutter])
+    shape = CUTTERS[cutter].solid
     a, b = np.array([0.0, 0.0, 0.001]), np.array([0.01, 0.004, 0.003])
     x, y = np.linspace(-0.003, 0.012, 50), np.linspace(-0.002, 0.005, 50)
     forth, back = (heights(shape, move_between(*p, *q), x, y) for p, q in ((a, b), (b, a)))
@@ -89,22 +80,3 @@ def test_row_interval_is_the_capsule():
         t = np.clip(((x - a[0]) * span[0] + (y - a[1]) * span[1]) / (span @ span), 0, 1)
         inside = np.hypot(x - a[0] - t * span[0], y - a[1] - t * span[1]) <= R
         np.testing.assert_array_equal((y >= low) & (y <= high), inside)
-
-
-def test_full_corner_is_a_ball_and_no_corner_is_flat():
-    assert cutter_shape(Cutter("bull", 0.008, corner_radius=0.004)).kind == BALL
-    assert cutter_shape(CUTTERS["flat"]).kind == FLAT
-
-
-@pytest.mark.parametrize("kind", CUTTERS)
-def test_profile_is_the_cutters_and_radius_at_its_inverse(kind):
-    cutter = CUTTERS[kind]
-    shape = cutter_shape(cutter)
-    r = np.linspace(0.0, cutter.radius, 41)
-    np.testing.assert_allclose([profile(shape, q) for q in r], cutter.profile(r), atol=1e-15)
-    for height in (1e-5, 4e-4, 1.4e-3, 2.9e-3, 5e-3):
-        found = radius_at(shape, height)
-        reached = r[cutter.profile(r) <= height].max()
-        assert reached <= found + 1e-12 <= reached + r[1] + 1e-12
-        if found < cutter.radius:
-            assert float(cutter.profile(found)) == pytest.approx(height, abs=1e-12)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.march_kernels import cut_run, follows, go_on, note_rim, take_out
 from robomill.surface.material_kernels import (
     AXIS,
@@ -51,7 +50,7 @@ def world_of(moves, layers=0, size=(24.0, 16.0), cells=(31, 17)):
     columns = Columns(heights, names, np.zeros(1, dtype=np.int64), 0.5 * dx, 0.5 * dy, dx, dy, 0.5 * max(dx, dy))
     runs = np.zeros((len(moves), RUN))
     for run, (cutter, start, end, axis) in zip(runs, moves, strict=True):
-        run[:ENDS] = cutter_shape(cutter)
+        run[:ENDS] = cutter.solid
         run[ENDS:AXIS] = np.array([*start, *end]) * MM
         run[AXIS:MOVE] = axis
     nothing = np.zeros(0, dtype=np.int64)
@@ -237,7 +236,7 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
     """Where a line on either side of the body at the height of its full radius passes over the plan."""
     start, end = np.array([6.0, 6.0, -5.0]), np.array([17.0, 9.0, -5.5])
     world = world_of([(cutter, start, end, axis)])
-    note_rim(world, cutter_shape(cutter), 0, False)
+    note_rim(world, cutter.solid, 0, False)
     way = end - start
     side = np.cross(axis, way) / np.linalg.norm(np.cross(axis, way))
     share = np.linspace(0.0, 1.0, 4001)[:, None]
@@ -261,7 +260,7 @@ def test_the_side_that_reaches_further_is_noted():
         world = world_of(moves, cells=(12, 8))
         for r in range(2):
             see_move(world.runs[r])
-            note_rim(world, cutter_shape(moves[r][0]), r, False)
+            note_rim(world, moves[r][0].solid, r, False)
         names = noted(world)
         np.testing.assert_array_equal(np.flatnonzero(names[6] != NOBODY), [2, 5])
         np.testing.assert_array_equal(names[2:10, [2, 5]], moves.index(wide_move))
@@ -270,7 +269,7 @@ def test_the_side_that_reaches_further_is_noted():
 def test_nothing_is_noted_above_the_stock_or_of_a_plunge():
     for start, end in (((5, 8, 1), (15, 8, 1)), ((5, 8, 0), (5, 8, -5))):
         world = world_of([(FLAT, start, end, UP)])
-        note_rim(world, cutter_shape(FLAT), 0, False)
+        note_rim(world, FLAT.solid, 0, False)
         assert (noted(world) == NOBODY).all()
 
 

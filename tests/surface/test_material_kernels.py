@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -98,7 +97,7 @@ def test_what_a_run_sweeps_is_what_its_stamps_cover(cutter, lean, end):
     """Height along the tool's axis above the swept surface: the highest of stamps along the move."""
     k = np.array([np.sin(lean[0]), -np.sin(lean[1]) * np.cos(lean[0]), np.cos(lean[1]) * np.cos(lean[0])])
     run = np.zeros((1, RUN))
-    run[0, :5] = cutter_shape(cutter)
+    run[0, :5] = cutter.solid
     start, stop = np.array([0.001, 0.002, 0.0]), np.array([0.001, 0.002, 0.0]) + end
     run[0, ENDS:AXIS] = [*start, *stop]
     run[0, AXIS : AXIS + 3] = k

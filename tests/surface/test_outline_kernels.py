@@ -10,9 +10,8 @@ import shapely
 from scipy.spatial.transform import Rotation
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.envelope_kernels import cutter_shape
 from robomill.surface.outline import Outline
-from robomill.surface.outline_kernels import Seen, Tracks, furthest, seen_from, squares_near, upright_part
+from robomill.surface.outline_kernels import Seen, Tracks, furthest, seen_from, squares_near
 
 R = 4e-3
 FLAT = Cutter("flat", 2 * R)
@@ -59,26 +58,6 @@ def test_a_capsule_ends_where_the_last_of_its_disks_does(u, v, du, dv, way):
         return
     ends = way * (u + T * du)[on_line] + np.sqrt(R**2 - across[on_line] ** 2)
     assert found == pytest.approx(way * ends.max(), abs=2e-7)
-
-
-@pytest.mark.parametrize(
-    "cutter",
-    [
-        FLAT,
-        Cutter("ball", 2 * R),
-        Cutter("bull", 2 * R, corner_radius=1e-3),
-        Cutter("chamfer", 2 * R, tip_angle=1.2, tip_diameter=2e-3),
-    ],
-    ids=lambda c: c.kind,
-)
-def test_the_normal_is_upright_by_the_slope_of_the_profile(cutter):
-    shape, h = cutter_shape(cutter), 1e-8
-    for r in (0.0, 0.9e-3, 1.5e-3, 2.5e-3, 3.2e-3, 3.9e-3):
-        slope = float(cutter.profile(r + h) - cutter.profile(max(r - h, 0.0))) / (2 * h if r else h)
-        assert upright_part(shape, r) == pytest.approx(1.0 / math.hypot(1.0, slope), abs=1e-5)
-    assert upright_part(shape, cutter.flat_radius) == 1.0
-    if cutter.corner_radius:
-        assert upright_part(shape, R) == 0.0
 
 
 def test_squares_around_a_point_are_its_own_and_those_beside_it():

@@ -23,7 +23,7 @@ def cutter_inputs() -> None:
     """Kind, size, teeth, helix and lengths."""
     cutter = session.project().setup.cutter
     declared.field("cutter.kind", lambda kind: session.change(cutter=cutter.reshaped(kind)), inputs.HIDDEN)
-    for names in (("diameter", "flutes"), cutter.shape.needs, ("stick_out", "flute_length"), ("helix", "helix_angle")):
+    for names in (("diameter", "flutes"), cutter.family.needs, ("stick_out", "flute_length"), ("helix", "helix_angle")):
         if names:
             declared.in_row([f"cutter.{name}" for name in names], declared.field)
 

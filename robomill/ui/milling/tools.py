@@ -160,7 +160,7 @@ def _cell(tool: TableTool, said: Quantity, unit: str) -> Any:
     cutter = tool.cutter
     owner = tool if said.name in OF_TOOL else cutter
     value = None if said.name in tool.assumed else getattr(owner, said.name, None)
-    needless = said.name in OF_SHAPE and cutter is not None and said.name not in cutter.shape.needs
+    needless = said.name in OF_SHAPE and cutter is not None and said.name not in cutter.family.needs
     if value is None or needless:
         return None
     return NumberBox(said.label, _shown(said, unit)).shown(value) if said.kind == "number" else value
