@@ -13,7 +13,7 @@ from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 from robomill.viz.views import arm_scene
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
+    from robomill.viz.chart import Chart
 
 
 def arm(
@@ -22,7 +22,7 @@ def arm(
     words: tuple[str, str],
     height: int,
     zoom: float = 1.0,
-    more: tuple[Any, Callable[[go.Figure, bool], Any]] | None = None,
+    more: tuple[Any, Callable[[Chart, bool], Any]] | None = None,
 ) -> None:
     """The arm with its caption and what a screen reader says (``words``).
 
@@ -30,7 +30,7 @@ def arm(
     """
     dark = shell.dark()
 
-    def draw() -> go.Figure:
+    def draw() -> Chart:
         fig = arm_figure(scene, dark=dark, height=height, revision=key, zoom=zoom)
         if more is not None:
             more[1](fig, dark)

@@ -18,7 +18,7 @@ from robomill.ui import beside
 from robomill.ui.commons import NOTHING, Commons
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
+    from robomill.viz.chart import Chart
 
 SPIN_SAMPLES = 400
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -93,10 +93,10 @@ def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     return enlarged(result(setup), times)
 
 
-def kept_figure(name: str, key: Sequence[Any], make: Callable[[], go.Figure]) -> go.Figure:
+def kept_figure(name: str, key: Sequence[Any], make: Callable[[], Chart]) -> Chart:
     """The figure of ``make``, built once for equal ``key`` (digests, view, theme); do not change it afterwards.
 
     Building a figure costs more than computing what it shows; a classroom sees the same ones.
     """
-    found: go.Figure = commons.get(("figure", name, *key), make)
+    found: Chart = commons.get(("figure", name, *key), make)
     return found

@@ -18,7 +18,7 @@ from robomill.ui.markup import Html, as_html, as_markdown
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
+    from robomill.viz.chart import Chart
 
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
@@ -180,7 +180,7 @@ def attempt(function: Callable[..., Value], *args: Any) -> Value | None:
 
 
 def figure(
-    fig: go.Figure,
+    fig: Chart,
     key: str,
     *,
     table: Callable[[], Mapping[str, Any]] | None = None,
@@ -217,7 +217,7 @@ def figure(
     more: dict[str, Any] = {}
     if on_pick is not None:
         more = {"on_select": partial(_picked, key, on_pick), "selection_mode": "points"}
-    st.plotly_chart(fig, key=key, theme=None, config=config, alt=alt or None, **more)
+    st.plotly_chart(fig.figure, key=key, theme=None, config=config, alt=alt or None, **more)
     if caption or table is not None:
         with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute", gap="small"):
             if caption:

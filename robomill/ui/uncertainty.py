@@ -16,7 +16,7 @@ from robomill.units import format_many, format_si, from_si
 from robomill.viz.along import add_band
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
+    from robomill.viz.chart import Chart
 
 
 def tile_text(result: SimulationResult, unit: str = "mm") -> str:
@@ -37,7 +37,7 @@ def band_digits(half: float) -> int:
     return min(max(needed, 2), 4)
 
 
-def banded(fig: go.Figure, result: SimulationResult, unit: str, *, dark: bool) -> bool:
+def banded(fig: Chart, result: SimulationResult, unit: str, *, dark: bool) -> bool:
     """Add the 95 % band of the deviation's size and components to the path plot; False where there is none to add."""
     given = session.known(result.setup)
     if given is None:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.simulation.result import SimulationResult
+from robomill.viz.chart import QUIET, Chart
 from robomill.viz.theme import axis, axis_colours, figure, palette, rgba, say
 
 MAX_POINTS = 6000
@@ -36,7 +36,7 @@ def at_feed(result: SimulationResult, values: FloatArray) -> FloatArray:
 class Along:
     """A figure against the length cut s (m,), in ``unit`` (mm or in); of long runs the ``chosen`` samples are drawn."""
 
-    fig: go.Figure
+    fig: Chart
     s: FloatArray
     chosen: IntArray
     unit: str
@@ -55,7 +55,7 @@ class Along:
         """value (m,) as a line; ``hover`` is the format of its number, "" leaves it out of the hover text."""
         words: dict[str, Any] = {"hovertemplate": hover} if hover else {"hoverinfo": "skip"}
         i = self.chosen
-        self.fig.add_scatter(x=self.s[i], y=value[i], mode="lines", name=name, line=line, **words, **more)
+        self.fig.add("scatter", x=self.s[i], y=value[i], mode="lines", name=name, line=line, **words, **more)
 
     def shade(self, band: tuple[FloatArray, FloatArray], name: str, fill: str, legend: bool = True) -> None:
         """The region between two curves (m,)."""
@@ -64,28 +64,28 @@ class Along:
 
     def level(self, y: float, colour: str, dash: str = "dash") -> None:
         """A thin line at a limit."""
-        self.fig.add_hline(y=y, line={"color": colour, "width": 1.2, "dash": dash})
+        self.fig.across(y=y, line={"color": colour, "width": 1.2, "dash": dash})
 
     def zero(self) -> None:
         """A quiet line at zero."""
-        self.fig.add_hline(y=0, line={"color": palette(self.dark).line, "width": 1})
+        self.fig.across(y=0, line={"color": palette(self.dark).line, "width": 1})
 
     def station(self, at: float, name: str = "") -> None:
         """A line where the station is."""
         accent = palette(self.dark).accent
-        self.fig.add_vline(x=at, line={"color": accent, "width": 1.6})
+        self.fig.upright(x=at, line={"color": accent, "width": 1.6})
         if name:
             say(self.fig, name, at, 0, accent, yref="paper", yshift=10, xshift=4, xanchor="left")
 
-    def done(self, title: str, **more: Any) -> go.Figure:
+    def done(self, title: str, **more: Any) -> Chart:
         """The figure with its axes (``more``: of y)."""
-        return self.fig.update_layout(
+        return self.fig.lay_out(
             xaxis=axis(f"Length cut, {self.unit}", dark=self.dark), yaxis=axis(title, dark=self.dark, **more)
         )
 
 
 def shade(
-    fig: go.Figure, s: FloatArray, band: tuple[FloatArray, FloatArray], name: str, fill: str, legend: bool = True
+    fig: Chart, s: FloatArray, band: tuple[FloatArray, FloatArray], name: str, fill: str, legend: bool = True
 ) -> None:
     """The region between the two curves (m,) of ``band`` against s (m,); it stops where either is NaN."""
     low, high = band
@@ -93,7 +93,8 @@ def shade(
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     runs = [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
     for k, run in enumerate(run for run in runs if np.any(high[run] - low[run] > 1e-9)):
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=np.concatenate([s[run], s[run][::-1]]),
             y=np.concatenate([high[run], low[run][::-1]]),
             mode="lines",
@@ -107,7 +108,7 @@ def shade(
         )
 
 
-def add_band(fig: go.Figure, s: FloatArray, value: FloatArray, half: FloatArray, name: str, *, dark: bool) -> None:
+def add_band(fig: Chart, s: FloatArray, value: FloatArray, half: FloatArray, name: str, *, dark: bool) -> None:
     """Shade value +- half (m,) against s (m,) in the colour of component ``name`` ("x", "y", "z"; "": the size).
 
     Everything in the units of the figure; where either is NaN the shade stops.
@@ -117,7 +118,7 @@ def add_band(fig: go.Figure, s: FloatArray, value: FloatArray, half: FloatArray,
     shade(fig, s[i], band, "95 % band", rgba(colour, 0.22), legend=name == "")
 
 
-def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray, words: Sequence[str]) -> None:
+def add_picks(fig: Chart, s: FloatArray, value: FloatArray, words: Sequence[str]) -> None:
     """Clear markers at (s, value) (m,), NaN left out, with ``words`` (m,) to hover; a picked point's x is its station.
 
     Plotly tells of clicks on markers only, and a click counts for the first of the points that are hovered, so these
@@ -126,8 +127,10 @@ def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray, words: Sequence[
     good = np.flatnonzero(np.isfinite(value) & np.isfinite(s))
     if len(good) > MAX_PICKS:
         good = good[np.linspace(0, len(good) - 1, MAX_PICKS).astype(int)]
-    fig.update_traces(hoverinfo="skip", hovertemplate=None)
-    fig.add_scatter(
+    for trace in fig.traces:
+        trace.update(hoverinfo="skip", hovertemplate=None)
+    fig.add(
+        "scatter",
         x=s[good],
         y=value[good],
         mode="markers",
@@ -139,12 +142,12 @@ def add_picks(fig: go.Figure, s: FloatArray, value: FloatArray, words: Sequence[
         selected=_CLEAR,
         unselected=_CLEAR,
     )
-    fig.update_layout(dragmode="pan", clickmode="event+select", hovermode="closest", hoverdistance=-1)
+    fig.lay_out(dragmode="pan", clickmode="event+select", hovermode="closest", hoverdistance=-1)
 
 
-def add_point(fig: go.Figure, x: float, y: float, *, dark: bool) -> None:
+def add_point(fig: Chart, x: float, y: float, *, dark: bool) -> None:
     """A dot where the station is on the curve."""
     if np.isfinite(x) and np.isfinite(y):
         p = palette(dark)
         marker = {"size": 11, "color": p.accent, "line": {"width": 2, "color": p.background}}
-        fig.add_scatter(x=[x], y=[y], mode="markers", showlegend=False, hoverinfo="skip", name="station", marker=marker)
+        fig.add("scatter", x=[x], y=[y], mode="markers", name="station", marker=marker, **QUIET)

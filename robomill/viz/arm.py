@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.viz import solids
+from robomill.viz.chart import Chart, Trace, drawn
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 
@@ -38,9 +38,7 @@ class ArmScene:
     bench: bool = True
 
 
-def arm_figure(
-    scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0
-) -> go.Figure:
+def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0) -> Chart:
     """The arm with everything in ``scene``; the camera stays while ``revision`` does.
 
     ``zoom`` below 1 suits a narrow column.
@@ -50,7 +48,7 @@ def arm_figure(
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     if scene.ghost is not None:
         links, joints = solids.limbs(scene.ghost)
-        fig.add_trace(solids.trace([*links, *joints], p.muted, "before", opacity=0.18))
+        fig.add_traces([solids.trace([*links, *joints], p.muted, "before", opacity=0.18)])
     tip, width, name_colour = scene.frames[-1][:3, 3], 0.0065 * reach, axis_colours(dark)["z"]
     opaque = [*_arm(scene, dark), *_foot(scene, reach, dark), *solids.frame(np.eye(4), 0.16 * reach, dark)]
     said: list[solids.Said] = [(np.array([0.0, 0.0, 0.208 * reach]), "{M}", name_colour)]
@@ -68,7 +66,7 @@ def arm_figure(
         said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
     fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), solids.words(said)])
     fig.add_traces(_part_traces(scene, reach, dark))
-    fig.update_layout(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
+    fig.lay_out(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
     return fig
 
 
@@ -99,12 +97,9 @@ def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) ->
     }
 
 
-def _bounds(fig: go.Figure, reach: float) -> FloatArray:
+def _bounds(fig: Chart, reach: float) -> FloatArray:
     """(2, 3): what is drawn, with a small margin; the same box while the arm moves inside it."""
-    points = [
-        np.stack([np.asarray(t.x, dtype=float), np.asarray(t.y, dtype=float), np.asarray(t.z, dtype=float)], axis=1)
-        for t in fig.data
-    ]
+    points = [np.stack([np.asarray(t[a], dtype=float) for a in "xyz"], axis=1) for t in fig.traces]
     every = np.vstack(points)
     low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
     step = 0.08 * reach
@@ -120,10 +115,11 @@ def _arm(scene: ArmScene, dark: bool) -> list[solids.Painted]:
     return [*((m, p.link) for m in links), *((m, p.joint) for m in joints), (spindle, p.joint), (cutter, p.warm)]
 
 
-def _joint_hover(scene: ArmScene, colour: str) -> go.Scatter3d:
+def _joint_hover(scene: ArmScene, colour: str) -> Trace:
     x, y, z = scene.frames[:, :3, 3].T
     joints = scene.joints or range(1, len(scene.frames))
-    return go.Scatter3d(
+    return drawn(
+        "scatter3d",
         x=x,
         y=y,
         z=z,
@@ -162,7 +158,8 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
             if mask.any():
                 points = np.where(mask[:, None], scene.path, np.nan)
                 traces.append(
-                    go.Scatter3d(
+                    drawn(
+                        "scatter3d",
                         x=points[:, 0],
                         y=points[:, 1],
                         z=points[:, 2],
@@ -176,7 +173,7 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
     return traces
 
 
-def _bench(lower: FloatArray, upper: FloatArray, T_MW: FloatArray, reach: float, dark: bool) -> go.Mesh3d:
+def _bench(lower: FloatArray, upper: FloatArray, T_MW: FloatArray, reach: float, dark: bool) -> Trace:
     """The table under the part; drawn for orientation only."""
     p = palette(dark)
     centre = 0.5 * (lower + upper)

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 from robomill.viz.along import Along, add_band, at_feed
+from robomill.viz.chart import Chart
 from robomill.viz.theme import axis_colours, joint_colours, palette, rgba, say
 
 DASHES = {"x": "dot", "y": "solid", "z": "dash"}
 
 
-def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> go.Figure:
+def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> Chart:
     """The deviation's size and components; a line at sample ``i``."""
     p = palette(dark)
     s, delta = from_si(result.path.s, unit), from_si(at_feed(result, result.delta), unit)
@@ -37,7 +37,7 @@ def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int
     return plot.done(f"Deviation in {{M}}, {unit}")
 
 
-def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: bool, i: int = -1) -> go.Figure:
+def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: bool, i: int = -1) -> Chart:
     """Shares of a ``component`` ("x", "y", "z") by joint and spring, stacked; a line at sample ``i``.
 
     What pushes the tip up stands above zero, what pulls it back below.
@@ -67,7 +67,7 @@ def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: 
 
 def band_figure(
     curves: tuple[FloatArray, FloatArray, FloatArray, FloatArray], component: str, unit: str, *, dark: bool
-) -> go.Figure:
+) -> Chart:
     """Length cut, value, half width of its band, and what the project has now (dashed), each (m,) in ``unit``.
 
     ``component`` is "x", "y", "z", or "" for the size.
@@ -76,8 +76,8 @@ def band_figure(
     symbol = f"δ<sub>{component.upper()}</sub>" if component else "size"
     plot = Along.begin(s, unit, f"band-{component}", dark=dark, height=320)
     add_band(plot.fig, s, value, half, component, dark=dark)
-    if plot.fig.data:
-        plot.fig.data[0].showlegend = True
+    if plot.fig.traces:
+        plot.fig.traces[0]["showlegend"] = True
     plot.curve(now, "project now", {"color": p.muted, "width": 1.6, "dash": "dash"}, "%{y:+.4f} " + unit)
     line = {"color": axis_colours(dark).get(component, p.text), "width": 2.4}
     hover = "%{y:+.4f} ± %{customdata:.4f} " + unit
@@ -85,7 +85,7 @@ def band_figure(
     return plot.done(f"Deviation {symbol} in {{M}}, {unit}")
 
 
-def both_figure(s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: str, *, dark: bool) -> go.Figure:
+def both_figure(s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: str, *, dark: bool) -> Chart:
     """Size of the deviation along the path (m,) by the measured map and by the joint model, in ``unit``."""
     p = palette(dark)
     plot = Along.begin(s, unit, "both", dark=dark, height=280)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_value
+from robomill.viz.chart import Chart
 from robomill.viz.theme import arrow, figure, palette, rgba, say
 
 
@@ -35,14 +35,15 @@ class Dial:
     peak: FloatArray | None = None
 
 
-def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
+def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> Chart:
     """The cutter as a circle in its material, the arc that cuts, and the mean force as an arrow."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision="dial", margin={"l": 4, "r": 4, "t": 6, "b": 4})
     ring = np.linspace(0.0, 2.0 * np.pi, 121)
     if dial.engaged and dial.phi_ex > dial.phi_st:
         _material(fig, dial, dark)
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=np.cos(ring),
         y=np.sin(ring),
         mode="lines",
@@ -65,7 +66,7 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> go.Figure:
         else f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
     )
     say(fig, words + down, 0, -1.72, p.text, size=13)
-    fig.update_layout(
+    fig.lay_out(
         showlegend=False,
         hovermode="closest",
         xaxis={"visible": False, "range": [-1.75, 1.75], "fixedrange": True, "constrain": "domain"},
@@ -80,7 +81,7 @@ def _place(phi_deg: Any, radius: Any = 1.0) -> tuple[FloatArray, FloatArray]:
     return -np.cos(phi) * radius, np.sin(phi) * radius
 
 
-def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
+def _material(fig: Chart, dial: Dial, dark: bool) -> None:
     """What lies ahead of the cutting arc, hatched as cut metal."""
     p = palette(dark)
     phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
@@ -88,7 +89,8 @@ def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
     top = 1.62
     outline_x = np.concatenate([x, [x[-1]], [x[0]], [x[0]]])
     outline_y = np.concatenate([y, [top], [top], [y[0]]])
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=outline_x,
         y=outline_y,
         mode="none",
@@ -105,11 +107,12 @@ def _material(fig: go.Figure, dial: Dial, dark: bool) -> None:
     )
 
 
-def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
+def _arc(fig: Chart, dial: Dial, dark: bool) -> None:
     p = palette(dark)
     phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
     x, y = _place(phi)
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=np.concatenate([[0.0], x, [0.0]]),
         y=np.concatenate([[0.0], y, [0.0]]),
         mode="none",
@@ -118,7 +121,8 @@ def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
         hoverinfo="skip",
     )
     arc = dial.phi_ex - dial.phi_st
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=x,
         y=y,
         mode="lines",
@@ -131,28 +135,29 @@ def _arc(fig: go.Figure, dial: Dial, dark: bool) -> None:
     say(fig, f"{arc:.0f}°", float(x), float(y), p.warm, size=13, bgcolor=rgba(p.background, 0.75), borderpad=2)
 
 
-def _teeth(fig: go.Figure, dial: Dial, colour: str) -> None:
+def _teeth(fig: Chart, dial: Dial, colour: str) -> None:
     turn = 1 if dial.hand == "right" else -1
     for tooth in range(dial.flutes):
         phi = 20.0 + turn * 360.0 * tooth / dial.flutes
         x, y = zip(_place(phi, 0.72), _place(phi, 1.0), strict=True)
-        fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 2}, hoverinfo="skip")
+        fig.add("scatter", x=x, y=y, mode="lines", line={"color": colour, "width": 2}, hoverinfo="skip")
 
 
-def _turning(fig: go.Figure, dial: Dial, colour: str) -> None:
+def _turning(fig: Chart, dial: Dial, colour: str) -> None:
     """An arrow for the sense of turning: clockwise seen from the spindle for a right-hand cutter."""
     turn = 1.0 if dial.hand == "right" else -1.0
     phi = 250.0 + turn * np.linspace(-24, 24, 25)
     x, y = _place(phi, 1.17)
-    fig.add_scatter(x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
+    fig.add("scatter", x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
     arrow(fig, (x[-3], y[-3]), (x[-1], y[-1]), colour, 1.4)
 
 
-def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
+def _forces(fig: Chart, dial: Dial, dark: bool) -> None:
     p = palette(dark)
     scale = dial.scale or 1.0
     if dial.others is not None and len(dial.others):
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=-dial.others[:, 1] / scale,
             y=dial.others[:, 0] / scale,
             mode="markers",
@@ -163,4 +168,4 @@ def _forces(fig: go.Figure, dial: Dial, dark: bool) -> None:
     for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
         if force is not None and float(np.hypot(force[0], force[1])) >= 1e-9:
             arrow(fig, (0.0, 0.0), (-force[1] / scale, force[0] / scale), colour, width)
-    fig.add_scatter(x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")
+    fig.add("scatter", x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
@@ -12,6 +11,7 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.units import from_si
 from robomill.viz.along import Along, at_feed
+from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, palette, rgba
 
 COMPONENTS = ("feed", "feed-normal", "axial")
@@ -26,7 +26,7 @@ def force_figure(
     *,
     dark: bool,
     i: int = -1,
-) -> go.Figure:
+) -> Chart:
     """Mean force by component, the alloy's band around it, the extremes of a revolution as thin lines.
 
     A line stands at sample ``i``.
@@ -56,7 +56,7 @@ def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatAr
     return at_feed(result, rows.min(axis=0)), at_feed(result, rows.max(axis=0))
 
 
-def engagement_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> go.Figure:
+def engagement_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> Chart:
     """The arc as a band from its start to its end, its size, and the depth; a line at sample ``i``."""
     p, c, s = palette(dark), result.conditions, from_si(result.path.s, unit)
     phi_st, phi_ex = (np.where(c.engaged, from_si(phi, "deg"), np.nan) for phi in (c.phi_st, c.phi_ex))
@@ -68,7 +68,7 @@ def engagement_figure(result: SimulationResult, unit: str, *, dark: bool, i: int
     plot.curve(depth, "depth", line, "%{y:.3f} " + unit, yaxis="y2")
     top = float(np.nanmax(depth, initial=0.0)) or 1.0
     right = {"overlaying": "y", "side": "right", "showgrid": False, "tickmode": "auto", "nticks": 5}
-    plot.fig.update_layout(yaxis2=axis(f"Depth, {unit}", dark=dark, range=[0, 1.35 * top], **right))
+    plot.fig.lay_out(yaxis2=axis(f"Depth, {unit}", dark=dark, range=[0, 1.35 * top], **right))
     if i >= 0:
         plot.station(float(s[i]))
     return plot.done("Engagement angle, ° from the left", range=[0, 190], tickvals=[0, 45, 90, 135, 180])

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.units import format_value
+from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, figure, palette, say
 
 COLOURS = {
@@ -36,18 +36,18 @@ class Claim:
     rough: bool = False
 
 
-def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool) -> go.Figure:
+def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool) -> Chart:
     """Each claim a row: a dot with its number, a bar for its range."""
     rows = len(claims)
     margin = {"l": 12, "r": 24, "t": 8, "b": 8}
     fig = figure(dark=dark, height=70 + 46 * rows, revision="evidence", margin=margin)
     measured = [c.value for c in claims if c.kind == "measured" and np.isfinite(c.value)]
     for value in measured[:1]:
-        fig.add_vline(x=value, line={"color": COLOURS["measured"], "width": 1.2, "dash": "dash"})
+        fig.upright(x=value, line={"color": COLOURS["measured"], "width": 1.2, "dash": "dash"})
     for i, claim in enumerate(claims):
         _row(fig, claim, rows - 1 - i, unit, dark)
     top = max([*(v for c in claims for v in (c.value, c.low, c.high) if np.isfinite(v)), 1e-9])
-    fig.update_layout(
+    fig.lay_out(
         showlegend=False,
         xaxis=axis(f"Sideways error of the groove, {unit}", dark=dark, range=[0.0, 1.12 * top], rangemode="tozero"),
         yaxis={"range": [-0.45, rows - 0.25], "visible": False},
@@ -55,7 +55,7 @@ def evidence_figure(claims: Sequence[Claim], unit: str, *, dark: bool) -> go.Fig
     return fig
 
 
-def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
+def _row(fig: Chart, claim: Claim, y: int, unit: str, dark: bool) -> None:
     p = palette(dark)
     colour = COLOURS.get(claim.kind, p.muted)
     value = format_value(claim.value, unit)
@@ -66,11 +66,12 @@ def _row(fig: go.Figure, claim: Claim, y: int, unit: str, dark: bool) -> None:
         text += f"  ({ends[0]} to {ends[1]})"
         hover = f"{format_value(claim.low, unit)} to {format_value(claim.high, unit)}<extra></extra>"
         bar = {"mode": "lines", "line": {"color": colour, "width": 9}, "opacity": 0.35, "hovertemplate": hover}
-        fig.add_scatter(x=[claim.low, claim.high], y=[y, y], **bar)
+        fig.add("scatter", x=[claim.low, claim.high], y=[y, y], **bar)
     lead = {"mode": "lines", "line": {"color": colour, "width": 1.5}, "opacity": 0.5, "hoverinfo": "skip"}
-    fig.add_scatter(x=[0.0, claim.value], y=[y, y], **lead)
+    fig.add("scatter", x=[0.0, claim.value], y=[y, y], **lead)
     symbol = "diamond" if claim.kind == "measured" else "circle"
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=[claim.value],
         y=[y],
         mode="markers",

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.units import format_number
+from robomill.viz.chart import QUIET, Chart
 from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba, say
 
 MAX_TESTS = 3000
@@ -41,7 +41,7 @@ class Intervals:
     logarithmic: bool = True
 
 
-def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
+def intervals_figure(shown: Intervals, *, dark: bool) -> Chart:
     """Each parameter as a point on its 95 % interval, the numbers written at the right."""
     low, high = _clipped(shown)
     compared = bool(shown.references) or shown.truth is not None
@@ -56,26 +56,27 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> go.Figure:
     _fitted(fig, shown, low, high, dark)
     _compared(fig, shown, dark)
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
-    fig.update_layout(
+    fig.lay_out(
         xaxis=axis(shown.unit, dark=dark, **more),
         yaxis=_names(shown.labels, dark),
     )
     return fig
 
 
-def _fitted(fig: go.Figure, shown: Intervals, low: FloatArray, high: FloatArray, dark: bool) -> None:
+def _fitted(fig: Chart, shown: Intervals, low: FloatArray, high: FloatArray, dark: bool) -> None:
     """Bars, points and numbers; words instead where a value is not known."""
     p, colours = palette(dark), joint_colours(7, dark)
     y, known = np.arange(len(shown.labels)), np.isfinite(shown.value)
     for k in y:
         if known[k]:
             line = {"color": rgba(colours[k % 7], 0.42), "width": 11}
-            fig.add_scatter(x=[low[k], high[k]], y=[k, k], mode="lines", line=line, showlegend=False, hoverinfo="skip")
+            fig.add("scatter", x=[low[k], high[k]], y=[k, k], mode="lines", line=line, **QUIET)
             place = {"xshift": 8, "align": "left"}
             say(fig, shown.words[k], 1.0, float(k), p.text, size=12.5, xref="paper", xanchor="left", **place)
         else:
             say(fig, shown.words[k], 0.02, float(k), p.muted, size=12.5, xref="paper", xanchor="left")
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=np.clip(shown.value[known], low[known], None),
         y=y[known],
         mode="markers",
@@ -86,20 +87,20 @@ def _fitted(fig: go.Figure, shown: Intervals, low: FloatArray, high: FloatArray,
     )
 
 
-def _compared(fig: go.Figure, shown: Intervals, dark: bool) -> None:
+def _compared(fig: Chart, shown: Intervals, dark: bool) -> None:
     """Reference sets as open symbols above their rows, the truth as crosses."""
     colour, y = palette(dark).text, np.arange(len(shown.labels))
     for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
         marker = {"size": 9, "symbol": symbol, "color": colour, "line": {"width": 1.6}}
         hover = f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>"
-        fig.add_scatter(x=values, y=y - 0.3, mode="markers", name=name, marker=marker, hovertemplate=hover)
+        fig.add("scatter", x=values, y=y - 0.3, mode="markers", name=name, marker=marker, hovertemplate=hover)
     if shown.truth is not None:
         marker = {"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": colour}}
         hover = "truth: %{x:.2f}<extra></extra>"
-        fig.add_scatter(x=shown.truth, y=y, mode="markers", name="truth", marker=marker, hovertemplate=hover)
+        fig.add("scatter", x=shown.truth, y=y, mode="markers", name="truth", marker=marker, hovertemplate=hover)
 
 
-def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool) -> go.Figure:
+def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool) -> Chart:
     """Correlations (p, p) of the fitted parameters with their numbers; grey where one is not known."""
     p = palette(dark)
     text = [
@@ -108,7 +109,8 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
     ]
     written = len(names) <= 8
     fig = figure(dark=dark, height=330, revision="correlation", margin={"l": 8, "r": 8, "t": 8, "b": 8})
-    fig.add_heatmap(
+    fig.add(
+        "heatmap",
         z=correlation,
         x=list(names),
         y=list(names),
@@ -124,7 +126,7 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
         colorbar=colour_bar("correlation", dark=dark, tickvals=[-1, -0.5, 0, 0.5, 1]),
         hovertemplate="%{y} with %{x}: %{z:+.2f}<extra></extra>",
     )
-    fig.update_layout(
+    fig.lay_out(
         plot_bgcolor=rgba(p.muted, 0.10),
         xaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False),
         yaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False, autorange="reversed"),
@@ -134,7 +136,7 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
 
 def residuals_figure(
     row: IntArray, residual: FloatArray, outlier: BoolArray, unit: str, names: Sequence[str], *, dark: bool
-) -> go.Figure:
+) -> Chart:
     """Residuals (m, k) of each test against its row (m,); ``outlier`` (m,) are ringed and named.
 
     k components of those ``names``, or one. At most ``MAX_TESTS`` tests are drawn, outliers among them.
@@ -151,18 +153,18 @@ def residuals_figure(
             continue
         marker = {"size": 6, "color": colour, "symbol": symbol, "opacity": 0.85}
         _by_row(fig, row[chosen], residual[chosen, k], names[k] if several else "residual", f"+.4f}} {unit}", marker)
-    fig.add_hline(y=0, line={"color": palette(dark).line, "width": 1})
+    fig.across(y=0, line={"color": palette(dark).line, "width": 1})
     marked = np.flatnonzero(outlier)
     if len(marked):
         worst = np.nanargmax(np.where(np.isnan(residual[marked]), -1, np.abs(residual[marked])), axis=1)
         _ring(fig, row[marked], residual[marked, worst], "does not fit", dark)
-    fig.update_layout(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
+    fig.lay_out(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Measured − predicted, {unit}", dark=dark))
     return fig
 
 
 def gaps_figure(
     row: IntArray, gap: FloatArray, stated: FloatArray | None, suspect: BoolArray, unit: str, *, dark: bool
-) -> go.Figure:
+) -> Chart:
     """How far the line of pull of each row (m,) passes its pulley, with the load point found and with the stated one.
 
     ``stated`` None: the stated load point is the one in use; ``suspect`` (m,) are ringed and named.
@@ -176,20 +178,21 @@ def gaps_figure(
     _by_row(fig, row, gap, name, f".1f}} {unit}", {"size": 7, "color": p.accent, "symbol": "circle"})
     if suspect.any():
         _ring(fig, row[suspect], gap[suspect], "cannot be", dark)
-    fig.update_layout(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Gap, {unit}", dark=dark, rangemode="tozero"))
+    fig.lay_out(xaxis=axis(ROW, dark=dark), yaxis=axis(f"Gap, {unit}", dark=dark, rangemode="tozero"))
     return fig
 
 
-def _by_row(fig: go.Figure, row: IntArray, y: FloatArray, name: str, shown: str, marker: dict[str, Any]) -> None:
+def _by_row(fig: Chart, row: IntArray, y: FloatArray, name: str, shown: str, marker: dict[str, Any]) -> None:
     """One value a row of the file; ``shown`` ends the template of what is read off it."""
     hover = f"row %{{x}}<br>%{{y:{shown}<extra>{name}</extra>"
-    fig.add_scatter(x=row, y=y, mode="markers", name=name, marker=marker, hovertemplate=hover)
+    fig.add("scatter", x=row, y=y, mode="markers", name=name, marker=marker, hovertemplate=hover)
 
 
-def _ring(fig: go.Figure, row: IntArray, y: FloatArray, name: str, dark: bool) -> None:
+def _ring(fig: Chart, row: IntArray, y: FloatArray, name: str, dark: bool) -> None:
     """Rings around rows that stand out, each named where they are few."""
     bad = palette(dark).bad
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=row,
         y=y,
         mode="markers+text" if len(row) <= 12 else "markers",
@@ -205,13 +208,14 @@ def _ring(fig: go.Figure, row: IntArray, y: FloatArray, name: str, dark: bool) -
 
 def models_figure(
     names: Sequence[str], in_sample: FloatArray, left_out: FloatArray, chosen: int, *, dark: bool
-) -> go.Figure:
+) -> Chart:
     """Errors in % of each model on its own data and on poses left out; the gap between the two is the over-fitting."""
     p = palette(dark)
     y = np.arange(len(names))
     fig = figure(dark=dark, height=84 + _ROW * len(names), revision="models", margin={"l": 8, "r": 96, "t": 34, "b": 8})
     for k in y:
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=[in_sample[k], left_out[k]],
             y=[k, k],
             mode="lines",
@@ -220,7 +224,8 @@ def models_figure(
             line={"color": rgba(p.warm, 0.55), "width": 6},
         )
         say(fig, f"{left_out[k]:.2f} %", 1.0, float(k), p.text, size=13, xref="paper", xshift=8, xanchor="left")
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=in_sample,
         y=y,
         mode="markers",
@@ -228,7 +233,8 @@ def models_figure(
         hovertemplate="%{x:.2f} %<extra></extra>",
         marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}},
     )
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=left_out,
         y=y,
         mode="markers",
@@ -240,14 +246,14 @@ def models_figure(
     values = values[np.isfinite(values) & (values > 0)]
     ends = (values.min() / 1.6, values.max() * 1.6) if len(values) else (0.1, 100.0)
     labels = [f"<b>{name}</b>" if k == chosen else name for k, name in enumerate(names)]
-    fig.update_layout(
+    fig.lay_out(
         xaxis=axis("Error, % of the measured displacement", dark=dark, **_logarithmic(*ends)),
         yaxis=_names(labels, dark),
     )
     return fig
 
 
-def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, dark: bool) -> go.Figure:
+def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, dark: bool) -> Chart:
     """Half widths of the 95 % intervals in % of the value, as they are and as the planned tests should make them."""
     p = palette(dark)
     top = float(np.max(before[np.isfinite(before)], initial=float(np.max(after[np.isfinite(after)], initial=1.0))))
@@ -266,7 +272,8 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
         ("now", shown, words, rgba(p.muted, 0.55)),
         ("after these tests", after, [f"± {v:.2g} %" for v in after], p.accent),
     ):
-        fig.add_bar(
+        fig.add(
+            "bar",
             y=list(names),
             x=values,
             name=name,
@@ -279,7 +286,7 @@ def gain_figure(names: Sequence[str], before: FloatArray, after: FloatArray, *, 
             cliponaxis=False,
             hovertemplate="%{y}: %{text}<extra>" + name + "</extra>",
         )
-    fig.update_layout(
+    fig.lay_out(
         xaxis=axis("Half the 95 % interval, % of the value", dark=dark, rangemode="tozero"),
         yaxis=axis("", dark=dark, autorange="reversed", showgrid=False, ticks=""),
     )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import plotly.graph_objects as go
-
 from robomill.arrays import FloatArray
+from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, figure, palette
 
 
@@ -15,12 +14,13 @@ def ray_figure(
     curves: tuple[FloatArray, FloatArray],
     *,
     dark: bool,
-) -> go.Figure:
+) -> Chart:
     """Two curves (m,), one above the other, against radius (m,), marked at ``here``; titles of radius and curves."""
     p = palette(dark)
     fig = figure(dark=dark, height=250, revision="ray", showlegend=False, margin={"l": 8, "r": 8, "t": 8, "b": 8})
     for values, colour, suffix, title in zip(curves, (p.accent, p.caution), ("", "2"), titles[1:], strict=True):
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=radius,
             y=values,
             mode="lines",
@@ -29,7 +29,8 @@ def ray_figure(
             yaxis=f"y{suffix}",
             hovertemplate=f"{title}: %{{y:.3f}}<extra></extra>",
         )
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=[radius[here]],
             y=[values[here]],
             mode="markers",
@@ -40,12 +41,7 @@ def ray_figure(
         )
         top = suffix == ""
         domain = [0.56, 1.0] if top else [0.0, 0.44]
-        fig.update_layout(
-            {
-                f"xaxis{suffix}": axis(
-                    "" if top else titles[0], dark=dark, anchor=f"y{suffix}", nticks=5, showticklabels=not top
-                ),
-                f"yaxis{suffix}": axis(title, dark=dark, anchor=f"x{suffix}", domain=domain, nticks=4),
-            }
-        )
+        below = "" if top else titles[0]
+        fig.layout[f"xaxis{suffix}"] = axis(below, dark=dark, anchor=f"y{suffix}", nticks=5, showticklabels=not top)
+        fig.layout[f"yaxis{suffix}"] = axis(title, dark=dark, anchor=f"x{suffix}", domain=domain, nticks=4)
     return fig

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.units import UNITS, format_number
-from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, joint_colours, palette
-from robomill.viz.unchecked import ABOVE, house_layout, unchecked, words
+from robomill.viz.chart import Chart
+from robomill.viz.theme import ABOVE, SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette, say
 from robomill.workspace.quantities import Colours, MapQuantity
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
@@ -109,7 +108,7 @@ def symmetric_limit(values: Sequence[FloatArray]) -> float:
 
 def sheet_figure(
     sheet: MapSheet, *, dark: bool, panel_height: int, revision: str, gap_x: float = 0.05, gap_y: int = 46
-) -> go.Figure:
+) -> Chart:
     """All panels of ``sheet`` in one figure; panning and zooming one moves all."""
     n_rows, n_columns = len(sheet.rows), max(len(row) for row in sheet.rows)
     lines = 1 + max(m.title.count("<br>") for row in sheet.rows for m in row if m is not None)
@@ -120,7 +119,7 @@ def sheet_figure(
     used = list(dict.fromkeys(m.scale for row in sheet.rows for m in row if m is not None))
     beside = inner < BAR_ROOM * len(used)
     data: list[dict[str, Any]] = []
-    layout = house_layout(
+    fig = figure(
         dark=dark,
         height=height,
         revision=revision,
@@ -132,7 +131,7 @@ def sheet_figure(
         margin={"l": LEFT, "r": RIGHT * (len(used) if beside else 1), "t": top, "b": bottom, "autoexpand": False},
     )
     for name in used:
-        layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, beside, dark)
+        fig.layout[f"coloraxis{_number(used.index(name))}"] = _colour_axis(sheet, name, used, beside, dark)
     index = 0
     for r, row in enumerate(sheet.rows):
         y1 = 1.0 - r * (panel_height + gap_y) / inner
@@ -143,9 +142,10 @@ def sheet_figure(
             x0, lowest = c * (width + gap_x), r == n_rows - 1 or _below_empty(sheet, r, c)
             place = (x0, min(x0 + width, 1.0), lowest), (y0, min(y1, 1.0), c == 0 or not any(row[:c]))
             data += _traces(sheet, panel, index, used, dark)
-            _decorate(layout, sheet, panel, index, place, dark)
+            _decorate(fig, sheet, panel, index, place, dark)
             index += 1
-    return unchecked(data, layout)
+    fig.add_traces(data)
+    return fig
 
 
 def picked_point(sheet_u: FloatArray, sheet_v: FloatArray, u: float, v: float) -> tuple[float, float]:
@@ -246,7 +246,7 @@ def _thin(count: int, every: int) -> IntArray:
 
 
 def _decorate(
-    layout: dict[str, Any],
+    fig: Chart,
     sheet: MapSheet,
     panel: Map,
     index: int,
@@ -262,7 +262,7 @@ def _decorate(
         ("y", "x", [y0, y1], sheet.v, leftmost, sheet.v_title),
     ):
         half = _half_step(points)
-        layout[f"{letter}axis{name}"] = {
+        fig.layout[f"{letter}axis{name}"] = {
             **axis("", dark=dark, showgrid=False, nticks=5 if len(sheet.rows[0]) < 3 or letter == "y" else 3),
             **({} if index == 0 else {"matches": letter}),
             "domain": domain,
@@ -274,18 +274,12 @@ def _decorate(
             "showline": False,
             "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
         }
-    layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=2, align="left", **ABOVE))
+    say(fig, panel.title, x0, y1, p.text, size=13, yshift=2, align="left", **ABOVE)
     if sheet.outline is not None:
         (u0, v0), (u1, v1) = sheet.outline
         corners = {"x0": u0, "y0": v0, "x1": u1, "y1": v1, "xref": f"x{name}", "yref": f"y{name}"}
-        layout["shapes"].append(
-            {
-                "type": "rect",
-                **corners,
-                "line": {"color": p.text, "width": 1.4, "dash": "dash"},
-                "fillcolor": "rgba(0,0,0,0)",
-            }
-        )
+        line = {"color": p.text, "width": 1.4, "dash": "dash"}
+        fig.shape(type="rect", **corners, line=line, fillcolor="rgba(0,0,0,0)")
 
 
 def _half_step(points: FloatArray) -> float:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
+from robomill.viz.chart import Chart
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, palette, rgba
 
 
@@ -30,7 +30,7 @@ class Level:
     signed: bool = False
 
 
-def level_figure(level: Level, *, dark: bool, revision: str) -> go.Figure:
+def level_figure(level: Level, *, dark: bool, revision: str) -> Chart:
     """The level as a map with its measured points."""
     p = palette(dark)
     fig = figure(dark=dark, height=340, revision=revision, margin={"l": 8, "r": 8, "t": 8, "b": 8})
@@ -40,7 +40,8 @@ def level_figure(level: Level, *, dark: bool, revision: str) -> go.Figure:
         {"orientation": "h", "x": 0.5, "xanchor": "center", "y": 0.86, "yanchor": "bottom", "len": 0.9, "ypad": 0}
     )
     bar["title"]["side"] = "top"
-    fig.add_heatmap(
+    fig.add(
+        "heatmap",
         x=level.x,
         y=level.y,
         z=level.values.T,
@@ -51,7 +52,8 @@ def level_figure(level: Level, *, dark: bool, revision: str) -> go.Figure:
         hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + level.unit + "<extra></extra>",
     )
     if len(level.points):
-        fig.add_scatter(
+        fig.add(
+            "scatter",
             x=level.points[:, 0],
             y=level.points[:, 1],
             mode="markers",
@@ -59,7 +61,7 @@ def level_figure(level: Level, *, dark: bool, revision: str) -> go.Figure:
             hoverinfo="skip",
             marker={"size": 4.5, "color": rgba(p.background, 0.85), "line": {"color": rgba(p.text, 0.8), "width": 1}},
         )
-    fig.update_layout(
+    fig.lay_out(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {level.length_unit}", dark=dark, showgrid=False, range=_span(level.x)),
         yaxis=axis(

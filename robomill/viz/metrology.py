@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.viz.along import Along
+from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba, say
 
 
@@ -30,7 +30,7 @@ class ProfileCurves:
     measured: tuple[FloatArray, FloatArray] | None = None
 
 
-def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, dark: bool) -> go.Figure:
+def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, dark: bool) -> Chart:
     """The profile with its tolerance, its band, its best line and what was measured; ``block`` (q,) source lines."""
     p, unit = palette(dark), curves.unit
     plot = Along.begin(curves.station, unit, "profile", dark=dark, height=320)
@@ -42,7 +42,8 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
     if curves.measured is not None:
-        plot.fig.add_scatter(
+        plot.fig.add(
+            "scatter",
             x=curves.measured[0],
             y=curves.measured[1],
             mode="markers",
@@ -60,12 +61,13 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     return plot.done(f"Error of the groove, {unit}", range=[-reach, reach])
 
 
-def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, dark: bool) -> go.Figure:
+def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, dark: bool) -> Chart:
     """Share of the cut area (%) by signed error (µm), in the colours of the surface; tolerance marked."""
     p = palette(dark)
     middle = 0.5 * (edges[1:] + edges[:-1])
     fig = figure(dark=dark, height=320, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
-    fig.add_bar(
+    fig.add(
+        "bar",
         x=middle,
         y=share,
         width=np.diff(edges),
@@ -81,10 +83,10 @@ def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, 
         hovertemplate="%{x:+.0f} µm<br>%{y:.1f} % of the area<extra></extra>",
     )
     for side, words in ((-1, "− tolerance"), (1, "+ tolerance")):
-        fig.add_vline(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
+        fig.upright(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
         say(fig, words, side * tolerance, 1.0, p.bad, yref="paper", yanchor="bottom")
     reach = max(1.12 * tolerance, float(np.abs(edges).max()) * 1.04)
-    fig.update_layout(
+    fig.lay_out(
         xaxis=axis("Signed error, µm (− too deep, + material left)", dark=dark, range=[-reach, reach]),
         yaxis=axis("Share of the cut area, %", dark=dark, rangemode="tozero"),
     )

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_value
+from robomill.viz.chart import Chart
 from robomill.viz.theme import Point, arrow, axis, figure, palette, rgba, say
 
 HEAD = {"arrowhead": 3, "arrowsize": 1.1}
@@ -38,7 +38,7 @@ class SectionDrawing:
     unit: str = "mm"
 
 
-def section_figure(drawing: SectionDrawing, *, dark: bool) -> go.Figure:
+def section_figure(drawing: SectionDrawing, *, dark: bool) -> Chart:
     """The drawing, to one scale in both directions; the reader looks along the feed, left is left."""
     p, d = palette(dark), drawing
     fig = figure(dark=dark, height=320, revision="section", margin={"l": 8, "r": 8, "t": 30, "b": 8})
@@ -50,27 +50,27 @@ def section_figure(drawing: SectionDrawing, *, dark: bool) -> go.Figure:
     bottom = float(np.min(z)) - 0.9 * step
     hatched = {"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge, "bgcolor": rgba(p.metal, 0.22)}
     filled = {"mode": "none", "fill": "toself", "fillcolor": rgba(p.metal, 0.30), "fillpattern": hatched}
-    fig.add_scatter(x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], name="material", hoverinfo="skip", **filled)
+    fig.add("scatter", x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], name="material", hoverinfo="skip", **filled)
     keep = np.isfinite(d.ideal)
     for x, y, name, line in (
         (u, z, "machined", {"color": p.text, "width": 2.6}),
         (d.u_ideal[keep], d.ideal[keep], "ideal", {"color": p.accent, "width": 1.8, "dash": "dash"}),
     ):
         hover = f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>{name}</extra>"
-        fig.add_scatter(x=x, y=y, mode="lines", name=name, line=line, hovertemplate=hover)
+        fig.add("scatter", x=x, y=y, mode="lines", name=name, line=line, hovertemplate=hover)
     if np.isfinite([d.wall_left, d.wall_right, d.depth]).all():
         _dimensions(fig, d, step, dark)
     plain: dict[str, Any] = {"dark": dark, "showgrid": False, "constrain": "domain"}
     # Left of the feed is +u; looking along the feed it lies on the left, so the axis runs backwards.
     across = [float(u[-1]), float(u[0])] if u[-1] > u[0] else [float(u[0]), float(u[-1])]
     upwards: dict[str, Any] = {"scaleanchor": "x", "scaleratio": 1, "range": [bottom, d.top + 1.45 * step]}
-    return fig.update_layout(
+    return fig.lay_out(
         xaxis=axis(f"Across the cut, {d.unit} (+ is left of the feed)", range=across, **plain),
         yaxis=axis(f"Height z<sub>W</sub>, {d.unit}", **upwards, **plain),
     )
 
 
-def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> None:
+def _dimensions(fig: Chart, d: SectionDrawing, step: float, dark: bool) -> None:
     p = palette(dark)
     walls = sorted((d.wall_left, d.wall_right))
     centre = 0.5 * (d.wall_left + d.wall_right)
@@ -102,7 +102,7 @@ def _dimensions(fig: go.Figure, d: SectionDrawing, step: float, dark: bool) -> N
     _text(fig, (centre + side * reach, under), _off(d), p.warm, dark, "right" if side > 0 else "left")
 
 
-def _wide(fig: go.Figure, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:
+def _wide(fig: Chart, d: SectionDrawing, over: float, seen: tuple[float, float], dark: bool) -> None:
     """A groove wider than the drawing: its numbers in words, a dimension line that runs out of the picture."""
     p = palette(dark)
     inside = [w for w in (d.wall_left, d.wall_right) if seen[0] <= w <= seen[1]]
@@ -133,11 +133,11 @@ def _floor(d: SectionDrawing) -> str:
     return f"floor {format_value(d.floor_error, d.unit, 3, sign=True)}"
 
 
-def _line(fig: go.Figure, a: Point, b: Point, colour: str, dash: str = "solid") -> None:
+def _line(fig: Chart, a: Point, b: Point, colour: str, dash: str = "solid") -> None:
     line = {"color": colour, "width": 1, "dash": dash}
-    fig.add_shape(type="line", x0=a[0], y0=a[1], x1=b[0], y1=b[1], line=line)
+    fig.shape(type="line", x0=a[0], y0=a[1], x1=b[0], y1=b[1], line=line)
 
 
-def _text(fig: go.Figure, at: Point, text: str, colour: str, dark: bool, xanchor: str = "center") -> None:
+def _text(fig: Chart, at: Point, text: str, colour: str, dark: bool, xanchor: str = "center") -> None:
     behind: dict[str, Any] = {"bgcolor": rgba(palette(dark).background, 0.88), "borderpad": 3}
     say(fig, text, *at, colour, size=13, xanchor=xanchor, yanchor="middle", **behind)

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.units import format_number, format_significant
-from robomill.viz.theme import axis, joint_colours, palette
-from robomill.viz.unchecked import ABOVE, Trace, house_layout, unchecked, words
+from robomill.viz.chart import Chart, Trace
+from robomill.viz.theme import ABOVE, axis, figure, joint_colours, palette, say
 
 SHARES_HEIGHT, LINES_HEIGHT = 388, 480
 
@@ -24,7 +23,7 @@ def share_bars(
     *,
     dark: bool,
     old: FloatArray | None = None,
-) -> go.Figure:
+) -> Chart:
     """Bars, one a component, of the joints' shares (n, k) in ``unit``: what adds goes right, what takes away left.
 
     A long mark is the sum; a grey one ``old`` (k,), the sum before.
@@ -32,9 +31,7 @@ def share_bars(
     p = palette(dark)
     colours = joint_colours(7, dark)
     margin = {"l": 8, "r": 58, "t": 30, "b": 8}
-    layout = house_layout(
-        dark=dark, height=SHARES_HEIGHT, revision="share-bars", barmode="relative", bargap=0.34, margin=margin
-    )
+    fig = figure(dark=dark, height=SHARES_HEIGHT, revision="share-bars", barmode="relative", bargap=0.34, margin=margin)
     data: list[Trace] = [
         {
             "type": "bar",
@@ -54,14 +51,13 @@ def share_bars(
     top = float(np.nanmax(np.abs(shares), initial=0.0)) or 1.0
     right = np.maximum(shares, 0).sum(axis=0)
     left = float(np.minimum(shares, 0).sum(axis=0).min(initial=0.0))
-    layout["annotations"] = [
-        words(format_number(value, 3, sign=True), max(edge, 0.0), name, 12.5, p.text, xanchor="left", xshift=8)  # type: ignore[arg-type]
-        for name, value, edge in zip(names, total, right, strict=True)
-    ]
+    for name, value, edge in zip(names, total, right, strict=True):
+        say(fig, format_number(value, 3, sign=True), max(edge, 0.0), name, p.text, size=12.5, xanchor="left", xshift=8)
     span = [1.12 * left - 0.02 * top, 1.10 * float(right.max(initial=0.1)) + 0.05 * top]
-    layout["xaxis"] = axis(unit, dark=dark, range=span) | {"zeroline": True, "zerolinecolor": p.line}
-    layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", showline=False) | {"title": None}
-    return unchecked(data, layout)
+    fig.layout["xaxis"] = axis(unit, dark=dark, range=span) | {"zeroline": True, "zerolinecolor": p.line}
+    fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", showline=False) | {"title": None}
+    fig.add_traces(data)
+    return fig
 
 
 def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, unit: str) -> Trace:
@@ -83,12 +79,12 @@ def _amount(value: float, top: float) -> str:
 
 def gain_bars(
     groups: Sequence[tuple[str, FloatArray, str]], joints: Sequence[int], *, dark: bool, height: int = 250
-) -> go.Figure:
+) -> Chart:
     """What a stiffer joint buys: one group of bars a place (title, gain (n,), unit), one bar a joint."""
     p = palette(dark)
     colours = joint_colours(7, dark)
     margin = {"l": 8, "r": 24, "t": 34 + 16 * ("<br>" in groups[0][0]), "b": 8}
-    layout = house_layout(dark=dark, height=height, revision="gains", bargap=0.3, showlegend=False, margin=margin)
+    fig = figure(dark=dark, height=height, revision="gains", bargap=0.3, showlegend=False, margin=margin)
     count, gap = len(groups), 0.07
     width = (1 - gap * (count - 1)) / count
     data: list[Trace] = []
@@ -113,16 +109,17 @@ def gain_bars(
                 "hovertemplate": f"%{{y}}: %{{x:.4g}} {unit}<extra></extra>",
             }
         )
-        layout[f"xaxis{suffix}"] = axis(unit, dark=dark, nticks=4, anchor=f"y{suffix}") | {
+        fig.layout[f"xaxis{suffix}"] = axis(unit, dark=dark, nticks=4, anchor=f"y{suffix}") | {
             "domain": [start, min(start + width, 1.0)],
             "range": [1.3 * low if low < 0 else 0.0, 1.28 * top],
         }
-        layout[f"yaxis{suffix}"] = axis("", dark=dark, autorange="reversed", anchor=f"x{suffix}", ticks="") | {
+        fig.layout[f"yaxis{suffix}"] = axis("", dark=dark, autorange="reversed", anchor=f"x{suffix}", ticks="") | {
             "title": None,
             "showticklabels": g == 0,
         }
-        layout["annotations"].append(words(f"<b>{title}</b>", start, 1.0, 13, p.text, yshift=8, align="left", **ABOVE))
-    return unchecked(data, layout)
+        say(fig, f"<b>{title}</b>", start, 1.0, p.text, size=13, yshift=8, align="left", **ABOVE)
+    fig.add_traces(data)
+    return fig
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,13 +140,13 @@ def line_panels(
     unit: str,
     *,
     dark: bool,
-) -> go.Figure:
+) -> Chart:
     """Deviation along straight lines, total and by joint, all panels on one vertical scale."""
     p, columns = palette(dark), 3
     rows = -(-len(panels) // columns)
     margin = {"l": 8, "r": 8, "t": 58, "b": 8}
-    layout = house_layout(dark=dark, height=LINES_HEIGHT, revision="lines", hovermode="x unified", margin=margin)
-    layout["legend"] = {**layout["legend"], "y": 1.07}
+    fig = figure(dark=dark, height=LINES_HEIGHT, revision="lines", hovermode="x unified", margin=margin)
+    fig.lay_out(legend={"y": 1.07})
     gap = 0.08  # with the room left and right of each line it keeps the end labels of two panels apart
     width, tall = (1 - gap * (columns - 1)) / columns, (1 - 0.2 * (rows - 1)) / rows
     span = list(_span(panels))
@@ -159,17 +156,18 @@ def line_panels(
         suffix = "" if index == 0 else str(index + 1)
         data += _line_traces(panel, joints, unit, suffix, dark)
         x0, y1 = c * (width + gap), 1 - r * (tall + 0.2)
-        layout[f"xaxis{suffix}"] = axis(s_titles[index], dark=dark, nticks=4, anchor=f"y{suffix}") | {
+        fig.layout[f"xaxis{suffix}"] = axis(s_titles[index], dark=dark, nticks=4, anchor=f"y{suffix}") | {
             "domain": [x0, min(x0 + width, 1.0)],
             "range": _wider(panel.s),
         }
         title = f"deviation, {unit}" if c == 0 else ""
-        layout[f"yaxis{suffix}"] = axis(title, dark=dark, range=span, nticks=5, anchor=f"x{suffix}") | {
+        fig.layout[f"yaxis{suffix}"] = axis(title, dark=dark, range=span, nticks=5, anchor=f"x{suffix}") | {
             "domain": [max(y1 - tall, 0.0), y1],
             "showticklabels": c == 0,
         }
-        layout["annotations"].append(words(panel.title, x0, y1, 13, p.text, yshift=3, **ABOVE))
-    return unchecked(data, layout)
+        say(fig, panel.title, x0, y1, p.text, size=13, yshift=3, **ABOVE)
+    fig.add_traces(data)
+    return fig
 
 
 def _wider(s: FloatArray) -> list[float]:

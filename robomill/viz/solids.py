@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
+from robomill.viz.chart import QUIET, Trace, drawn
 from robomill.viz.theme import axis_colours
 
 Triangles = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
@@ -92,13 +92,13 @@ def box(lower: ArrayLike, upper: ArrayLike, T: FloatArray | None = None) -> Tria
     return points, np.array([half for a, b, c, d in FACES.values() for half in ((a, b, c), (a, c, d))], dtype=float)
 
 
-def painted(solids: Sequence[Painted]) -> go.Mesh3d:
+def painted(solids: Sequence[Painted]) -> Trace:
     """One Mesh3d trace of opaque solids, each in its own colour."""
     colours = [colour for mesh, colour in solids for _ in mesh[1]]
     return trace([mesh for mesh, _ in solids], None, "arm", facecolor=colours)
 
 
-def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: Any) -> go.Mesh3d:
+def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: Any) -> Trace:
     """One Mesh3d trace of several meshes in one colour."""
     points = np.vstack([m[0] for m in meshes])
     shift = np.cumsum([0, *[len(m[0]) for m in meshes[:-1]]])
@@ -113,15 +113,15 @@ def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: An
         "lightposition": {"x": 3000, "y": -6000, "z": 9000},
         **more,
     }
-    return go.Mesh3d(x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
+    return drawn("mesh3d", x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
 
 
-def words(said: Sequence[Said], **more: Any) -> go.Scatter3d:
+def words(said: Sequence[Said], **more: Any) -> Trace:
     """Words in a scene."""
     x, y, z = np.array([at for at, _, _ in said], dtype=float).T
     font = {"color": [colour for _, _, colour in said], "size": 13}
-    quiet = {"hoverinfo": "skip", "showlegend": False, "name": "words"}
-    return go.Scatter3d(x=x, y=y, z=z, mode="text", text=[w for _, w, _ in said], textfont=font, **quiet, **more)
+    texts = [word for _, word, _ in said]
+    return drawn("scatter3d", x=x, y=y, z=z, mode="text", text=texts, textfont=font, name="words", **QUIET, **more)
 
 
 def arrow(start: ArrayLike, vector: ArrayLike, colour: str, width: float) -> list[Painted]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import FloatArray
 from robomill.simulation.enlarged import Enlarged
 from robomill.units import from_si
+from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
 MAX_CELLS = 60_000
@@ -27,7 +27,7 @@ def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArr
 
 def surface_figure(
     shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, camera: str = "iso"
-) -> go.Figure:
+) -> Chart:
     """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse.
 
     It is seen as the ``camera`` has it until it is turned.
@@ -40,7 +40,8 @@ def surface_figure(
     eye, up = EYES[camera]
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     colour = np.nan_to_num(error_um.T).astype(np.float32)
-    fig.add_surface(
+    fig.add(
+        "surface",
         x=x.astype(np.float32),
         y=y.astype(np.float32),
         z=z.T.astype(np.float32),
@@ -59,7 +60,7 @@ def surface_figure(
     height_span = max(float(np.nanmax(z) - np.nanmin(z)), 1e-9)
     span = max(float(np.ptp(x)), float(np.ptp(y)))
     stretch = min(max(0.10 * span / height_span, 1.0), 4.0)
-    fig.update_layout(
+    fig.lay_out(
         scene={
             "xaxis": axis3d(f"x<sub>W</sub>, {unit}", dark=dark),
             "yaxis": axis3d(f"y<sub>W</sub>, {unit}", dark=dark),

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
 
-import plotly.graph_objects as go
+from robomill.viz.chart import Chart
 
 FONT = '"Source Sans", "Source Sans 3", "Source Sans Pro", sans-serif'
 
@@ -25,9 +25,11 @@ AXIS_COLOURS_DARK = {"x": "#F0803C", "y": "#33BE95", "z": "#4BA3DB"}
 
 DIVERGING = [[0.0, "#08457E"], [0.25, "#4E93C8"], [0.5, "#ECECE8"], [0.75, "#E8954A"], [1.0, "#A33E00"]]
 DIVERGING_DARK = [[0.0, "#6FC1FF"], [0.25, "#2F7DB5"], [0.5, "#3A444B"], [0.75, "#D07A2C"], [1.0, "#FFB368"]]
-SEQUENTIAL = "Cividis"
+CIVIDIS = ["#00224E", "#123570", "#3B496C", "#575D6D", "#707173", "#8A8678", "#A59C74", "#C3B369", "#E1CC55", "#FEE838"]
+SEQUENTIAL = [[k / (len(CIVIDIS) - 1), colour] for k, colour in enumerate(CIVIDIS)]
 
 Point = tuple[float, float]
+ABOVE = {"xref": "paper", "yref": "paper", "xanchor": "left", "yanchor": "bottom"}
 
 
 @dataclass(frozen=True)
@@ -118,13 +120,13 @@ def rgba(colour: str, alpha: float) -> str:
     return f"rgba({red},{green},{blue},{alpha:g})"
 
 
-def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) -> go.Figure:
+def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) -> Chart:
     """An empty figure in the house style; ``revision`` keeps zoom and camera while it stays the same."""
     p = palette(dark)
     base: dict[str, Any] = {
         "height": height,
         "uirevision": revision,
-        "template": "none",
+        "template": {"data": {"scatter": [{"type": "scatter"}]}},  # plotly's "none"
         "font": {"family": FONT, "size": 13, "color": p.text},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "rgba(0,0,0,0)",
@@ -146,7 +148,7 @@ def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) ->
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": p.muted, "activecolor": p.accent},
     }
     base.update(layout)
-    return go.Figure(layout=base)
+    return Chart(base)
 
 
 def plain(text: str) -> str:
@@ -154,17 +156,17 @@ def plain(text: str) -> str:
     return html.escape(text, quote=False)
 
 
-def say(fig: go.Figure, text: str, x: float, y: float, colour: str, **more: Any) -> None:
-    """Words in a plane figure, without an arrow; ``more`` says what x and y refer to and where they are anchored."""
+def say(fig: Chart, text: str, x: float, y: float | str, colour: str, **more: Any) -> None:
+    """Words in a plane figure, without an arrow; ``more``: size, what x and y refer to, where they are anchored."""
     font = {"size": more.pop("size", 12), "color": colour}
-    fig.add_annotation(x=x, y=y, text=text, showarrow=False, font=font, **more)
+    fig.annotate(x=x, y=y, text=text, showarrow=False, font=font, **more)
 
 
-def arrow(fig: go.Figure, tail: Point, head: Point, colour: str, width: float = 1.2, **more: Any) -> None:
+def arrow(fig: Chart, tail: Point, head: Point, colour: str, width: float = 1.2, **more: Any) -> None:
     """An arrow in the axes of a plane figure; ``more`` says how its head looks."""
     drawn = {"arrowhead": 2, **more, "arrowwidth": width, "arrowcolor": colour, "showarrow": True, "text": ""}
     axes = {"xref": "x", "yref": "y", "axref": "x", "ayref": "y"}
-    fig.add_annotation(x=head[0], y=head[1], ax=tail[0], ay=tail[1], **axes, **drawn)
+    fig.annotate(x=head[0], y=head[1], ax=tail[0], ay=tail[1], **axes, **drawn)
 
 
 def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:

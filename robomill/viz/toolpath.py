@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 from plotly.colors import sample_colorscale
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.viz.chart import QUIET, Chart
 from robomill.viz.path_picture import PathPicture
 from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, palette, plain, rgba, tool_colours
 
@@ -17,19 +17,19 @@ MAX_PICKS = 3_000
 CLASSES = 16
 
 
-def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> go.Figure:
+def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> Chart:
     """The path from above: rapids dotted, cuts coloured, what is out of reach crossed, the selected line marked."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision="path-plan", margin={"l": 8, "r": 8, "t": 30, "b": 8})
     _stock(fig, picture, dark)
     kept, ends = picture.kept, _ends(picture)
     cut, lost = picture.cutting[kept], picture.cutting[kept] & ~picture.reached[kept]
-    make = go.Scattergl if len(kept) > VECTOR_LINES else go.Scatter
+    kind = "scattergl" if len(kept) > VECTOR_LINES else "scatter"
     width = 3.0 if len(kept) < 3_000 else 1.6
 
     def draw(chosen: BoolArray, line: dict[str, Any], **more: Any) -> None:
         xy = _lines(picture, ends, chosen, (0, 1))
-        fig.add_trace(make(**xy, mode="lines", line=line, hoverinfo="skip", **more))
+        fig.add(kind, **xy, mode="lines", line=line, hoverinfo="skip", **more)
 
     draw(~cut & (np.arange(len(kept)) > 0), {"color": p.muted, "width": 1, "dash": "dot"}, name="rapid")
     draw(cut, {"color": rgba(p.text, 0.18), "width": 2 * width}, showlegend=False)
@@ -46,7 +46,7 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> go.F
     _marks(fig, picture, dark)
     _picks(fig, picture, dark)
     unit = picture.length_unit
-    fig.update_layout(
+    fig.lay_out(
         xaxis=axis(f"x<sub>W</sub>, {unit}", dark=dark),
         clickmode="event+select",
         dragmode="pan",
@@ -55,7 +55,7 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> go.F
     return fig
 
 
-def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> tuple[go.Figure, float]:
+def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> tuple[Chart, float]:
     """The path to be turned, and how many times heights are enlarged in it."""
     p = palette(dark)
     fig = figure(dark=dark, height=height, revision="path-turn", margin={"l": 0, "r": 0, "t": 0, "b": 0})
@@ -63,7 +63,7 @@ def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> 
     rapid = ~picture.cutting[kept] & (np.arange(len(kept)) > 0)
 
     def draw(xyz: dict[str, Any], line: dict[str, Any], **more: Any) -> None:
-        fig.add_scatter3d(**xyz, mode="lines", line=line, hoverinfo="skip", **more)
+        fig.add("scatter3d", **xyz, mode="lines", line=line, hoverinfo="skip", **more)
 
     every = (0, 1, 2)
     draw(_lines(picture, ends, rapid, every), {"color": p.muted, "width": 1.5, "dash": "dot"}, name="rapid")
@@ -75,13 +75,13 @@ def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> 
         draw(_lines(picture, ends, chosen, every), {"color": colour, "width": 5}, name=name, showlegend=legend)
     if picture.value is not None:
         bar = _scale(picture, dark)
-        fig.add_scatter3d(x=[None], y=[None], z=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
+        fig.add("scatter3d", x=[None], y=[None], z=[None], mode="markers", marker=bar, **QUIET)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
     times = float(np.clip(round(0.22 * float(size.max()) / max(float(size[2]), 1e-9)), 1, 50))
     ratio = 1.9 * np.maximum(size * [1.0, 1.0, times] / float(size.max()), 0.1)
     ratio *= min(1.0, 2.3 / float(np.linalg.norm(ratio)))
     camera = {"eye": {"x": -0.75, "y": -1.25, "z": 0.95}, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}
-    fig.update_layout(
+    fig.lay_out(
         scene={
             **{f"{a}axis": axis3d(f"{a}<sub>W</sub>, {picture.length_unit}", dark=dark) for a in "xyz"},
             "aspectmode": "manual",
@@ -93,21 +93,27 @@ def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> 
     return fig, times
 
 
-def _stock(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+def _stock(fig: Chart, picture: PathPicture, dark: bool) -> None:
     if picture.stock is None:
         return
     p = palette(dark)
     (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
     filled = {"fill": "toself", "fillcolor": rgba(p.metal, 0.26), "line": {"color": p.line, "width": 1}}
-    fig.add_scatter(
-        x=[x0, x1, x1, x0, x0], y=[y0, y0, y1, y1, y0], mode="lines", name="stock", hoverinfo="skip", **filled
+    fig.add(
+        "scatter",
+        x=[x0, x1, x1, x0, x0],
+        y=[y0, y0, y1, y1, y0],
+        mode="lines",
+        name="stock",
+        hoverinfo="skip",
+        **filled,
     )
 
 
-def _dots(fig: go.Figure, at: FloatArray, marker: dict[str, Any], name: str = "") -> None:
+def _dots(fig: Chart, at: FloatArray, marker: dict[str, Any], name: str = "") -> None:
     """Marks at points (q, 3), named in the legend where there is a name."""
     named: dict[str, Any] = {"name": name} if name else {"showlegend": False}
-    fig.add_scatter(x=at[:, 0], y=at[:, 1], mode="markers", hoverinfo="skip", marker=marker, **named)
+    fig.add("scatter", x=at[:, 0], y=at[:, 1], mode="markers", hoverinfo="skip", marker=marker, **named)
 
 
 def _ends(picture: PathPicture) -> tuple[FloatArray, FloatArray]:
@@ -194,15 +200,15 @@ def _selected(picture: PathPicture) -> IntArray:
     return np.append(max(int(i[0]) - 1, 0), i)
 
 
-def _halo(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+def _halo(fig: Chart, picture: PathPicture, dark: bool) -> None:
     """The line that is pointed at, as a border around whatever colour it has."""
     q = picture.points[_selected(picture)]
     if len(q):
         line, name = {"color": palette(dark).text, "width": 8}, f"{picture.noun} {picture.selected}"
-        fig.add_scatter(x=q[:, 0], y=q[:, 1], mode="lines", name=name, hoverinfo="skip", line=line)
+        fig.add("scatter", x=q[:, 0], y=q[:, 1], mode="lines", name=name, hoverinfo="skip", line=line)
 
 
-def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+def _marks(fig: Chart, picture: PathPicture, dark: bool) -> None:
     """Where the path begins, where the value is largest, and where the line that is pointed at ends."""
     p, rim = palette(dark), {"width": 2}
     end = picture.points[_selected(picture)][-1:]
@@ -214,10 +220,10 @@ def _marks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
         _dots(fig, picture.points[picture.worst][None], worst, "worst")
     if picture.value is not None:
         bar = _scale(picture, dark)
-        fig.add_scatter(x=[None], y=[None], mode="markers", showlegend=False, hoverinfo="skip", marker=bar)
+        fig.add("scatter", x=[None], y=[None], mode="markers", marker=bar, **QUIET)
 
 
-def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
+def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
     """Faint points to hover over and to click: a click on a bare line tells nobody anything."""
     kept = picture.kept[:: max(1, len(picture.kept) // MAX_PICKS)]
     q, block = picture.points[kept], picture.block[kept]
@@ -235,7 +241,8 @@ def _picks(fig: go.Figure, picture: PathPicture, dark: bool) -> None:
             w + (f"<br>{picture.title.lower()} {v:.{picture.digits}f} {picture.unit}" if np.isfinite(v) else "")
             for w, v in zip(words, value, strict=True)
         ]
-    fig.add_scatter(
+    fig.add(
+        "scatter",
         x=q[:, 0],
         y=q[:, 1],
         mode="markers",

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.viz.chart import Chart, Trace, drawn
 from robomill.viz.maps import Scale
 from robomill.viz.solids import CORNERS, FACES, LIGHTING, words
 from robomill.viz.theme import colour_bar, palette
@@ -34,7 +34,7 @@ def voxel_trace(
     shown: tuple[FloatArray, Scale] | None = None,
     *,
     dark: bool,
-) -> go.Mesh3d:
+) -> Trace:
     """Voxels of ``mask`` at the points of ``axes`` (m): clear and in one colour, or solid and coloured by ``shown``.
 
     shown: values (nx, ny, nz) in display units and their scale.
@@ -51,7 +51,8 @@ def voxel_trace(
         colours = shown[1].colours(dark)
         bar = {"colorbar": colour_bar(shown[1].title, dark=dark, len=0.7)}
         more = {"intensity": np.concatenate([values, values]), "intensitymode": "cell", **colours, **bar}
-    return go.Mesh3d(
+    return drawn(
+        "mesh3d",
         x=x,
         y=y,
         z=z,
@@ -68,14 +69,15 @@ def voxel_trace(
     )
 
 
-def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash: str = "solid") -> list[go.Scatter3d]:
+def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash: str = "solid") -> list[Trace]:
     """The edges of a box (m) with a word at its highest corner."""
     c = np.where(CORNERS.astype(bool), upper, lower)
     edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
     gap = np.full(3, np.nan)
     line = np.array([point for a, b in edges for point in (c[a], c[b], gap)])
     return [
-        go.Scatter3d(
+        drawn(
+            "scatter3d",
             x=line[:, 0],
             y=line[:, 1],
             z=line[:, 2],
@@ -89,17 +91,15 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
     ]
 
 
-def widen(fig: go.Figure, lower: FloatArray, upper: FloatArray, room: float = 2.4) -> None:
+def widen(fig: Chart, lower: FloatArray, upper: FloatArray, room: float = 2.4) -> None:
     """Stretch the ranges of a scene of ``arm_figure`` so that the box lower .. upper (m) is inside, to scale."""
-    scene = fig.layout.scene
-    low = np.array([scene[f"{a}axis"].range[0] for a in "xyz"], dtype=float)
-    high = np.array([scene[f"{a}axis"].range[1] for a in "xyz"], dtype=float)
+    axes = [fig.layout["scene"][f"{a}axis"] for a in "xyz"]
+    low, high = np.array([each["range"] for each in axes], dtype=float).T
     low, high = np.minimum(low, lower), np.maximum(high, upper)
     span = high - low
     ratio = room * span / np.linalg.norm(span)
-    for i, name in enumerate("xyz"):
-        scene[f"{name}axis"].range = [float(low[i]), float(high[i])]
-    scene.update(aspectratio=dict(zip("xyz", ratio.tolist(), strict=True)))
+    ranges = {f"{a}axis": {"range": [float(low[i]), float(high[i])]} for i, a in enumerate("xyz")}
+    fig.lay_out(scene={**ranges, "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True))})
 
 
 def _place(axis: FloatArray, index: FloatArray) -> FloatArray:

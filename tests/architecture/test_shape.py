@@ -42,7 +42,6 @@ UNUSED = {
     "_do_*": "o-words are found by their name",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",
-    "showlegend": "plotly's",
     "camera_position": "pyvista's",
     "parallel_projection": "pyvista's",
     "parallel_scale": "pyvista's",

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from plotly_checks import checked_figure
 from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import NumberInput
 
 from robomill.ui import beside, rendered
 from robomill.ui.session import KEY, Store
+from robomill.viz.chart import Chart
 from robomill.viz.render_queue import RenderQueue
 from robomill.viz.worker import NO_OPENGL, RenderWorker
 
@@ -28,6 +30,7 @@ class NoPictures(RenderWorker):
 def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
     """The start page, run once."""
     monkeypatch.setattr(beside, "FIRST_S", 60.0)  # pages are looked at with their runs
+    monkeypatch.setattr(Chart, "figure", property(checked_figure))
     queue = RenderQueue(NoPictures())
     monkeypatch.setattr(rendered, "queue", lambda: queue)
     return AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()

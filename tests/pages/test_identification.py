@@ -363,7 +363,7 @@ def test_bands_are_laid_into_the_path_plot_only_where_something_is_known(monkeyp
     session.change(robot=used.robot, springs=used.springs)
     session.know(Knowledge.of(fit, setup.robot, "from 27 load tests"))
     assert uncertainty.banded(fig, result, "mm", dark=False)
-    assert len(fig.data) == 4
+    assert len(fig.traces) == 4
     assert uncertainty.band_caption(used) == "Shaded: 95 % band, from 27 load tests."
     assert session.known(used.replace(tolerance=1e-4)) is not None, "another tolerance changes no compliance"
     assert session.known(setup) is None

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import pytest
+from plotly_checks import checked_figure
 
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
+from robomill.viz.chart import Chart
+
+
+@pytest.fixture(autouse=True)
+def checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are made without plotly's own checks, for speed; here each is checked."""
+    monkeypatch.setattr(Chart, "figure", property(checked_figure))
 
 
 @pytest.fixture(scope="session")

@@ -22,6 +22,6 @@ def test_what_can_be_clicked_is_thinned_and_finite() -> None:
     fig = figure(dark=False, height=200)
     s = np.arange(5000.0)
     add_picks(fig, s, np.where(s > 100, 1.0, np.nan), [str(v) for v in s])
-    assert len(fig.data[0].x) == MAX_PICKS
-    assert fig.data[0].x.min() > 100
-    assert fig.layout.clickmode == "event+select"
+    assert len(fig.figure.data[0].x) == MAX_PICKS
+    assert fig.figure.data[0].x.min() > 100
+    assert fig.figure.layout.clickmode == "event+select"

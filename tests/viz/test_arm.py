@@ -21,7 +21,7 @@ def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
 def test_the_joints_of_an_arm_with_a_held_axis_keep_their_numbers() -> None:
     robot = rm.load_robot("slavkovic_5r").replace(blocked=np.array([np.nan, 0.1, np.nan, np.nan, np.nan]))
     fig = arm_figure(ArmScene(joint_frames(robot, np.zeros(4)), joints=robot.joint_numbers), dark=False)
-    (hover,) = [t for t in fig.data if t.type == "scatter3d" and t.mode == "markers"]
+    (hover,) = [t for t in fig.figure.data if t.type == "scatter3d" and t.mode == "markers"]
     assert list(hover.text) == ["joint 1", "joint 3", "joint 4", "joint 5", "tool tip {T}"]
 
 
@@ -32,7 +32,7 @@ def test_the_arm_stands_where_its_kinematics_put_it(result: SimulationResult) ->
 
     def joints(theta: np.ndarray) -> np.ndarray:
         fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=False)
-        (hover,) = [t for t in fig.data if t.type == "scatter3d" and t.mode == "markers"]
+        (hover,) = [t for t in fig.figure.data if t.type == "scatter3d" and t.mode == "markers"]
         assert hover.text[-1] == "tool tip {T}"
         return np.stack([hover.x, hover.y, hover.z], axis=1).astype(float)
 

@@ -22,7 +22,7 @@ def dial(**changes: Any) -> dict[str, Any]:
         "scale": 100.0,
         **changes,
     }
-    return dict(json.loads(dial_figure(Dial(**values), dark=False).to_json())["layout"])
+    return dict(json.loads(dial_figure(Dial(**values), dark=False).figure.to_json())["layout"])
 
 
 def test_the_dial_has_the_feed_up_and_its_left_on_the_left() -> None:

@@ -36,16 +36,16 @@ SHOWN = Intervals(
 @pytest.mark.parametrize("dark", [False, True])
 def test_intervals_are_drawn_as_given(dark: bool) -> None:
     fig = intervals_figure(SHOWN, dark=dark)
-    bars = [t for t in fig.data if t.mode == "lines"]
+    bars = [t for t in fig.figure.data if t.mode == "lines"]
     assert len(bars) == 2, "a joint that is not seen has no bar"
     np.testing.assert_allclose(bars[0].x, [8.5, 9.3])
     assert bars[1].x[1] == 51.0
     assert bars[1].x[0] > 0, "an interval down to zero is cut where the logarithmic axis ends"
-    named = {t.name: t for t in fig.data if t.name}
+    named = {t.name: t for t in fig.figure.data if t.name}
     np.testing.assert_allclose(named["Table 2"].x, [7.1, 10.1, 12.3])
     np.testing.assert_allclose(named["truth"].x, [9.0, 11.0, 28.0])
-    assert any("not seen" in a.text for a in fig.layout.annotations)
-    low, high = fig.layout.xaxis.range
+    assert any("not seen" in a.text for a in fig.figure.layout.annotations)
+    low, high = fig.figure.layout.xaxis.range
     assert 10**low < 7.1
     assert 10**high > 51.0
 
@@ -61,23 +61,23 @@ def test_signed_values_stand_on_a_linear_axis() -> None:
         logarithmic=False,
     )
     fig = intervals_figure(signed, dark=False)
-    assert fig.layout.xaxis.type is None
-    assert min(t.x[0] for t in fig.data if t.mode == "lines") == -1.2
+    assert fig.figure.layout.xaxis.type is None
+    assert min(t.x[0] for t in fig.figure.data if t.mode == "lines") == -1.2
 
 
 def test_nothing_known_still_draws() -> None:
     nothing = dataclasses.replace(
         SHOWN, value=np.full(3, np.nan), low=np.full(3, np.nan), high=np.full(3, np.nan), references={}, truth=None
     )
-    assert intervals_figure(nothing, dark=True).layout.height > 100
+    assert intervals_figure(nothing, dark=True).figure.layout.height > 100
 
 
 def test_correlations_carry_their_numbers() -> None:
     table = np.array([[1.0, -0.99, np.nan], [-0.99, 1.0, -0.001], [np.nan, -0.001, 1.0]])
     fig = correlation_figure(["J1", "J2", "J3"], table, dark=False)
-    assert list(fig.data[0].text[0]) == ["1", "−0.99", ""]
-    assert fig.data[0].text[1][2] == "0"
-    assert (fig.data[0].zmin, fig.data[0].zmax) == (-1, 1)
+    assert list(fig.figure.data[0].text[0]) == ["1", "−0.99", ""]
+    assert fig.figure.data[0].text[1][2] == "0"
+    assert (fig.figure.data[0].zmin, fig.figure.data[0].zmax) == (-1, 1)
 
 
 def test_every_outlier_is_drawn_however_many_tests_there_are() -> None:
@@ -87,29 +87,29 @@ def test_every_outlier_is_drawn_however_many_tests_there_are() -> None:
     outlier = np.zeros(m, dtype=bool)
     outlier[[7, 77_777]] = True
     fig = residuals_figure(row, residual, outlier, "mm", "xyz", dark=False)
-    assert len(fig.data[0].x) <= MAX_TESTS + 2
-    named = next(t for t in fig.data if t.name == "does not fit")
+    assert len(fig.figure.data[0].x) <= MAX_TESTS + 2
+    named = next(t for t in fig.figure.data if t.name == "does not fit")
     assert list(named.x) == [9, 77_779]
     np.testing.assert_allclose(named.y, [residual[k][np.argmax(np.abs(residual[k]))] for k in (7, 77_777)])
 
 
 def test_single_joints_have_one_residual_each() -> None:
     fig = residuals_figure(np.arange(4), np.arange(4.0)[:, None], np.zeros(4, dtype=bool), "mrad", [""], dark=True)
-    assert [t.name for t in fig.data] == ["residual"]
+    assert [t.name for t in fig.figure.data] == ["residual"]
 
 
 def test_models_show_both_errors_and_name_the_chosen_one() -> None:
     fig = models_figure(["a", "b"], np.array([1.0, 20.0]), np.array([1.5, 30.0]), 0, dark=False)
-    named = {t.name: t for t in fig.data if t.name}
+    named = {t.name: t for t in fig.figure.data if t.name}
     np.testing.assert_allclose(named["on its own data"].x, [1.0, 20.0])
     np.testing.assert_allclose(named["on poses left out"].x, [1.5, 30.0])
-    assert fig.layout.yaxis.ticktext == ("<b>a</b>", "b")
+    assert fig.figure.layout.yaxis.ticktext == ("<b>a</b>", "b")
 
 
 def test_a_joint_not_seen_before_says_so() -> None:
     fig = gain_figure(["Joint 1", "Joint 2"], np.array([5.0, np.inf]), np.array([4.0, 9.0]), dark=False)
-    assert fig.data[0].text == ("± 5 %", "not seen")
-    assert np.isfinite(np.asarray(fig.data[0].x, dtype=float)).all()
+    assert fig.figure.data[0].text == ("± 5 %", "not seen")
+    assert np.isfinite(np.asarray(fig.figure.data[0].x, dtype=float)).all()
 
 
 def test_a_band_lies_around_its_curve_and_stops_where_nothing_is_known() -> None:
@@ -117,7 +117,7 @@ def test_a_band_lies_around_its_curve_and_stops_where_nothing_is_known() -> None
     value, half = np.sin(s), np.full(21, 0.1)
     value[8:11] = np.nan
     fig = band_figure((s, value, half, value - 0.2), "y", "mm", dark=False)
-    shades = [t for t in fig.data if t.fill == "toself"]
+    shades = [t for t in fig.figure.data if t.fill == "toself"]
     assert len(shades) == 2
     n = len(shades[0].x) // 2
     np.testing.assert_allclose(np.asarray(shades[0].y[:n]) - np.asarray(shades[0].y[n:])[::-1], 0.2)
@@ -127,9 +127,9 @@ def test_a_band_lies_around_its_curve_and_stops_where_nothing_is_known() -> None
 def test_a_band_is_laid_under_an_existing_figure() -> None:
     fig = figure(dark=True, height=200)
     add_band(fig, np.arange(3.0), np.ones(3), np.full(3, 0.5), "", dark=True)
-    assert len(fig.data) == 1
+    assert len(fig.figure.data) == 1
     add_band(fig, np.arange(3.0), np.full(3, np.nan), np.ones(3), "x", dark=True)
-    assert len(fig.data) == 1, "nothing known, nothing shaded"
+    assert len(fig.figure.data) == 1, "nothing known, nothing shaded"
 
 
 @pytest.mark.parametrize("signed", [False, True])
@@ -139,8 +139,8 @@ def test_a_level_keeps_its_orientation_and_mask(signed: bool) -> None:
     fig = level_figure(
         Level(x, y, values, np.zeros((0, 2)), (-6.0, 6.0), "C", "µm/N", "mm", signed), dark=False, revision="r"
     )
-    z = np.asarray(fig.data[0].z, dtype=float)
+    z = np.asarray(fig.figure.data[0].z, dtype=float)
     assert z.shape == (2, 3), "rows of a heat map are y"
     assert z[0, 2] == 5.0
     assert np.isnan(z[1, 1])
-    assert fig.layout.xaxis.range == (-1.5, 1.5)
+    assert fig.figure.layout.xaxis.range == (-1.5, 1.5)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import plotly.graph_objects as go
 import pytest
 
 import robomill as rm
@@ -34,7 +33,7 @@ def test_a_sheet_is_a_figure_that_plotly_accepts(dark: bool) -> None:
     """The figure is made without plotly's own checks for speed; here they are made."""
     sheet = nine(point=(0.0, -1300.0), outline=((-100.0, -1500.0), (100.0, -1200.0)))
     fig = sheet_figure(sheet, dark=dark, panel_height=100, revision="a")
-    checked = go.Figure(fig.to_plotly_json())
+    checked = fig.figure
     assert checked.layout.dragmode == "pan", "clicks arrive only with dragmode pan or zoom"
     assert checked.layout.uirevision == "a"
     assert len(checked.layout.shapes) == 9
@@ -42,21 +41,21 @@ def test_a_sheet_is_a_figure_that_plotly_accepts(dark: bool) -> None:
 
 def test_nine_maps_share_one_scale_centred_on_zero() -> None:
     fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    maps = [t for t in fig.data if t.type == "heatmap"]
+    maps = [t for t in fig.figure.data if t.type == "heatmap"]
     assert len(maps) == 9
     assert {t.coloraxis for t in maps} == {"coloraxis"}
-    assert (fig.layout.coloraxis.cmin, fig.layout.coloraxis.cmax) == (-4, 4)
+    assert (fig.figure.layout.coloraxis.cmin, fig.figure.layout.coloraxis.cmax) == (-4, 4)
 
 
 def test_the_first_index_of_a_map_runs_across() -> None:
     fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    np.testing.assert_allclose(fig.data[0].z, values(0).T, rtol=1e-6)
-    np.testing.assert_array_equal(fig.data[0].x, U)
+    np.testing.assert_allclose(fig.figure.data[0].z, values(0).T, rtol=1e-6)
+    np.testing.assert_array_equal(fig.figure.data[0].x, U)
 
 
 def test_over_every_map_lie_points_to_click() -> None:
     fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    picks = [t for t in fig.data if t.type == "scatter"]
+    picks = [t for t in fig.figure.data if t.type == "scatter"]
     assert len(picks) == 9
     assert all(len(t.x) == 91 and t.marker.opacity == 0 for t in picks)
     assert all("customdata" not in t.to_plotly_json() for t in picks)
@@ -66,22 +65,22 @@ def test_a_large_plane_has_few_points_to_click() -> None:
     u, v = np.linspace(0, 1, 121), np.linspace(0, 1, 61)
     sheet = MapSheet([[Map("a", np.zeros((121, 61)))]], u, v, "u", "v", {"main": Scale("a", 0, 1)})
     fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
-    assert len(fig.data[1].x) <= 220
+    assert len(fig.figure.data[1].x) <= 220
 
 
 def test_two_scales_have_a_bar_each() -> None:
     scales = {"main": Scale("a", 0, 1), "difference": Scale("b", -1, 1, "diverging")}
     sheet = MapSheet([[Map("a", values()), Map("b", values(), "difference")]], U, V, "u", "v", scales)
     fig = sheet_figure(sheet, dark=False, panel_height=300, revision="a")
-    bars = [fig.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
+    bars = [fig.figure.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
     assert bars[0].len == bars[1].len == 0.5
     assert bars[0].y != bars[1].y
     # In a low sheet they stand side by side, each as high as the sheet.
     low = sheet_figure(sheet, dark=False, panel_height=130, revision="a")
-    bars = [low.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
+    bars = [low.figure.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
     assert bars[0].len == bars[1].len == 1.0
     assert bars[1].xpad - bars[0].xpad >= 80
-    assert low.layout.margin.r == 2 * fig.layout.margin.r
+    assert low.figure.layout.margin.r == 2 * fig.figure.layout.margin.r
 
 
 def test_a_pick_snaps_to_the_grid() -> None:
@@ -109,7 +108,7 @@ def test_the_scale_of_a_quantity_holds_its_values(name: str) -> None:
         )
         assert scale.kind == expected
         sheet = MapSheet([[Map("q", shown)]], np.arange(2.0), np.arange(2.0), "X", "Y", {"main": scale})
-        shades = sheet_figure(sheet, dark=False, panel_height=90, revision="q").layout.coloraxis
+        shades = sheet_figure(sheet, dark=False, panel_height=90, revision="q").figure.layout.coloraxis
         if expected == "diverging":
             assert -shades.cmin == shades.cmax == 5.0  # white is zero
         elif expected == "sequential":
@@ -127,17 +126,19 @@ def test_a_joint_has_its_own_colour_and_number_where_numbers_skip() -> None:
         panel_height=90,
         revision="who",
     )
-    heat, points = fig.data
-    steps = fig.layout.coloraxis.colorscale
-    span = fig.layout.coloraxis.cmax - fig.layout.coloraxis.cmin
+    heat, points = fig.figure.data
+    steps = fig.figure.layout.coloraxis.colorscale
+    span = fig.figure.layout.coloraxis.cmax - fig.figure.layout.coloraxis.cmin
 
     def colour(place: float) -> str:
-        share = (place - fig.layout.coloraxis.cmin) / span
+        share = (place - fig.figure.layout.coloraxis.cmin) / span
         return next(c for (a, c), (b, _) in zip(steps[::2], steps[1::2], strict=True) if a <= share <= b)
 
     shown = {numbers[i, j]: colour(heat.z[j][i]) for i, j in ((0, 0), (0, 1), (1, 1))}
     assert len(set(shown.values())) == 3
-    ticks = dict(zip(fig.layout.coloraxis.colorbar.tickvals, fig.layout.coloraxis.colorbar.ticktext, strict=True))
+    ticks = dict(
+        zip(fig.figure.layout.coloraxis.colorbar.tickvals, fig.figure.layout.coloraxis.colorbar.ticktext, strict=True)
+    )
     assert {ticks[int(heat.z[j][i])] for i, j in ((0, 0), (0, 1), (1, 1))} == {"joint 1", "joint 3", "joint 4"}
     assert np.isnan(heat.z[0][1])
     assert list(points.text) == ["joint 1", "joint 3", "not reached", "joint 4"]
@@ -161,8 +162,8 @@ def test_voxels_close_their_volume() -> None:
     mask = np.random.default_rng(1).random((4, 5, 3)) > 0.4
     axes = tuple(np.arange(n) * step for n, step in zip(mask.shape, (0.1, 0.2, 0.3), strict=True))
     trace = voxel_trace(mask, axes, dark=False)  # type: ignore[arg-type]
-    points = np.stack([trace.x, trace.y, trace.z], axis=-1).astype(float)
-    a, b, c = (points[np.asarray(getattr(trace, k))] for k in "ijk")
+    points = np.stack([trace[a] for a in "xyz"], axis=-1).astype(float)
+    a, b, c = (points[np.asarray(trace[k])] for k in "ijk")
     volume = abs(np.einsum("fi,fi->f", a, np.cross(b, c)).sum()) / 6.0
     assert volume == pytest.approx(mask.sum() * 0.1 * 0.2 * 0.3, rel=1e-5)
 
@@ -171,13 +172,13 @@ def test_voxels_carry_the_values_of_their_cells() -> None:
     mask = np.ones((2, 1, 1), bool)
     shown = np.array([1.0, 2.0]).reshape(2, 1, 1)
     trace = voxel_trace(mask, (np.array([0.0, 1.0]), np.zeros(1), np.zeros(1)), (shown, Scale("", 1.0, 2.0)), dark=True)
-    assert sorted(np.asarray(trace.intensity).tolist()) == [1.0] * 10 + [2.0] * 10
+    assert sorted(np.asarray(trace["intensity"]).tolist()) == [1.0] * 10 + [2.0] * 10
 
 
 def test_a_box_has_twelve_edges_and_a_name() -> None:
     edges, word = wire_box(np.zeros(3), np.ones(3), "#123456", "the box")
-    assert np.isnan(edges.x).sum() == 12
-    assert word.text == ("the box",)
+    assert np.isnan(edges["x"]).sum() == 12
+    assert word["text"] == ["the box"]
 
 
 def test_a_widened_scene_holds_the_box_to_scale() -> None:
@@ -185,10 +186,10 @@ def test_a_widened_scene_holds_the_box_to_scale() -> None:
     frames[1, :3, 3] = [0.0, -1.0, 0.5]
     fig = arm_figure(ArmScene(frames=frames), dark=False)
     widen(fig, np.array([-3.0, -3.0, -3.0]), np.array([1.0, 1.0, 4.0]))
-    spans = [np.ptp(fig.layout.scene[f"{a}axis"].range) for a in "xyz"]
-    ratios = [fig.layout.scene.aspectratio[a] for a in "xyz"]
+    spans = [np.ptp(fig.figure.layout.scene[f"{a}axis"].range) for a in "xyz"]
+    ratios = [fig.figure.layout.scene.aspectratio[a] for a in "xyz"]
     np.testing.assert_allclose(np.array(ratios) / spans, ratios[0] / spans[0])
-    assert fig.layout.scene.zaxis.range[1] >= 4.0
+    assert fig.figure.layout.scene.zaxis.range[1] >= 4.0
 
 
 def test_every_point_of_the_ellipsoid_is_where_a_unit_force_leads() -> None:
@@ -209,38 +210,38 @@ def test_no_ellipsoid_for_an_arm_that_does_not_give() -> None:
 def test_share_bars_end_at_the_sum_and_show_the_ghost() -> None:
     shares = np.array([[1.0, -0.5], [0.3, 0.2]])
     fig = share_bars(["a", "b"], shares, (1, 3), "µm/N", dark=False, old=np.array([2.0, 0.0]))
-    bars = [t for t in fig.data if t.type == "bar"]
+    bars = [t for t in fig.figure.data if t.type == "bar"]
     np.testing.assert_allclose(np.sum([t.x for t in bars], axis=0), [1.3, -0.3])
-    marks = {t.name: list(t.x) for t in fig.data if t.type == "scatter"}
+    marks = {t.name: list(t.x) for t in fig.figure.data if t.type == "scatter"}
     assert marks == {"sum before": [2.0, 0.0], "sum": [1.3, -0.3]}
-    assert [a.text for a in fig.layout.annotations] == ["+1.300", "−0.300"]
+    assert [a.text for a in fig.figure.layout.annotations] == ["+1.300", "−0.300"]
 
 
 def test_no_ghost_without_a_change() -> None:
     shares = np.array([[1.0], [0.3]])
     fig = share_bars(["a"], shares, (1, 2), "µm/N", dark=True, old=shares.sum(axis=0))
-    assert "sum before" not in {t.name for t in fig.data}
+    assert "sum before" not in {t.name for t in fig.figure.data}
 
 
 def test_gains_and_lines_are_drawn() -> None:
     gains = gain_bars(
         [("point", np.array([0.1, 0.0]), "µm/N"), ("path", np.array([2.0, -1.0]), "µm")], (1, 2), dark=False
     )
-    assert len(gains.data) == 2
+    assert len(gains.figure.data) == 2
     s = np.linspace(0, 1, 5)
     by_joint = np.stack([s, 2 * s], axis=-1)
     panels = [LinePanel(f"line {i}", s, by_joint.sum(axis=1), by_joint, old=s) for i in range(6)]
     fig = line_panels(panels, (1, 2), ["X"] * 6, "mm", dark=False)
-    assert len(fig.data) == 6 * 4
-    assert fig.layout.yaxis.range == fig.layout.yaxis6.range
-    assert fig.layout.xaxis.range == (-0.06, 1.06)
-    assert fig.layout.xaxis2.domain[0] - fig.layout.xaxis.domain[1] >= 0.07
+    assert len(fig.figure.data) == 6 * 4
+    assert fig.figure.layout.yaxis.range == fig.figure.layout.yaxis6.range
+    assert fig.figure.layout.xaxis.range == (-0.06, 1.06)
+    assert fig.figure.layout.xaxis2.domain[0] - fig.figure.layout.xaxis.domain[1] >= 0.07
     empty = line_panels([LinePanel("", s, s * np.nan, by_joint * np.nan)], (1, 2), ["X"], "mm", dark=False)
-    assert empty.layout.yaxis.range is not None
+    assert empty.figure.layout.yaxis.range is not None
 
 
 def test_the_lesson_marks_where_the_arm_is() -> None:
     s = np.linspace(0, 1, 5)
     fig = ray_figure(s, 3, ("r", "det", "soft"), (s**2, 1 - s), dark=True)
-    marks = [t for t in fig.data if t.mode == "markers"]
+    marks = [t for t in fig.figure.data if t.mode == "markers"]
     assert [(t.x[0], t.y[0]) for t in marks] == [(0.75, 0.5625), (0.75, 0.25)]

@@ -6,13 +6,13 @@ import json
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 import pytest
 
 from robomill.simulation.enlarged import enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.viz.arm import arm_figure
+from robomill.viz.chart import Chart
 from robomill.viz.deviation import components_figure, shares_figure
 from robomill.viz.engagement import engagement_figure, force_figure
 from robomill.viz.evidence import Claim, evidence_figure
@@ -23,7 +23,7 @@ from robomill.viz.theme import diverging, joint_colours
 from robomill.viz.views import arm_scene, section_drawing
 
 
-def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
+def figures(result: SimulationResult, dark: bool) -> dict[str, Chart]:
     shown = enlarged(result, 10.0)
     groove = result.groove(0.5 * float(result.path.s[-1]))
     return {
@@ -38,7 +38,7 @@ def figures(result: SimulationResult, dark: bool) -> dict[str, go.Figure]:
 @pytest.mark.parametrize("dark", [False, True])
 def test_axes_have_units_and_views_are_kept(result: SimulationResult, dark: bool) -> None:
     for name, figure in figures(result, dark).items():
-        layout = json.loads(figure.to_json())["layout"]
+        layout = json.loads(figure.figure.to_json())["layout"]
         assert layout["height"] > 200, name
         assert layout["uirevision"], name
         holder = layout.get("scene", layout)
@@ -52,14 +52,14 @@ def test_axes_have_units_and_views_are_kept(result: SimulationResult, dark: bool
 
 def test_two_themes_differ(result: SimulationResult) -> None:
     for name, light in figures(result, False).items():
-        assert light.to_json() != figures(result, True)[name].to_json(), name
+        assert light.figure.to_json() != figures(result, True)[name].figure.to_json(), name
         break
 
 
 def test_signed_colours_are_symmetric_about_zero(result: SimulationResult) -> None:
     for dark in (False, True):
         assert [stop for stop, _ in diverging(dark)] == [0.0, 0.25, 0.5, 0.75, 1.0]
-        surface = figures(result, dark)["surface"].data[0]
+        surface = figures(result, dark)["surface"].figure.data[0]
         assert surface.cmin == -surface.cmax
 
 
@@ -98,7 +98,7 @@ def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
 @pytest.mark.parametrize("dark", [False, True])
 def test_axes_of_the_milling_figures_have_units(process_result: SimulationResult, dark: bool) -> None:
     for name, made in milling_figures(process_result, dark).items():
-        layout = json.loads(made.to_json())["layout"]
+        layout = json.loads(made.figure.to_json())["layout"]
         assert layout["uirevision"], name
         titles = [layout[a].get("title", {}).get("text", "") for a in ("xaxis", "yaxis")]
         assert any(f", {unit}" in titles[0] for unit in ("mm", "µm")), (name, titles)

@@ -82,7 +82,7 @@ def test_a_peak_between_drawn_points_keeps_its_colour() -> None:
     value = np.full(len(p), 0.1)
     value[hidden] = 0.9
     fig = plan_picture(PathPicture(p, c, r, np.arange(len(p)), value=value, limit=0.5, unit="mm"), dark=False)
-    above = [t for t in fig.data if t.name == "above 0.5 mm"]
+    above = [t for t in fig.figure.data if t.name == "above 0.5 mm"]
     assert len(above) == 1
     assert np.isfinite(np.asarray(above[0].x, dtype=float)).sum() == 2
 
@@ -93,16 +93,16 @@ def test_lines_have_gaps_where_the_tool_is_lifted(dark: bool) -> None:
     cutting = np.array([False, True, True, False, True])
     picture = PathPicture(p, cutting, np.ones(5, dtype=bool), np.arange(5), selected=2, length_unit="mm")
     fig = plan_picture(picture, dark=dark)
-    line = next(t for t in fig.data if t.name == "in reach")
+    line = next(t for t in fig.figure.data if t.name == "in reach")
     np.testing.assert_array_equal(np.isnan(np.asarray(line.x, dtype=float)), [False, False, False, True, False, False])
-    assert [t.name for t in fig.data if t.name == "line 2"] == ["line 2"]
+    assert [t.name for t in fig.figure.data if t.name == "line 2"] == ["line 2"]
     solid, times = turnable_picture(picture, dark=dark)
     assert times >= 1
-    assert any(t.name == "in reach" for t in solid.data)
+    assert any(t.name == "in reach" for t in solid.figure.data)
 
 
 def test_what_is_out_of_reach_is_counted_in_the_legend() -> None:
     p, c, r = long_path(3000)
     r[100:140] = False
     fig = plan_picture(PathPicture(p, c, r, np.arange(3000)), dark=False)
-    assert any(t.name == "out of reach (40 points)" for t in fig.data)
+    assert any(t.name == "out of reach (40 points)" for t in fig.figure.data)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.compliance.at_pose import PoseReport
@@ -20,6 +19,7 @@ from robomill.ui.point import FORCE, InHand, in_hand
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz import solids
 from robomill.viz.arm import ArmScene
+from robomill.viz.chart import Chart
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
 from robomill.viz.voxels import widen
@@ -70,11 +70,11 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     # One scale for the whole ray, so that the body is seen to stretch.
     times = ellipsoid_scale(found.pose.C, 0.13 * yardstick)
 
-    def finish(fig: go.Figure, dark: bool) -> None:
+    def finish(fig: Chart, dark: bool) -> None:
         fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.005 * yardstick))
         low, high = way.p.min(axis=0) - 0.12 * yardstick, way.p.max(axis=0) + 0.12 * yardstick
         widen(fig, low, high, room=2.6)
-        fig.update_layout(scene_camera=lesson.SIDE)
+        fig.lay_out(scene={"camera": lesson.SIDE})
 
     grown = format_times(times / FORCE)
     push = format_si(FORCE, "N", 0)

@@ -163,4 +163,4 @@ def _push(pose: PoseReport, revealed: bool) -> None:
     drawn = format_times(displacement_scale(delta, pose.frames))
     caption = f"Seen from the side. Displacement shown {drawn}." if revealed else f"Seen from the side: {PUSH} along Y."
     alt = f"The arm seen from the side with a force of {PUSH} along Y on the tool."
-    arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.update_layout(scene_camera=SIDE)))
+    arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.lay_out(scene={"camera": SIDE})))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.arrays import FloatArray
@@ -23,6 +22,7 @@ from robomill.units import (
 )
 from robomill.viz import solids
 from robomill.viz.arm import ArmScene, displacement_scale
+from robomill.viz.chart import Chart
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
 from robomill.workspace.quantities import COMPONENTS
@@ -98,7 +98,7 @@ def _arm(pose: PoseReport, component: str, unit: str) -> None:
     )
     size = solids.yardstick(pose.frames)
 
-    def finish(fig: go.Figure, dark: bool) -> None:
+    def finish(fig: Chart, dark: bool) -> None:
         times = ellipsoid_scale(pose.C, 0.16 * size)
         fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.0065 * size, away=delta))
 

@@ -7,7 +7,6 @@ import re
 from functools import partial
 
 import numpy as np
-import plotly.graph_objects as go
 import streamlit as st
 
 from robomill.arrays import BoolArray, FloatArray
@@ -32,6 +31,7 @@ from robomill.units import (
     unit_label,
 )
 from robomill.viz.arm import ArmScene, arm_figure
+from robomill.viz.chart import Chart
 from robomill.viz.maps import Map, MapSheet, Scale, sheet_figure
 from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
@@ -272,7 +272,7 @@ def _level(low: float, high: float, view: MapView, unit: str) -> float:
     return session.maps().level
 
 
-def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[FloatArray, Scale] | None) -> go.Figure:
+def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[FloatArray, Scale] | None) -> Chart:
     dark, robot, view = shell.dark(), region.robot, region.view
     p = palette(dark)
     fig = arm_figure(
@@ -282,7 +282,7 @@ def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[Floa
         revision="workspace-solid",
     )
     if mask.any():
-        fig.add_trace(voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark))
+        fig.add_traces([voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark)])
     low, high = np.array(region.box.lower), np.array(region.box.upper)
     largest = fields.proposed_box(robot, view.A, view.B)
     if largest is not None and view.region != "paper":
