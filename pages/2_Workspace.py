@@ -17,6 +17,8 @@ known = None
 if box is not None:
     grid = ui.attempt(fields.solid, robot, box)
     known = ui.attempt(fields.field, robot, grid, view.A, view.B) if grid is not None else None
+if known is not None:
+    ui.attempt(fields.proposed_box, robot, view.A, view.B)
 
 ui.headline(f"Workspace · {robot.title or robot.name}", workspace.sentence(robot, known))
 if known is not None and box is not None:
@@ -24,7 +26,7 @@ if known is not None and box is not None:
 else:
     ui.tiles(
         [
-            ui.Tile(label, "none")
+            ui.Tile(label, "–")
             for label in ("Region in reach", "Least |det(J)|", "Room to joint limits", "Largest box in reach")
         ]
     )
@@ -32,7 +34,8 @@ else:
 left, right = ui.thirds()
 with left:
     workspace.controls(robot, view)
-with right:
-    with st.container(border=True):
-        workspace.picture()
-    workspace.box_card(robot, view, unit)
+if known is not None:
+    with right:
+        with st.container(border=True):
+            workspace.picture()
+        workspace.box_card(robot, view, unit)

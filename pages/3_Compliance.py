@@ -18,8 +18,8 @@ title = f"Compliance · {robot.title or robot.name}"
 box = ui.attempt(fields.region, robot, view)
 known = ui.attempt(fields.overview, robot, view, box) if box is not None else None
 if box is None or known is None:
-    ui.headline(title, "There is nothing to map: mend what is named above.")
-    ui.tiles([ui.Tile(label, "none") for label in ("At the point", "Softest direction", "Softest place", "Pays most")])
+    ui.headline(title, "There is nothing to map yet: see above.")
+    ui.tiles([ui.Tile(label, "–") for label in ("At the point", "Softest direction", "Softest place", "Pays most")])
     left, _ = ui.thirds()
     with left:
         plane.controls(robot, view)

@@ -10,11 +10,12 @@ from robomill.ui.milling import body as panel
 project = ui.begin("Milling")
 setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
+spread = None if result is None else ui.attempt(panel.spread_of, result)
 
-if result is None:
+if result is None or spread is None:
     left, right = ui.thirds()
     with left:
-        panel.inputs_column(None)
+        panel.inputs_column(result)
     right.info("Nothing is computed yet: where a value is named above, mend it. What you typed is kept.")
     st.stop()
 

@@ -75,19 +75,20 @@ def held(setup: SimulationSetup) -> SimulationResult | None:
     return found
 
 
-@shared(by_setup)
+@shared(by_setup, "Spin about the tool")
 def over_spin(setup: SimulationSetup) -> OverSpin:
     """What the free spin about the tool does to the largest deviation, at ``SPIN_SAMPLES`` points of the path."""
     path = setup.toolpath
     return deviation_over_spin(setup, sampled(path, max(setup.step, float(path.s[-1]) / SPIN_SAMPLES)))
 
 
+@shared(lambda setup, station: (by_setup(setup), station), "Section")
 def groove(setup: SimulationSetup, station: float) -> GrooveSection:
     """The groove's section at ``station`` (m of length cut)."""
     return result(setup).groove(station)
 
 
-@shared(lambda setup, times: (by_setup(setup), times))
+@shared(lambda setup, times: (by_setup(setup), times), "Surface with its displacement enlarged")
 def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     """The surfaces for pictures with the displacement ``times`` times enlarged, from the cache."""
     return enlarged(result(setup), times)

@@ -14,7 +14,8 @@ from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui.cached import shared
+from robomill.ui.cached import commons, name_of, shared
+from robomill.ui.commons import NOTHING
 from robomill.ui.project import MapView
 from robomill.units import format_si
 from robomill.workspace.fields import ComplianceField, compliance_field
@@ -111,7 +112,7 @@ def solid(robot: Robot, box: Box, cells: int | None = None) -> Grid:
     return coarse_grid(robot, box.lower, box.upper, cells)
 
 
-@shared(lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B))
+@shared(lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B), "Map")
 def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
     """Compliance, shares and determinant over ``grid``, from the cache."""
     return compliance_field(robot, grid, A, B)
@@ -131,13 +132,13 @@ def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
     return dataclasses.replace(known, robot=robot, shares=scaled_shares(known.shares, factors, axis=-2))
 
 
-@shared(lambda robot, T_MT: (robot.digest(), T_MT))
+@shared(lambda robot, T_MT: (robot.digest(), T_MT), "Postures")
 def postures(robot: Robot, T_MT: FloatArray) -> FloatArray:
     """C (k, 3, 3) m/N of the postures found that hold the tool at T_MT (4, 4); none for arms that have no choice."""
     return over_posture(robot, T_MT)
 
 
-@shared(lambda robot, box, z: (robot.digest(), box.lower, box.upper, z))
+@shared(lambda robot, box, z: (robot.digest(), box.lower, box.upper, z), "Lines")
 def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     """The six lines of Fig. 8 over the region's plane, from the cache."""
     points = 61 if decoupled(robot) is not None else 13
@@ -149,6 +150,16 @@ def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
     return _proposed(robot, "largest", A, B)
 
 
-@shared(lambda robot, kind, A, B: (geometry_key(robot), kind, A, B), "Looking for the largest box in reach")
+def box_there(robot: Robot, A: float, B: float) -> tuple[Box | None, bool]:
+    """The largest machining box, where it is known already, and whether it is."""
+    found = commons.find(name_of(_proposed, _by_tilt(robot, "largest", A, B)), NOTHING)
+    return (None, False) if found is NOTHING else (found, True)
+
+
+def _by_tilt(robot: Robot, kind: str, A: float, B: float) -> tuple[object, ...]:
+    return geometry_key(robot), kind, A, B
+
+
+@shared(_by_tilt, "Looking for the largest box in reach")
 def _proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
     return largest_region(robot, A, B) if kind == "largest" else reach_extent(robot, A, B)

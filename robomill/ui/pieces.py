@@ -171,12 +171,19 @@ def split(spec: Sequence[float], name: str, gap: Any = "medium") -> list[Any]:
 def attempt(function: Callable[..., Value], *args: Any) -> Value | None:
     """``function(*args)``, or its refusal shown, or how far it is, and None. Anything else is a bug and is raised."""
     try:
-        return function(*args)
+        return underway(function, *args)
     except RobomillError as exc:
         error(exc)
+        return None
+
+
+def underway(function: Callable[..., Value], *args: Any) -> Value | None:
+    """``function(*args)``, or how far that is and None. Raises its refusal."""
+    try:
+        return function(*args)
     except Underway as now:
         now.show()
-    return None
+        return None
 
 
 def figure(

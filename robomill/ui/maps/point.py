@@ -75,8 +75,8 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
 
 def _posture_note(pose: PoseReport, component: str) -> None:
     """Over what the component ranges where the arm can hold the tool there in many postures."""
-    C = fields.postures(pose.robot, pose.T_MT)
-    if len(C):
+    C = pieces.underway(fields.postures, pose.robot, pose.T_MT)
+    if C is not None and len(C):
         a, b = ("xyz".index(axis) for axis in component)
         values = np.append(C[:, a, b], pose.C[a, b])  # the one that is shown is one of them
         ends = format_many((values.min(), values.max()), "um/N", between=" to ")

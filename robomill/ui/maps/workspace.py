@@ -49,9 +49,11 @@ def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: s
     least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
     limit = known.values("limit_distance")
     nearest = format_percent(np.nanmin(limit)) if np.isfinite(limit).any() else NOT_REACHED
-    largest = fields.proposed_box(robot, view.A, view.B)
-    size = "none" if largest is None else format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
-    note = "nothing in reach at this tilt" if largest is None else _against(largest, robot, unit)
+    largest, looked = fields.box_there(robot, view.A, view.B)
+    size, note = ("none", "nothing in reach at this tilt") if looked else ("…", "not computed yet")
+    if largest is not None:
+        size = format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
+        note = _against(largest, robot, unit)
     singular = bool(near_singular(robot, det).any())
     return [
         pieces.Tile(
@@ -90,7 +92,7 @@ def _against(box: Box, robot: Robot, unit: str) -> str:
 def sentence(robot: Robot, known: ComplianceField | None) -> str:
     """What can be said of the region in one line."""
     if known is None:
-        return "Nothing is in reach here."
+        return "There is no map of this region yet."
     share = float(known.reached.mean())
     if share == 0:
         return f"The arm reaches nothing of this region: {_why(known)}"
@@ -127,7 +129,7 @@ def formula_html(formula: str) -> str:
 def box_card(robot: Robot, view: MapView, unit: str) -> None:
     """The largest box beside the paper's, with its place."""
     st.markdown("**Machining boxes**")
-    largest = fields.proposed_box(robot, view.A, view.B)
+    largest, _ = fields.box_there(robot, view.A, view.B)
     rows = []
     flat = fields.flat(robot) is not None
     for name, box, kind in (
@@ -284,7 +286,7 @@ def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[Floa
     if mask.any():
         fig.add_traces([voxel_trace(mask, (grid.x, grid.y, grid.z), shown, dark=dark)])
     low, high = np.array(region.box.lower), np.array(region.box.upper)
-    largest = fields.proposed_box(robot, view.A, view.B)
+    largest, _ = fields.box_there(robot, view.A, view.B)
     if largest is not None and view.region != "paper":
         fig.add_traces(wire_box(largest.lower, largest.upper, p.accent, "largest box"))
     if view.region == "paper" or (robot.n >= 5 and view.region != "own"):

@@ -30,7 +30,7 @@ QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?",
 QUESTION = "milling.question"
 
 
-@cached.shared(cached.by_result)
+@cached.shared(cached.by_result, "Force over the alloy's rows and over a turn")
 def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread | None]:
     """Range over the alloy's rows and over a revolution, from the cache."""
     return alloy_spread(result), peak_force(result)

@@ -13,6 +13,7 @@ from robomill.io.profiles import MeasuredProfile, read_profile
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import is_straight, offset_band
+from robomill.surface.deviation import Deviation
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import inputs, pieces, session
@@ -25,6 +26,12 @@ STATIONS, FEW_STATIONS = 41, 13
 MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
 MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
+
+
+@shared(by_result, "Error of the surface")
+def error_of(result: SimulationResult) -> Deviation:
+    """The machined surface against the ideal one."""
+    return result.error
 
 
 @shared(by_result, "Measuring the groove along its length")
@@ -177,9 +184,11 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     """How the error is spread over the cut area: histogram, volumes, share out of tolerance."""
     tolerance = result.setup.tolerance
     try:
-        error = result.error
+        error = pieces.underway(error_of, result)
     except RobomillError:
         pieces.note("There is no surface to measure: the reason stands beside the picture.")
+        return
+    if error is None:
         return
     largest = float(np.abs(error.worst).max())
     limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)

@@ -161,7 +161,10 @@ def _spin(project: Project) -> None:
             float(setup.spin),
             lambda angle: session.change(spin=angle),
         )
+    asked = "robot.spin_range.of"
     if st.button("How much does the spin matter here?", key="robot.spin_range", icon=":material/360:"):
+        session.keep(asked, setup.digest())
+    if session.kept(asked) == setup.digest():
         over = pieces.attempt(cached.over_spin, setup)
         if over is None:
             return
