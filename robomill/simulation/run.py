@@ -30,6 +30,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import farther, held
+from robomill.simulation.turning import turns_in_cut
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import check_samples
 
@@ -136,10 +137,16 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     conditions = bent.told if not setup.engagement else cut_conditions(setup, path, bent.told)
     F = bent.force(conditions, bent.R_MF)
     if not setup.coupling:
-        return conditions, F, setup.force.unjudged(conditions), None
+        return conditions, F, _reasons(bent, conditions), None
     coupled = march_coupled(bent, bent.delta(F))
-    reasons = setup.force.unjudged(coupled.conditions) + coupled.unjudged
+    reasons = _reasons(bent, coupled.conditions) + coupled.unjudged
     return coupled.conditions, coupled.F, reasons, coupled.coupling
+
+
+def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:
+    """Where the force has no model, and why."""
+    force = bent.setup.force
+    return force.unjudged(conditions) + (turns_in_cut(bent.path, conditions) if force.follows_cut else ())
 
 
 def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:
