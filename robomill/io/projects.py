@@ -145,7 +145,9 @@ def _source(table: Table, beside: Beside) -> PathSource:
     if kinds == ["lines_mm"]:
         rows = table.rows("lines_mm", 6, "mm")
         feeds = table.numbers("feed_mm_min", len(rows), "mm/min")
-        source = LinesSource(rows[:, :3], rows[:, 3:], np.array(feeds), table.number("spindle_1_min", "1/min", 0.0))
+        source = LinesSource(
+            rows[:, :3], rows[:, 3:], np.array(feeds), read_quantity(table, quantities(LinesSource)["n_s"])
+        )
     elif kinds == ["sketch"]:
         source = SketchSource(sketch_from_table(table.table("sketch")))
     elif kinds == ["program"]:

@@ -14,6 +14,7 @@ from robomill.files import STL
 from robomill.io.beside import Beside
 from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
+from robomill.simulation.setup import PART_TURN, PART_ZERO
 from robomill.surface.stock import Stock
 from robomill.units import to_si
 
@@ -30,7 +31,10 @@ def part_from_table(table: Table) -> FloatArray:
         T_MW[:3] = frame[:3]
         T_MW[:3, 3] = to_si(T_MW[:3, 3], "mm")
     else:
-        T_MW = part_frame(table.numbers("zero_mm", 3, "mm", [0.0] * 3), table.number("rotation_z_deg", "deg", 0.0))
+        T_MW = part_frame(
+            table.numbers(PART_ZERO.key, 3, PART_ZERO.unit, [0.0] * 3),
+            table.number(PART_TURN.key, PART_TURN.unit, 0.0),
+        )
     table.finish()
     return T_MW
 
@@ -48,7 +52,7 @@ def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
     zero = [shown(v, "mm") for v in T_MW[:3, 3]]
     angle = shown(float(np.arctan2(T_MW[1, 0], T_MW[0, 0])), "deg")
     if np.array_equal(part_frame(to_si(np.array(zero), "mm"), to_si(angle, "deg")), T_MW):
-        return {"zero_mm": zero, "rotation_z_deg": angle}
+        return {PART_ZERO.key: zero, PART_TURN.key: angle}
     rows = T_MW.copy()
     rows[:3, 3] = zero
     return {"frame": rows.tolist()}

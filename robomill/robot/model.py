@@ -13,11 +13,13 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
 from robomill.provenance import UNSTATED, Provenance
-from robomill.quantities import quantities, quantity
+from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
 
 USER_SET = "user"
+# Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
+TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), step=1.0, digits=2)
 
 
 @dataclass(frozen=True, eq=False)

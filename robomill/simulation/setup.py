@@ -20,7 +20,7 @@ from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.provenance import Provenance
-from robomill.quantities import quantity, settle, switch
+from robomill.quantities import Quantity, quantity, settle, switch
 from robomill.robot.model import Robot
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
@@ -28,6 +28,11 @@ from robomill.toolpath.source import PathSource
 
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
+
+# What people type of T_MW, of a part that stands upright, and of the spin.
+PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), step=10.0, digits=2, key="zero_mm")
+PART_TURN = Quantity("Turn about Z", "deg", step=5.0, key="rotation_z_deg")
+SPIN = Quantity("Turn about z_T", "deg", step=5.0, digits=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
+from robomill.quantities import quantity, settle
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
@@ -82,7 +83,7 @@ class LinesSource:
     start: FloatArray
     end: FloatArray
     v_f: FloatArray
-    n_s: float = 0.0
+    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, step=500.0, key="spindle_1_min")
     name: str = field(default="table of lines", compare=False)
     kind: ClassVar[Literal["lines"]] = "lines"
     block_name: ClassVar[str] = "row"
@@ -91,6 +92,7 @@ class LinesSource:
         for name, shape in (("start", (None, 3)), ("end", (None, 3)), ("v_f", (None,))):
             value = as_floats(getattr(self, name), f"lines, {name}", shape, error=ToolpathError)
             object.__setattr__(self, name, frozen(value))
+        settle(self, ToolpathError, "Lines")
 
     def read(self, tools: Tools | None = None) -> Toolpath:
         """The path, which names no ``tools``; raises ToolpathError naming the row that cannot be cut."""

@@ -87,8 +87,9 @@ def _write_entry(array: Any, i: int, write: Callable[[Any], None], new: float) -
 
 
 def in_view(unit: str) -> str:
-    """Lengths are typed in the unit of the view."""
-    return session.project().view.length if unit == "mm" else unit
+    """Lengths and feeds are typed in the units of the view."""
+    view = session.project().view
+    return {"mm": view.length, "mm/min": view.feed}.get(unit, unit)
 
 
 def in_row(items: Sequence[Item], show: Callable[[Item], None]) -> None:

@@ -86,7 +86,7 @@ def test_every_robot_of_the_samples_opens(app: AppTest) -> None:
 
 def test_edited_blocks_become_the_users_own(app: AppTest) -> None:
     go(app, "1_Robot")
-    app.number_input(key="robot.T_tool[2,3]:mm").set_value(5.0).run()
+    app.number_input(key="robot.tip[2]:mm").set_value(5.0).run()
     robot = store(app).project.setup.robot
     assert robot.T_tool[2, 3] == 0.005
     assert robot.provenance["tool"].kind == "user"
@@ -99,7 +99,7 @@ def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.Mon
     go(app, "1_Robot")
     monkeypatch.setattr(session, "ONE_GESTURE_S", 0.0)
     for value in (5.0, 6.0):
-        app.number_input(key="robot.T_tool[2,3]:mm").set_value(value).run()
+        app.number_input(key="robot.tip[2]:mm").set_value(value).run()
     app.button(key="undo").click().run()
     assert store(app).project.setup.robot.T_tool[2, 3] == 0.005
 

@@ -63,7 +63,7 @@ def test_what_cannot_be_reached_is_counted_and_named(app: AppTest) -> None:
 
 def test_part_zero_moves_the_cut(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    box(app, "Y, mm").set_value(-1200.0).run()
+    box(app, "Zero Y, mm").set_value(-1200.0).run()
     box(app, "Turn about Z, °").set_value(90.0).run()
     assert not app.exception
     T_MW = store(app).project.setup.T_MW
@@ -90,7 +90,7 @@ def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:
 
 
 def test_a_big_program_is_read_and_run_beside_the_page(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(running, "FIRST_S", 0.0)
+    monkeypatch.setattr(beside, "FIRST_S", 0.0)
     go(app, "5_Toolpath")
     body = "".join(f"G1 X{i % 100} Y{i // 100 % 7}\n" for i in range(180_000))
     text = f"G21 G90\nG0 X0 Y0 Z1\nG1 Z-1 F6000\n{body}M2\n"

@@ -9,12 +9,14 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
+from robomill.arrays import FloatArray
 from robomill.io.robots import load_robot, robot_names
 from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
-from robomill.robot.model import USER_SET, Robot
+from robomill.kinematics.transforms import transform
+from robomill.robot.model import TOOL_TIP, USER_SET, Robot
 from robomill.robot.stiffness import is_stiffness
-from robomill.ui import cached, inputs, pieces, session
-from robomill.ui.box import NumberBox
+from robomill.simulation.setup import SPIN
+from robomill.ui import cached, declared, inputs, pieces, session
 from robomill.ui.project import Project
 from robomill.ui.robot import tables
 from robomill.units import format_many, format_si, unit_label
@@ -125,10 +127,7 @@ def _table(
 
 def _tool(robot: Robot) -> None:
     st.markdown("Tool tip from the last axis, along its own axes")
-    columns = st.columns(3)
-    for i, (axis, column) in enumerate(zip("xyz", columns, strict=True)):
-        with column:
-            inputs.number(f"robot.T_tool[{i},3]", label=axis, unit="mm", step=1.0, digits=2)
+    declared.draw(TOOL_TIP, "robot.tip", robot.T_tool[:3, 3], _put_tip)
     k = tables.tool_axis(robot)
     names = {axis: axis.replace("-", MINUS) for axis in tables.TOOL_AXES}
     inputs.choice(
@@ -140,6 +139,11 @@ def _tool(robot: Robot) -> None:
         inputs.LISTED,
     )
     _said(robot, "tool")
+
+
+def _put_tip(tip: FloatArray) -> None:
+    robot = session.project().setup.robot
+    session.change(label="robot.tip", robot=robot.replace(T_tool=transform(robot.T_tool[:3, :3], tip)))
 
 
 def _spin(project: Project) -> None:
@@ -155,12 +159,7 @@ def _spin(project: Project) -> None:
         inputs.LISTED,
     )
     if given:
-        inputs.value(
-            "robot.spin",
-            NumberBox("Turn about z_T", "deg", 5.0, 1),
-            float(setup.spin),
-            lambda angle: session.change(spin=angle),
-        )
+        declared.draw(SPIN, "robot.spin", float(setup.spin), lambda angle: session.change(spin=angle))
     asked = "robot.spin_range.of"
     if st.button("How much does the spin matter here?", key="robot.spin_range", icon=":material/360:"):
         session.keep(asked, setup.digest())

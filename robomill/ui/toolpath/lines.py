@@ -8,7 +8,7 @@ import streamlit as st
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.source import LinesSource
-from robomill.ui import inputs, pieces, session
+from robomill.ui import declared, inputs, pieces, session
 from robomill.ui.inputs import empty
 from robomill.ui.project import View
 from robomill.ui.toolpath.sources import put
@@ -33,7 +33,7 @@ def lines_inputs(source: LinesSource, view: View) -> None:
         f"Start x₀ y₀ z₀ and end x₁ y₁ z₁ of each cut in {{W}} ({unit_label(view.length)}), "
         f"feed ({unit_label(view.feed)}). Lines that do not touch are joined by rapids."
     )
-    inputs.number("source.n_s", label="Spindle speed", unit="1/min", step=500.0)
+    declared.field("source.n_s")
 
 
 def _source() -> LinesSource:

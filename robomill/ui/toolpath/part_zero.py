@@ -9,10 +9,11 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.io.workpiece import part_frame
+from robomill.kinematics.transforms import transform
+from robomill.simulation.setup import PART_TURN, PART_ZERO
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
-from robomill.ui import inputs, pieces, session
-from robomill.ui.box import NumberBox
-from robomill.units import decimals, format_si, from_si, to_si, unit_label
+from robomill.ui import declared, inputs, pieces, session
+from robomill.units import format_si, from_si, to_si, unit_label
 from robomill.vectors import angle_between
 
 TOUCHED = "toolpath.touched"
@@ -31,22 +32,19 @@ def part_zero() -> None:
 
 
 def _by_numbers() -> None:
-    unit, T_MW = session.project().view.length, session.project().setup.T_MW
-    step = 10.0 if unit == "mm" else 1.0
-    # In rows, so that a telephone, which has one column, keeps their order.
-    (x, y), (z, turned) = st.columns(2), st.columns(2)
-    for i, (column, axis) in enumerate(zip((x, y, z), "XYZ", strict=True)):
-        with column:
-            inputs.number(f"T_MW[{i},3]", label=axis, unit=unit, step=step, digits=decimals(unit, 2))
-    with turned:
-        turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
-        inputs.value("toolpath.turn", NumberBox("Turn about Z", "deg", step=5.0, digits=2), turn, _turn)
+    T_MW = session.project().setup.T_MW
+    declared.draw(PART_ZERO, "toolpath.zero", T_MW[:3, 3], _put)
+    declared.draw(PART_TURN, "toolpath.turn", float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12)), _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
         pieces.note(
             f"The part is tilted by {format_si(tilt, 'deg', 3)} against the robot's base, as its three points say; "
             "a turn typed here sets it upright."
         )
+
+
+def _put(zero: FloatArray) -> None:
+    session.change(label="toolpath.zero", T_MW=transform(session.project().setup.T_MW[:3, :3], zero))
 
 
 def _turn(angle: float) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.toolpath.sketch import SHAPES
+from robomill.quantities import quantities
+from robomill.toolpath.sketch import SHAPES, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
-from robomill.ui import inputs, pieces, session
-from robomill.ui.box import declared
+from robomill.ui import declared, inputs, pieces, session
 from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.toolpath.sources import put_sketch, sketch_source
 from robomill.units import format_si, unit_label
@@ -44,30 +44,22 @@ def _draw(word: str) -> None:
 
 
 def _settings() -> None:
-    view = session.project().view
-    inches = view.units == "in"
     st.markdown("**New shapes**")
     left, right = st.columns(2)
     with left:
-        _setting("v_f", view.feed, 1.0 if inches else 60.0)
+        _setting("v_f")
         st.caption(f"that is {format_si(sketch_source().sketch.v_f, 'mm/s', 1)}")
     with right:
-        _setting("depth", view.length, 0.02 if inches else 0.5)
+        _setting("depth")
         inputs.button("For all shapes", "toolpath.all", "done_all", _all, type="tertiary")
     with st.expander("Plunge, clearance, spindle", icon=":material/height:"):
-        one, two, three = st.columns(3)
-        with one:
-            _setting("v_plunge", view.feed, 1.0 if inches else 60.0)
-        with two:
-            _setting("clearance", view.length, 0.05 if inches else 1.0)
-        with three:
-            _setting("n_s", "1/min", 500.0)
+        declared.in_row(("v_plunge", "clearance", "n_s"), _setting)
 
 
-def _setting(name: str, unit: str, step: float) -> None:
+def _setting(name: str) -> None:
     sketch = sketch_source().sketch
-    box = declared(sketch, name, unit=unit, step=step, digits={"in": 3, "in/min": 1, "mm": 2}.get(unit))
-    inputs.value(f"toolpath.{name}", box, getattr(sketch, name), lambda new: put_sketch(sketch.replace(**{name: new})))
+    said, write = quantities(Sketch)[name], lambda new: put_sketch(sketch.replace(**{name: new}))
+    declared.draw(said, f"toolpath.{name}", getattr(sketch, name), write)
 
 
 def _all() -> None:
