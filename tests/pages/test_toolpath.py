@@ -9,7 +9,7 @@ from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
-from robomill.ui import running
+from robomill.ui import beside, running
 from robomill.ui.toolpath.reading import BACKGROUND_CHARACTERS
 
 
@@ -109,6 +109,6 @@ def test_a_big_program_is_read_and_run_beside_the_page(app: AppTest, monkeypatch
     app.button(key="run.cancel").click().run()
     assert run.done.wait(30)
     assert run.made is None
-    assert "Not computed yet" in words(app)
+    assert "not computed yet" in words(app)
     assert app.button(key="run.ask")
     assert not app.exception
