@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.cartesian import full_compliance, joint_contributions
-from robomill.compliance.deflection import deflection, displacement, soft_direction
+from robomill.compliance.deflection import displacement, soft_direction
 from robomill.errors import KinematicsError
 from robomill.kinematics import dexterity
 from robomill.kinematics.forward import joint_frames
@@ -118,10 +118,6 @@ class PoseReport:
     def gives_most(self, name: str) -> int:
         """Number (as in the robot's table) of the joint with the largest share of C_ab."""
         return self.robot.joint_numbers[int(np.argmax(np.abs(self.shares(name))))]
-
-    def deflection(self, F: ArrayLike) -> FloatArray:
-        """(n, 3) m in {M}: each joint's share of the tip displacement under F (3,) N on the tool. Eqs. (15), (16)."""
-        return deflection(self.C_joint, F)
 
     def delta(self, F: ArrayLike) -> FloatArray:
         """(3,) m in {M}: the tip displacement under F (3,) N on the tool, C F. Eq. (16)."""

@@ -53,10 +53,10 @@ def gravity_torques(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: 
     return np.einsum("...jlk,lk->...j", columns, weight)
 
 
-def gravity_sag(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: ArrayLike = GRAVITY) -> FloatArray:
+def gravity_sag(robot: Robot, theta: ArrayLike, links: LinkMasses) -> FloatArray:
     """Sag of the tip, each joint's share (..., n, 3) m in {M}: J_i C_theta,i tau_i; their sum is the sag."""
     frames = joint_frames(robot, theta)
-    tau = gravity_torques(robot, theta, links, gravity)
+    tau = gravity_torques(robot, theta, links)
     tip = _columns(robot, frames, frames[..., -1:, :3, 3])[..., 0, :]
     return tip * (robot.C_theta * tau)[..., None]
 

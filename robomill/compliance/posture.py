@@ -7,22 +7,21 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.kinematics.numeric import solve_numerically
-from robomill.kinematics.result import task_mode
 from robomill.robot.model import Robot
 
 POSTURES = 96  # starts, drawn over the joint limits from a fixed seed
 
 
-def over_posture(robot: Robot, T_MT: FloatArray, keep_spin: bool = False) -> FloatArray:
+def over_posture(robot: Robot, T_MT: FloatArray) -> FloatArray:
     """C (k, 3, 3) m/N of the postures found that bring the tip and the tool axis to T_MT (4, 4), within the limits.
 
-    The spin about the tool axis is free as in milling, unless ``keep_spin``. Arms of up to six axes have no posture to
-    choose beside their branches and the spin: (0, 3, 3).
+    The spin about the tool axis is free as in milling. Arms of up to six axes have no posture to choose beside their
+    branches and the spin: (0, 3, 3).
     """
     if robot.n <= 6:
         return np.empty((0, 3, 3))
     low, high = robot.limits.T
     starts = np.random.default_rng(0).uniform(low, high, (POSTURES, robot.n))
     poses = np.array(np.broadcast_to(T_MT, (POSTURES, 4, 4)))
-    theta, found = solve_numerically(robot, poses, starts, task_mode(robot) if keep_spin else "axis")
+    theta, found = solve_numerically(robot, poses, starts, "axis")
     return cartesian_compliance(robot, theta[found])

@@ -5,6 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import at_pose
+from robomill.compliance.deflection import deflection
 from robomill.errors import KinematicsError
 from tests.robot.written_otherwise import with_blocked
 
@@ -41,7 +42,7 @@ def test_numbers_by_numeric_derivatives(name):
         torque = J[:3, i] @ F
         angle = robot.chain.sign[i] * robot.C_theta[i] * torque
         moved = turned(axis, angle) @ (tip - here.frames[i][:3, 3]) + here.frames[i][:3, 3] - tip
-        np.testing.assert_allclose(here.deflection(F)[i], moved, rtol=2e-3, atol=1e-9)
+        np.testing.assert_allclose(deflection(here.C_joint, F)[i], moved, rtol=2e-3, atol=1e-9)
     task = {5: J[:5], 6: J, 2: J[:2], 3: J[[0, 1, 5]]}[robot.n]
     if name == "slavkovic_5r":
         k = here.T_MT[:3, 2]
@@ -66,8 +67,10 @@ def test_components_shares_and_axes(name):
     for a, b in ("xx", "yy", "zz", "xy", "xz", "yz", "zy"):
         unit_a, unit_b = np.eye(3)["xyz".index(a)], np.eye(3)["xyz".index(b)]
         # Push along b, look along a.
-        assert here.component(a + b) == pytest.approx(float(here.deflection(unit_b).sum(axis=0) @ unit_a), abs=1e-18)
-        shares = here.deflection(unit_b) @ unit_a
+        assert here.component(a + b) == pytest.approx(
+            float(deflection(here.C_joint, unit_b).sum(axis=0) @ unit_a), abs=1e-18
+        )
+        shares = deflection(here.C_joint, unit_b) @ unit_a
         np.testing.assert_allclose(here.shares(a + b), shares, atol=1e-18)
         largest = max(range(robot.n), key=lambda i: abs(shares[i]))
         assert here.gives_most(a + b) == robot.joint_numbers[largest]
@@ -97,7 +100,7 @@ def test_a_pose_that_is_not_reached_is_nan_throughout():
     assert not here.reached
     for value in (here.frames, here.J, here.C_joint, here.C, here.C_X, here.det_J, here.manipulability):
         assert np.isnan(value).all()
-    for value in (here.singular_values, here.limit_distance, *here.principal, here.deflection([1, 0, 0])):
+    for value in (here.singular_values, here.limit_distance, *here.principal, deflection(here.C_joint, [1, 0, 0])):
         assert np.isnan(value).all()
 
 

@@ -105,10 +105,11 @@ def test_a_cutter_takes_another_shape_with_what_that_one_needs(kind):
     for start in FAMILIES:
         cutter = Cutter("flat", 8e-3, flutes=3, stick_out=30e-3).reshaped(start).reshaped(kind)
         assert (cutter.kind, cutter.diameter, cutter.flutes, cutter.stick_out) == (kind, 8e-3, 3, 30e-3)
-        expected = {"flat": 0.0, "ball": 4e-3, "bull": 1e-3, "chamfer": 0.0, "drill": 0.0}[kind]
-        assert cutter.corner_radius == pytest.approx(expected)
-        assert cutter.half_angle == pytest.approx({"chamfer": math.pi / 4, "drill": math.radians(59.0)}.get(kind, 0.0))
-        assert cutter.conical == (kind in ("chamfer", "drill"))
+        needs = FAMILIES[kind].needs
+        assert cutter.corner_radius == pytest.approx(4e-3 if kind == "ball" else 1e-3 * ("corner_radius" in needs))
+        assert cutter.conical == (cutter.half_angle > 0.0) == ("tip_angle" in needs)
+    for cone, half in (("chamfer", 45.0), ("drill", 59.0)):
+        assert Cutter("flat", 8e-3).reshaped(cone).half_angle == pytest.approx(math.radians(half))
 
 
 def test_a_force_from_a_material_has_its_source():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import FAMILIES, Cutter
 from robomill.errors import CuttingError
 from robomill.quantities import quantities
 from robomill.units import to_si
@@ -69,7 +69,7 @@ def test_title():
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"kind": "saw"}, "Cutter, Kind: found 'saw'; expected flat, ball, bull, chamfer or drill."),
+        ({"kind": "saw"}, f"Cutter, Kind: found 'saw'; expected {' or '.join(', '.join(FAMILIES).rsplit(', ', 1))}."),
         ({"flutes": 0}, "Cutter, Flutes: found 0; expected 1 or more."),
         ({"flutes": 2.5}, "Flutes: found 2.5; expected 1 or more"),
         ({"flutes": "three"}, "Flutes: found 'three'"),

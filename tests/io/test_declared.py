@@ -117,7 +117,7 @@ def to_si_7(value: float) -> float:
     [
         ({"kind": "spindle", "lateral_um_N": 0.1, "slip": 1}, "slip: this key is not known here"),
         ({"kind": "spindle"}, "lateral_um_N: missing; add it"),
-        ({"kind": "rubber"}, "kind: expected one of tool_bending, spindle, joint_bending, found 'rubber'"),
+        ({"kind": "rubber"}, f"kind: expected one of {', '.join(SPRINGS)}, found 'rubber'"),
         ({"kind": "joint_bending", "joint": 1.5}, "joint: expected a whole number, found 1.5"),
     ],
 )
