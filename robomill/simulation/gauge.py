@@ -179,7 +179,7 @@ def _directions(at: Places, around: BoolArray) -> Rims:
     q = np.repeat(turning, len(AROUND))
     u = [at.left_of, -at.left_of, ahead[:, None] * at.feed[q] + aside[:, None] * at.left_of[q]]
     sign = [np.ones(len(every)), -np.ones(len(every)), np.where(aside < -1e-9, -1.0, 1.0)]
-    length = at.result.path.step_length[at.i]
+    length = at.length
     lengths = [length, length, np.zeros(len(q))]
     return _rims(at, np.concatenate([every, every, q]), *map(np.concatenate, (u, sign, lengths)))
 
@@ -205,7 +205,7 @@ def _floors(at: Places) -> Readings:
     deepest = at.bottoms[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
-    length = at.result.path.step_length[at.i[q]] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
+    length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
     return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2])
 
 

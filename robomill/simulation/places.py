@@ -15,16 +15,20 @@ from robomill.surface.stock import stock_grid
 from robomill.vectors import angle_between
 
 STEEP = 0.5  # share of the feed across the tool below which a move is a plunge: its wall is a hole's
+APART = 10e-6  # m: samples that differ by more are looked at in between,
+BETWEEN = (0.25, 0.5, 0.75)  # at these shares of the way
 REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded, and no further than the radius allows
 
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Judged samples i (q,) of a run: tip c and axes of the cut (feed, left, axial) in {W}, the deviation d along those
-    axes, all (q, 3); ``outline`` holds the surfaces commanded and left, ``of`` (q,) says which cutter cuts."""
+    """Judged samples i (q,) of a run, and places ``between`` (q,) one and the one before: tip c and axes of the cut
+    (feed, left, axial) in {W}, the deviation d along those axes, all (q, 3); ``outline`` holds the surfaces commanded
+    and left, ``of`` (q,) says which cutter cuts."""
 
     result: Run
     i: IntArray
+    between: BoolArray
     c: FloatArray
     feed: FloatArray
     left_of: FloatArray
@@ -38,6 +42,11 @@ class Places:
         """Radius (m) of the cutters at places q, at a height (m) above their tips."""
         every = np.stack([cutter.radius_at(np.maximum(height, 0.0)) for cutter in self.cutters])
         return np.asarray(every[self.of[q], np.arange(len(q))])
+
+    @property
+    def length(self) -> FloatArray:
+        """(q,) m along the path that a place stands for."""
+        return np.where(self.between, 0.0, self.result.path.step_length[self.i])
 
     def number(self, name: str) -> FloatArray:
         """(q,) a number of each place's cutter."""
@@ -76,14 +85,14 @@ class Places:
         result = self.result
         level = result.path.cutting & (result.conditions.across >= STEEP)
         before, after = np.append(False, level[:-1]), np.append(level[1:], False)
-        return (level & ~before)[self.i], (level & ~after)[self.i]
+        return (level & ~before)[self.i] & ~self.between, (level & ~after)[self.i] & ~self.between
 
     @property
     def bottoms(self) -> BoolArray:
         """(q,): where a plunge ends, at the floor of a hole."""
         conditions, path = self.result.conditions, self.result.path
         down = path.cutting & (conditions.across < STEEP) & (conditions.along < 0.0)
-        return np.asarray((down & ~np.append(down[1:], False))[self.i])
+        return np.asarray((down & ~np.append(down[1:], False))[self.i] & ~self.between)
 
     @property
     def turn(self) -> FloatArray:
@@ -91,7 +100,7 @@ class Places:
         path, R = self.result.path, self.result.R_MF[..., 0]
         angle = angle_between(R[1:], R[:-1])
         angle[~(path.cutting[1:] & path.cutting[:-1])] = 0.0
-        return np.maximum(np.append(0.0, angle), np.append(angle, 0.0))[self.i]
+        return np.where(self.between, 0.0, np.maximum(np.append(0.0, angle), np.append(angle, 0.0))[self.i])
 
     @property
     def slope(self) -> FloatArray:
@@ -101,19 +110,31 @@ class Places:
 
 
 def places(result: Run) -> Places:
-    """The judged samples of a run that cuts."""
-    i, path = np.flatnonzero(result.judged), result.path
-    tooling = result.tooling
+    """The judged samples of a run that cuts; where one is off otherwise than the one before, places between them."""
+    path, tooling = result.path, result.tooling
+    some = np.flatnonzero(result.judged)
+    after = some[(result.removes & np.append(False, result.judged[:-1] & (_changes(result) > APART)))[some]]
+    i = np.concatenate([some, *[after] * len(BETWEEN)])
+    share = np.repeat([1.0, *BETWEEN], [len(some), *[len(after)] * len(BETWEEN)])[:, None]
+    before = np.maximum(i - 1, 0)
     moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
     reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
     axes, lift = _upright_balls(result)
     to_W = result.setup.T_MW[:3, :3]
-    d: FloatArray = np.einsum("mij,mj->mi", axes[i], np.asarray(result.delta[i] @ to_W))
+    off = np.where(share < 1.0, share * result.delta[i] + (1.0 - share) * result.delta[before], result.delta[i])
+    d: FloatArray = np.einsum("mij,mj->mi", axes[i], np.asarray(off @ to_W))
+    tips = path.p + lift
 
     told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
     outline = Outline(told, left, tooling.cutters, of[moves], reach)
     feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
-    return Places(result, i, (path.p + lift)[i], feed, left_of, axial, d, tooling.cutters, of[i], outline)
+    c = share * tips[i] + (1.0 - share) * tips[before]
+    return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, tooling.cutters, of[i], outline)
+
+
+def _changes(result: Run) -> FloatArray:
+    """(m - 1,) m: how much each sample is off otherwise than the one before."""
+    return np.asarray(np.linalg.norm(np.diff(np.nan_to_num(result.delta), axis=0), axis=1))
 
 
 def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray]:

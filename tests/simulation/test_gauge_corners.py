@@ -131,3 +131,14 @@ def test_a_rib_that_tapers_to_nothing_misses_only_its_tip():
         )
         bent = pushed(made, left=np.where(made.path.block < 6, -0.2e-3, 0.2e-3))
         assert (len(bent.gauge.gone) > 0) == gone
+
+
+@pytest.mark.parametrize("step", [1e-3, 2e-3])
+def test_a_wall_is_looked_at_between_samples_too(step):
+    """Into a corner the tool is pressed off its wall by 0.2 mm within a step; most of it is cut on the way out."""
+    made = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X0 F900", "G1 Y-40", step=step)
+    corner = np.flatnonzero(made.path.block == 4)[-1]
+    aside = np.where(made.path.block == 4, -0.04e-3, -0.02e-3)
+    aside[corner] = -0.2e-3
+    bent = pushed(made, left=aside)
+    assert abs(bent.verdict.wall.value) == pytest.approx(worst_wall(bent), rel=0.15)
