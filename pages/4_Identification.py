@@ -8,6 +8,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.errors import RobomillError
+from robomill.ui import pieces
 from robomill.ui.bench import Bench
 from robomill.ui.identification import cut, inputs, laboratory, measured_map, models, plan, points, results, words
 from robomill.ui.identification.bench import fit_of, robot_of, tests_of
@@ -19,7 +20,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
     tests = result = refusal = None
     try:
         tests = tests_of(kept, robot)
-        result = fit_of(kept, robot)
+        result = pieces.underway(fit_of, kept, robot)
     except RobomillError as exc:
         refusal = exc
     kicker = f"Identification · {kept.name}"
@@ -37,8 +38,9 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
             points.offer(kept, result)
             inputs.use(kept, robot, result)
     with right:
-        if result is None:
+        if result is None and refusal is not None:
             st.info("Mend what is named beside; your rows are kept as they are.", icon=":material/arrow_back:")
+        if result is None:
             return
         view_name = inputs.choose("view", inputs.VIEWS)
         if view_name == "compliances":

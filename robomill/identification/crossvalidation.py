@@ -15,6 +15,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.identification.points import Normal, PointFit, at_shift, slopes
 from robomill.identification.system import System
+from robomill.progress import checkpoint
 
 Choose = Callable[["frozenset[int]"], "Folded"]
 
@@ -101,6 +102,7 @@ class Folded:
         """Mean relative error over the poses of all folds but these, each fold predicted without itself as well."""
         missed = np.full(len(self.system.b), np.nan)
         for k in set(range(self.count)) - left:
+            checkpoint()
             x, inside = self.roughly(left | {k}), self.fold == k
             p = len(self.system.signed)
             A = at_shift(self.system.every_term[inside], x[p:], self.system.freed)
@@ -114,6 +116,7 @@ def leave_out(folds: int, choose: Choose) -> Missed:
     e = len(whole.system.b)
     missed, variance = np.full(e, np.nan), np.full(e, np.nan)
     for k in range(folds) if folds > 1 else ():
+        checkpoint(k / folds, "What was left out")
         left = frozenset({k})
         inside = whole.fold == k
         missed[inside], variance[inside] = choose(left).predict(k, left)

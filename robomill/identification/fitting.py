@@ -12,6 +12,7 @@ from robomill.identification import diagnostics
 from robomill.identification.least_squares import Fit, RobustFit, robust_fit
 from robomill.identification.points import PointFit, slopes
 from robomill.identification.system import System
+from robomill.progress import checkpoint
 
 ROUNDS = 12
 SETTLED = 1e-6  # m, change of the points from one round of weights to the next
@@ -75,6 +76,7 @@ def _robust(system: System, plain: PointFit) -> tuple[PointFit, FloatArray]:
     """The fit in which gross readings weigh nothing, and the weights (e,)."""
     found = plain
     for _ in range(ROUNDS):
+        checkpoint()
         now = system.at(found.shift)
         wide = columns(now, found)
         gross = robust_fit(wide / now.noise[:, None], _linear(now, found, wide) / now.noise)

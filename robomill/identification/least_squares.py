@@ -21,6 +21,7 @@ from scipy.optimize import nnls
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.identification.confidence import BISQUARE, LEVEL, MAD, bisquare, half_width
+from robomill.progress import checkpoint
 
 NULL = 1e-9  # singular values below this share of the largest (columns scaled) count as zero
 ROUNDS = 30
@@ -186,6 +187,7 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
     tiny = 1e-12 * float(np.abs(b).max(initial=0.0))
     weights, scale, residual = np.ones(len(b)), 0.0, b
     for _ in range(ROUNDS):
+        checkpoint()
         weighted = B * weights[:, None]
         residual = b - B @ np.linalg.lstsq(weighted.T @ B, weighted.T @ b, rcond=None)[0]
         size = np.abs(residual)

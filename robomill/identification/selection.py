@@ -15,6 +15,7 @@ from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
 from robomill.identification.system import build_system
 from robomill.identification.treatment import AUTO, Treatment
+from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 
 MOST = 2  # joints at which links may bend when that is chosen by the tests
@@ -60,6 +61,7 @@ class Candidates:
         if left not in self.chosen:
             best, error = NONE, self.of(NONE)[2].score(left)
             for _ in range(MOST):
+                checkpoint()
                 found = {bend: score for bend in self._next(best) if (score := self._score(bend, left)) is not None}
                 bend = min(found, key=found.__getitem__, default=NONE)
                 if bend == NONE or not found[bend] < PAYS * error:

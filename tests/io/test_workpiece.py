@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import struct
+import tracemalloc
 import zlib
 
 import numpy as np
@@ -84,3 +85,17 @@ def test_a_damaged_mesh_is_refused(packed):
     eight = base64.b64encode(zlib.compress(struct.pack("<8d", *range(8)))).decode()
     with pytest.raises(ProjectError, match="the packed mesh is damaged"):
         stock(lower_mm=[0, 0, 0], upper_mm=[9, 9, 9], triangles=eight)
+
+
+@pytest.mark.parametrize("told", [1, 100_000])
+def test_a_packed_mesh_that_inflates_beyond_what_it_says_is_refused_in_little_room(told):
+    """A megabyte that inflates to more than one GB."""
+    deflating, zeros = zlib.compressobj(1), bytes(1 << 22)
+    packed = base64.b64encode(b"".join([deflating.compress(zeros) for _ in range(260)]) + deflating.flush()).decode()
+    tracemalloc.start()
+    try:
+        with pytest.raises(ProjectError, match=f"the packed mesh holds more than {told:,} triangles"):
+            stock(lower_mm=[0, 0, 0], upper_mm=[9, 9, 9], triangles=packed, triangles_count=told)
+        assert tracemalloc.get_traced_memory()[1] < 5 * len(packed) + 3 * 72 * told
+    finally:
+        tracemalloc.stop()

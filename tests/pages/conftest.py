@@ -26,10 +26,15 @@ class NoPictures(RenderWorker):
             self._starts.note(NO_OPENGL)
 
 
+@pytest.fixture(autouse=True)
+def _waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages are looked at with what they make beside themselves."""
+    monkeypatch.setattr(beside, "FIRST_S", 60.0)
+
+
 @pytest.fixture
 def app(monkeypatch: pytest.MonkeyPatch) -> AppTest:
     """The start page, run once."""
-    monkeypatch.setattr(beside, "FIRST_S", 60.0)  # pages are looked at with their runs
     monkeypatch.setattr(Chart, "figure", property(checked_figure))
     queue = RenderQueue(NoPictures())
     monkeypatch.setattr(rendered, "queue", lambda: queue)

@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
 
-import streamlit as st
-
 from robomill.errors import LoadTestError
 from robomill.identification.comparison import Comparison, compare_models
 from robomill.identification.estimate import identify
@@ -20,7 +18,7 @@ from robomill.io.load_tests import read_load_tests, read_measured_map
 from robomill.io.robots import load_robot
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import declared, session
+from robomill.ui import beside, declared, session
 from robomill.ui.bench import Bench
 from robomill.ui.inputs import PLAIN, Look
 
@@ -30,11 +28,12 @@ MEMORY = "identification.memory"
 REMEMBERED = 24
 
 
-def remembered(key: Any, make: Callable[[], Value]) -> Value:
-    """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not kept."""
+def remembered(key: Any, make: Callable[[], Value], doing: str = "") -> Value:
+    """``make()``, once for each ``key``; the oldest of ``REMEMBERED`` is forgotten. Refusals are not kept. What is
+    ``doing`` may take long: it is made beside the page, and ``Underway`` raised while it is not there."""
     memory: dict[Any, Any] = session.kept(MEMORY, {})
     if key not in memory:
-        made = make()
+        made = make() if not doing else beside.made(f"identification.{key[0]}", key, make, doing)
         while len(memory) >= REMEMBERED:
             del memory[next(iter(memory))]
         memory[key] = made
@@ -96,11 +95,8 @@ def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
     """The fit of the model asked for. Raises LoadTestError."""
     tests = tests_of(bench, robot)
 
-    def fit() -> IdentificationResult:
-        with st.spinner("Fitting, and predicting what was left out …"):
-            return identify(robot, tests, bench.model, bench.treatment)
-
-    return remembered(("fit", *_choices(bench, robot), bench.model), fit)
+    fit = partial(identify, robot, tests, bench.model, bench.treatment)
+    return remembered(("fit", *_choices(bench, robot), bench.model), fit, "Fitting, and predicting what was left out")
 
 
 def comparison_of(bench: Bench, robot: Robot) -> Comparison:
@@ -111,7 +107,8 @@ def comparison_of(bench: Bench, robot: Robot) -> Comparison:
             "One joint at a time shows nothing but joints: models are compared on displacements of the tool."
         )
     treatment = replace(bench.treatment, bending=bench.bending)
-    return remembered(("models", *_choices(bench, robot)), partial(compare_models, robot, tests, treatment=treatment))
+    compare = partial(compare_models, robot, tests, treatment=treatment)
+    return remembered(("models", *_choices(bench, robot)), compare, "Fitting every model")
 
 
 def field_of(bench: Bench, robot: Robot) -> MeasuredField:

@@ -15,18 +15,19 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, session, uncertainty
+from robomill.ui import inputs, pieces, running, session, uncertainty
 from robomill.ui.bench import Bench
 from robomill.ui.identification.bench import field
 from robomill.ui.identification.inputs import adopted, knowledge
+from robomill.ui.job import Underway
 from robomill.units import format_si, from_si
 from robomill.viz.deviation import band_figure
 
 
 def cut_of(robot: Robot) -> SimulationResult:
-    """The project's cut by ``robot``. Raises the refusal of the simulation."""
+    """The project's cut by ``robot``. Raises the refusal of the simulation, and Underway."""
     setup = session.project().setup
-    return cached.result(setup if setup.robot == robot else setup.replace(robot=robot))
+    return running.computed(setup if setup.robot == robot else setup.replace(robot=robot), "identification.cut")
 
 
 def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
@@ -35,12 +36,12 @@ def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str
         return "no joints", "choose a model with joint springs"
     try:
         found, known = predicted(bench, robot, result)
-    except RobomillError:
+        now = cut_of(robot).max_deviation
+    except (RobomillError, Underway):
         return "not computed", "see In the cut"
     if found.worst < 0:
         return "out of reach", "no point of the cut is reached"
     half = worst_half(found, known)
-    now = cut_of(robot).max_deviation
     if not np.isfinite(half):
         return "not known", "no residuals to judge the noise by"
     digits = uncertainty.band_digits(half)
@@ -53,7 +54,8 @@ def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str
 
 def predicted(bench: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:
     """The project's cut with the compliances found, and how unsure they, force and lengths are."""
-    found = cached.result(adopted(session.project().setup, robot, result, bench.name))
+    setup = adopted(session.project().setup, robot, result, bench.name)
+    found = running.computed(setup, "identification.found")
     return found, knowledge(bench, robot, result)
 
 
@@ -62,21 +64,19 @@ def in_the_cut(bench: Bench, robot: Robot, result: IdentificationResult, unit: s
     if not result.has_joints:
         pieces.note("One constant matrix has no joint compliances; choose a model with joint springs.")
         return
-    first, made, second, third = pieces.split([1.5, 1.5, 1, 1], "cut", gap="small")
+    first, band, second, third = pieces.split([1.5, 1.5, 1, 1], "cut", gap="small")
     with first:
         axis = inputs.pick("Deviation", "identification.component", {"": "Size", "x": "X", "y": "Y", "z": "Z"})
-    with made:
+    with band:
         field(bench, "band", inputs.LISTED)
     with second:
         field(bench, "force_unsure")
     with third:
         field(bench, "length_unsure")
-    try:
-        found, known = predicted(bench, robot, result)
-        now = cut_of(robot)
-    except RobomillError as exc:
-        pieces.error(exc)
+    made, now = pieces.attempt(predicted, bench, robot, result), pieces.attempt(cut_of, robot)
+    if made is None or now is None:
         return
+    found, known = made
     pieces.strong(uncertainty.sentence(found, known, unit))
     with st.container(border=True):
         pieces.figure(

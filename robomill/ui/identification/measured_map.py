@@ -15,7 +15,7 @@ from robomill.identification.map_check import MapCheck
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, session, uncertainty
+from robomill.ui import inputs, pieces, running, session, uncertainty
 from robomill.ui.bench import MAP_SAMPLES, OWN, Bench
 from robomill.ui.identification.bench import field_of, put_map, put_map_sample, robot_of
 from robomill.ui.identification.inputs import robot_choice, upload
@@ -147,8 +147,10 @@ class CutByBoth:
 
 def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | None:
     setup = session.project().setup
+    place = "identification.joints" if field is None else "identification.map"
     try:
-        return cached.result(setup.replace(measured_map=field, **({} if setup.robot == robot else {"robot": robot})))
+        other = {} if setup.robot == robot else {"robot": robot}
+        return pieces.underway(running.computed, setup.replace(measured_map=field, **other), place)
     except RobomillError:
         return None
 

@@ -25,10 +25,11 @@ from robomill.viz.identification import models_figure
 def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Every model on the same tests: errors on own data and on poses left out, parameters, remarks."""
     try:
-        with st.spinner("Fitting every model …"):
-            compared = comparison_of(bench, robot)
+        compared = pieces.underway(comparison_of, bench, robot)
     except RobomillError as exc:
         pieces.said("info", str(exc), "info")
+        return
+    if compared is None:
         return
     results, rows = compared.results, compared.rows()
     counts = [row["parameters"] for row in rows]

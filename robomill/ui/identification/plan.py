@@ -8,7 +8,6 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.errors import RobomillError
 from robomill.identification.plan import MARGIN, Loads, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.columns import append_rows
@@ -31,10 +30,8 @@ def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit:
         st.info("One joint at a time needs no plan: load the joint known least once more.", icon=":material/info:")
         return
     _goal_inputs(bench, robot, result)
-    try:
-        plan = plan_of(bench, robot, result)
-    except RobomillError as exc:
-        pieces.error(exc)
+    plan = pieces.attempt(plan_of, bench, robot, result)
+    if plan is None:
         return
     pieces.strong(plan.sentence())
     with st.container(border=True):
@@ -119,7 +116,7 @@ def plan_of(bench: Bench, robot: Robot, result: IdentificationResult) -> Plan:
         # The fit is kept beside the plan so that its identity stays its own.
         return result, next_best(robot, tests, result, found, count=bench.count, goal=goal)
 
-    return remembered(key, make)[1]
+    return remembered(key, make, "Choosing the tests")[1]
 
 
 def plan_columns(robot: Robot, plan: Plan, unit: str) -> dict[str, Any]:
