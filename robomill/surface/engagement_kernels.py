@@ -15,8 +15,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
 from robomill.cutting.edge import MOMENTS, moments
@@ -24,7 +22,7 @@ from robomill.cutting.engaged import FACING, PANELS
 from robomill.cutting.profile_kernels import (
     END,
     FLANK,
-    GAUSS,
+    FLAT,
     Shape,
     edge_sums,
     on_profile,
@@ -33,15 +31,25 @@ from robomill.cutting.profile_kernels import (
 )
 from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.rib_kernels import COSINE, HALF, PHI, SINE, Walk, gap_end, is_plain, jumps, next_change, walk_on
+from robomill.surface.rib_kernels import Walk, is_plain, next_change, walk_on
 from robomill.surface.step_kernels import Step
+from robomill.surface.turn_kernels import (
+    ANGLES,
+    COSINE,
+    HALF,
+    PHI,
+    SINE,
+    between_panels,
+    gap_end,
+    jumps,
+    panel_end,
+    turn_row,
+)
 
-ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 HALVINGS = 8  # of the angle across which the engaged length jumps
 ENDS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
-SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
 SMALL_HALF, LEAST_HALF = 2.0**-14, 2.0**-24  # numbers below the first are kept in steps of the second one
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
@@ -49,6 +57,7 @@ PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is known of an angle: itself, its sine and cosine; then what is engaged at it: length, height along the axis,
 # where it begins and ends along the axis, its largest radius, how much of the end face; then sums for each exponent
 LENGTH, HEIGHT, LOWEST, HIGHEST, WIDEST, FACE, SUMS = range(3, 10)
+UNSEEN = -math.inf  # where an angle begins at which nothing was looked at yet
 BEGIN, STOP, PIECES, FIRST = range(4)  # of a stretch of the profile: where, in how many pieces, its first place
 HIDDEN = 2 * PANELS  # looks at such, at most
 GAPS = 6 * PANELS + HIDDEN
@@ -143,10 +152,16 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
 
 @called
 def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end: int) -> None:
-    """What is engaged at the angles of some rows."""
-    plain = is_plain(world, step)
-    for n in range(first, end):
-        row = room.rows[n]
+    """What is engaged at the angles of some rows. From the first row on they are the turn: there a round or pointed
+    nose is as engaged at the ends of panels as at the nodes before, unless it jumps between the nodes about them."""
+    plain, rows = is_plain(world, step), room.rows
+    for place in range(first, end):
+        n = turn_row(place) if first == 0 else place
+        row = rows[n]
+        spared = first == 0 and shape.kind != FLAT and between_panels(n)
+        if spared and not jumps(rows[n - 1, LENGTH], rows[n + 1, LENGTH]):
+            row[LENGTH], row[LOWEST] = rows[n - 1, LENGTH], UNSEEN
+            continue
         row[LENGTH:] = 0.0
         row[LOWEST] = math.inf
         sine, cosine = row[SINE], row[COSINE]
@@ -204,13 +219,6 @@ def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape
         since = cuts
 
 
-def half_turn() -> FloatArray:
-    """(``ANGLES``,) rad: the angles looked at in the half turn ahead."""
-    ends = np.array([panel_end(n) for n in range(PANELS)] + [math.pi])
-    nodes = ends[:-1, None] + np.diff(ends)[:, None] * np.array([0.0, GAUSS, 1.0 - GAUSS])
-    return np.clip(np.append(nodes.ravel(), math.pi), SIDE, math.pi - SIDE)
-
-
 @part
 def note(pieces: FloatArray, count: int, row: float, middle: float, width: float, sector: float) -> int:
     """Note a piece of the turn at which a row was measured; returns how many there are then."""
@@ -224,7 +232,7 @@ def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halve
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
     how many angles between were looked at for ribs and gaps of material that its panels pass over."""
     rows, count, gaps, looked, every = room.rows, 0, 0, 0, HALF * halves
-    changed, phi = next_change(world, step, walk, rows, (0, 0, 0), every) if walk.radius > 0.0 else (every, 0.0)
+    changed, phi = next_change(world.columns, walk, rows, (0, 0, 0), every) if walk.pitch > 0.0 else (every, 0.0)
     for panel in range(PANELS * halves):
         begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
         first, rough = gap_end(3 * panel) - 1, False
@@ -234,16 +242,20 @@ def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halve
             b = end if n == 2 else rows[right, PHI]
             while changed == 3 * panel + n and looked < HIDDEN:
                 between = 2 * ANGLES + looked
-                look(room, world, shape, step, between, phi)
+                aim(room.rows[between], phi)
+                measure(room, world, shape, step, between, between + 1)
                 looked += 1
                 if jumps(rows[left, LENGTH], rows[between, LENGTH]) and jumps(
                     rows[between, LENGTH], rows[right, LENGTH]
                 ):
                     gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
                     left, a, rough = between, phi, True
-                changed, phi = next_change(world, step, walk, rows, (changed, between, left), every)
+                changed, phi = next_change(world.columns, walk, rows, (changed, between, left), every)
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
+        for n in range(first, first + 4, 3):
+            if rough and rows[n, LOWEST] == UNSEEN:
+                measure(room, world, shape, step, n, n + 1)
         if not rough:
             gaps = begun
             for n in range(1, 3):
@@ -264,17 +276,9 @@ def note_gap(
 
 
 @part
-def look(room: Room, world: World, shape: Shape, step: Step, n: int, phi: float) -> None:
-    """Measure what is engaged at an angle, into a row."""
-    row = room.rows[n]
+def aim(row: FloatArray, phi: float) -> None:
+    """A row for what is to be measured at an angle."""
     row[PHI], row[SINE], row[COSINE] = phi, math.sin(phi), math.cos(phi)
-    measure(room, world, shape, step, n, n + 1)
-
-
-@part
-def panel_end(n: int) -> float:
-    """Where the n-th panel of the turn begins, rad; finer towards the sides of the tool."""
-    return math.pi * (n // PANELS + 0.5 - 0.5 * math.cos(math.pi * (n % PANELS) / PANELS))
 
 
 @part
@@ -292,13 +296,14 @@ def follow_jumps(room: Room, world: World, shape: Shape, step: Step, counts: tup
                 for row, middle in ((left, a + 0.5 * half), (right, b - 0.5 * half)):
                     count = note(room.pieces, count, row, middle, half, sector_of(gap, middle))
                 continue
-            look(room, world, shape, step, first + kept, 0.5 * (a + b))
+            aim(rows[first + kept], 0.5 * (a + b))
             for q in range(7):
                 room.gaps[kept, q] = gap[q]
             kept += 1
         gaps = kept
         if gaps == 0:
             break
+        measure(room, world, shape, step, first, first + gaps)
         for n in range(gaps):
             count = halve(room, n, first + n, count)
         first += gaps
@@ -377,9 +382,8 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     lay_out(room, shape, step, world)
     halves = 2 if step.along < -FACING else 1
     measure(room, world, shape, step, 0, ANGLES * halves)
-    count = follow_jumps(
-        room, world, shape, step, divide(room, world, shape, step, walk_on(world, shape, step), halves)
-    )
+    walk = walk_on(world, shape, step)
+    count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, walk, halves))
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]

@@ -18,12 +18,12 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.progress import checkpoint
-from robomill.surface.passes import STRAIGHT, check_rise, leaning, moves_at_feed, moves_of, tool_axes
+from robomill.surface.passes import STRAIGHT, bends, check_rise, leaning, moves_at_feed, moves_of, tool_axes
 from robomill.surface.raster import stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
+from robomill.toolpath.sampling import CORNER
 
 AT_ONCE = (256, 8192)  # steps that are marched together: at least, where none goes on after them, and at most
-ONWARD = np.cos(np.radians(10.0))  # between two steps of which the second one covers the first one's front
 JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
 SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
 
@@ -101,6 +101,9 @@ class March:
     @cached_property
     def _heading(self) -> FloatArray:
         """(n, 3) the first axis of the frame that the force is given in, which a plunge's angles are counted from."""
+        axes = self._axes[0]
+        if np.linalg.norm(np.cross(self._feed, axes), axis=1).min(initial=1.0) > FACING:
+            return self._feed  # nothing plunges
         way = np.diff(self.points, axis=0, prepend=self.points[:1]) if self.way is None else self.way
         return feed_frame(np.nan_to_num(way), tool_axes(self.k, len(self.points)))[self.steps, :, 0].copy()
 
@@ -127,36 +130,33 @@ class March:
     @cached_property
     def _begins(self) -> BoolArray:
         """(n,) bool: steps that do not go straight on from the one before, with the same tool and axis."""
-        n, move, ends, axes = self.steps, self._move[self.steps], self._ends, self._axes[1]
-        begins = np.ones(len(n), dtype=bool)
-        if len(n) > 1:
-            tool, span = self.tooling.of_step[n], ends[:, 3:] - ends[:, :3]
-            feed = span / np.maximum(np.linalg.norm(span, axis=1, keepdims=True), 1e-15)
-            begins[1:] = (
-                (ends[:-1, 3:] != ends[1:, :3]).any(axis=1)
-                | (np.linalg.norm(np.cross(feed[:-1], feed[1:]), axis=1) > STRAIGHT)
-                | (np.einsum("ni,ni->n", feed[:-1], feed[1:]) <= 0.0)
-                | (axes[:-1] != axes[1:]).any(axis=1)
-                | (tool[:-1] != tool[1:])
-            ) & (move[:-1] != move[1:])
-        return begins
+        move, axes, tool = self._move[self.steps], self._axes[1], self.tooling.of_step[self.steps]
+        other = (axes[:-1] != axes[1:]).any(axis=1) | (tool[:-1] != tool[1:])
+        begins = ((self._bends > STRAIGHT) | other) & (move[:-1] != move[1:])
+        return np.append(np.ones(min(len(move), 1), dtype=bool), begins)
 
     @cached_property
     def _stops(self) -> BoolArray:
-        """(n,) bool: steps from whose end none goes on, round a corner of 10 degrees at most."""
-        ends, feed = self._ends, self._feed
-        there = (ends[1:, :3] == ends[:-1, 3:]).all(axis=1)
-        return np.append(~(there & (np.einsum("ni,ni->n", feed[1:], feed[:-1]) > ONWARD)), True)
+        """(n,) bool: steps from whose end none goes on, round a ``CORNER`` at most, and covers their front."""
+        return np.append(self._bends > CORNER, np.ones(min(len(self.steps), 1), dtype=bool))
+
+    @cached_property
+    def _bends(self) -> FloatArray:
+        return bends(self._ends)
 
     @cached_property
     def _stepwise(self) -> tuple[Any, Any]:
         """The state of ``meet`` and ``cut``."""
-        return self._state(np.ones(len(self.steps), dtype=bool))
+        from robomill.surface.material_kernels import AXIS, ENDS
+
+        state = self._state(np.ones(len(self.steps), dtype=bool))
+        state[0].runs[:, ENDS:AXIS] = np.nan  # where a step goes is not known before
+        return state
 
     def _state(self, first: BoolArray) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run."""
-        from robomill.surface.material_kernels import AXIS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
+        from robomill.surface.material_kernels import AXIS, ENDS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
 
         cells = stock_grid(self.stock, self.cell)
         heights, mesh = stock_layers(
@@ -168,18 +168,20 @@ class March:
         shapes = np.array([[float(n) for n in cutter.solid] for cutter in self.tooling.cutters])
         runs = np.zeros((int(first.sum()), RUN))
         runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
+        runs[:, ENDS:AXIS] = self._ends[first]
         runs[:, AXIS:MOVE] = self._axes[1][first]
         world = World(columns, runs, Block(*map(float, (*self.stock.lower, *self.stock.upper))), mesh)
         return world, self._room()
 
     def _room(self) -> Any:
         from robomill.surface import engagement_kernels as kernels
+        from robomill.surface.turn_kernels import ANGLES, half_turn
 
         places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
         rows = np.zeros((kernels.ROWS, kernels.SUMS + 3 * len(self.exponents)))
         for half in range(2):
-            phi = half * np.pi + kernels.half_turn()
-            main = rows[half * kernels.ANGLES : (half + 1) * kernels.ANGLES]
+            phi = half * np.pi + half_turn()
+            main = rows[half * ANGLES : (half + 1) * ANGLES]
             main[:, : kernels.LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
         down = (np.einsum("ni,ni->n", self._feed, self._axes[0]) < -FACING).any()
         return kernels.Room(

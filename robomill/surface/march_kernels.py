@@ -14,7 +14,7 @@ from robomill.cutting.engaged import FACING
 from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, radius_at, shape_of
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.engagement_kernels import Room, add_part
-from robomill.surface.envelope_kernels import Move, nearest, row_interval, swept_height
+from robomill.surface.envelope_kernels import POINT, Move, nearest, row_interval, swept_height
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -65,14 +65,14 @@ def cut_run(world: World, r: int, stops: bool) -> None:
     if not is_upright(run):
         cut_leaning(world, shape, move, r)
     else:
-        cut_upright(world, shape, move, r, follows(world.runs, r))
+        cut_upright(world, shape, move, r)
     note_rim(world, shape, r, stops)
 
 
 @part
-def follows(runs: FloatArray, r: int) -> bool:
-    """Whether a run begins where the one before left off, with the same tool and axis, and does not go down."""
-    same = r > 0 and runs[r, ENDS + 5] >= runs[r, ENDS + 2]
+def goes_on(runs: FloatArray, r: int) -> bool:
+    """Whether a run begins where the one before left off, with the same tool and axis."""
+    same = r > 0
     if same:
         for n in range(MOVE):
             before = n + 3 if ENDS <= n < ENDS + 3 else n
@@ -81,36 +81,66 @@ def follows(runs: FloatArray, r: int) -> bool:
 
 
 @part
-def cut_upright(world: World, shape: Shape, move: Move, r: int, goes_on: bool) -> None:
-    """Cut a step of an upright cutter, down to which columns are open then. ``goes_on``: the step before it left off
-    at its start under it, so that nothing behind that is left to cut."""
-    columns, ends, height = world.columns, world.runs[r, ENDS:AXIS], world.block.z_high - move.az
+def follows(runs: FloatArray, r: int) -> bool:
+    """Whether a run has nothing to cut behind its start: it goes on from another and does not go down."""
+    return goes_on(runs, r) and runs[r, ENDS + 5] >= runs[r, ENDS + 2]
+
+
+@part
+def leaves(runs: FloatArray, r: int) -> bool:
+    """Whether a run leaves what lies ahead of its end to the next one, which begins with the tool there: it does not
+    go up, and not straight down."""
+    if r + 1 == len(runs) or runs[r, ENDS + 5] > runs[r, ENDS + 2] or not goes_on(runs, r + 1):
+        return False
+    ux, uy = way_in_plan(runs, r)
+    return ux != 0.0 or uy != 0.0
+
+
+@part
+def way_in_plan(runs: FloatArray, r: int) -> tuple[float, float]:
+    """Unit vector of a run in plan, from its start to its end; (0, 0) straight up or down."""
+    vx, vy = runs[r, ENDS + 3] - runs[r, ENDS], runs[r, ENDS + 4] - runs[r, ENDS + 1]
+    length = math.hypot(vx, vy)
+    return (vx / length, vy / length) if length > POINT else (0.0, 0.0)
+
+
+@part
+def ahead_of(place: FloatArray, way: tuple[float, float], x: float) -> tuple[float, float]:
+    """Where the line at ``x`` parallel to y lies ahead of a place (x, y), or abreast of it: (low, high) m; everywhere
+    if there is no way."""
+    if way[1] == 0.0:
+        return (-math.inf, math.inf) if (x - place[0]) * way[0] >= -SKIN else (math.inf, -math.inf)
+    y = place[1] - ((x - place[0]) * way[0] + SKIN) / way[1]
+    return (y, math.inf) if way[1] > 0.0 else (-math.inf, y)
+
+
+@part
+def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
+    """Cut a run of an upright cutter: ahead of its start, where it follows another, and of where that one stopped; up
+    to its end, where it leaves what lies ahead."""
+    columns, runs, height = world.columns, world.runs, world.block.z_high - move.az
     if height <= 0.0:
         return
-    level = shape.kind == FLAT and move.m == 0.0
-    radius, span = radius_at(shape, height), move.length * move.ux
-    low, high = move.ax + min(0.0, span) - radius, move.ax + max(0.0, span) + radius
+    radius, follow, leave = radius_at(shape, height), follows(runs, r), leaves(runs, r)
+    a, b, way = runs[r, ENDS : ENDS + 3], runs[r, ENDS + 3 : AXIS], way_in_plan(runs, r)
+    before, back = way_in_plan(runs, r - 1) if follow else way, (-way[0], -way[1])
+    turn = 2.0 * math.hypot(way[0] - before[0], way[1] - before[1])  # at least the angle between both ways
+    side = radius * abs(way[1])  # how far its sides stand off in x; the tool at either end reaches further
+    start, stop = min(radius, side + turn * radius) if follow else radius, side if leave else radius
+    low, high = min(a[0] - start, b[0] - stop), max(a[0] + start, b[0] + stop)
     first, end = cells_between(low, high, columns.x0, columns.dx, columns.heights.shape[0])
     for i in range(first, end):
         x = columns.x0 + i * columns.dx
         y_low, y_high = row_interval(move, radius, x)
-        if y_low > y_high:
-            continue
-        if goes_on:  # only what lies ahead of the start
-            ahead = (x - ends[0]) * move.ux
-            if abs(move.uy) > 1e-9:
-                edge = ends[1] - ahead / move.uy
-                y_low, y_high = (max(y_low, edge), y_high) if move.uy > 0.0 else (y_low, min(y_high, edge))
-            elif ahead < 0.0:
-                continue
-        j, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.heights.shape[1])
-        known = shape.R**2 - (x - ends[0]) ** 2 if goes_on and level else 0.0  # level with the end of the step before
-        skip, skip_end = j_end, j_end
-        if known > 0.0:
-            w = math.sqrt(known)
-            skip, skip_end = cells_between(ends[1] - w, ends[1] + w, columns.y0, columns.dy, columns.heights.shape[1])
-        open_row(columns, shape, move, r, (i, j, min(skip, j_end)))
-        open_row(columns, shape, move, r, (i, max(j, skip_end), j_end))
+        if follow:
+            own, others = ahead_of(a, way, x), ahead_of(a, before, x)
+            y_low, y_high = max(y_low, min(own[0], others[0])), min(y_high, max(own[1], others[1]))
+        if leave:
+            behind = ahead_of(b, back, x)
+            y_low, y_high = max(y_low, behind[0]), min(y_high, behind[1])
+        if y_low <= y_high:
+            j, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.heights.shape[1])
+            open_row(columns, shape, move, r, (i, j, j_end))
 
 
 @called

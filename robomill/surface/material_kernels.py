@@ -105,23 +105,31 @@ def see_move(run: FloatArray) -> Move:
 
 
 @called
-def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> float:
-    """Height of a point of {W} above what a run leaves there, along its tool's axis, m; -inf beside its track."""
+def place_in_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> tuple[float, float]:
+    """A point of {W} as the tool of a run passes it, m: its height above what the run leaves there, along the axis, and
+    how far it lies within the track; the height is only about where it lies beside the track or below it."""
     run = runs[r]
-    R = run[SHAPE + 1]
     move = Move(run[MOVE], run[MOVE + 1], run[MOVE + 2], run[MOVE + 3], run[MOVE + 4], run[MOVE + 5], run[MOVE + 6])
     if not is_upright(run):
         frame = tool_frame(run[AXIS], run[AXIS + 1], run[AXIS + 2])
         line = vertical_line(frame, x, y)
         x, y, z = line.X, line.Y + z * frame.sine, line.h + z * frame.cosine
     ex, ey = nearest(move, x, y)
-    distance = ex * ex + ey * ey
-    if z <= move.az or distance >= R * (R - 2.0 * SKIN):
-        return -math.inf
+    distance = math.sqrt(ex * ex + ey * ey)
+    within = run[SHAPE + 1] - distance
+    if within <= SKIN or z <= move.az:
+        return z - move.az, within
     shape = shape_of(run)
     if move.m == 0.0:
-        return z - move.az - profile(shape, math.sqrt(distance))
-    return z - swept_height(shape, move, x, y)
+        return z - move.az - profile(shape, distance), within
+    return z - swept_height(shape, move, x, y), within
+
+
+@part
+def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> float:
+    """Height of a point of {W} above what a run leaves there, along its tool's axis, m; -inf beside its track."""
+    height, within = place_in_run(runs, r, x, y, z)
+    return height if within > SKIN else -math.inf
 
 
 @part
@@ -183,10 +191,13 @@ def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> f
 
 
 @part
-def above_runs(world: World, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int) -> float:
-    """Height of a point (x, y, z) above the lowest of what the runs named by the cells around it leave there, m; > 0
-    inside a swept body, -inf if none reaches the point in plan. ``but`` one run is not asked."""
-    names, height, last, before = world.columns.names, -math.inf, NOBODY, NOBODY
+def in_runs(
+    world: World, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
+) -> tuple[float, float]:
+    """How high a point (x, y, z) is above the lowest of what the runs named by the cells around it leave there, and how
+    deep it is in one of their bodies, up or to the side, m; < 0 outside of them, -inf if there are none, or none in
+    whose track it lies. ``but`` one run is not asked."""
+    names, high, deep, last, before = world.columns.names, -math.inf, -math.inf, NOBODY, NOBODY
     for cell in range(4):
         i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
         for n in range(names.shape[2]):
@@ -194,8 +205,11 @@ def above_runs(world: World, cells: tuple[int, int, int, int], point: tuple[floa
             if name in (NOBODY, last, before, but):
                 continue
             before, last = last, name
-            height = max(height, height_of_run(world.runs, name, point[0], point[1], point[2]))
-    return height
+            height, within = place_in_run(world.runs, name, point[0], point[1], point[2])
+            deep = max(deep, min(height, within))
+            if within > SKIN:
+                high = max(high, height)
+    return high, deep
 
 
 @part
@@ -248,7 +262,7 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     if deep == 0.0:
         deep = -columns.slack
         if in_stock(block, world.mesh, point):
-            deep = min(2.0 * SKIN - above_runs(world, cells, point, run), columns.slack)
+            deep = min(2.0 * SKIN - in_runs(world, cells, point, run)[1], FAR)
     return min(deep, within + SKIN)
 
 
@@ -262,4 +276,4 @@ def top_over(world: World, x: float, y: float) -> float:
     low, high = lowest_and_highest(columns, cells)
     if high - low <= SKIN:
         return high
-    return block.z_high - max(0.0, above_runs(world, cells, (x, y, block.z_high), NOBODY))
+    return block.z_high - max(0.0, in_runs(world, cells, (x, y, block.z_high), NOBODY)[0])

@@ -71,6 +71,14 @@ def feed_passes(p: ArrayLike, k: ArrayLike | None, cutting: ArrayLike | None) ->
     return joined(Passes(ends[known], np.hstack([axes[n - 1], axes[n]])[known])), int((~known).sum())
 
 
+def bends(ends: FloatArray) -> FloatArray:
+    """(n - 1,) rad by which each of moves, ``ends`` (n, 6) m, bends off the one before; pi where it does not begin at
+    that one's end, or either has no length."""
+    span = ends[:, 3:] - ends[:, :3]
+    goes_on = (ends[:-1, 3:] == ends[1:, :3]).all(axis=1) & span[:-1].any(axis=1) & span[1:].any(axis=1)
+    return np.where(goes_on, angle_between(span[:-1], span[1:]), np.pi)
+
+
 def joined(moves: Passes) -> Passes:
     """The same moves with runs that go straight on under one axis made one move.
 
@@ -79,18 +87,8 @@ def joined(moves: Passes) -> Passes:
     ends, axes = moves
     if len(ends) < 2:
         return moves
-    span = ends[:, 3:] - ends[:, :3]
-    length = np.linalg.norm(span, axis=1)
-    before, after = span[:-1], span[1:]
-    scale = length[:-1] * length[1:]
-    bend = np.linalg.norm(np.cross(before, after), axis=1)
     goes_on = (
-        (scale > 0)
-        & (bend <= STRAIGHT * scale)
-        & (np.einsum("ni,ni->n", before, after) > 0)
-        & (ends[:-1, 3:] == ends[1:, :3]).all(axis=1)
-        & (axes[:-1] == axes[1:]).all(axis=1)
-        & (axes[1:, :3] == axes[1:, 3:]).all(axis=1)
+        (bends(ends) <= STRAIGHT) & (axes[:-1] == axes[1:]).all(axis=1) & (axes[1:, :3] == axes[1:, 3:]).all(axis=1)
     )
     first = np.flatnonzero(np.append(True, ~goes_on))
     last = np.append(first[1:], len(ends)) - 1

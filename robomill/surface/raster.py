@@ -71,8 +71,8 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
 
     shape, bottom = (cells.nx, cells.ny), float(stock.lower[2])
     if stock.triangles is None:
-        heights = _no_layers((*shape, 2 * spare + 2 if spare else 1))
-        heights[:, :, :2] = [float(stock.upper[2]), bottom][: heights.shape[2]]
+        ends = [float(stock.upper[2]), bottom, *[-np.inf, np.inf] * spare] if spare else [float(stock.upper[2])]
+        heights = np.full((*shape, len(ends)), ends)
         nothing = np.zeros(0, dtype=np.int64)
         return heights, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
     cell, z = crossings(stock.triangles, cells.x, cells.y)
@@ -80,16 +80,10 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
     cell, z = cell[order], z[order]
     number = np.arange(len(cell)) - np.searchsorted(cell, cell)
     layers = max(1, (int(number.max(initial=0)) + 2) // 2) + spare
-    heights = _no_layers((cells.nx * cells.ny, 2 * layers))
+    heights = np.full((cells.nx * cells.ny, 2 * layers), [-np.inf, np.inf] * layers)
     heights[cell[number % 2 == 0], number[number % 2 == 0] + 1] = bottom
     heights[cell, number] = z
     return heights.reshape(*shape, -1), binned(stock)
-
-
-def _no_layers(shape: tuple[int, ...]) -> FloatArray:
-    heights = np.full(shape, -np.inf)
-    heights[..., 1::2] = np.inf
-    return heights
 
 
 def binned(stock: Stock) -> Mesh:

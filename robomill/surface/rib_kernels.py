@@ -11,22 +11,26 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import called, part
-from robomill.cutting.engaged import PANELS
 from robomill.cutting.profile_kernels import FLAT, Shape
-from robomill.surface.material_kernels import NOBODY, World, cell_of
+from robomill.surface.material_kernels import NOBODY, Columns, World
 from robomill.surface.step_kernels import Step
+from robomill.surface.turn_kernels import COSINE, HALF, PHI, SINE, gap_end, jumps
 
 PITCH = 0.7  # cells: so far apart ribs and gaps of material are looked for
-JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by more than this are a jump
-HALF = 3 * PANELS  # gaps between the angles looked at in a half turn
-PHI, SINE, COSINE = range(3)  # of a row that is known of an angle: itself, its sine and cosine
 
 
 class Walk(NamedTuple):
-    """Steps along the rim of the cutter: its radius where the material ends (m), the angle of a step (rad), its sine
-    and cosine."""
+    """Steps along a circle about the axis of the cutter: where it is in cells (x, y), the ways from it along the feed
+    and to its left as far as the circle is wide (cells), its height (m), and the angle of a step (rad; 0: no walk), its
+    sine and cosine."""
 
-    radius: float
+    x: float
+    y: float
+    fx: float
+    fy: float
+    lx: float
+    ly: float
+    height: float
     pitch: float
     sine: float
     cosine: float
@@ -39,60 +43,57 @@ def is_plain(world: World, step: Step) -> bool:
 
 
 @part
-def jumps(a: float, b: float) -> bool:
-    """Whether two engaged lengths at neighbouring angles differ by more than what is smooth."""
-    return abs(a - b) > JUMP * max(a, b)
-
-
-@part
 def walk_on(world: World, shape: Shape, step: Step) -> Walk:
-    """From cell to cell along the rim of an upright flat mill in one layer of material; none (radius 0) for others."""
-    if shape.kind != FLAT or step.z >= world.block.z_high or not is_plain(world, step):
-        return Walk(0.0, 0.0, 0.0, 1.0)
-    pitch = PITCH * min(world.columns.dx, world.columns.dy) / shape.R
-    return Walk(shape.R, pitch, math.sin(pitch), math.cos(pitch))
+    """From cell to cell along the rim of an upright flat mill in one layer of material; none for others."""
+    columns, R, pitch = world.columns, shape.R, 0.0
+    if shape.kind == FLAT and step.z < world.block.z_high and is_plain(world, step):
+        pitch = PITCH * min(columns.dx, columns.dy) / R
+    return Walk(
+        (step.x - columns.x0) / columns.dx + 0.5,
+        (step.y - columns.y0) / columns.dy + 0.5,
+        R * step.fx / columns.dx,
+        R * step.fy / columns.dy,
+        R * step.lx / columns.dx,
+        R * step.ly / columns.dy,
+        step.z,
+        pitch,
+        math.sin(pitch),
+        math.cos(pitch),
+    )
 
 
 @part
-def gap_end(gap: int) -> int:
-    """The row at which a gap between the angles looked at ends; each half turn begins with a row of its own."""
-    return gap + gap // HALF + 1
-
-
-@part
-def cell_on_rim(world: World, step: Step, radius: float, sine: float, cosine: float) -> tuple[float, int]:
-    """How high above the tip the column at an angle of the rim stands (0 outside the stock), and whose side."""
-    columns, block = world.columns, world.block
-    x = step.x + radius * (sine * step.fx + cosine * step.lx)
-    y = step.y + radius * (sine * step.fy + cosine * step.ly)
-    if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
+def column_on(columns: Columns, walk: Walk, sine: float, cosine: float) -> tuple[float, int]:
+    """How high above the circle the column at an angle stands, m (0 outside the stock), and whose side passes there."""
+    i = math.floor(walk.x + sine * walk.fx + cosine * walk.lx)
+    j = math.floor(walk.y + sine * walk.fy + cosine * walk.ly)
+    if i < 0 or j < 0 or i >= columns.heights.shape[0] or j >= columns.heights.shape[1]:
         return 0.0, NOBODY
-    i, j = cell_of(columns, x, y)
-    return max(columns.heights[i, j, 0] - step.z, 0.0), columns.names[i, j, 0]
+    return max(columns.heights[i, j, 0] - walk.height, 0.0), columns.names[i, j, 0]
 
 
 @called
 def next_change(
-    world: World, step: Step, walk: Walk, rows: FloatArray, since: tuple[int, int, int], gaps: int
+    columns: Columns, walk: Walk, rows: FloatArray, since: tuple[int, int, int], gaps: int
 ) -> tuple[int, float]:
     """The next change along the rim: the gap, of ``gaps`` between the angles of rows, and the angle in it at which the
     column under the rim is higher or lower than at both its ends, or another side is noted than before. ``since``: the
     gap it is looked for from, the row to look on from, and that where the gap begins. Past the last gap if none."""
     gap, row, left = since
-    top, noted = cell_on_rim(world, step, walk.radius, rows[row, SINE], rows[row, COSINE])
-    low = top if left == row else cell_on_rim(world, step, walk.radius, rows[left, SINE], rows[left, COSINE])[0]
+    top, noted = column_on(columns, walk, rows[row, SINE], rows[row, COSINE])
+    low = top if left == row else column_on(columns, walk, rows[left, SINE], rows[left, COSINE])[0]
     while gap < gaps:
         right = gap_end(gap)
         phi, end, sine, cosine = rows[row, PHI], rows[right, PHI], rows[row, SINE], rows[row, COSINE]
-        high, after = cell_on_rim(world, step, walk.radius, rows[right, SINE], rows[right, COSINE])
+        high, after = column_on(columns, walk, rows[right, SINE], rows[right, COSINE])
         while phi + walk.pitch < end:
             phi += walk.pitch
             sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
-            top, name = cell_on_rim(world, step, walk.radius, sine, cosine)
+            top, name = column_on(columns, walk, sine, cosine)
             if (jumps(top, low) and jumps(top, high)) or name != noted:
                 return gap, phi
         gap, row, low, noted = gap + 1, right, high, after
         if gap == HALF and gap < gaps:  # where both half turns meet, the other one has a row of its own
             row += 1
-            low, noted = cell_on_rim(world, step, walk.radius, rows[row, SINE], rows[row, COSINE])
+            low, noted = column_on(columns, walk, rows[row, SINE], rows[row, COSINE])
     return gaps, 0.0

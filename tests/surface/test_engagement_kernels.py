@@ -13,10 +13,8 @@ from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stret
 from robomill.cutting.tool import DISH, Cutter
 from robomill.surface import engagement_kernels as kernels
 from robomill.surface.engagement_kernels import (
-    ANGLES,
     HALVINGS,
     LENGTH,
-    PHI,
     ROWS,
     SUMS,
     Ray,
@@ -24,17 +22,16 @@ from robomill.surface.engagement_kernels import (
     add_part,
     divide,
     follow_jumps,
-    half_turn,
     lay_out,
     measure_stretch,
-    panel_end,
 )
 from robomill.surface.material_kernels import Block, Columns, Mesh, World
-from robomill.surface.rib_kernels import Walk, jumps
+from robomill.surface.rib_kernels import Walk
 from robomill.surface.step_kernels import step_at
+from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_end
 
 MM = 1e-3
-NO_WALK = Walk(0.0, 0.0, 0.0, 1.0)
+NO_WALK = Walk(*np.zeros(len(Walk._fields)))
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
     "ball": Cutter("ball", 8 * MM),
