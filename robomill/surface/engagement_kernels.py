@@ -232,7 +232,7 @@ def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halve
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
     how many angles between were looked at for ribs and gaps of material that its panels pass over."""
     rows, count, gaps, looked, every = room.rows, 0, 0, 0, HALF * halves
-    changed, phi = next_change(world.columns, walk, rows, (0, 0, 0), every) if walk.pitch > 0.0 else (every, 0.0)
+    changed, phi = next_change(world, walk, rows, (0, 0, 0), every) if walk.pitch > 0.0 else (every, 0.0)
     for panel in range(PANELS * halves):
         begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
         first, rough = gap_end(3 * panel) - 1, False
@@ -250,7 +250,7 @@ def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halve
                 ):
                     gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
                     left, a, rough = between, phi, True
-                changed, phi = next_change(world.columns, walk, rows, (changed, between, left), every)
+                changed, phi = next_change(world, walk, rows, (changed, between, left), every)
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         for n in range(first, first + 4, 3):

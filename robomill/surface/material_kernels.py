@@ -191,6 +191,15 @@ def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> f
 
 
 @part
+def has_side(columns: Columns, cells: tuple[int, int, int, int]) -> bool:
+    """Whether a run's side passes through one of four cells, so that material may end between their centres."""
+    i, a, j, b = cells
+    names = columns.names
+    here, there = max(names[i, j, 0], names[i, b, 0]), max(names[a, j, 0], names[a, b, 0])
+    return max(here, there) != NOBODY
+
+
+@part
 def in_runs(
     world: World, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
 ) -> tuple[float, float]:
@@ -258,7 +267,7 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     if within < 0.0:
         return max(within, -FAR)
     cells = cells_around(columns, x, y)
-    deep = looked_up(columns, cells, z)
+    deep = 0.0 if has_side(columns, cells) else looked_up(columns, cells, z)
     if deep == 0.0:
         deep = -columns.slack
         if in_stock(block, world.mesh, point):
@@ -274,6 +283,6 @@ def top_over(world: World, x: float, y: float) -> float:
         return -math.inf
     cells = cells_around(columns, x, y)
     low, high = lowest_and_highest(columns, cells)
-    if high - low <= SKIN:
+    if high - low <= SKIN and not has_side(columns, cells):
         return high
     return block.z_high - max(0.0, in_runs(world, cells, (x, y, block.z_high), NOBODY)[0])

@@ -1,7 +1,7 @@
 """Ribs and gaps of material along the rim of a cutter, compiled: looked for in the columns, from cell to cell.
 
 What is engaged is measured at a few angles; what stands between two of them and is narrower shows in the columns that
-the rim passes over, and in the sides that runs have noted in them even where they do not reach a cell's centre.
+the rim passes over, exactly where the side of a run passes through one.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import called, part
 from robomill.cutting.profile_kernels import FLAT, Shape
-from robomill.surface.material_kernels import NOBODY, Columns, World
+from robomill.surface.material_kernels import NOBODY, World, top_over
 from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import COSINE, HALF, PHI, SINE, gap_end, jumps
 
@@ -63,37 +63,40 @@ def walk_on(world: World, shape: Shape, step: Step) -> Walk:
 
 
 @part
-def column_on(columns: Columns, walk: Walk, sine: float, cosine: float) -> tuple[float, int]:
-    """How high above the circle the column at an angle stands, m (0 outside the stock), and whose side passes there."""
-    i = math.floor(walk.x + sine * walk.fx + cosine * walk.lx)
-    j = math.floor(walk.y + sine * walk.fy + cosine * walk.ly)
+def top_on(world: World, walk: Walk, sine: float, cosine: float) -> float:
+    """How high above the circle material stands at an angle, m: by the column there, or exact where a side passes."""
+    columns = world.columns
+    x, y = walk.x + sine * walk.fx + cosine * walk.lx, walk.y + sine * walk.fy + cosine * walk.ly
+    i, j = math.floor(x), math.floor(y)
     if i < 0 or j < 0 or i >= columns.heights.shape[0] or j >= columns.heights.shape[1]:
-        return 0.0, NOBODY
-    return max(columns.heights[i, j, 0] - walk.height, 0.0), columns.names[i, j, 0]
+        return 0.0
+    if columns.names[i, j, 0] == NOBODY:
+        return max(columns.heights[i, j, 0] - walk.height, 0.0)
+    top = top_over(world, columns.x0 + (x - 0.5) * columns.dx, columns.y0 + (y - 0.5) * columns.dy)
+    return max(top - walk.height, 0.0)
 
 
 @called
 def next_change(
-    columns: Columns, walk: Walk, rows: FloatArray, since: tuple[int, int, int], gaps: int
+    world: World, walk: Walk, rows: FloatArray, since: tuple[int, int, int], gaps: int
 ) -> tuple[int, float]:
-    """The next change along the rim: the gap, of ``gaps`` between the angles of rows, and the angle in it at which the
-    column under the rim is higher or lower than at both its ends, or another side is noted than before. ``since``: the
-    gap it is looked for from, the row to look on from, and that where the gap begins. Past the last gap if none."""
+    """The next change along the rim: the gap, of ``gaps`` between the angles of rows, and the angle in it at which
+    material stands higher or lower there than at the angles looked at about it. ``since``: the gap it is looked for
+    from, the row to look on from, and that where the gap begins. Past the last gap if none."""
     gap, row, left = since
-    top, noted = column_on(columns, walk, rows[row, SINE], rows[row, COSINE])
-    low = top if left == row else column_on(columns, walk, rows[left, SINE], rows[left, COSINE])[0]
+    low = top_on(world, walk, rows[left, SINE], rows[left, COSINE])
     while gap < gaps:
         right = gap_end(gap)
         phi, end, sine, cosine = rows[row, PHI], rows[right, PHI], rows[row, SINE], rows[row, COSINE]
-        high, after = column_on(columns, walk, rows[right, SINE], rows[right, COSINE])
+        high = top_on(world, walk, rows[right, SINE], rows[right, COSINE])
         while phi + walk.pitch < end:
             phi += walk.pitch
             sine, cosine = sine * walk.cosine + cosine * walk.sine, cosine * walk.cosine - sine * walk.sine
-            top, name = column_on(columns, walk, sine, cosine)
-            if (jumps(top, low) and jumps(top, high)) or name != noted:
+            top = top_on(world, walk, sine, cosine)
+            if jumps(top, low) and jumps(top, high):
                 return gap, phi
-        gap, row, low, noted = gap + 1, right, high, after
+        gap, row, low = gap + 1, right, high
         if gap == HALF and gap < gaps:  # where both half turns meet, the other one has a row of its own
             row += 1
-            low, noted = column_on(columns, walk, rows[row, SINE], rows[row, COSINE])
+            low = top_on(world, walk, rows[row, SINE], rows[row, COSINE])
     return gaps, 0.0

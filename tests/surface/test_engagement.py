@@ -227,3 +227,21 @@ def test_below_the_stock_there_is_nothing():
     n = len(p) // 2
     assert found.a_p[n] == pytest.approx(0.01)
     assert (found.a_p[len(p) + 1 :] == 0).all()
+
+
+@pytest.mark.parametrize("passes", [2, 3, 4])
+def test_gaps_that_no_column_has_room_for_are_counted(passes):
+    """Slots of a tool that leans 60 degrees, one above the other: a column keeps two gaps between three layers."""
+    lean, radius = np.radians(60.0), 1e-3
+    stock = Stock((-0.02, -0.01, -0.05), (0.02, 0.01, 0.0))
+    depths = -0.008 - 0.006 * np.arange(passes)
+    p = np.array([(0.0, side, z) for z in depths for side in (-0.015, 0.015)])
+    k, cutting = np.array([np.sin(lean), 0.0, np.cos(lean)]), np.tile([False, True], passes)
+    found = engage(stock, 5e-4, Cutter("flat", 2 * radius), p, k, cutting)
+    x, z = np.arange(-0.01975, 0.02, 5e-4), depths[:, None]
+    middle = z + x / np.tan(lean)
+    low = np.maximum(middle - radius / np.sin(lean), z - x * np.tan(lean))  # of the slot, and of its flat end
+    high = middle + radius / np.sin(lean)
+    gaps = ((low < high) & (high < 0.0) & (low > -0.05)).sum(axis=0)
+    assert gaps.max() == passes
+    assert found.lost == 40 * np.maximum(gaps - 2, 0).sum()

@@ -29,7 +29,7 @@ def past(width: float, aside: float, angle: float) -> list[np.ndarray]:
 
 
 def off(cutter: Cutter, width: float, aside: float, angle: float) -> float:
-    """The largest error of the force on a dozen steps along X through the rib, as a share of the largest one."""
+    """The largest error of the force on some steps along X through the rib, as a share of the largest one."""
     x = np.arange(-40.0, 6.0, 0.5) if angle == 0.0 else np.arange(-12.0, 6.0, 0.37)
     steps = np.column_stack([x, np.zeros_like(x), np.full_like(x, -2.0)]) * MM
     slots = past(width, aside, angle)
