@@ -21,6 +21,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import joint_contributions
+from robomill.compliance.components import COLUMN, COMPONENTS, ROW
 from robomill.compliance.deflection import deflection
 from robomill.compliance.springs.joint_bending import bending_axes
 from robomill.errors import LoadTestError
@@ -32,8 +33,6 @@ from robomill.kinematics.jacobian import twists
 from robomill.robot.model import Robot
 
 Kind = Literal["joint", "bending", "tool", "entry"]
-_SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-_XYZ = "xyz"
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,7 @@ class Model:
     def parameters(self, robot: Robot) -> tuple[Parameter, ...]:
         """What is fitted, in the order of the equations' columns."""
         if self.has("entry"):
-            return tuple(Parameter("entry", axis=_XYZ[i] + _XYZ[j]) for i, j in _SYMMETRIC)
+            return tuple(Parameter("entry", axis=name) for name in COMPONENTS)
         slides = robot.chain.prismatic
         listed = [Parameter("joint", number, slides=bool(slides[i])) for i, number in enumerate(robot.joint_numbers)]
         if self.has("bending"):
@@ -178,7 +177,7 @@ class Model:
         if self.has("entry"):
             if freed:
                 raise LoadTestError("One constant matrix knows no points of the tool; fit points with a joint model.")
-            D = np.full((len(tests), 6, 1, len(_SYMMETRIC)), np.nan)
+            D = np.full((len(tests), 6, 1, len(COMPONENTS)), np.nan)
             D[:, :3, 0] = _constant(tests.wrench[:, :3])
             return D
         at_force = self._affine(robot, tests.theta, tests.force_point, "force" in freed)
@@ -235,8 +234,8 @@ class Model:
 
 def _constant(F: FloatArray) -> FloatArray:
     """(..., 3, 6): displacement per unit of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz."""
-    D = np.zeros((*F.shape[:-1], 3, len(_SYMMETRIC)))
-    for k, (i, j) in enumerate(_SYMMETRIC):
+    D = np.zeros((*F.shape[:-1], 3, len(COMPONENTS)))
+    for k, (i, j) in enumerate(zip(ROW, COLUMN, strict=True)):
         D[..., i, k] += F[..., j]
         if i != j:
             D[..., j, k] += F[..., i]

@@ -29,7 +29,8 @@ def reproduction(evidence: Evidence) -> list[Row]:
     rows = []
     for statement in STATEMENTS:
         found = CHECKS[statement.code](evidence)
-        rows.append(Row(statement, found.text, found.holds, statement.reading.format(**found.numbers)))
+        reason = statement.reading.format(**found.numbers)
+        rows.append(Row(statement, found.text, found.holds, reason, found.numbers))
     return rows
 
 
@@ -52,6 +53,7 @@ def _lengths(evidence: Evidence) -> Found:
     return Found(
         f"{_mm(a_2)}, {_mm(d_4)}, {_mm(a_5)}; at θ = 0 the tip stands at (0, {_mm(tip[1])}, {_mm(tip[2])})",
         holds,
+        {"a_2": a_2, "d_4": d_4, "a_5": a_5, "x": tip[0], "y": tip[1], "z": tip[2]},
     )
 
 
@@ -75,6 +77,7 @@ def _workspace(evidence: Evidence) -> Found:
     return Found(
         f"{format_percent(share)} of the {format_many(size, 'mm', 0, ' × ')} box is in reach",
         share == 1.0 and np.allclose(size, BOX_SIZE),
+        {"share": share, **dict(zip("xyz", size))},
     )
 
 
@@ -86,6 +89,7 @@ def _determinant(evidence: Evidence) -> Found:
     return Found(
         f"|det J| {_span(low)} m³ at −400, {_span(high)} at 100 mm; {'never' if same else 'somewhere'} zero in the box",
         same and bool(field.reached.all()),
+        {"low_min": low.min(), "low_max": low.max(), "high_min": high.min(), "high_max": high.max()},
     )
 
 
@@ -96,6 +100,7 @@ def _table_2(evidence: Evidence) -> Found:
     return Found(
         f"{_joints(shown)}; loading one joint at a time gives them back to {format_percent(worst, 1)}",
         bool(np.allclose(shown, TABLES["table_2"])) and worst < 0.02,
+        {"worst": worst},
     )
 
 
@@ -129,6 +134,7 @@ def _figure_6(evidence: Evidence) -> Found:
         f"joints 1, 3, 5 make {format_percent(part[0])} of C_xx and {format_percent(part[1])} of C_yy; others in C_zz: "
         f"{_nothing(others)}",
         min(part) >= 0.9 and others < 1e-12,
+        {"xx": part[0], "yy": part[1]},
     )
 
 
@@ -150,6 +156,7 @@ def _figure_8(evidence: Evidence) -> Found:
     return Found(
         f"largest {_mm(most[0], 3)} along X and {_mm(most[1], 3)} along Y; joints add up to the total",
         all(line.reached.all() for line in lines) and sums < 1e-15,
+        {"along_x": most[0], "along_y": most[1]},
     )
 
 

@@ -24,7 +24,7 @@ def measured_maps(_: Evidence) -> Found:
 def nine_points(evidence: Evidence) -> Found:
     """Fig. 12: T1 to T9."""
     count = evidence.nine.equations
-    return Found(f"{count} equations from nine poses, three loads each", count == EQUATIONS)
+    return Found(f"{count} equations from nine poses, three loads each", count == EQUATIONS, {"equations": count})
 
 
 def table_3(evidence: Evidence) -> Found:
@@ -34,7 +34,7 @@ def table_3(evidence: Evidence) -> Found:
     inside = bool(((nine.ci95[:, 0] <= truth) & (truth <= nine.ci95[:, 1])).all())
     shown = ", ".join(f"{v:.2f}" for v in from_si(nine.C_theta, "1e-7 rad/(N m)"))
     text = f"{shown}; the paper's values {'lie' if inside else 'do not lie'} in all intervals"
-    return Found(text, inside and printed)
+    return Found(text, inside and printed, {f"joint_{j}": C for j, C in enumerate(nine.C_theta, 1)})
 
 
 def figure_13(evidence: Evidence) -> Found:
@@ -42,7 +42,8 @@ def figure_13(evidence: Evidence) -> Found:
     other = compliance_field(evidence.robot.with_compliance_set("table_3"), evidence.plane.grid)
     ratio = (other.total[..., :3] / evidence.plane.total[..., :3]).reshape(-1, 3)
     text = f"direct compliances {ratio.min():.2f} to {ratio.max():.2f} times those of Table 2"
-    return Found(text, bool((ratio > 1.0).all() and (ratio < 1.4).all()))
+    holds = bool((ratio > 1.0).all() and (ratio < 1.4).all())
+    return Found(text, holds, {"low": ratio.min(), "high": ratio.max()})
 
 
 def force(evidence: Evidence) -> Found:
@@ -56,7 +57,8 @@ def force(evidence: Evidence) -> Found:
         f"{format_si(used, 'N', 0)} is used as measured; {len(rows)} aluminium rows predict {sizes.min():.0f} to "
         f"{sizes.max():.0f} N"
     )
-    return Found(text, bool(sizes.min() < SLOT.force < sizes.max() and abs(used - SLOT.force) < 0.5))
+    holds = bool(sizes.min() < SLOT.force < sizes.max() and abs(used - SLOT.force) < 0.5)
+    return Found(text, holds, {"used": used, "rows": len(rows), "low": sizes.min(), "high": sizes.max()})
 
 
 def predicted(evidence: Evidence) -> Found:
@@ -66,7 +68,7 @@ def predicted(evidence: Evidence) -> Found:
         f"{format_si(aside, 'mm', 4)} in Y; and {format_si(abs(down), 'mm', 3)} {'down' if down < 0 else 'up'}; "
         "the paper gives no number for that"
     )
-    return Found(text, abs(aside - SLOT.from_table_2) < 0.005e-3)
+    return Found(text, abs(aside - SLOT.from_table_2) < 0.005e-3, {"aside": aside, "up": down})
 
 
 def from_map(evidence: Evidence) -> Found:
@@ -75,6 +77,7 @@ def from_map(evidence: Evidence) -> Found:
     softer = np.divide(TABLES["table_3"], TABLES["table_2"])
     low, high = (SLOT.from_table_2 * float(softer[i]) for i in (4, 2))  # joints 5 and 3
     numbers = {"soft_3": softer[2], "soft_5": softer[4], "low": from_si(low, "mm"), "high": from_si(high, "mm")}
+    numbers["aside"] = aside
     return Found(f"{format_si(aside, 'mm', 4)} from Table 3", low <= aside <= high < SLOT.from_map, numbers)
 
 
@@ -86,8 +89,14 @@ def machined(evidence: Evidence) -> Found:
         f"groove {format_si(first, 'mm', 2)} off with Table 2, {format_si(second, 'mm', 2)} with Table 3, "
         f"and {format_si(abs(grooves[0].floor_error), 'mm', 2)} too deep"
     )
-    part = {"low": 100 * first / SLOT.measured, "high": 100 * second / SLOT.measured}
-    return Found(text, 0.22e-3 < first < second < SLOT.measured, part)
+    numbers = {
+        "low": 100 * first / SLOT.measured,
+        "high": 100 * second / SLOT.measured,
+        "first": first,
+        "second": second,
+        "too_deep": -grooves[0].floor_error,
+    }
+    return Found(text, 0.22e-3 < first < second < SLOT.measured, numbers)
 
 
 def _offsets(result: SimulationResult) -> tuple[float, float]:

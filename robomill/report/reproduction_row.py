@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -50,11 +50,11 @@ class Evidence:
 
 
 class Found(NamedTuple):
-    """What robomill finds for a statement, whether that agrees, and the numbers that its reading speaks of."""
+    """What robomill finds for a statement, whether that agrees, and the numbers behind it."""
 
     text: str
     holds: bool
-    numbers: dict[str, float] = {}
+    numbers: Mapping[str, float] = {}
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,7 @@ class Row:
     found: str
     holds: bool
     reason: str = field(default="")
+    numbers: Mapping[str, float] = field(default_factory=dict)
 
 
 def columns(rows: Sequence[Row]) -> dict[str, list[str]]:

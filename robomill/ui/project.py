@@ -16,6 +16,7 @@ import numpy as np
 import tomli_w
 
 from robomill.arrays import FloatArray, digest
+from robomill.compliance.components import COMPONENTS
 from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
 from robomill.io.declared import from_table, to_table
@@ -32,7 +33,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
 from robomill.units import unit_label
 from robomill.viz.picture import CAMERAS
-from robomill.workspace.quantities import COMPONENTS, map_quantities
+from robomill.workspace.quantities import map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"

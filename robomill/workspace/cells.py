@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.components import symmetric
 from robomill.kinematics import dexterity
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
@@ -62,8 +63,3 @@ class SolvedGrid:
         full = np.full(self.reached.shape, np.nan)
         full[self.reached] = values
         return full
-
-
-def symmetric(six: FloatArray) -> FloatArray:
-    """(..., 3, 3) from the six components xx, yy, zz, xy, xz, yz (..., 6)."""
-    return six[..., [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]

@@ -7,11 +7,10 @@ from __future__ import annotations
 import numpy as np
 
 from robomill.compiled import In1, In2, kernel, part
+from robomill.compliance.components import COLUMN, ROW
 from robomill.kinematics.kernels import determinant, forward, jacobian, share
 from robomill.robot.dh import Chain
 from robomill.workspace.laws import Laws
-
-ROW, COLUMN = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)  # of C_xx, C_yy, C_zz, C_xy, C_xz, C_yz
 
 
 @part

@@ -13,13 +13,13 @@ from typing import Literal
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.compliance.components import COMPONENTS, DIRECT
 from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.robot.model import Robot
 from robomill.units import unit_label
 from robomill.workspace.cells import SolvedGrid
 
-COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 Colours = Literal["sequential", "diverging", "joints", "reach"]
 Basis = Literal["geometry", "compliance"]
 
@@ -242,7 +242,7 @@ def _signed_or_not(c: str) -> Colours:
 
 def one_sign(c: str) -> bool:
     """Whether all joints add to a component with one sign: C_θ J_x J_x is never negative, C_θ J_x J_y may be."""
-    return c[0] == c[1]
+    return c in DIRECT
 
 
 def _largest(field: SolvedGrid, size: FloatArray) -> FloatArray:

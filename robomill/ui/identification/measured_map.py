@@ -10,6 +10,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, digest
+from robomill.compliance.components import COMPONENTS
 from robomill.errors import RobomillError
 from robomill.identification.map_check import MapCheck
 from robomill.identification.measured_field import MeasuredField
@@ -25,7 +26,7 @@ from robomill.viz.deviation import both_figure
 from robomill.viz.measured_maps import Level, level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
-from robomill.workspace.quantities import COMPONENTS, one_sign
+from robomill.workspace.quantities import one_sign
 
 CELLS = 41  # cells along the longer side of a drawn level
 RIM = 2
@@ -158,8 +159,7 @@ def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | 
 def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
     grid = level_grid(field, z)
     i, j = ("xyz".index(c) for c in component[-2:])
-    C = field.compliance(grid.points())[:, :, 0]
-    measured = 0.5 * (C[..., i, j] + C[..., j, i])
+    measured = field.symmetric().compliance(grid.points())[:, :, 0, i, j]
     model = compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))).values(component)[:, :, 0]
     here = np.abs(field.p[:, 2] - z) < 1e-6
     x, y, points = (from_si(v, unit) for v in (grid.x, grid.y, field.p[here][:, :2]))

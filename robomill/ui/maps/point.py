@@ -7,6 +7,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
+from robomill.compliance.components import COMPONENTS
 from robomill.paper import Point
 from robomill.ui import fields, pieces, shell
 from robomill.ui.arm import arm
@@ -25,7 +26,6 @@ from robomill.viz.arm import ArmScene, displacement_scale
 from robomill.viz.chart import Chart
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
-from robomill.workspace.quantities import COMPONENTS
 
 AXES = "XYZ"
 

@@ -10,6 +10,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
+from robomill.compliance.components import COMPONENTS, CROSS, DIRECT, symmetric
 from robomill.ui import declared, fields, inputs, pieces, session, shell
 from robomill.ui.maps import compare, lines, plane
 from robomill.ui.maps.plane import Region
@@ -17,10 +18,10 @@ from robomill.ui.point import default_point
 from robomill.units import NOT_REACHED, format_many, format_number, from_si, to_si, unit_label
 from robomill.viz.maps import Map, MapSheet, Scale, picked_point, sheet_figure, symmetric_limit
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.quantities import COMPONENTS, map_quantities
+from robomill.workspace.quantities import map_quantities
 
-MATRIX = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
-ROWS = {"direct": ("xx", "yy", "zz"), "cross": ("xy", "xz", "yz")}
+MATRIX = symmetric(np.array(COMPONENTS)).tolist()
+ROWS = {"direct": DIRECT, "cross": CROSS}
 UM = "um/N"
 
 
