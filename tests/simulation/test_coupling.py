@@ -67,6 +67,28 @@ def test_shoulders_agree_with_root_finding(a_e, left):
         np.testing.assert_allclose(run.delta_in_cut[i], truth, atol=1e-6)
 
 
+def test_a_climb_cut_pushed_off_its_wall_becomes_narrower():
+    """Climb, 5 mm wide and 2 mm deep, with Table 3 of the paper: 245 um uncoupled. The tool goes left,
+    away from the metal on its right, and up: 228 um. (252 um is the root where the width grows instead.)"""
+    C_theta = np.array([9.03, 11.17, 14.74, 27.65, 97.58]) * 1e-7
+    run = shoulder(5e-3, False)
+    run = simulate(run.setup.replace(robot=run.setup.robot.replace(C_theta=C_theta)))
+    i = int(np.argmin(np.abs(run.path.p[:, 0]) + 1.0 * ~run.path.cutting))
+    C, axes = run.C[i], run.R_MF[i]
+
+    def left(width: float, rises: float) -> float:
+        def remains(d):
+            F = shoulder_force(run.setup, 5e-3 + width * d[1], 2e-3 - rises * d[2], False)
+            return axes.T @ (C @ (axes @ F)) - d
+
+        return float(fsolve(remains, np.zeros(3), xtol=1e-12)[1])
+
+    assert left(0.0, 0.0) == pytest.approx(245e-6, abs=0.5e-6)
+    assert left(+1.0, 0.0) == pytest.approx(252.5e-6, abs=0.5e-6)
+    assert run.delta_in_cut[i, 1] == pytest.approx(left(-1.0, 1.0), abs=1e-6)
+    assert run.delta_in_cut[i, 1] == pytest.approx(228e-6, abs=0.5e-6)
+
+
 def test_coupling_matters_and_says_how_much():
     run, plain = shoulder(5e-3, False), simulate(shoulder(5e-3, False).setup.replace(coupling=False))
     assert run.coupling.difference == pytest.approx(float(np.nanmax(np.abs(run.delta - plain.delta))), abs=1e-9)

@@ -88,3 +88,30 @@ def test_a_map_says_that_it_holds_for_one_turn_about_the_tool_where_that_matters
     field = MeasuredField(x_M[None, :3], C[0][None], np.zeros((1, 2)))
     setup = SETUP.replace(robot=robot, measured_map=field)
     assert ("map-spin" in [note.code for note in map_notes(setup, leaning(0.0, None).path)]) == matters
+
+
+def test_a_map_of_the_upright_tool_is_a_third_of_the_deflection_under_a_tool_tilted_by_half_a_radian():
+    """The reconstructed arm with the paper's Table 3, tip at (0, -1300, 0) mm, 100 N across the feed
+    and the tool: 76 um along Z by each joint's own give, 24 um by what was measured upright there."""
+    C_theta = np.array([9.03, 11.17, 14.74, 27.65, 97.58]) * 1e-7
+    tilt, p = 0.5, np.array([0.0, -1.3, 0.0])
+    F = 100.0 * np.array([0.0, np.cos(tilt), np.sin(tilt)])
+
+    def z_by_turning_joints(A: float) -> float:
+        """Every joint turned by what the force's moment about it gives, one after the other, through the arm itself."""
+        theta = inverse_kinematics(SETUP.robot, pose_from_world(np.append(p, [A, 0.0]))).theta
+        step, joints = 1e-6, np.eye(5)
+        J = np.stack([(tip(theta + step * e) - tip(theta - step * e)) / (2 * step) for e in joints], axis=1)
+        return float((tip(theta + C_theta * (J.T @ F) * 1e-3) - tip(theta))[2] * 1e3)
+
+    def tip(theta):
+        return rm.tool_pose(SETUP.robot, theta)[:3, 3]
+
+    assert z_by_turning_joints(tilt) == pytest.approx(76e-6, abs=0.5e-6)
+    assert z_by_turning_joints(0.0) == pytest.approx(24e-6, abs=0.5e-6)
+    arm = SETUP.replace(robot=SETUP.robot.replace(C_theta=C_theta))
+    text = f"G21 G90 S12000 M3\nG0 X-40 Y0 Z5 A{np.degrees(tilt)}\nG0 Z-2\nG1 X40 F1800\nM2\n"
+    run = rm.simulate(arm.replace(source=GCodeSource(text)))
+    middle = int(np.argmin(np.abs(run.path.p[:, 0]) + 1.0 * ~run.path.cutting))
+    assert run.F[middle] == pytest.approx(F, abs=1e-9)
+    assert run.delta[middle, 2] == pytest.approx(z_by_turning_joints(tilt), abs=0.2e-6)
