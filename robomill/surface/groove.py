@@ -159,9 +159,12 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, samples: 
         return _empty(place, block, "a pass without a number goes through here, so what it leaves is not known")
     if machined is None:
         return _empty(place, block, "the deflected tool cuts nothing here")
-    told_walls, left_walls = at.own_walls((shift, low, high), skin)
     walls = np.array([machined.left, machined.right])
-    ideal_walls = np.where(np.abs(walls - left_walls) < SAME, told_walls, [ideal.left, ideal.right])
+    ideal_walls = np.array([ideal.left, ideal.right])
+    told_of, own_of = (path.meeting(place.centre, place.normal, float(high - low)) for path in (paths[0], at.own[0]))
+    if told_of > own_of:  # some of what meets the section may be of other passes
+        told_walls, left_walls = at.own_walls((shift, low, high), skin)
+        ideal_walls = np.where(np.abs(walls - left_walls) < SAME, told_walls, ideal_walls)
     ideal_walls[np.abs(walls - ideal_walls) > LIKE * cutter.radius + abs(shift)] = np.nan
     taken = bool((np.isnan(ideal_walls) & ~np.isnan(walls)).any())
     wide = NEIGHBOUR if taken else WIDE if walls[0] - walls[1] > MANY_PASSES * cutter.diameter else ""

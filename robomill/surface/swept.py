@@ -69,6 +69,11 @@ class SweptPath:
     stock: Stock
     bodies: tuple[Body, ...]
 
+    def meeting(self, centre: FloatArray, normal: FloatArray, reach: float) -> int:
+        """How many moves may meet the line centre + w normal, |w| <= reach, within the stock."""
+        line, top = (centre, normal, reach), float(self.stock.upper[2])
+        return sum(len(body.near(line, top)[0]) for body in self.bodies)
+
     def heights(self, centre: FloatArray, normal: FloatArray, reach: float) -> Heights:
         """Function w (q,) -> height left (q,) on the line centre + w normal, |w| <= reach, before any clipping."""
         from robomill.surface.cells_kernels import lower_along

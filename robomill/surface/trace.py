@@ -11,7 +11,7 @@ from robomill.surface.swept import Heights
 
 WALL_LEVELS = 9
 FLOOR_POINTS = 21
-SUBDIVISIONS, NARROWINGS = 16, 9  # from a fiftieth of the radius to a femtometre
+SUBDIVISIONS, NARROWINGS = 16, 6  # from a fiftieth of the radius to less than a picometre for each millimetre of it
 FINEST = 1 / 20_000  # of the way to the side of the stock: the shortest step by which a wall is sought
 
 
