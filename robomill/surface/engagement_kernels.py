@@ -129,7 +129,7 @@ def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int
 @part
 def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
     """The stretches of the profile for one step, as far up as material may stand, and the places looked at on them."""
-    reach = (world.block.z_high - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
+    reach = (world.bounds.z_high - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
     first = 0
     for stretch in range(3):
         begin, stop = stretch_ends(shape, stretch, reach)
@@ -137,7 +137,7 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
             stop = begin
         pieces = END_PIECES if stretch == END else NOSE_PIECES
         if stretch == FLANK:
-            pieces = int(min(max((stop - begin) / world.columns.dx, 8.0), 1.0 * FLANK_PIECES))
+            pieces = int(min(max((stop - begin) / world.dexels.dx, 8.0), 1.0 * FLANK_PIECES))
         noted = room.stretches[stretch]
         noted[BEGIN], noted[STOP], noted[PIECES], noted[FIRST] = begin, stop, pieces, first
         if stop <= begin or (stretch == FLANK and is_plain(world, step)):
@@ -177,7 +177,7 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
                 continue
             if stretch == FLANK and plain:
                 material = top_over(world, step.x + shape.R * ray.x, step.y + shape.R * ray.y)
-                ends = (max(begin, world.block.z_low - step.z), material - step.z)
+                ends = (max(begin, world.bounds.z_low - step.z), material - step.z)
                 add_edge(room, row, shape, step, FLANK, ends)
             else:
                 measure_stretch(room, row, world, (shape, step, ray), stretch)

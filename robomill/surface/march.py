@@ -156,21 +156,21 @@ class March:
     def _state(self, first: BoolArray) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run."""
-        from robomill.surface.material_kernels import AXIS, ENDS, MOVE, NOBODY, RUN, SHAPE, Block, Columns, World
+        from robomill.surface.material_kernels import AXIS, ENDS, MOVE, NOBODY, RUN, SHAPE, Bounds, Dexels, World
 
         cells = stock_grid(self.stock, self.cell)
-        heights, mesh = stock_layers(
+        heights, facets = stock_layers(
             self.stock, cells, SPARE_LAYERS if leaning(np.concatenate(self._axes)).any() else 0
         )
         names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
-        columns = Columns(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
+        dexels = Dexels(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
         shapes = np.array([[float(n) for n in cutter.solid] for cutter in self.tooling.cutters])
         runs = np.zeros((int(first.sum()), RUN))
         runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
         runs[:, ENDS:AXIS] = self._ends[first]
         runs[:, AXIS:MOVE] = self._axes[1][first]
-        world = World(columns, runs, Block(*map(float, (*self.stock.lower, *self.stock.upper))), mesh)
+        world = World(dexels, runs, Bounds(*map(float, (*self.stock.lower, *self.stock.upper))), facets)
         return world, self._room()
 
     def _room(self) -> Any:
@@ -226,7 +226,7 @@ class March:
                 state, n, self._ends[some], (run[some], begins[some], self._stops[some]), (True, True)
             )
         sectors.flags.writeable = False  # kept as they are
-        return rows, sectors, int(state[0].columns.lost[0])
+        return rows, sectors, int(state[0].dexels.lost[0])
 
     def _stop_after(self, first: int) -> int:
         """Where the steps end that are marched together: where nothing goes on, so that none needs to know the next."""

@@ -21,7 +21,7 @@ from robomill.surface.material_kernels import (
     MOVE,
     NOBODY,
     SKIN,
-    Columns,
+    Dexels,
     World,
     cell_of,
     height_of_run,
@@ -118,7 +118,7 @@ def ahead_of(place: FloatArray, way: tuple[float, float], x: float) -> tuple[flo
 def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
     """Cut a run of an upright cutter: ahead of its start, where it follows another, and of where that one stopped; up
     to its end, where it leaves what lies ahead."""
-    columns, runs, height = world.columns, world.runs, world.block.z_high - move.az
+    dexels, runs, height = world.dexels, world.runs, world.bounds.z_high - move.az
     if height <= 0.0:
         return
     radius, follow, leave = radius_at(shape, height), follows(runs, r), leaves(runs, r)
@@ -128,9 +128,9 @@ def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
     side = radius * abs(way[1])  # how far its sides stand off in x; the tool at either end reaches further
     start, stop = min(radius, side + turn * radius) if follow else radius, side if leave else radius
     low, high = min(a[0] - start, b[0] - stop), max(a[0] + start, b[0] + stop)
-    first, end = cells_between(low, high, columns.x0, columns.dx, columns.heights.shape[0])
+    first, end = cells_between(low, high, dexels.x0, dexels.dx, dexels.heights.shape[0])
     for i in range(first, end):
-        x = columns.x0 + i * columns.dx
+        x = dexels.x0 + i * dexels.dx
         y_low, y_high = row_interval(move, radius, x)
         if follow:
             own, others = ahead_of(a, way, x), ahead_of(a, before, x)
@@ -139,69 +139,69 @@ def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
             behind = ahead_of(b, back, x)
             y_low, y_high = max(y_low, behind[0]), min(y_high, behind[1])
         if y_low <= y_high:
-            j, j_end = cells_between(y_low, y_high, columns.y0, columns.dy, columns.heights.shape[1])
-            open_row(columns, shape, move, r, (i, j, j_end))
+            j, j_end = cells_between(y_low, y_high, dexels.y0, dexels.dy, dexels.heights.shape[1])
+            open_row(dexels, shape, move, r, (i, j, j_end))
 
 
 @called
-def open_row(columns: Columns, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
+def open_row(dexels: Dexels, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
     """Open columns within the track from above down to what a move of run ``r`` leaves; ``row``: i, first j, end."""
     i, first, end = row
-    x, single = columns.x0 + i * columns.dx, columns.heights.shape[2] == 1
+    x, single = dexels.x0 + i * dexels.dx, dexels.heights.shape[2] == 1
     for j in range(first, end):
-        height, top = move.az, columns.heights[i, j, 0]
+        height, top = move.az, dexels.heights[i, j, 0]
         if top <= height + SKIN:
             continue
         if shape.kind != FLAT or move.m != 0.0:
-            y = columns.y0 + j * columns.dy
+            y = dexels.y0 + j * dexels.dy
             if move.m == 0.0:
                 ex, ey = nearest(move, x, y)
                 height += profile_within(shape, ex * ex + ey * ey)
             else:
                 height = swept_height(shape, move, x, y)
         if not single:
-            take_out(columns, (i, j, r), height, math.inf)
+            take_out(dexels, (i, j, r), height, math.inf)
         elif height < top - SKIN:
-            columns.heights[i, j, 0] = height
-            columns.names[i, j, 1] = r
+            dexels.heights[i, j, 0] = height
+            dexels.names[i, j, 1] = r
 
 
 @part
 def cut_leaning(world: World, shape: Shape, move: Move, r: int) -> None:
     """Cut a step of a leaning cutter, ``move`` in its own frame, into columns of several layers."""
-    columns, ends, k = world.columns, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
+    dexels, ends, k = world.dexels, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
     frame = tool_frame(k[0], k[1], k[2])
-    up = max(0.0, world.block.z_high - min(ends[2], ends[5]) + shape.R * frame.sine) / k[2]
+    up = max(0.0, world.bounds.z_high - min(ends[2], ends[5]) + shape.R * frame.sine) / k[2]
     first, end = cells_between(
         min(ends[0], ends[3]) + min(0.0, up * k[0]) - shape.R,
         max(ends[0], ends[3]) + max(0.0, up * k[0]) + shape.R,
-        columns.x0,
-        columns.dx,
-        columns.heights.shape[0],
+        dexels.x0,
+        dexels.dx,
+        dexels.heights.shape[0],
     )
     j_first, j_end = cells_between(
         min(ends[1], ends[4]) + min(0.0, up * k[1]) - shape.R,
         max(ends[1], ends[4]) + max(0.0, up * k[1]) + shape.R,
-        columns.y0,
-        columns.dy,
-        columns.heights.shape[1],
+        dexels.y0,
+        dexels.dy,
+        dexels.heights.shape[1],
     )
     for i in range(first, end):
         for j in range(j_first, j_end):
-            top = columns.heights[i, j, 0]
+            top = dexels.heights[i, j, 0]
             if top == -math.inf:
                 continue
-            line = vertical_line(frame, columns.x0 + i * columns.dx, columns.y0 + j * columns.dy)
+            line = vertical_line(frame, dexels.x0 + i * dexels.dx, dexels.y0 + j * dexels.dy)
             low, high = tilted_interval(shape, move, frame, line, top + SKIN)
             if low < high:
-                take_out(columns, (i, j, r), low, high)
+                take_out(dexels, (i, j, r), low, high)
 
 
 @called
-def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: float) -> None:
+def take_out(dexels: Dexels, place: tuple[int, int, int], low: float, high: float) -> None:
     """Take the heights from ``low`` to ``high`` m out of a column (i, j) for a run: place is (i, j, run)."""
     i, j, r = place
-    ends, by = columns.heights[i, j], columns.names[i, j, 1:]
+    ends, by = dexels.heights[i, j], dexels.names[i, j, 1:]
     layers, n = ends.size // 2, 0
     while n < layers and ends[2 * n] > -math.inf:
         top, bottom = ends[2 * n], ends[2 * n + 1]
@@ -218,7 +218,7 @@ def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: fl
             ends[2 * n + 1], by[2 * n + 1] = high, r
             n += 1
         elif ends[2 * layers - 2] > -math.inf:  # no room for another layer
-            columns.lost[0] += 1
+            dexels.lost[0] += 1
             if top - high < low - bottom:
                 ends[2 * n], by[2 * n] = low, r
             n += 1
@@ -233,7 +233,7 @@ def take_out(columns: Columns, place: tuple[int, int, int], low: float, high: fl
 @called
 def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
     """Note a run in the cells that the two sides of its step pass through, and where it stops its front."""
-    columns, ends, k = world.columns, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
+    dexels, ends, k = world.dexels, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
     vx, vy, vz = ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]
     lx, ly, lz = k[1] * vz - k[2] * vy, k[2] * vx - k[0] * vz, k[0] * vy - k[1] * vx
     size = math.sqrt(lx * lx + ly * ly + lz * lz)
@@ -244,7 +244,7 @@ def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
     fx, fy, fz = ly * k[2] - lz * k[1], lz * k[0] - lx * k[2], lx * k[1] - ly * k[0]
     nose, out = profile(shape, shape.R), shape.R - 10.0 * SKIN
     up = (nose * k[0], nose * k[1], nose * k[2] + 10.0 * SKIN)
-    cell = min(columns.dx, columns.dy)
+    cell = min(dexels.dx, dexels.dy)
     pieces = 2 * int(length / cell) + 2
     sides, front = 2 * pieces + 2, int(2.0 * math.pi * shape.R / cell) if stops else 0
     for n in range(sides + max(front - 1, 0)):
@@ -261,12 +261,12 @@ def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
 def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
     """Note a run in the cell of a place on its rim (m), unless a noted run reaches further there."""
     x, y, z = place
-    if z > world.block.z_high:
+    if z > world.bounds.z_high:
         return
-    i, j = cell_of(world.columns, x, y)
-    noted = world.columns.names[i, j, 0]
+    i, j = cell_of(world.dexels, x, y)
+    noted = world.dexels.names[i, j, 0]
     if noted == NOBODY or height_of_run(world.runs, noted, x, y, z) <= SKIN:
-        world.columns.names[i, j, 0] = r
+        world.dexels.names[i, j, 0] = r
 
 
 @kernel

@@ -26,8 +26,9 @@ SKIN = 1e-10  # m: thinner layers are rounding
 NOBODY = -1  # made by no run: the stock's own surface
 
 
-class Columns(NamedTuple):
-    """Material over the cells of a grid, m: layers from the top down, and which run of moves made their ends.
+class Dexels(NamedTuple):
+    """Material in columns over the cells of a grid, m (dexels: Van Hook 1986): layers from the top down, and which run
+    of moves made their ends.
 
     heights (nx, ny, n)    upper and lower end of one layer after the other; -inf and inf where there is none. Of one
                            layer, as upright cutters leave it in a block, only the upper: it ends at the bottom
@@ -48,7 +49,7 @@ class Columns(NamedTuple):
     slack: float
 
 
-class Block(NamedTuple):
+class Bounds(NamedTuple):
     """Corners of the stock, m."""
 
     x_low: float
@@ -59,9 +60,9 @@ class Block(NamedTuple):
     z_high: float
 
 
-class Mesh(NamedTuple):
-    """Faces of a stock: triangles (t, 3, 3) m, none for a block; which of them lie over each square of a coarse grid
-    from the lower corner on (``faces`` from ``first[b]`` to ``first[b + 1]``, columns fastest), and its size."""
+class Facets(NamedTuple):
+    """Faces of a stock's mesh: triangles (t, 3, 3) m, none for a block; which of them lie over each square of a coarse
+    grid from the lower corner on (``faces`` from ``first[b]`` to ``first[b + 1]``, columns fastest), and its size."""
 
     triangles: Out3
     first: OutInt1
@@ -76,10 +77,10 @@ class World(NamedTuple):
     unit axis, and the seven of the ``Move`` as the tool sees it, once it is cut.
     """
 
-    columns: Columns
+    dexels: Dexels
     runs: Out2
-    block: Block
-    mesh: Mesh
+    bounds: Bounds
+    facets: Facets
 
 
 SHAPE, ENDS, AXIS, MOVE, RUN = 0, 5, 11, 14, 21  # where in a run its parts begin
@@ -133,27 +134,27 @@ def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> flo
 
 
 @part
-def cell_of(columns: Columns, x: float, y: float) -> tuple[int, int]:
+def cell_of(dexels: Dexels, x: float, y: float) -> tuple[int, int]:
     """The cell that holds a point in plan; beyond the grid the nearest one."""
-    i = math.floor((x - columns.x0) / columns.dx + 0.5)
-    j = math.floor((y - columns.y0) / columns.dy + 0.5)
-    return max(0, min(i, columns.heights.shape[0] - 1)), max(0, min(j, columns.heights.shape[1] - 1))
+    i = math.floor((x - dexels.x0) / dexels.dx + 0.5)
+    j = math.floor((y - dexels.y0) / dexels.dy + 0.5)
+    return max(0, min(i, dexels.heights.shape[0] - 1)), max(0, min(j, dexels.heights.shape[1] - 1))
 
 
 @part
-def cells_around(columns: Columns, x: float, y: float) -> tuple[int, int, int, int]:
+def cells_around(dexels: Dexels, x: float, y: float) -> tuple[int, int, int, int]:
     """The four cells whose centres stand around a point in plan, as rows i, i_next and columns j, j_next."""
-    i, j = math.floor((x - columns.x0) / columns.dx), math.floor((y - columns.y0) / columns.dy)
-    rows, width = columns.heights.shape[0] - 1, columns.heights.shape[1] - 1
+    i, j = math.floor((x - dexels.x0) / dexels.dx), math.floor((y - dexels.y0) / dexels.dy)
+    rows, width = dexels.heights.shape[0] - 1, dexels.heights.shape[1] - 1
     return max(0, min(i, rows)), max(0, min(i + 1, rows)), max(0, min(j, width)), max(0, min(j + 1, width))
 
 
 @part
-def in_column(columns: Columns, i: int, j: int, z: float) -> float:
+def in_column(dexels: Dexels, i: int, j: int, z: float) -> float:
     """How deep in the material of a column a height is, m: the way to the nearest end of its layer, < 0 in air."""
-    before, count = math.inf, columns.heights.shape[2]
+    before, count = math.inf, dexels.heights.shape[2]
     for n in range(count):
-        end = columns.heights[i, j, n]
+        end = dexels.heights[i, j, n]
         if z > end:
             deep = min(z - end, before - z)
             return deep if n % 2 == 1 else -deep
@@ -162,39 +163,39 @@ def in_column(columns: Columns, i: int, j: int, z: float) -> float:
 
 
 @part
-def lowest_and_highest(columns: Columns, cells: tuple[int, int, int, int]) -> tuple[float, float]:
+def lowest_and_highest(dexels: Dexels, cells: tuple[int, int, int, int]) -> tuple[float, float]:
     """The lowest and the highest of the tops of four cells, m."""
     i, a, j, b = cells
-    tops = columns.heights
+    tops = dexels.heights
     p, q, r, s = tops[i, j, 0], tops[i, b, 0], tops[a, j, 0], tops[a, b, 0]
     return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
 
 
 @part
-def looked_up(columns: Columns, cells: tuple[int, int, int, int], z: float) -> float:
+def looked_up(dexels: Dexels, cells: tuple[int, int, int, int], z: float) -> float:
     """How deep in the material the cells around a point have a height, m (``FAR`` at most), < 0 in air; 0 where they do
     not agree by more than their slack."""
     i, a, j, b = cells
-    if columns.heights.shape[2] == 1:
-        low, high = lowest_and_highest(columns, cells)
-        if low - z > columns.slack:
+    if dexels.heights.shape[2] == 1:
+        low, high = lowest_and_highest(dexels, cells)
+        if low - z > dexels.slack:
             return min(low - z, FAR)
-        return max(high - z, -FAR) if z - high > columns.slack else 0.0
-    deep = in_column(columns, i, j, z)
+        return max(high - z, -FAR) if z - high > dexels.slack else 0.0
+    deep = in_column(dexels, i, j, z)
     sign = 1.0 if deep > 0.0 else -1.0
     deep = min(sign * deep, FAR)
     for n in range(1, 4):
-        if deep <= columns.slack:
+        if deep <= dexels.slack:
             return 0.0
-        deep = min(deep, sign * in_column(columns, a if n > 1 else i, b if n % 2 else j, z))
-    return sign * deep if deep > columns.slack else 0.0
+        deep = min(deep, sign * in_column(dexels, a if n > 1 else i, b if n % 2 else j, z))
+    return sign * deep if deep > dexels.slack else 0.0
 
 
 @part
-def has_side(columns: Columns, cells: tuple[int, int, int, int]) -> bool:
+def has_side(dexels: Dexels, cells: tuple[int, int, int, int]) -> bool:
     """Whether a run's side passes through one of four cells, so that material may end between their centres."""
     i, a, j, b = cells
-    names = columns.names
+    names = dexels.names
     here, there = max(names[i, j, 0], names[i, b, 0]), max(names[a, j, 0], names[a, b, 0])
     return max(here, there) != NOBODY
 
@@ -206,7 +207,7 @@ def in_runs(
     """How high a point (x, y, z) is above the lowest of what the runs named by the cells around it leave there, and how
     deep it is in one of their bodies, up or to the side, m; < 0 outside of them, -inf if there are none, or none in
     whose track it lies. ``but`` one run is not asked."""
-    names, high, deep, last, before = world.columns.names, -math.inf, -math.inf, NOBODY, NOBODY
+    names, high, deep, last, before = world.dexels.names, -math.inf, -math.inf, NOBODY, NOBODY
     for cell in range(4):
         i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
         for n in range(names.shape[2]):
@@ -222,20 +223,20 @@ def in_runs(
 
 
 @part
-def in_stock(block: Block, mesh: Mesh, point: tuple[float, float, float]) -> bool:
+def in_stock(bounds: Bounds, facets: Facets, point: tuple[float, float, float]) -> bool:
     """Whether the stock held a point (x, y, z) m before the first cut: of a mesh, by the faces above the point."""
     x, y, z = point
-    if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
+    if x < bounds.x_low or x > bounds.x_high or y < bounds.y_low or y > bounds.y_high:
         return False
-    if z < block.z_low or z > block.z_high:
+    if z < bounds.z_low or z > bounds.z_high:
         return False
-    if len(mesh.triangles) == 0:
+    if len(facets.triangles) == 0:
         return True
-    columns = int((block.y_high - block.y_low) / mesh.size) + 1
-    b = int((x - block.x_low) / mesh.size) * columns + int((y - block.y_low) / mesh.size)
+    across = int((bounds.y_high - bounds.y_low) / facets.size) + 1
+    b = int((x - bounds.x_low) / facets.size) * across + int((y - bounds.y_low) / facets.size)
     inside = False
-    for n in range(mesh.first[b], mesh.first[b + 1]):
-        if under_triangle(mesh.triangles[mesh.faces[n]], x, y, z):
+    for n in range(facets.first[b], facets.first[b + 1]):
+        if under_triangle(facets.triangles[facets.faces[n]], x, y, z):
             inside = not inside
     return inside
 
@@ -261,16 +262,16 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     """How deep in the material a point (x, y, z) is, m: > 0 in it, < 0 in air; exact near where it ends, elsewhere
     about. The point is known to be outside what ``run`` has swept."""
     x, y, z = point
-    block, columns = world.block, world.columns
-    within = min(min(x - block.x_low, block.x_high - x), min(y - block.y_low, block.y_high - y))
-    within = min(min(within, FAR), min(z - block.z_low, block.z_high - z))
+    bounds, dexels = world.bounds, world.dexels
+    within = min(min(x - bounds.x_low, bounds.x_high - x), min(y - bounds.y_low, bounds.y_high - y))
+    within = min(min(within, FAR), min(z - bounds.z_low, bounds.z_high - z))
     if within < 0.0:
         return max(within, -FAR)
-    cells = cells_around(columns, x, y)
-    deep = 0.0 if has_side(columns, cells) else looked_up(columns, cells, z)
+    cells = cells_around(dexels, x, y)
+    deep = 0.0 if has_side(dexels, cells) else looked_up(dexels, cells, z)
     if deep == 0.0:
-        deep = -columns.slack
-        if in_stock(block, world.mesh, point):
+        deep = -dexels.slack
+        if in_stock(bounds, world.facets, point):
             deep = min(2.0 * SKIN - in_runs(world, cells, point, run)[1], FAR)
     return min(deep, within + SKIN)
 
@@ -278,11 +279,11 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
 @part
 def top_over(world: World, x: float, y: float) -> float:
     """Height of the material over a point in plan, m, for columns of one layer cut by upright tools; -inf outside."""
-    block, columns = world.block, world.columns
-    if x < block.x_low or x > block.x_high or y < block.y_low or y > block.y_high:
+    bounds, dexels = world.bounds, world.dexels
+    if x < bounds.x_low or x > bounds.x_high or y < bounds.y_low or y > bounds.y_high:
         return -math.inf
-    cells = cells_around(columns, x, y)
-    low, high = lowest_and_highest(columns, cells)
-    if high - low <= SKIN and not has_side(columns, cells):
+    cells = cells_around(dexels, x, y)
+    low, high = lowest_and_highest(dexels, cells)
+    if high - low <= SKIN and not has_side(dexels, cells):
         return high
-    return block.z_high - max(0.0, in_runs(world, cells, (x, y, block.z_high), NOBODY)[0])
+    return bounds.z_high - max(0.0, in_runs(world, cells, (x, y, bounds.z_high), NOBODY)[0])

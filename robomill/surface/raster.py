@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.surface.stock import Cells, Stock
 
 if TYPE_CHECKING:
-    from robomill.surface.material_kernels import Mesh
+    from robomill.surface.material_kernels import Facets
 
 SQUARES = 64  # along the longer side of a mesh
 
@@ -60,21 +60,21 @@ def crossings(triangles: FloatArray, x: FloatArray, y: FloatArray) -> tuple[IntA
     return np.concatenate(cells), np.concatenate(heights)
 
 
-def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray, Mesh]:
+def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray, Facets]:
     """The material of a stock over cells and its mesh: heights (nx, ny, n) m where it begins and ends, top down.
 
     A block is one layer down to its bottom, and needs no lower end if no room for others is wanted (``spare`` layers);
     -inf and inf where there are no more layers. Crossings of a mesh that do not pair (an open mesh) reach down to the
     bottom.
     """
-    from robomill.surface.material_kernels import Mesh
+    from robomill.surface.material_kernels import Facets
 
     shape, bottom = (cells.nx, cells.ny), float(stock.lower[2])
     if stock.triangles is None:
         ends = [float(stock.upper[2]), bottom, *[-np.inf, np.inf] * spare] if spare else [float(stock.upper[2])]
         heights = np.full((*shape, len(ends)), ends)
         nothing = np.zeros(0, dtype=np.int64)
-        return heights, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
+        return heights, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0)
     cell, z = crossings(stock.triangles, cells.x, cells.y)
     order = np.lexsort((-z, cell))
     cell, z = cell[order], z[order]
@@ -86,9 +86,9 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
     return heights.reshape(*shape, -1), binned(stock)
 
 
-def binned(stock: Stock) -> Mesh:
+def binned(stock: Stock) -> Facets:
     """A mesh with its triangles sorted into squares of its plan, so that few are asked of one point."""
-    from robomill.surface.material_kernels import Mesh
+    from robomill.surface.material_kernels import Facets
 
     triangles = np.array(stock.triangles)
     size = float(stock.size[:2].max()) / SQUARES
@@ -103,7 +103,7 @@ def binned(stock: Stock) -> Mesh:
             for b in range(a * columns + j, a * columns + j_end + 1):
                 squares[b].append(n)
     first = np.cumsum([0, *map(len, squares)], dtype=np.int64)
-    return Mesh(triangles, first, np.array([n for square in squares for n in square], dtype=np.int64), size)
+    return Facets(triangles, first, np.array([n for square in squares for n in square], dtype=np.int64), size)
 
 
 def skin_on_line(stock: Stock, centre: FloatArray, normal: FloatArray) -> Callable[[FloatArray], FloatArray]:

@@ -39,22 +39,22 @@ class Walk(NamedTuple):
 @part
 def is_plain(world: World, step: Step) -> bool:
     """Whether the material ends but once over every place, and the tool stands upright in it."""
-    return world.columns.heights.shape[2] == 1 and step.kx == 0.0 and step.ky == 0.0
+    return world.dexels.heights.shape[2] == 1 and step.kx == 0.0 and step.ky == 0.0
 
 
 @part
 def walk_on(world: World, shape: Shape, step: Step) -> Walk:
     """From cell to cell along the rim of an upright flat mill in one layer of material; none for others."""
-    columns, R, pitch = world.columns, shape.R, 0.0
-    if shape.kind == FLAT and step.z < world.block.z_high and is_plain(world, step):
-        pitch = PITCH * min(columns.dx, columns.dy) / R
+    dexels, R, pitch = world.dexels, shape.R, 0.0
+    if shape.kind == FLAT and step.z < world.bounds.z_high and is_plain(world, step):
+        pitch = PITCH * min(dexels.dx, dexels.dy) / R
     return Walk(
-        (step.x - columns.x0) / columns.dx + 0.5,
-        (step.y - columns.y0) / columns.dy + 0.5,
-        R * step.fx / columns.dx,
-        R * step.fy / columns.dy,
-        R * step.lx / columns.dx,
-        R * step.ly / columns.dy,
+        (step.x - dexels.x0) / dexels.dx + 0.5,
+        (step.y - dexels.y0) / dexels.dy + 0.5,
+        R * step.fx / dexels.dx,
+        R * step.fy / dexels.dy,
+        R * step.lx / dexels.dx,
+        R * step.ly / dexels.dy,
         step.z,
         pitch,
         math.sin(pitch),
@@ -65,14 +65,14 @@ def walk_on(world: World, shape: Shape, step: Step) -> Walk:
 @part
 def top_on(world: World, walk: Walk, sine: float, cosine: float) -> float:
     """How high above the circle material stands at an angle, m: by the column there, or exact where a side passes."""
-    columns = world.columns
+    dexels = world.dexels
     x, y = walk.x + sine * walk.fx + cosine * walk.lx, walk.y + sine * walk.fy + cosine * walk.ly
     i, j = math.floor(x), math.floor(y)
-    if i < 0 or j < 0 or i >= columns.heights.shape[0] or j >= columns.heights.shape[1]:
+    if i < 0 or j < 0 or i >= dexels.heights.shape[0] or j >= dexels.heights.shape[1]:
         return 0.0
-    if columns.names[i, j, 0] == NOBODY:
-        return max(columns.heights[i, j, 0] - walk.height, 0.0)
-    top = top_over(world, columns.x0 + (x - 0.5) * columns.dx, columns.y0 + (y - 0.5) * columns.dy)
+    if dexels.names[i, j, 0] == NOBODY:
+        return max(dexels.heights[i, j, 0] - walk.height, 0.0)
+    top = top_over(world, dexels.x0 + (x - 0.5) * dexels.dx, dexels.y0 + (y - 0.5) * dexels.dy)
     return max(top - walk.height, 0.0)
 
 

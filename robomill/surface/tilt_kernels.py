@@ -18,7 +18,7 @@ GOLDEN = 0.6180339887498949
 SEARCHES, BISECTIONS = 64, 48
 
 
-class Frame(NamedTuple):
+class ToolFrame(NamedTuple):
     """The tool's own frame for a leaning axis k, in {W}: e1 is level, e2 = k x e1 points uphill across the tool.
 
     sine, cosine  of the angle between k and the vertical: the parts of e2 and of k along z_W (e1 has none).
@@ -51,21 +51,21 @@ class Line(NamedTuple):
 
 
 @part
-def tool_frame(kx: float, ky: float, kz: float) -> Frame:
+def tool_frame(kx: float, ky: float, kz: float) -> ToolFrame:
     """Frame of a tool axis that is not vertical."""
     sine = math.hypot(kx, ky)
     e1x, e1y = -ky / sine, kx / sine
-    return Frame(e1x, e1y, -kz * e1y, kz * e1x, kx, ky, sine, kz)
+    return ToolFrame(e1x, e1y, -kz * e1y, kz * e1x, kx, ky, sine, kz)
 
 
 @part
-def vertical_line(frame: Frame, x: float, y: float) -> Line:
+def vertical_line(frame: ToolFrame, x: float, y: float) -> Line:
     """The vertical line at (x, y) of {W}, in the tool's frame."""
     return Line(x * frame.e1x + y * frame.e1y, x * frame.e2x + y * frame.e2y, x * frame.kx + y * frame.ky)
 
 
 @part
-def move_in_frame(frame: Frame, ends: FloatArray) -> Move:
+def move_in_frame(frame: ToolFrame, ends: FloatArray) -> Move:
     """The move ``ends`` (6,) m of {W}, in the tool's frame."""
     a, b = vertical_line(frame, ends[0], ends[1]), vertical_line(frame, ends[3], ends[4])
     sine, cosine = frame.sine, frame.cosine
@@ -90,13 +90,13 @@ def plan_boxes(R: float, ends: In2, axes: In2, top: float, boxes: Out2) -> None:
 
 
 @called
-def hull_gap(shape: Shape, move: Move, frame: Frame, line: Line, z: float) -> float:
+def hull_gap(shape: Shape, move: Move, frame: ToolFrame, line: Line, z: float) -> float:
     """Height of the swept surface over a point of a vertical line, along the tool axis; <= 0 inside the body."""
     return swept_height(shape, move, line.X, line.Y + z * frame.sine) - (line.h + z * frame.cosine)
 
 
 @part
-def tilted_interval(shape: Shape, move: Move, frame: Frame, line: Line, ceiling: float) -> tuple[float, float]:
+def tilted_interval(shape: Shape, move: Move, frame: ToolFrame, line: Line, ceiling: float) -> tuple[float, float]:
     """Heights (low, high) m of a vertical line inside the body swept by a tilted cutter, not above ``ceiling``.
 
     ``move`` is in the tool's frame. Along the line the gap to the swept surface is convex, so the line is inside
@@ -115,7 +115,7 @@ def tilted_interval(shape: Shape, move: Move, frame: Frame, line: Line, ceiling:
 
 
 @part
-def point_inside(shape: Shape, move: Move, frame: Frame, line: Line, low: float, high: float) -> float:
+def point_inside(shape: Shape, move: Move, frame: ToolFrame, line: Line, low: float, high: float) -> float:
     """A height in [low, high] where the convex gap is not positive, by golden section; inf if there is none."""
     if hull_gap(shape, move, frame, line, low) <= 0.0:
         return low
@@ -141,7 +141,7 @@ def point_inside(shape: Shape, move: Move, frame: Frame, line: Line, low: float,
 
 
 @part
-def surface_between(shape: Shape, move: Move, frame: Frame, line: Line, end: float, inside: float) -> float:
+def surface_between(shape: Shape, move: Move, frame: ToolFrame, line: Line, end: float, inside: float) -> float:
     """Height where the line from ``inside`` towards ``end`` leaves the body; ``end`` if it does not."""
     if hull_gap(shape, move, frame, line, end) <= 0.0:
         return end

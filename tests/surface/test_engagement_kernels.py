@@ -25,7 +25,7 @@ from robomill.surface.engagement_kernels import (
     lay_out,
     measure_stretch,
 )
-from robomill.surface.material_kernels import Block, Columns, Mesh, World
+from robomill.surface.material_kernels import Bounds, Dexels, Facets, World
 from robomill.surface.rib_kernels import Walk
 from robomill.surface.step_kernels import step_at
 from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_end
@@ -134,12 +134,12 @@ def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
 
 def block_world(layers=1, dx=0.5 * MM):
     """A block from -10 mm to 0 in few cells."""
-    columns = Columns(
+    dexels = Dexels(
         np.zeros((2, 2, layers)), np.zeros((2, 2, layers + 1), np.int32), np.zeros(1, np.int64), 0, 0, dx, dx, dx
     )
     nothing = np.zeros(0, dtype=np.int64)
-    block = Block(-1.0, -1.0, -10 * MM, 1.0, 1.0, 0.0)
-    return World(columns, np.zeros((1, 21)), block, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
+    bounds = Bounds(-1.0, -1.0, -10 * MM, 1.0, 1.0, 0.0)
+    return World(dexels, np.zeros((1, 21)), bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
 
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
@@ -165,7 +165,7 @@ def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth)
         if stop <= begin:
             continue
         if stretch == FLANK:
-            most = int(np.clip((stop - begin) / world.columns.dx, 8, 96))
+            most = int(np.clip((stop - begin) / world.dexels.dx, 8, 96))
         assert (pieces, start) == (most, first)
         s = np.linspace(begin, stop, most + 1)
         s[[0, -1]] += np.array([1, -1]) * 0.01 * (stop - begin) / most
@@ -233,7 +233,7 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
         low, high = -high, -low
     limits = {"x_low": low, "x_high": high} if turn % 2 else {"y_low": low, "y_high": high}
     world = block_world()
-    world = world._replace(block=world.block._replace(**limits))
+    world = world._replace(bounds=world.bounds._replace(**limits))
     halves = 2 if along < -1e-6 else 1
     total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
     add_part(room_for(halves), world, cutter.solid, step, total, sectors)

@@ -16,9 +16,9 @@ from robomill.surface.material_kernels import (
     NOBODY,
     RUN,
     SKIN,
-    Block,
-    Columns,
-    Mesh,
+    Bounds,
+    Dexels,
+    Facets,
     World,
     see_move,
     standing,
@@ -47,20 +47,20 @@ def world_of(moves, layers=0, size=(24.0, 16.0), cells=(31, 17)):
     else:
         heights = np.zeros((*cells, 1))
     names = np.full((*cells, heights.shape[2] + 1), NOBODY, dtype=np.int32)
-    columns = Columns(heights, names, np.zeros(1, dtype=np.int64), 0.5 * dx, 0.5 * dy, dx, dy, 0.5 * max(dx, dy))
+    dexels = Dexels(heights, names, np.zeros(1, dtype=np.int64), 0.5 * dx, 0.5 * dy, dx, dy, 0.5 * max(dx, dy))
     runs = np.zeros((len(moves), RUN))
     for run, (cutter, start, end, axis) in zip(runs, moves, strict=True):
         run[:ENDS] = cutter.solid
         run[ENDS:AXIS] = np.array([*start, *end]) * MM
         run[AXIS:MOVE] = axis
     nothing = np.zeros(0, dtype=np.int64)
-    block = Block(0.0, 0.0, -10 * MM, lengths[0], lengths[1], 0.0)
-    return World(columns, runs, block, Mesh(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
+    bounds = Bounds(0.0, 0.0, -10 * MM, lengths[0], lengths[1], 0.0)
+    return World(dexels, runs, bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
 
 
-def centres(columns):
-    nx, ny = columns.heights.shape[:2]
-    return np.meshgrid(columns.x0 + columns.dx * np.arange(nx), columns.y0 + columns.dy * np.arange(ny), indexing="ij")
+def centres(dexels):
+    nx, ny = dexels.heights.shape[:2]
+    return np.meshgrid(dexels.x0 + dexels.dx * np.arange(nx), dexels.y0 + dexels.dy * np.arange(ny), indexing="ij")
 
 
 def stamped(move, x, y, count=1501):
@@ -93,17 +93,17 @@ def test_columns_are_left_by_the_lowest_stamp_and_know_the_run_that_made_them(ki
     world = world_of(moves)
     for r in range(len(moves)):
         cut_run(world, r, False)
-    columns = world.columns
-    x, y = centres(columns)
+    dexels = world.dexels
+    x, y = centres(dexels)
     left = [stamped(move, x, y) for move in moves]
     expected = np.minimum(np.min(left, axis=0), 0.0)
-    np.testing.assert_allclose(columns.heights[..., 0], expected, atol=5e-6)
-    made = columns.names[..., 1]
+    np.testing.assert_allclose(dexels.heights[..., 0], expected, atol=5e-6)
+    made = dexels.names[..., 1]
     np.testing.assert_array_equal((made == NOBODY)[expected < -1e-5], False)
     np.testing.assert_array_equal(made[expected > -1e-9], NOBODY)
     i, j = np.nonzero(made != NOBODY)
     by_maker = np.array(left)[made[i, j], i, j]
-    np.testing.assert_allclose(by_maker, columns.heights[i, j, 0], atol=5e-6)
+    np.testing.assert_allclose(by_maker, dexels.heights[i, j, 0], atol=5e-6)
 
 
 @pytest.mark.parametrize("lean", [(0.4, 0.0), (0.0, -0.5), (-0.3, 0.35)])
@@ -115,8 +115,8 @@ def test_a_leaning_run_takes_its_body_out_of_the_columns(kind, lean):
     cutter, start, end = CUTTERS[kind], np.array([7.0, 6.0, -4.0]), np.array([12.0, 8.0, -5.0])
     world = world_of([(cutter, start, end, k)], layers=3, cells=(25, 17))
     cut_run(world, 0, False)
-    columns = world.columns
-    x, y = centres(columns)
+    dexels = world.dexels
+    x, y = centres(dexels)
     z = np.linspace(-9.98, -0.02, 84) * MM
     points = np.stack(np.broadcast_arrays(x[..., None], y[..., None], z), axis=-1)
     gone, near = np.zeros(points.shape[:-1], dtype=bool), np.zeros(points.shape[:-1], dtype=bool)
@@ -127,14 +127,14 @@ def test_a_leaning_run_takes_its_body_out_of_the_columns(kind, lean):
         for body, grown in ((gone, 0.0), (near, 6e-5)):
             beside = across <= cutter.radius + grown
             body |= beside & (along + grown >= cutter.profile(np.minimum(across, cutter.radius)))
-    ends = columns.heights
+    ends = dexels.heights
     inside = np.zeros(gone.shape, dtype=bool)
     for layer in range(3):
         inside |= (z <= ends[..., 2 * layer, None]) & (z >= ends[..., 2 * layer + 1, None])
     sure = gone == near
     np.testing.assert_array_equal(inside[sure], ~gone[sure])
     assert gone.any()
-    np.testing.assert_array_equal(columns.lost, [0])
+    np.testing.assert_array_equal(dexels.lost, [0])
 
 
 def test_layers_after_many_cuts_are_what_was_never_taken_out():
@@ -142,25 +142,25 @@ def test_layers_after_many_cuts_are_what_was_never_taken_out():
     z = np.arange(-10.0, 0.0, 0.01) + 0.005
     for _ in range(60):
         world = world_of([(FLAT, (0, 0, 0), (1, 0, 0), UP)], layers=6, cells=(1, 1))
-        columns = world.columns
+        dexels = world.dexels
         material, maker = np.ones(len(z), dtype=bool), {-10.0: NOBODY, 0.0: NOBODY}
         for r in range(5):
             low, high = np.sort(rng.choice(np.arange(-11.0, 1.01, 0.25), 2, replace=False))
-            take_out(columns, (0, 0, r), low * MM, np.inf if high > 0.9 else high * MM)
+            take_out(dexels, (0, 0, r), low * MM, np.inf if high > 0.9 else high * MM)
             ends_before = {end for end in maker if not low <= end <= high}
             maker = {end: name for end, name in maker.items() if end in ends_before}
             maker.update({end: r for end in (low, high) if material[np.abs(z - end) < 0.01].all() and -10 < end < 0})
             material &= (z < low) | (z > high)
-        ends = columns.heights[0, 0] / MM
+        ends = dexels.heights[0, 0] / MM
         inside = np.zeros(len(z), dtype=bool)
         for top, bottom in zip(ends[::2], ends[1::2], strict=True):
             inside |= (z < top) & (z > bottom)
         np.testing.assert_array_equal(inside, material)
-        assert columns.lost[0] == 0
+        assert dexels.lost[0] == 0
         layers = int((ends[::2] > -np.inf).sum())
         assert (np.diff(ends[: 2 * layers]) < 0.0).all()
         assert np.isneginf(ends[2 * layers :: 2]).all()
-        for end, name in zip(ends[: 2 * layers], columns.names[0, 0, 1:], strict=False):
+        for end, name in zip(ends[: 2 * layers], dexels.names[0, 0, 1:], strict=False):
             if round(end, 6) in maker:
                 assert name == maker[round(end, 6)]
 
@@ -172,22 +172,22 @@ def test_layers_after_many_cuts_are_what_was_never_taken_out():
 def test_without_room_for_another_layer_a_gap_takes_the_thinner_rest_above_it_or_is_closed(low, high, ends, made):
     """Layers 0 to -1 and -2 to -10 (in 1/1024 m) fill a column of two: the gap would be within the second."""
     world = world_of([(FLAT, (0, 0, 0), (1, 0, 0), UP)] * 2, layers=2, cells=(1, 1))
-    world.columns.heights[0, 0] = np.array([0, -1, -2, -10]) / 1024
-    world.columns.names[0, 0, 1:] = NOBODY, 0, 0, NOBODY
-    take_out(world.columns, (0, 0, 1), low / 1024, high / 1024)
-    np.testing.assert_array_equal(world.columns.heights[0, 0] * 1024, ends)
-    np.testing.assert_array_equal(world.columns.names[0, 0, 1:], [NOBODY, 0, made, NOBODY])
-    assert world.columns.lost[0] == 1
+    world.dexels.heights[0, 0] = np.array([0, -1, -2, -10]) / 1024
+    world.dexels.names[0, 0, 1:] = NOBODY, 0, 0, NOBODY
+    take_out(world.dexels, (0, 0, 1), low / 1024, high / 1024)
+    np.testing.assert_array_equal(world.dexels.heights[0, 0] * 1024, ends)
+    np.testing.assert_array_equal(world.dexels.names[0, 0, 1:], [NOBODY, 0, made, NOBODY])
+    assert world.dexels.lost[0] == 1
 
 
 def test_a_layer_thinner_than_rounding_is_none():
     world = world_of([(FLAT, (0, 0, 0), (1, 0, 0), UP)] * 3, layers=3, cells=(1, 1))
-    take_out(world.columns, (0, 0, 0), -0.5 * SKIN, np.inf)
-    np.testing.assert_array_equal(world.columns.heights[0, 0, :2], [0.0, -10 * MM])
-    take_out(world.columns, (0, 0, 0), -11 * MM, -10 * MM + 0.5 * SKIN)
-    np.testing.assert_array_equal(world.columns.heights[0, 0, :2], [0.0, -10 * MM])
-    take_out(world.columns, (0, 0, 0), -10 * MM + 0.5 * SKIN, -0.5 * SKIN)
-    assert np.isneginf(world.columns.heights[0, 0, 0])
+    take_out(world.dexels, (0, 0, 0), -0.5 * SKIN, np.inf)
+    np.testing.assert_array_equal(world.dexels.heights[0, 0, :2], [0.0, -10 * MM])
+    take_out(world.dexels, (0, 0, 0), -11 * MM, -10 * MM + 0.5 * SKIN)
+    np.testing.assert_array_equal(world.dexels.heights[0, 0, :2], [0.0, -10 * MM])
+    take_out(world.dexels, (0, 0, 0), -10 * MM + 0.5 * SKIN, -0.5 * SKIN)
+    assert np.isneginf(world.dexels.heights[0, 0, 0])
 
 
 def test_a_run_follows_the_one_that_left_off_at_its_start_with_its_tool():
@@ -227,7 +227,7 @@ def test_a_run_grows_by_the_end_of_each_step():
 
 
 def noted(world):
-    return world.columns.names[..., 0]
+    return world.dexels.names[..., 0]
 
 
 @pytest.mark.parametrize("axis", [UP, (0.0, 0.28, 0.96), (-0.28, 0.0, 0.96)])
@@ -241,15 +241,15 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
     side = np.cross(axis, way) / np.linalg.norm(np.cross(axis, way))
     share = np.linspace(0.0, 1.0, 4001)[:, None]
     line = start + share * way + cutter.corner_radius / MM * np.array(axis)
-    columns, expected = world.columns, np.zeros(world.columns.names.shape[:2], dtype=int)
+    dexels, expected = world.dexels, np.zeros(world.dexels.names.shape[:2], dtype=int)
     for sense in (-1.0, 1.0):
         at = (line + sense * cutter.radius / MM * side)[:, :2] * MM
-        i, j = np.floor(at / [columns.dx, columns.dy]).astype(int).T
+        i, j = np.floor(at / [dexels.dx, dexels.dy]).astype(int).T
         np.add.at(expected, (i, j), 1)
     found = noted(world) == 0
     length = np.linalg.norm(way) * MM / 4000
     assert not found[expected == 0].any()
-    assert found[expected * length > 0.5 * min(columns.dx, columns.dy)].all()
+    assert found[expected * length > 0.5 * min(dexels.dx, dexels.dy)].all()
 
 
 def test_the_side_that_reaches_further_is_noted():

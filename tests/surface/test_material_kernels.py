@@ -11,8 +11,8 @@ from robomill.surface.material_kernels import (
     ENDS,
     FAR,
     RUN,
-    Block,
-    Columns,
+    Bounds,
+    Dexels,
     cell_of,
     cells_around,
     height_of_run,
@@ -31,22 +31,22 @@ def test_points_of_a_stock_with_a_hole():
     solid = trimesh.creation.torus(9e-3, 3e-3, major_sections=60, minor_sections=30)
     solid.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 0.3, 0]))
     stock = Stock(solid.bounds[0], solid.bounds[1], np.asarray(solid.triangles))
-    block, mesh = Block(*stock.lower, *stock.upper), binned(stock)
+    bounds, facets = Bounds(*stock.lower, *stock.upper), binned(stock)
     points = np.random.default_rng(2).uniform(stock.lower - 1e-3, stock.upper + 1e-3, (400, 3))
-    found = [in_stock(block, mesh, tuple(p)) for p in points]
+    found = [in_stock(bounds, facets, tuple(p)) for p in points]
     np.testing.assert_array_equal(found, solid.contains(points))
     assert 40 < sum(found) < 360
 
 
-def columns(heights, slack):
+def dexels(heights, slack):
     nx, ny, n = heights.shape
     names = np.full((nx, ny, 1 + n), -1)
-    return Columns(heights, names, np.zeros(1, dtype=np.int64), 10.0, -4.0, 2.0, 0.5, slack)
+    return Dexels(heights, names, np.zeros(1, dtype=np.int64), 10.0, -4.0, 2.0, 0.5, slack)
 
 
 def test_a_height_in_a_column_of_layers():
     """Two layers from 5 to 3 and from 1 to -2: the way to the nearest end, positive inside."""
-    made = columns(np.array([[[5.0, 3, 1, -2, -np.inf, np.inf]]]), 0.1)
+    made = dexels(np.array([[[5.0, 3, 1, -2, -np.inf, np.inf]]]), 0.1)
     for z in np.arange(-3, 6.5, 0.05) + 0.013:
         inside = 3 < z < 5 or -2 < z < 1
         near = min(abs(z - end) for end in (5, 3, 1, -2))
@@ -55,7 +55,7 @@ def test_a_height_in_a_column_of_layers():
 
 def test_cells_are_found_by_their_centres():
     """Centres at 10, 12, 14, 16 and -4, -3.5, -3; beyond them the nearest."""
-    made = columns(np.zeros((4, 3, 2)), 0.0)
+    made = dexels(np.zeros((4, 3, 2)), 0.0)
     x, y = np.array([10, 12, 14, 16.0]), np.array([-4, -3.5, -3])
     rng = np.random.default_rng(0)
     for at in rng.uniform([7, -5], [19, -2], (200, 2)):
@@ -71,7 +71,7 @@ def test_cells_must_agree():
     """The least of the four, ``FAR`` at most, where all lie on one side by more than the slack; else 0."""
     rng = np.random.default_rng(5)
     heights = 1e-3 * (np.array([5.5, 4.0, 2.5, 0.5]) + rng.uniform(-0.4, 0.4, (2, 2, 4)))
-    made = columns(heights, 5e-5)
+    made = dexels(heights, 5e-5)
     said = set()
     for z in 1e-3 * rng.uniform(-0.5, 6.5, 300):
         deep = np.array([in_column(made, i, j, z) for i in (0, 1) for j in (0, 1)])
