@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
-from robomill.compliance.deflection import displacement
+from robomill.arrays import FloatArray, IntArray, as_floats, frozen
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
@@ -101,10 +100,6 @@ class MeasuredField:
         found[self.distance(flat) > self.reach] = np.nan
         return found.reshape(*p.shape[:-1], 3, 3)
 
-    def deflection(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
-        """delta (..., 3) m under F (..., 3) N, eq. (15) with the measured C; NaN outside."""
-        return displacement(self.compliance(p), F)
-
     def standard_error(self, p: ArrayLike) -> FloatArray:
         """(..., 3, 3) m/N standard error of each entry of ``compliance(p)``; NaN where that is NaN or it is not known.
 
@@ -115,7 +110,7 @@ class MeasuredField:
         return np.sqrt(self._within_reach(p, self.stderr**2) + self._bent**2)
 
     def covariance(self, p: ArrayLike, F: ArrayLike) -> FloatArray:
-        """(..., 3, 3) m^2: covariance of ``deflection(p, F)``, the entries' errors taken as independent."""
+        """(..., 3, 3) m^2: covariance of C F at p, eq. (15), the entries' errors taken as independent."""
         variance = np.einsum("...ij,...j->...i", self.standard_error(p) ** 2, np.asarray(F, dtype=np.float64) ** 2)
         return variance[..., None] * np.eye(3)
 
@@ -141,10 +136,6 @@ class MeasuredField:
     def _used(self) -> IntArray:
         """The axes along which the points vary."""
         return np.flatnonzero(np.ptp(self.p, axis=0) > GRID)
-
-    def inside(self, p: ArrayLike) -> BoolArray:
-        """(...) bool: where the map answers."""
-        return np.isfinite(self.compliance(p)[..., 0, 0])
 
     def symmetric(self) -> MeasuredField:
         """The same map with (C + C^T) / 2: an elastic arm is symmetric, the rest is error of measurement."""

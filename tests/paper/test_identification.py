@@ -102,5 +102,5 @@ def test_deviation_at_the_milling_test_with_its_band(result):
     # What is left of each reading (4 um at 250 N) cannot be told from an error of the model: it is in the band.
     honest = uncertain_deflection(arm, theta, [0, 100.0, 0], known)
     assert honest.half_width()[1] == pytest.approx(2.0 * 4e-6 * 100 / 250, rel=0.3)
-    measured = read_measured_map(FILES / "grid_45x6.csv", ROBOT).deflection([0, -1.3, 0], [0, 100.0, 0])
+    measured = read_measured_map(FILES / "grid_45x6.csv", ROBOT).compliance([0, -1.3, 0]) @ [0, 100.0, 0]
     assert measured[1] == pytest.approx(found.delta[1], abs=5e-6)
