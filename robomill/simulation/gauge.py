@@ -28,6 +28,7 @@ HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
 LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
+SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings that differ by less are one
 SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
 
@@ -67,12 +68,14 @@ class Readings:
 
 @dataclass(frozen=True, eq=False)
 class Gauge:
-    """All that a gauge would find on the part; and samples (g,) beside which a wall should stand and does not."""
+    """All that a gauge would find on the part; samples (g,) beside which a wall should stand and does not, and samples
+    (t,) beside which one is so ``thin`` that it gives way to the cut."""
 
     walls: Readings
     floors: Readings
     ends: Readings
     gone: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    thin: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
 def gauge(result: Run) -> Gauge:
@@ -81,8 +84,8 @@ def gauge(result: Run) -> Gauge:
         nothing = Readings(np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(4)))
         return Gauge(nothing, nothing, nothing)
     at = places(result)
-    walls, gone = _walls(at)
-    return Gauge(walls, _floors(at), _ends(at), gone)
+    walls, gone, thin = _walls(at)
+    return Gauge(walls, _floors(at), _ends(at), gone, thin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +128,9 @@ def _standing(at: Places, rims: Rims) -> Walls:
     return found._replace(told=np.nan_to_num(found.told, nan=np.inf))
 
 
-def _walls(at: Places) -> tuple[Readings, IntArray]:
-    """Walls at every place and direction where material stands beside the tool in the end, and samples (g,) beside
-    which one should stand and does not."""
+def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
+    """Walls at every place and direction where material stands beside the tool in the end; samples beside which one
+    should stand and does not, and beside which it is thin."""
     steep, (begin, end), turn = at.steep, at.begins_or_ends, at.turn
     rims = _directions(at, (turn > TURNS) & ~begin & ~end | steep)
     told, left, one, carried = _standing(at, rims)
@@ -149,7 +152,22 @@ def _walls(at: Places) -> tuple[Readings, IntArray]:
     error = np.clip(error * upright, -most, most)
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
-    return Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign), np.unique(at.i[q[lost]])
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign)
+    return readings, np.unique(at.i[q[lost]]), np.unique(at.i[q[_thin(at, rims)]])
+
+
+def _thin(at: Places, rims: Rims) -> BoolArray:
+    """(m,) bool: walls that were told to be thinner than ``SLENDER`` of their height over at least that height; shorter
+    ones are the tips between two cuts that cross."""
+    behind = at.c[rims.q] + (rims.radius + SLENDER * rims.deep)[:, None] * rims.u
+    lines = np.hstack([behind, at.axial[rims.q], rims.u])
+    cut = np.isfinite(at.outline.walls(lines, rims.height, np.zeros(len(rims.q))).told)
+    thin = cut | ~at.stands(rims.q, behind, rims.height)
+    i, there = at.i[rims.q], np.zeros(len(at.result.path), dtype=bool)
+    there[i[thin]] = True
+    stretch, goes_on = np.cumsum(~there), there & np.append(False, there[:-1])
+    length = np.bincount(stretch, np.where(goes_on, at.result.path.step_length, 0.0))
+    return np.asarray(thin & (length[stretch[i]] >= rims.deep))
 
 
 def _nothing_stands(at: Places, rims: Rims, suspects: BoolArray) -> BoolArray:

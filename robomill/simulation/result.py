@@ -24,7 +24,7 @@ from robomill.simulation.rapids import rapid_notes, rapids_through_material
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import tool_notes, tooling
-from robomill.simulation.verdict import Verdict, judge
+from robomill.simulation.verdict import Verdict, judge, thin_wall_notes
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.swept import CutPath
@@ -206,8 +206,9 @@ class SimulationResult:
 
     @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:
-        """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material."""
-        return self.machined.notes() + rapid_notes(self.rapids)
+        """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material, thin
+        walls."""
+        return self.machined.notes() + rapid_notes(self.rapids) + thin_wall_notes(self.path.block[self.gauge.thin])
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup

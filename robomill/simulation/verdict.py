@@ -7,7 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from robomill.provenance import named
+from robomill.arrays import IntArray
+from robomill.provenance import Finding, named
 from robomill.simulation.gauge import Gauge, Readings
 from robomill.simulation.seen import Run
 from robomill.units import format_percent, format_si
@@ -166,6 +167,17 @@ def unjudged_words(result: Run) -> str:
     if result.rapids:
         said.append(f"{RAPID[0].upper()}{RAPID[1:]} (line {named(result.rapids)}): not judged")
     return ". ".join(said)
+
+
+def thin_wall_notes(block: IntArray) -> tuple[Finding, ...]:
+    """Walls that bend under the cut, by the source lines (t,) that leave them."""
+    if not len(block):
+        return ()
+    text = (
+        f"a wall is left that is thinner than an eighth of its height (line {named(block.tolist())}); that it gives "
+        "way to the cutter is not in the numbers."
+    )
+    return (Finding("warning", int(block.min()), text, code="thin-wall"),)
 
 
 def missed_words(result: Run) -> str:

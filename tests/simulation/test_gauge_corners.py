@@ -142,3 +142,19 @@ def test_a_wall_is_looked_at_between_samples_too(step):
     aside[corner] = -0.2e-3
     bent = pushed(made, left=aside)
     assert abs(bent.verdict.wall.value) == pytest.approx(worst_wall(bent), rel=0.15)
+
+
+@pytest.mark.parametrize(("thick", "thin"), [(0.1, True), (0.24, True), (0.26, False), (1.0, False)])
+def test_a_wall_that_bends_under_the_cut_is_said(thick, thin):
+    """2 mm high: less than 0.25 mm is thin, between two slots and at the side of the block."""
+    side = Stock([-30e-3, -20e-3, -10e-3], [30e-3, R + thick * 1e-3, 0])
+    beside = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F900", stock=side)
+    for result, lines in ((two_slots(8.0 + thick), {4, 8}), (beside, {4})):
+        codes = [note.code for note in result.surface_notes]
+        assert ("thin-wall" in codes) == thin
+        assert set(result.path.block[result.gauge.thin]) == (lines if thin else set())
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_tips_between_crossing_cuts_are_no_thin_walls(name):
+    assert len(run(*PARTS[name]).gauge.thin) == 0
