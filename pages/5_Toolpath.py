@@ -6,6 +6,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.ui import pieces
+from robomill.ui.running import path_of
 from robomill.ui.toolpath import details, view
 from robomill.ui.toolpath.lines import lines_inputs
 from robomill.ui.toolpath.part_zero import part_zero
@@ -21,7 +22,7 @@ setup, dark, unit = project.setup, ui.dark(), project.view.length
 source = setup.source
 
 empty = source.kind == "sketch" and not source.sketch.elements
-path = None if empty else ui.attempt(lambda: setup.toolpath)
+path = None if empty else ui.attempt(path_of, setup)
 reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(ui.result, setup) if reach is not None else None
 

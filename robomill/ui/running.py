@@ -9,11 +9,12 @@ from robomill.arrays import digest
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
 from robomill.ui import beside, cached, job, session
 from robomill.ui.job import Underway
 
 SHORT_S = 0.3  # a run that takes about so long is waited for
-PLACE, LAST = "run", "run.last"
+PLACE, LAST, READING = "run", "run.last", "run.path"
 GREYED = """<style>[data-testid="stMain"] :is(.rm-tiles, .rm-title, .rm-lead, .rm-facts, .rm-matrix,
 [data-testid="stPlotlyChart"], [data-testid="stImage"], .st-key-milling-verdict) { opacity: .4; }</style>"""
 
@@ -36,6 +37,7 @@ def result(setup: SimulationSetup) -> SimulationResult | None:
 
 def computed(setup: SimulationSetup, place: str = PLACE) -> SimulationResult:
     """The run of ``setup``, kept or made. Raises its refusal, and ``Underway`` where it goes on beside the page."""
+    path_of(setup)
     if there(setup):
         return cached.result(setup)
     seconds = run_seconds(setup)
@@ -43,6 +45,15 @@ def computed(setup: SimulationSetup, place: str = PLACE) -> SimulationResult:
         place, cached.by_setup(setup), lambda: cached.result(setup), "Simulating", seconds
     )
     return made
+
+
+def path_of(setup: SimulationSetup) -> Toolpath:
+    """The path, which a program that goes round in loops lets wait for: raises its refusal, and ``Underway``."""
+    if "toolpath" in vars(setup):
+        return setup.toolpath
+    name = digest(setup.source), digest(setup.tools)
+    path: Toolpath = beside.made(READING, name, lambda: setup.toolpath, "Reading the program")
+    return path
 
 
 def there(setup: SimulationSetup) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from robomill.errors import GCodeError
+from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
@@ -111,6 +112,7 @@ class Interpreter(OWords):
                 f"Line {index + 1}: more than {MAX_STEPS} lines were executed in loops; the program may not end.",
                 line=index + 1,
             )
+        checkpoint(min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0), "Reading the program")
         if self.cancel is not None and self.cancel():
             raise GCodeError("Reading was cancelled.")
         if self.progress is not None and self.file is self.main:

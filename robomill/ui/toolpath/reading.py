@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import job, session
+from robomill.ui import beside, job, session
 from robomill.ui.job import Job
 
 KEY = "toolpath.reading"
 BACKGROUND_CHARACTERS = 1_500_000
+ROUND = re.compile(r"\b(?:o\s*[\d<]|m\s*9[89]\b)", re.IGNORECASE)  # O words and calls: a few lines can go on for long
+
+
+def may_take_long(source: GCodeSource) -> bool:
+    """Whether a program is big, or may go round in loops."""
+    return len(source.text) > BACKGROUND_CHARACTERS or ROUND.search(source.text) is not None
 
 
 def reading(source: GCodeSource) -> Job:
@@ -27,7 +34,7 @@ def read_beside(source: GCodeSource) -> None:
 
 def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]) -> None:
     """Progress and cancel while a program is read; ``take`` puts it into the project, ``refuse`` shows why not."""
-    found = job.finished(KEY)
+    found = job.finished(KEY, beside.FIRST_S)
     if found is not None:
         session.drop(KEY)
         if found.error is None:
