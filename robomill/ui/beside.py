@@ -72,7 +72,7 @@ def _stop(place: str) -> None:
 
 
 def _ask(place: str, name: Any, doing: str, seconds: float) -> None:
-    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+    with st.container(horizontal=True, vertical_alignment="center", gap="small", key=job.box(place)):
         inputs.button("Run", f"{place}.ask", "play_arrow", _begin, place, name, type="primary")
         takes = f" This takes about {_long(seconds)}." if seconds else ""
         pieces.note(f"{doing}: not computed yet.{takes}")

@@ -115,6 +115,11 @@ def finished(key: str, wait_s: float = 0.0) -> Job | None:
     return job
 
 
+def box(key: str) -> str:
+    """The name of the container in which the work kept under ``key`` is spoken of: it stays in sight."""
+    return f"job-{digest(key)[:8]}"
+
+
 @st.fragment(run_every=EVERY_S)
 def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | None = None) -> None:
     """Progress in ``words`` and a button that cancels, by ``stop``; the page runs again at the end."""
@@ -123,7 +128,7 @@ def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | Non
         st.rerun()
         return
     job.seen = time.monotonic()
-    with st.container(key=f"job-{digest(key)[:8]}"):
+    with st.container(key=box(key)):
         bar, cancel = st.columns([4, 1], vertical_alignment="center")
         bar.progress(job.share, words(job))
         with cancel:

@@ -85,16 +85,20 @@ def _dimensions(fig: Chart, d: SectionDrawing, step: float, dark: bool) -> None:
         arrow(fig, (centre, over), (x, over), p.text, **HEAD)
     _text(fig, (centre, over), _width(d), p.text, dark)
 
-    beside, middle = walls[0] - 0.75 * step, 0.5 * (d.top + d.floor)
-    _line(fig, (walls[0] + 0.1 * step, d.floor), (beside - 0.15 * step, d.floor), p.muted)
+    # The depth stands on the side that the words on the centre leave free, under its arrows: in a narrow window there
+    # is no room beside the words on the floor.
+    side, under = -1.0 if d.centre_offset < 0.0 else 1.0, d.floor - 0.42 * step
+    wall, middle = walls[0] if side > 0.0 else walls[1], 0.5 * (d.top + d.floor)
+    beside = wall - side * 0.75 * step
+    _line(fig, (wall - side * 0.1 * step, d.floor), (beside - side * 0.15 * step, d.floor), p.muted)
     for y in (d.top, d.floor):
         arrow(fig, (beside, middle), (beside, y), p.text, **HEAD)
-    _text(fig, (beside, middle), _depth(d), p.text, dark)
+    _text(fig, (beside, under), _depth(d), p.text, dark)
 
     _text(fig, (centre, d.floor + 0.42 * step), _floor(d), p.warm, dark)
     if np.isnan(d.centre_offset):
         return
-    under, side, reach = d.floor - 0.42 * step, 1.0 if d.centre_offset >= 0 else -1.0, 0.55 * step
+    reach = 0.55 * step
     for x, colour in ((ideal_centre, p.accent), (centre, p.warm)):
         _line(fig, (x, d.floor - 0.62 * step), (x, d.top + 0.45 * step), colour, "dashdot")
     arrow(fig, (centre + side * reach, under), (centre, under), p.warm, **HEAD)
