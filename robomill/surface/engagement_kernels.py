@@ -227,7 +227,7 @@ def note(pieces: FloatArray, count: int, row: float, middle: float, width: float
     return count + 1
 
 
-@called
+@part
 def divide(room: Room, world: World, shape: Shape, step: Step, walk: Walk, halves: int) -> tuple[int, int, int]:
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
     how many angles between were looked at for ribs and gaps of material that its panels pass over."""

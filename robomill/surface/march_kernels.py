@@ -143,7 +143,7 @@ def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
             open_row(dexels, shape, move, r, (i, j, j_end))
 
 
-@called
+@part
 def open_row(dexels: Dexels, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
     """Open columns within the track from above down to what a move of run ``r`` leaves; ``row``: i, first j, end."""
     i, first, end = row
