@@ -78,3 +78,24 @@ def test_steps_that_are_marched_take_more_so_fewer_fit(monkeypatch: pytest.Monke
         rm.simulate(setup.replace(step=1e-4))
     fits = float(str(refused.value).split("so use ")[1].split(" mm")[0]) * 1e-3
     assert len(sampled(setup.toolpath, fits)) <= 200
+
+
+@pytest.mark.slow
+def test_what_is_let_in_finds_room_under_the_limit_of_the_process() -> None:
+    """A process that may have 1.5 GiB of addresses runs the finest step and the finest cells that it lets in."""
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 << 29, 3 << 29))\n"
+        "import robomill as rm; from robomill import budgets\n"
+        "setup = rm.load_setup('samples/paper_flute'); cells = budgets.cells()\n"
+        "x, y, _ = setup.stock_block.size\n"
+        "for some in ({'step': 0.1 / (0.95 * budgets.samples())}, {'cell': (x * y / (0.95 * cells)) ** 0.5}):\n"
+        "    result = rm.simulate(setup.replace(**some)); print(len(result.path), result.machined.z.size)\n"
+    )
+    env = {key: value for key, value in os.environ.items() if key != budgets.PLACE}
+    ran = subprocess.run(
+        [sys.executable, "-c", code], env=env | {"OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True
+    )
+    assert ran.returncode == 0, ran.stderr
+    (samples, _), (_, cells) = (map(int, line.split()) for line in ran.stdout.splitlines())
+    assert samples > 100_000
+    assert cells > 1_200_000
