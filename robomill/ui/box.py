@@ -75,8 +75,8 @@ def declaration(owner: Any, path: str) -> Quantity | None:
 
 
 def entry(said: Quantity, i: int) -> Quantity:
-    """Entry ``i`` of a declared array, as a number of its own."""
-    return replace(said, kind="number", label=f"{said.label} {said.axes[i]}", shape=(), axes=())
+    """Entry ``i`` of a declared array, as a number of its own that cannot be left out."""
+    return replace(said, kind="number", label=f"{said.label} {said.axes[i]}", shape=(), axes=(), optional=False)
 
 
 def declared(owner: Any, path: str, **shown: Any) -> NumberBox:
