@@ -153,7 +153,8 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
     readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign)
-    return readings, np.unique(at.i[q[lost]]), np.unique(at.i[q[_thin(at, rims)]])
+    along = rims.only(rims.length > 0.0)
+    return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
 
 
 def _thin(at: Places, rims: Rims) -> BoolArray:

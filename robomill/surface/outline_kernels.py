@@ -210,7 +210,8 @@ def walls_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
         result[q, 0] = wall_at(told, told, places[q])
         result[q, 1] = wall_at(told, left, places[q])
         result[q, 2] = wall_at(left, told, places[q])
-        result[q, 3] = carried(told, left, places[q], result[q, 0], result[q, 2] > result[q, 0])
+        error = result[q, 2] - result[q, 0]
+        result[q, 3] = carried(told, left, places[q], result[q, 0], error > 0.0) if abs(error) > TOUCH else error
 
 
 @kernel
