@@ -82,13 +82,13 @@ def fine(setups: dict[str, SimulationSetup]) -> dict[str, SimulationSetup]:
 def _everything(setup: SimulationSetup) -> None:
     """A run, and what a page asks of it."""
     result = rm.simulate(setup)
-    _ = result.notes, result.error, result.surface_notes
+    _ = result.notes, result.error
     result.grooves(np.linspace(0.1, 0.9, 5) * float(result.path.s[-1]))
     alloy_spread(result)
     peak_force(result)
     to_mesh(result.machined)
-    if len(result.path) < 20_000:
-        _ = result.verdict
+    if len(result.path) < 20_000:  # the gauge takes by the square of the samples
+        _ = result.verdict, result.surface_notes
 
 
 @pytest.mark.slow
