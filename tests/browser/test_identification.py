@@ -70,6 +70,8 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     assert float(wider.partition("±")[2].split("mm")[0]) > 4 * float(tile.partition("±")[2].split("mm")[0])
 
     page.get_by_role("button", name="Undo").click()
+    page.get_by_text("from the force").wait_for(state="detached")
+    page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Use these compliances in the project").wait_for()
 
 

@@ -47,7 +47,7 @@ def place(page: Any) -> str:
 def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: Any) -> None:
     page = milling
     choose(page, "Model", "mechanistic")
-    page.get_by_role("button", name="within tolerance").first.click()
+    page.get_by_role("button", name="Where the tip is off most").first.click()
     page.wait_for_selector("text=Program")
     idle(page)
     assert "Line 7" in place(page)

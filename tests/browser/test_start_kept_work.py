@@ -54,7 +54,14 @@ def robot_page(browser: Any, server: Server) -> Any:
 
 def choose(page: Any, table: str, sign: str) -> None:
     """Put the compliances of one of the paper's tables in force; the server has them kept a moment later."""
-    page.get_by_text(table, exact=True).click()
+    choice = page.get_by_text(table, exact=True)
+    choice.click()
+    for _ in range(40):
+        if page.locator(sign).count():
+            break
+        page.wait_for_timeout(500)
+    else:  # the page was just drawn anew under the click; an edit that was taken and lost stays lost by another one
+        choice.click()
     page.wait_for_selector(sign)
     idle(page)
     page.wait_for_timeout(800)
