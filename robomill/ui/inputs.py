@@ -2,6 +2,10 @@
 
 Each is seeded from what is in force and hands what was typed to the project. Input that is refused stays where it was
 typed with the sentence beneath it; the project keeps the last good value. Keys read "page.thing".
+
+What is shown is each input's own default, too: in the browser an input comes up with its default and gets its value in
+a second step, and a word that goes to the server between the two (a tick of progress, another click) carries the
+default as if a person had chosen it.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import read_field, with_field
-from robomill.ui.typed import accept, heard, own, seed, sentence, submit
+from robomill.ui.typed import accept, elsewhere, heard, seed, sentence, submit, unheard
 
 
 @dataclass(frozen=True)
@@ -92,13 +96,14 @@ def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any
     shown = seed(key, box.shown(current))
 
     def take() -> None:
-        submit(key, st.session_state[key], lambda: write(box.typed(st.session_state[key])))
+        typed = st.session_state[key]
+        if typed != shown and (typed is not None or not elsewhere()):
+            submit(key, typed, lambda: write(box.typed(typed)))
 
-    # Its own default is what it shows: a box that moves to another column while a run is broken off comes up with its
-    # default and answers with it. Only a box without one can be emptied.
+    # Only a box without a default can be emptied. It comes up empty, and nobody has emptied it then.
     st.number_input(
         box.title,
-        **{"value": None if box.optional else shown, **own(key, "value", shown)},
+        value=None if box.optional and not unheard(key) else shown,
         key=key,
         step=1 if box.whole else box.step,
         format=box.form,
@@ -144,12 +149,13 @@ def choice(
         "label_visibility": look.label_visibility,
     }
     if look.listed:
-        st.selectbox(label, list(options), **common, **own(key, "index", at))
+        st.selectbox(label, list(options), index=at, **common)
     elif look.stacked:
-        st.radio(label, list(options), **{"index": None, **common, **own(key, "index", at)})
+        st.radio(label, list(options), index=at, **common)
     else:
-        more = own(key, "default", shown)
-        st.segmented_control(label, list(options), required=True, width="stretch", **common, **more)
+        st.segmented_control(
+            label, list(options), default=None if at is None else shown, required=True, width="stretch", **common
+        )
     heard(key, shown, take)
 
 
@@ -184,7 +190,7 @@ def several(
         "format_func": lambda k: options[k] if look.listed else as_markdown(options[k]),
         "on_change": take,
         "label_visibility": look.label_visibility,
-        **own(key, "default", shown),
+        "default": [each for each in shown if each in options],
     }
     if look.listed:
         st.multiselect(label, list(options), max_selections=look.most, placeholder=look.placeholder, **common)
@@ -200,8 +206,7 @@ def switch(label: str, key: str, current: bool, write: Callable[[bool], None], l
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(bool(st.session_state[key])))
 
-    more = own(key, "value", shown)
-    st.toggle(label, key=key, help=look.hint, disabled=look.disabled, on_change=take, **more)
+    st.toggle(label, shown, key=key, help=look.hint, disabled=look.disabled, on_change=take)
     heard(key, shown, take)
 
 
@@ -219,6 +224,7 @@ def slider(
         label,
         low,
         high,
+        shown,
         key=key,
         step=float(span.step),
         format=span.form,
@@ -226,7 +232,6 @@ def slider(
         disabled=look.disabled,
         label_visibility=look.label_visibility,
         on_change=take,
-        **own(key, "value", shown),
     )
     heard(key, shown, take)
 
@@ -238,8 +243,7 @@ def stops(label: str, key: str, options: Mapping[Any, str], current: Any, write:
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(st.session_state[key]))
 
-    more = own(key, "value", shown)
-    st.select_slider(label, list(options), key=key, format_func=lambda k: options[k], on_change=take, **more)
+    st.select_slider(label, list(options), shown, key=key, format_func=lambda k: options[k], on_change=take)
     heard(key, shown, take)
 
 
@@ -250,11 +254,10 @@ def text(label: str, key: str, current: str, write: Callable[[str], None], *, li
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(st.session_state[key]))
 
-    more = {**shown, **own(key, "value", begun)}
     if lines == 1:
-        st.text_input(label, key=key, on_change=take, **more)
+        st.text_input(label, begun, key=key, on_change=take, **shown)
     else:
-        st.text_area(label, key=key, on_change=take, **more)
+        st.text_area(label, begun, key=key, on_change=take, **shown)
     heard(key, begun, take)
 
 

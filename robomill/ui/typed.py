@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import streamlit as st
+from streamlit.runtime.scriptrunner import get_script_run_ctx
 
 from robomill.errors import RobomillError
 from robomill.ui import session
@@ -23,26 +24,30 @@ def seed(key: str, current: Any) -> Any:
         return st.session_state[key]
     shown = waiting[0] if waiting is not None else current
     # Written only where it differs: a slider that is being dragged would jump otherwise.
-    if not _unheard(key) and (not known or st.session_state[key] != shown):
+    if not unheard(key) and (not known or st.session_state[key] != shown):
         st.session_state[key] = shown
         held.seeded.add(key)
     return shown
 
 
-def _unheard(key: str) -> bool:
+def unheard(key: str) -> bool:
     """Whether the page was open before its session, and the browser may hold an edit here that no server took."""
     held = session.store()
     return held.returned and key not in held.seeded
 
 
-def own(key: str, name: str, shown: Any) -> dict[str, Any]:
-    """The widget's own default, which is what it answers where the browser holds nothing for it."""
-    return {name: shown} if _unheard(key) else {}
+def elsewhere() -> bool:
+    """Whether what is heard came with a word of another part of the page: a tick of progress, a click in a fragment.
+
+    What a person does to an input outside such parts comes with a run of the whole page.
+    """
+    run = get_script_run_ctx(suppress_warning=True)
+    return run is not None and bool(run.fragment_ids_this_run)
 
 
 def heard(key: str, shown: Any, take: Callable[[], None]) -> None:
     """Take the edit that was made while the server was gone, if this is one; then the sentence of a refusal."""
-    if _unheard(key):
+    if unheard(key):
         session.store().seeded.add(key)
         if key in st.session_state and st.session_state[key] != shown:
             take()

@@ -23,13 +23,13 @@ def names(folder: Path) -> set[str]:
 
 
 def namesakes(file: Path) -> set[str]:
-    """What a test file of this folder may be named by: modules of its room, or an oracle that stands beside it."""
+    """What a test file of this folder may be named by: modules of its room, or an oracle or page that stands beside it."""
     room = file.parent.relative_to(ROOT / "tests").as_posix()
+    beside = {p.stem for p in file.parent.glob("*.py") if not p.stem.startswith("test_")}
     if room in SCREEN:
         pages = {p.stem.partition("_")[2].lower() for p in (ROOT / "pages").glob("*.py")}
-        return pages | {p.parent.name for p in (ROOT / "robomill" / "ui").glob("*/__init__.py")}
-    oracles = {p.stem for p in file.parent.glob("*.py") if not p.stem.startswith("test_")}
-    return oracles | names(ROOT / "robomill" / ("" if room == "ground" else room))
+        return beside | pages | {p.parent.name for p in (ROOT / "robomill" / "ui").glob("*/__init__.py")}
+    return beside | names(ROOT / "robomill" / ("" if room == "ground" else room))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.relative_to(ROOT / "tests").as_posix())

@@ -16,19 +16,22 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class Server:
-    """``python -m robomill serve`` with its work kept in ``folder``."""
+    """``python -m robomill serve`` with its work kept in ``folder``; or one ``page`` that is not the app's."""
 
-    def __init__(self, folder: Path, *words: str) -> None:
+    def __init__(self, folder: Path, *words: str, page: Path | None = None) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.port = int(probe.getsockname()[1])
-        self.folder, self.words = folder, words
+        self.folder, self.words, self.page = folder, words, page
         self.url = f"http://127.0.0.1:{self.port}"
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
         """Start it, and wait until it says that it is well."""
         command = [sys.executable, "-m", "robomill", "serve", f"--port={self.port}", *self.words]
+        if self.page is not None:
+            alone = ("--server.headless=true", "--server.address=127.0.0.1", f"--server.port={self.port}")
+            command = [sys.executable, "-m", "streamlit", "run", str(self.page), *alone]
         given = {**os.environ, "ROBOMILL_AUTOSAVE_FOLDER": str(self.folder)}
         quiet = subprocess.DEVNULL
         self.process = subprocess.Popen(

@@ -14,7 +14,7 @@ from server import Server
 
 pytestmark = pytest.mark.browser
 NOTICE = ".st-key-autosave-notice"
-TABLE_2, TABLE_3 = "text=Table 2: one joint loaded at a time", "text=Table 3: fitted to 81 measured"
+TABLE_2, TABLE_3 = "text=move the tip 0.230 mm in Y", "text=move the tip 0.264 mm in Y"
 
 
 @pytest.fixture

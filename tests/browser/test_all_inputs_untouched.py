@@ -1,0 +1,30 @@
+"""Inputs that nobody touched answer nothing while their page comes up, however often its runs are broken off."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from server import Server
+
+pytestmark = pytest.mark.browser
+LOADS = 6
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Address of a page with every kind of input."""
+    server = Server(tmp_path_factory.mktemp("work"), page=Path(__file__).with_name("all_inputs.py"))
+    server.start()
+    yield server.url
+    server.stop()
+
+
+def test_an_untouched_input_takes_nothing(page: Any, url: str) -> None:
+    """In the browser an input comes up with its default; ticks that come before its value carry that default."""
+    for _ in range(LOADS):
+        page.goto(url)
+        page.wait_for_selector("text=done; taken")
+        page.wait_for_timeout(300)
+        assert "taken: nothing" in page.locator("text=done; taken").inner_text()
