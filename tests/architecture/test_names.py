@@ -23,7 +23,7 @@ def names(folder: Path) -> set[str]:
 
 
 def namesakes(file: Path) -> set[str]:
-    """What a test file of this folder may be named by: modules of its room, or an oracle or page that stands beside it."""
+    """What a test file of this folder may be named by: modules of its room, or what stands beside it."""
     room = file.parent.relative_to(ROOT / "tests").as_posix()
     beside = {p.stem for p in file.parent.glob("*.py") if not p.stem.startswith("test_")}
     if room in SCREEN:
