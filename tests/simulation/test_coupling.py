@@ -8,7 +8,7 @@ from scipy.optimize import brentq, fsolve
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.coupling import MOST, TOLERANCE, settle
+from robomill.simulation.coupling import LONGEST, MOST, TOLERANCE, Coupling, Settled, settle
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -137,6 +137,41 @@ def test_a_straight_law_is_solved_whatever_its_slope(q):
     assert found.agreed
     np.testing.assert_allclose(found.x, goal, atol=TOLERANCE / abs(1 - q) * 1.01)
     assert found.evaluations < 12
+    assert found.gain == pytest.approx(abs(q), rel=1e-6, abs=1e-9)
+    ((place, weight),) = found.mix
+    assert weight == 1.0
+    np.testing.assert_array_equal(place, found.x)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_law_of_three_slopes_is_closed_in_upon_in_short_steps(seed):
+    """g(x) = goal + A (x - goal) with A of any slopes but 1, the goal some millimetres away."""
+    rng = np.random.default_rng(seed)
+    goal, axes = rng.normal(size=3) * 2e-3, np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    A = axes @ np.diag(rng.uniform(-2.0, 0.7, 3)) @ axes.T
+    asked = []
+
+    def bends(x):
+        asked.append(x)
+        return goal + A @ (x - goal)
+
+    found = settle(bends, np.zeros(3), np.zeros(3))
+    assert found.agreed
+    np.testing.assert_allclose(found.x, goal, atol=3 * TOLERANCE / 0.3)
+    assert found.rest == pytest.approx(np.abs(bends(found.x) - found.x).max(), abs=1e-15)
+    assert found.evaluations == len(asked) - 1
+    assert np.linalg.norm(np.diff(asked[:-1], axis=0), axis=1).max() <= LONGEST * (1 + 1e-9)
+
+
+def test_evaluations_are_counted_over_all_steps():
+    def took(evaluations, rest=0.0):
+        return Settled(np.zeros(3), rest, evaluations, 1.0, ())
+
+    assert (Coupling((), (), 0.0).iterations, Coupling((), (), 0.0).mean_iterations) == (0, 0.0)
+    some = Coupling((took(3), took(8), took(4)), (), 0.0)
+    assert (some.iterations, some.mean_iterations, some.converged) == (8, 5.0, True)
+    assert not Coupling((took(3), took(40, 1e-6)), (7,), 0.0).converged
+    assert [took(1, rest).agreed for rest in (0.0, TOLERANCE, 1.001 * TOLERANCE, np.nan)] == [True, True, False, False]
 
 
 def test_a_force_that_jumps_is_held_at_the_jump():
@@ -158,3 +193,27 @@ def test_what_is_not_a_number_ends_it():
     assert not found.agreed
     assert np.isnan(found.rest)
     assert found.evaluations <= MOST
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_how_often_the_force_was_asked_for_is_counted(seed):
+    """A wall at a random place along the push, and one that is only pushed at: halving the way between to a tenth of
+    the tolerance takes the logarithm of its length, after what going round takes at most."""
+    rng = np.random.default_rng(seed)
+    push, wall, back = rng.uniform(50e-6, 900e-6), rng.uniform(0.1, 0.9), rng.uniform(1.5, 4.0)
+    along = np.linalg.qr(rng.normal(size=(3, 3)))[0][0]
+    asked = []
+
+    def bends(x):
+        asked.append(x)
+        return push * along * (1.0 if x @ along < wall * push else 1.0 - back)
+
+    found = settle(bends, np.zeros(3), np.zeros(3))
+    assert found.agreed
+    np.testing.assert_allclose(found.x, wall * push * along, atol=TOLERANCE)
+    assert found.evaluations == len(asked)
+    halvings = np.ceil(np.log2(push / (0.1 * TOLERANCE)))
+    assert found.evaluations <= MOST + 1 + 2 + halvings
+    ((_, low), (_, high)) = found.mix
+    assert low + high == pytest.approx(1.0)
+    assert low * 1.0 + high * (1.0 - back) == pytest.approx(wall, abs=2e-3)

@@ -7,7 +7,7 @@ import pytest
 from robomill.cutting.tool import Cutter
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.simulation.rapids import rapids_through_material
+from robomill.simulation.rapids import MANY, rapids_through_material
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -62,3 +62,10 @@ def test_what_was_cut_before_is_no_material(back, found):
 
 def test_every_bad_line_is_named_once_and_in_order():
     assert told("G0 Z-1\nG0 X60\nG0 Y10\nG0 X-60 Z-2\nG0 Z5\nG0 Y0\nG0 X0\nG0 Z-3\n") == (4, 6, 10)
+
+
+def test_the_first_fifty_of_many_bad_lines_are_found():
+    """Sixty rapids through the block, back and forth, each deeper than the one before."""
+    across = "".join(f"G0 X{(-1) ** n * -60} Z{-1 - 0.05 * n:.2f}\nG0 X{(-1) ** n * 60}\n" for n in range(60))
+    lines = told(across)
+    assert lines == tuple(range(4, 4 + 2 * MANY, 2))

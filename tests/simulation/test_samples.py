@@ -118,3 +118,27 @@ def test_the_clock_starts_with_the_first_cut():
     )
     np.testing.assert_allclose(clock(path, 0.1), [0, 0, 0, 0.3, 1.55, 1.75, 2.75])
     np.testing.assert_allclose(clock(path, None), [0, 0, 0, 0.3, 1.55, np.nan, np.nan])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_clock_adds_up_block_by_block(seed):
+    """Blocks at random, some that stay where they are; added up one by one. A rapid that goes nowhere takes no time,
+    whatever the rate."""
+    rng = np.random.default_rng(seed)
+    m, rate = 40, 0.2
+    length, cutting = rng.choice([0.0, 0.004, 0.03], m), rng.random(m) < 0.6
+    v_f, dwell = np.where(cutting, rng.uniform(0.005, 0.05, m), 0.0), rng.choice([0.0, 0.0, 1.5], m)
+    p = np.outer(np.cumsum(length), [0.6, 0.8, 0.0])
+    path = Toolpath(
+        p=p, k=(0.0, 0.0, 1.0), cutting=cutting, v_f=v_f, dwell=dwell, block=np.arange(m), n_s=200.0, tool=0
+    )
+    first = int(np.argmax(cutting))
+    for known in (rate, None):
+        took, expected = 0.0, []
+        for i in range(m):
+            step = float(np.linalg.norm(p[i] - p[i - 1])) if i else 0.0
+            if i >= first and step > 0.0:
+                took += step / v_f[i] if cutting[i] else step / known if known else np.nan
+            took += dwell[i] if i > first else 0.0
+            expected.append(took)
+        np.testing.assert_allclose(clock(path, known), expected, atol=1e-12)

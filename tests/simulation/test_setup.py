@@ -49,3 +49,17 @@ def test_points_are_turned_and_then_shifted():
     p = np.random.default_rng(1).normal(size=(2, 4, 3))
     for at in np.ndindex(2, 4):
         np.testing.assert_allclose(setup.in_base(p)[at], (T_MW @ [*p[at], 1.0])[:3], atol=1e-15)
+
+
+@pytest.mark.parametrize("given", [[2e-4], [2e-4, 1e-4], [2e-4, 1e-4, None, None], {"floor": 1e-4}, [None, 1e-4, 1e-4]])
+def test_three_tolerances_are_three_and_the_first_is_needed(given):
+    with pytest.raises(SetupError, match=r"Tolerance: found .*three for wall, floor, feed"):
+        SETUP.replace(tolerance=given)
+
+
+@pytest.mark.parametrize("given", [[2e-4, 1e-4, 3e-4], {"feed": 3e-4, "wall": 2e-4, "floor": 1e-4}])
+def test_three_tolerances_come_in_their_order_or_by_their_names(given):
+    setup = SETUP.replace(tolerance=given)
+    assert (setup.tolerance, setup.floor_tolerance, setup.feed_tolerance) == (2e-4, 1e-4, 3e-4)
+    only = SETUP.replace(tolerance={"wall": 2e-4})
+    assert (only.tolerance, only.floor_tolerance, only.feed_tolerance) == (2e-4, None, None)

@@ -139,3 +139,17 @@ def test_every_step_is_made_by_one_tool():
         (mine,) = (each for each in made if each.steps[path.cutting & (path.tool == n)].all())
         shift = SETUP.robot.T_tool[:3, 3] - mine.robot.T_tool[:3, 3]
         np.testing.assert_allclose(shift, (length - 60e-3) * SETUP.robot.T_tool[:3, 2], atol=1e-15)
+
+
+def test_springs_are_those_of_the_first_tool_as_they_are_stated():
+    """A stated shank may be slimmer than its cutter: the first tool keeps it, however many others the program has; the
+    others have their own diameter, and stick out as much more as they are longer."""
+    slim = ToolBending(0.6 * SMALL.diameter, 30e-3)
+    setup = SETUP.replace(source=PROGRAM, tools=TABLE, springs=(slim,))
+    first, second = (
+        next(each for each in held(setup, setup.toolpath) if each.steps[setup.toolpath.cutting & mine].all())
+        for mine in (setup.toolpath.tool == 1, setup.toolpath.tool == 2)
+    )
+    assert first.springs == (slim,)
+    assert second.springs == (ToolBending(LARGE.diameter, 30e-3 + 35e-3),)
+    assert first.robot is setup.robot

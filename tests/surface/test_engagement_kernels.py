@@ -317,3 +317,55 @@ def test_a_scene_that_is_turned_meets_the_same(turn, name, along):
     there = met(CUTTERS[name], 3 * MM, along, place, 1.0, turn)
     for found, expected in zip(there, here, strict=True):
         np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("seed", range(4))
+def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(name, seed):
+    """The material is all below the tool's highest reach; the cutter's surface in points, summed up."""
+    rng = np.random.default_rng(seed)
+    cutter, depth = CUTTERS[name], rng.uniform(1.0, 5.0) * MM
+    shape = cutter.solid
+    k = np.array([*rng.uniform(-0.4, 0.4, 2), 1.0])
+    k /= np.linalg.norm(k)
+    v = np.append(rng.normal(size=2), rng.uniform(-0.6, 0.2))
+    v /= np.linalg.norm(v)
+    along = float(v @ k)
+    f = (v - along * k) / math.sqrt(1.0 - along**2)
+    left = np.cross(k, f)
+    world, halves = block_world(layers=6, dx=0.2 * MM), 2 if along < 0.0 else 1
+    tip = np.array([2.0, -3.0, -depth / MM]) * MM
+    total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
+    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, 0), total, sectors)
+
+    phi = (np.arange(720) + 0.5) * np.pi / 360
+    e = np.sin(phi)[:, None] * f + np.cos(phi)[:, None] * left
+    expected, size, reach = np.zeros((2, MOMENTS)), 0.0, 0.0
+    for stretch in (END, NOSE, FLANK):
+        begin, stop = stretch_ends(shape, stretch, 20 * MM)
+        if stop <= begin or (stretch == END and along >= -DISH):
+            continue
+        ds = (stop - begin) / 200
+        for s in begin + (np.arange(200) + 0.5) * ds:
+            r, t, sine, cosine = on_profile(shape, stretch, s)
+            facing = math.sqrt(1.0 - along**2) * np.sin(phi) * sine - along * cosine
+            cuts = ((tip + r * e + t * k)[:, 2] < 0.0) & (facing > 0.0)
+            size += cuts.sum() * ds * np.pi / 360
+            reach = max(reach, t) if cuts.any() else reach
+            for n, w in enumerate((facing * cuts, 1.0 * cuts)):
+                w = w * ds * np.pi / 360
+                expected[n] += [
+                    w @ np.cos(phi),
+                    w @ np.sin(phi),
+                    sine * w @ np.sin(phi),
+                    sine * w @ np.cos(phi),
+                    cosine * w.sum(),
+                    cosine * w @ np.sin(phi),
+                    cosine * w @ np.cos(phi),
+                    sine * w.sum(),
+                ]
+    for n in range(2):
+        np.testing.assert_allclose(total[n * MOMENTS : (n + 1) * MOMENTS], expected[n], atol=2e-2 * expected[n].max())
+    rest = total[2 * MOMENTS :]
+    assert rest[kernels.SIZE] == pytest.approx(size, rel=2e-2)
+    assert rest[kernels.REACH] == pytest.approx(reach, abs=0.1 * MM)
