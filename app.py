@@ -1,7 +1,5 @@
 """The start page: the paper's milling test, finished, before anyone has clicked anything."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

@@ -1,7 +1,5 @@
 """The robot: table, limits, tool and compliances, each editable; the arm, det(J) and C at a pose."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import streamlit as st

@@ -1,7 +1,5 @@
 """The workspace: where the tool can be brought, how able the arm is there, and the largest box to machine in."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

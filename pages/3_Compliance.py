@@ -1,7 +1,5 @@
 """Compliance: the nine maps, the joints' shares, what a stiffer joint would buy, and the full report of any pose."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

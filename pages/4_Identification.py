@@ -1,7 +1,5 @@
 """Identification: load tests in, joint compliances out, with how sure; the measured map; a laboratory to learn in."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import streamlit as st

@@ -1,7 +1,5 @@
 """The toolpath: a program, a table of lines or a sketch; the part zero; what was found; whether the arm can follow."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

@@ -1,7 +1,5 @@
 """Milling: how hard does it push, where does the tip go, what will be measured; one scrubber links the three."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

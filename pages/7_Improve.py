@@ -1,7 +1,5 @@
 """Improve: what would fix the project's cut? One remedy so far: a stiffer joint."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

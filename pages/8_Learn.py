@@ -1,7 +1,5 @@
 """The lesson for a class: why a robot bends sideways; and what of the paper is reproduced."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill import ui

@@ -3,8 +3,6 @@
 SI inside (m, rad, N, s). The public names below load on first use, so that ``import robomill`` stays quick.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Arrays at the door: shape and finiteness checks, read-only copies, canonical digests."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass

@@ -5,8 +5,6 @@ bound and the value that would fit; ``ROBOMILL_MEMORY`` (in GiB) says how much m
 not say it well.
 """
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 from functools import cache

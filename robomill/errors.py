@@ -3,8 +3,6 @@
 Pages and the command line catch ``RobomillError`` only; anything else is a bug and must be seen.
 """
 
-from __future__ import annotations
-
 
 class RobomillError(ValueError):
     """Input that robomill refuses. ``str(error)`` is the sentence a person reads.

@@ -1,7 +1,5 @@
 """The one place where files are opened: read up to a limit of their kind, written whole or not at all."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Iterator

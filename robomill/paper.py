@@ -4,8 +4,6 @@ Slavkovic, Milutinovic, Kokotovic, Glavonjic, Zivanovic, Ehmann, FME Transaction
 ``report.paper``.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 Point = tuple[float, float, float]

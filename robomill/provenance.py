@@ -1,7 +1,5 @@
 """Words that every floor uses: where a number comes from, and what was noticed about it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args

@@ -4,8 +4,6 @@ A file cut short or changed is code that would end the process, or compute somet
 not fit its seal is removed, and compiled anew.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

@@ -4,8 +4,6 @@ Every factor lives in ``UNITS``. A value is converted with ``to_si`` and ``from_
 or one of its kin below: decimals, minus signs, thousands and the taking off of units are their business alone.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The angle between two directions."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

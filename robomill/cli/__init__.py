@@ -3,8 +3,6 @@
 Exit codes: 0 success, 1 red verdict, 2 refused input (the sentence is on stderr), 130 interrupted.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -1,7 +1,5 @@
 """What the options say: numbers, joint coordinates, the points of an axis, a program's file; refused by their name."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

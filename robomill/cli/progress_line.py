@@ -1,7 +1,5 @@
 """How far long work has come, on one line of a terminal that is taken away at the end."""
 
-from __future__ import annotations
-
 import time
 from typing import TextIO
 

@@ -1,7 +1,5 @@
 """Serving the app: on this machine for whoever sits at it, or for others, with what that asks for."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import subprocess

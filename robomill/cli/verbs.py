@@ -1,7 +1,5 @@
 """What each verb does: read, compute, print the record; everything is imported by the verb that needs it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

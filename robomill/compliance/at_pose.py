@@ -1,7 +1,5 @@
 """What holds at one configuration: pose, Jacobian, determinant, compliance and the joints' shares of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

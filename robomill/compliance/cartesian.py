@@ -1,7 +1,5 @@
 """Cartesian compliance of the tool tip and each joint's share of it, eqs. (11)-(14)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

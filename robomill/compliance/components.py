@@ -1,7 +1,5 @@
 """The six components of a symmetric 3 x 3 matrix: their order, their names and the matrix they make."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """Tip displacement under a force on the tool, joint by joint, eqs. (15), (16)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -3,8 +3,6 @@
 Parts are usually zeroed with the arm sagged, so this is shown and not added to the deviation unless asked for.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Arms with more axes than a pose needs: what the tip gives in the many postures that hold the tool in one place."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

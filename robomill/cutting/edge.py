@@ -15,8 +15,6 @@ over the depth here, the part of the cutter as it is in ``engaged``, a kernel, a
 in them. Axes of all results: feed, feed-normal (left), axial (z_T).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Milling force from the process: cutter, material, feed and engagement give the mean force and its peak."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product

@@ -1,7 +1,5 @@
 """Integrals of powers of the sine."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

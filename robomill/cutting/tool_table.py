@@ -1,7 +1,5 @@
 """The tools of a program by number: what cuts, how long each is, and what of it nobody has stated. SI."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Steps whose force has no model: they are said, counted, and never green."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ A richer model always fits its own data better; predicting poses that were left 
 springs are there. The gap between the two errors is the over-fitting.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """How wide an interval is at which level, and Tukey's weights of readings that stray."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtri, stdtrit

@@ -4,8 +4,6 @@ World coordinates have five numbers, X, Y, Z, A, B, or with C six: R = R_x(A) R_
 tool axis that the first five leave open.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

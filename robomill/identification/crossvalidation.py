@@ -4,8 +4,6 @@ All that is chosen by looking at the readings is chosen inside every fold: compl
 where there is more than one candidate also the model, by a cross-validation of its own among the other folds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

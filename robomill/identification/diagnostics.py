@@ -1,7 +1,5 @@
 """Checks of a fit in words: which joint cannot be seen and why, which rows do not belong, what hit a bound."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import stdtrit
 

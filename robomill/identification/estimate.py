@@ -4,8 +4,6 @@ The problem is linear in the compliances, so no iteration and no starting guess 
 between loaded and preloaded readings: gravity, dead weight and the gauge's zero cancel in them.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One system of equations fitted: springs that repeat another set aside, gross readings weighed down, points found."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Which poses are left out together in cross-validation."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray

@@ -1,7 +1,5 @@
 """The load point and the gauge point as the fit found them, in the tool's and in the flange's frame, and how surely."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -9,8 +9,6 @@ lie cannot lose the truth, so the coverage stays 95 % for every parameter, on th
 covariance of a fit with the active bounds taken as known would be too sure of itself.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Lengths under another unit than their header's: inches as mm, a wrong prefix. Told by what they would explain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

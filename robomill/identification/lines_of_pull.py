@@ -9,8 +9,6 @@ are linear in the shift s and the pulleys: one least-squares problem, robust to 
 parallel (dead weights, pushes along axes) meet nowhere and say nothing.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Literal
 

@@ -5,8 +5,6 @@ linearly; how far a point lies off its neighbours' plane says how bent the map i
 gap is h^2 f'' / 2, and a straight line between two points misses at most h^2 f'' / 8, a quarter of it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

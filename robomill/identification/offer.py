@@ -1,7 +1,5 @@
 """Whether it pays to fit the load point or the gauge point: asked of every identification that took them as stated."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

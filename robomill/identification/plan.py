@@ -5,8 +5,6 @@ one after another. Goals: "all" grows the determinant (D-optimal: the volume of 
 number shrinks that joint's variance (c-optimal), a path shrinks the mean variance of its predicted deviation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

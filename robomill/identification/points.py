@@ -7,8 +7,6 @@ Gauss-Newton on compliances and shifts together gives the covariance of both, ea
 goes by the normal equations, whose parts are added, the last steps and the covariance by the factor.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple

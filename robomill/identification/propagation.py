@@ -11,8 +11,6 @@ control drives the joints by its nominal table, the true lengths are what is uns
 and in F apart; their product and the lengths are of second order.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the lines of pull say, in sentences with codes."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import fdtri
 

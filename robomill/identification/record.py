@@ -1,7 +1,5 @@
 """An identification as ``robomill identify --json`` gives it: points in mm, the rest in SI, null: not known."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 Whether the axes stay with the link before those joints or with the link after them is chosen with them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from robomill.arrays import FloatArray, IntArray

@@ -1,7 +1,5 @@
 """What looks wrong in the measurements before anything is fitted: signs, units, copies. Said aloud, never mended."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.compliance.gravity import GRAVITY

@@ -1,7 +1,5 @@
 """Load tests made by calculation, for samples, planning, teaching and checks. They say that they are synthetic."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How load tests are treated, whichever the model: where links bend, which points are fitted, what counts how much."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal

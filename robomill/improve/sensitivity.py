@@ -4,8 +4,6 @@ Compliance is linear in the joint compliances, so a stiffer joint scales its own
 to be computed again, and the answers are exact, not estimates.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

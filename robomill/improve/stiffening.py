@@ -1,7 +1,5 @@
 """What each joint alone, made stiffer, would leave of a cut's deviation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ What comes through a browser names no file: everything is in it. A set-up read f
 below, and the samples; anything else only where its reader allows it.
 """
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 from pathlib import Path

@@ -4,8 +4,6 @@
 where it differs from its default. A type without a codec is not in the file: ``given`` must bring it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, TypeVar

@@ -1,7 +1,5 @@
 """Force models to and from the [force] table of a set-up: each by its declared fields, a field's type by its codec."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

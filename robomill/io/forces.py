@@ -4,8 +4,6 @@ Columns, units included: ``t_s`` or ``s_mm``; ``F_feed_N``, ``F_feed_normal_N``,
 ``F_x_N``, ``F_y_N``, ``F_z_N`` (in {M}, or in the part's axes where the sensor turns with the part: ``turns_with``).
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """A Toolpath as a G-code program: line numbers, and words only where something changes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

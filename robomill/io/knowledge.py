@@ -1,7 +1,5 @@
 """What is known of the compliances in force, as the table [uncertainty] of a project file."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

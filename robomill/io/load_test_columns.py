@@ -1,7 +1,5 @@
 """What a table of load tests may hold: its columns with their units, and the lines ``# key: value`` of its head."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 

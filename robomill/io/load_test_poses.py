@@ -13,8 +13,6 @@ A cable is a size (load_N) with its direction cable_x, _y, _z in {M}, or the pul
 the stated load point.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

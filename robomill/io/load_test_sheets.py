@@ -1,7 +1,5 @@
 """Load tests written as CSV: templates to fill in, measuring sheets, samples. Read back by ``io.load_tests``."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

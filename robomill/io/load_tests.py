@@ -19,8 +19,6 @@ one joint at a time      joint,torque_Nm,angle_mrad
 measured compliances     a pose, and any of Cxx_um_N ... Czz_um_N, eq. (17): Cxy is dx by Fy; optional load_N
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

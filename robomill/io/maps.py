@@ -1,7 +1,5 @@
 """Maps as files: CSV and Parquet tables in display units, VTK image data in SI; NaN where a pose is not reached."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Material rows as TOML files with the unit in every key: read, write, list the samples."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

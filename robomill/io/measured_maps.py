@@ -1,7 +1,5 @@
 """Measured compliance maps to and from the [measured_map] table of a set-up."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

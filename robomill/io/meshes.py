@@ -1,7 +1,5 @@
 """Meshes in and out: the part as STL, PLY, GLB or VTP, a stock from an STL; in millimetres, as CAM expects."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

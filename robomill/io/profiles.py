@@ -1,7 +1,5 @@
 """A measured groove profile from a CSV file: station along the groove against centre offset."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

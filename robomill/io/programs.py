@@ -1,7 +1,5 @@
 """Programs as people bring them: files and bytes in any encoding, refused where they are no text."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from robomill.errors import ProjectError

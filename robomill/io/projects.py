@@ -1,7 +1,5 @@
 """Set-ups as TOML files: one versioned format for samples, the command line and the app's saved projects."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

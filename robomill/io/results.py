@@ -1,7 +1,5 @@
 """A run's results as files."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from contextlib import ExitStack

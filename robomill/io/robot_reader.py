@@ -1,7 +1,5 @@
 """A robot from TOML text: units in the keys, a provenance for every block, one sentence for whatever is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

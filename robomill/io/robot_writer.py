@@ -1,7 +1,5 @@
 """A robot as TOML text that reads back equal, to the last bit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Robots by name or from a file: the presets under samples/robots, TOML and URDF files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from robomill.errors import RobotError

@@ -1,7 +1,5 @@
 """Where the samples lie: beside the package in a checkout, inside it in an installed wheel."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 

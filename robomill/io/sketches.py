@@ -1,7 +1,5 @@
 """Sketches as the table ``[path.sketch]`` of a set-up file, by their declared fields."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from robomill.errors import ToolpathError

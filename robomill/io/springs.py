@@ -1,7 +1,5 @@
 """Springs beside the joints, to and from the [[springs]] of a set-up: each by its declared fields."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from robomill.compliance.spring import Spring

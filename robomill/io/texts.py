@@ -1,7 +1,5 @@
 """Text from a path, from itself or from an upload's bytes: one way to read it and one sentence for what is none."""
 
-from __future__ import annotations
-
 import codecs
 from pathlib import Path
 

@@ -10,8 +10,6 @@
 What force needs and the file does not say (``tool_table.ASKED``) is assumed as a cutter's default, and marked so.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

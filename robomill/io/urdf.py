@@ -1,7 +1,5 @@
 """A URDF file as a serial chain: joint axes become a modified D-H table, and every pose stays."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

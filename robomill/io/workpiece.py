@@ -1,7 +1,5 @@
 """Part zero and stock, to and from the tables of a set-up."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 import zlib

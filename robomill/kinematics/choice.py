@@ -1,7 +1,5 @@
 """Which of the closed form's solutions of a pose to take: the nearest within limits."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, frozen

@@ -9,8 +9,6 @@ The solutions are found in ``inverse_kernels``, in the arm's own frame {S}: z al
 axis 1 at the height of axis 2.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

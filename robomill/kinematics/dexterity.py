@@ -1,7 +1,5 @@
 """How well conditioned a configuration is: determinant, manipulability, condition, distance to the joint limits."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where the tool is: forward kinematics, batched over leading axes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """Where the joints must stand: inverse kinematics, checked by forward kinematics before anyone uses it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 

@@ -1,7 +1,5 @@
 """The geometric Jacobian of the tool tip and the task Jacobian of five-axis milling."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

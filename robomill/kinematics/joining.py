@@ -5,8 +5,6 @@ that is least first, all motion second: the branch is left where, as at a singul
 the joints less.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The damping follows the error (Sugihara, IEEE T-RO 27 (2011) 984: half the squar
 are careful far away and Newton's near the solution.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

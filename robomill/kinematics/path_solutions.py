@@ -1,7 +1,5 @@
 """A path as its solutions, and the ways through them, as the kernels take them that join."""
 
-from __future__ import annotations
-
 from typing import Annotated, NamedTuple
 
 from robomill.arrays import IntArray

@@ -1,7 +1,5 @@
 """The free rotation about the tool axis of arms with six axes or more: what a path costs at each spin."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

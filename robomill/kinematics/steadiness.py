@@ -1,7 +1,5 @@
 """Whether the joints follow a path steadily: where one must turn much faster than the tool, or the arm is singular."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

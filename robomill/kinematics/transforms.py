@@ -4,8 +4,6 @@ R = R_x(A) R_y(B), so the tool axis is k_T = (sin B, -sin A cos B, cos A cos B);
 spindle. The paper's eq. (3) leaves A and B undefined; this is robomill's reading.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

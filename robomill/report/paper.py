@@ -6,8 +6,6 @@ Its tables stand as they are printed, in the unit that each names; its milling t
 ``robomill.paper``.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -4,8 +4,6 @@ a_2, d_4 and a_5 are assumed; they are 191 of 14 112 tried that meet the paper's
 search and its criteria stand in ``tests/paper/lengths.py``, which finds these lengths again by plane geometry.
 """
 
-from __future__ import annotations
-
 from functools import cache, lru_cache
 
 import numpy as np

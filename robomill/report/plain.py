@@ -1,7 +1,5 @@
 """Records as lines of text, for a person at a terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

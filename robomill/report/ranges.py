@@ -1,7 +1,5 @@
 """How far walls, floors and the tip may be off instead: over what is assumed or known to a band only."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Answers as JSON-ready records in display units: what the command line prints; a run's is ``simulation_record``."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

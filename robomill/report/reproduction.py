@@ -4,8 +4,6 @@ What the paper leaves out (three lengths, limits, raw measurements, the alloy) c
 row says so and is never tuned to fit. ``report.paper`` holds what the paper says; here is one check for each statement.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

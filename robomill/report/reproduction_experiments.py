@@ -1,7 +1,5 @@
 """The paper's experiments (section 5), checked: identification and the milling test."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.cutting.conditions import CutConditions

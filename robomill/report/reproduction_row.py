@@ -1,7 +1,5 @@
 """The reproduction table: what it is computed from, its rows, and the table as columns and as a sentence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

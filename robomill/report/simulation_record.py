@@ -1,7 +1,5 @@
 """A run as a JSON-ready record in display units: what the command line prints and files carry."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where the numbers of a set-up come from, in words: one row a block."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

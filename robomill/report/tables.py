@@ -1,7 +1,5 @@
 """Results as columns in display units: the table twin of each figure, and what CSV files hold."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a robot's numbers must satisfy; each refusal says which joint, what was found and what was expected."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

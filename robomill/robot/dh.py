@@ -8,8 +8,6 @@ where ``M_i`` turns about (revolute) or slides along (prismatic) the z axis of i
 tool frame are folded into the constants, so a chain has one entry a *free* joint.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How much a joint gives, said as a compliance or as a stiffness: each is one over the other, a rigid joint 0 or ∞."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

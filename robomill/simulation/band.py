@@ -1,7 +1,5 @@
 """How sure the deviation of a run is: the deflection along its path with the covariance of what is known."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from typing import Any
 

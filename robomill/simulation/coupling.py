@@ -6,8 +6,6 @@ soft arm) going round and round does not settle, so the equation is solved as on
 deflection of the step before.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

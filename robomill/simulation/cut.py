@@ -1,7 +1,5 @@
 """How the tool meets the part along the path: stated (a full slot) or found from the stock as it stands."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The machined surface as a picture needs it: the displacement enlarged, the error told truly, the cut so far."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How long a run takes, told before it is run: roughly, for whoever decides whether to wait for it."""
 
-from __future__ import annotations
-
 from robomill.simulation.setup import SimulationSetup
 
 # s on a desktop of 2024, measured.

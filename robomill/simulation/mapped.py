@@ -1,7 +1,5 @@
 """Compliance in force along a path: the shares of joints and springs, or what was measured, where a map holds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray

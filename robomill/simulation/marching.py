@@ -1,7 +1,5 @@
 """A coupled run: each step is solved for its deflection, cut where it stands, and the next meets what is left."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 from typing import Any
 

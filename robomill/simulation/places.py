@@ -1,7 +1,5 @@
 """Where a gauge is put on the part: the judged samples of a run, with the axes of their cut and the outlines there."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

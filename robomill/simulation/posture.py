@@ -1,7 +1,5 @@
 """What a run says of an arm with more axes than its pose needs: one posture of many was taken."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Rapids that run through material: a machine would break the tool there, and the simulation must say so."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

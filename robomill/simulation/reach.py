@@ -1,7 +1,5 @@
 """Whether the arm can follow a path, and which points of a plane it reaches: the questions asked before a cut."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What one run says: deflection and its shares, force, both surfaces, groove sections, the verdict."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

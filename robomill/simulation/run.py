@@ -1,7 +1,5 @@
 """One run, end to end: path -> poses -> joints -> compliance -> force -> deflection -> surfaces."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

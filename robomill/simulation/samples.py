@@ -1,7 +1,5 @@
 """The path as a run evaluates it: what does not move left out, feed moves in short steps, the way at every sample."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A run as those see it who judge the part: gauge and verdict know these of it and nothing else."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 from robomill.arrays import BoolArray, FloatArray

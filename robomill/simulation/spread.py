@@ -1,7 +1,5 @@
 """How far the answer moves with what is not known for sure: the alloy's other coefficients, the peak of a turn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

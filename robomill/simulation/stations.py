@@ -1,7 +1,5 @@
 """What holds at a station of a run (m of length cut) and of the whole cut: samples, places, straightness, shares."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """What a run says of the joints that follow its path: haste and singular configurations, each with its line."""
 
-from __future__ import annotations
-
 from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.steadiness import hasty_turns, passages
 from robomill.provenance import Finding

@@ -4,8 +4,6 @@ The robot's tool frame is that of one tool: of the first that cuts. The tip of a
 tool axis by the difference of their lengths, so the arm holds its flange farther back; springs of the tool follow it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 A wall is made by teeth, so beside its mean stands how far the springs that follow them carry it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ the feed is a change of its direction; below that at which hollow end teeth begi
 5 % (by brute force, slots and shoulders, flat, ball and bull-nose cutters), above it by up to as much again.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

@@ -1,7 +1,5 @@
 """The verdict of a milled part: its walls and floors against their tolerances, as a gauge would read them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Machined against ideal: a signed error field, + where material was left (excess), - where too much went (gouge)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -6,8 +6,6 @@ taken at its end, on curves in the middle of its chord. Where material begins an
 bodies of the moves themselves, so it does not depend on the size of the cells.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

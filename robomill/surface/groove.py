@@ -4,8 +4,6 @@ A section is a vertical plane across the commanded feed. ``w`` (m) counts in it 
 along the feed-normal z x feed, so positive is left of the feed. Nothing here is read off a grid.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A stock that steps of a path are cut into one after the other, each asked first what it meets."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

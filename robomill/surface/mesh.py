@@ -5,8 +5,6 @@ wall's exact place, one at the height of either end; so a slice through the soli
 them, whatever the size of the cells.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

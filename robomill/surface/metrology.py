@@ -1,7 +1,5 @@
 """What a caliper or a CMM would say of a groove: profiles along it, best fit, comparison with a measurement."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Walls and floors that a path leaves, asked at single places: exact, without a grid, with every pass that comes by."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple

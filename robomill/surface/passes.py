@@ -1,8 +1,6 @@
 """The feed moves of a path as the surface takes them: ends and tool axes, joined where they go straight on, divided
 where the axis turns."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

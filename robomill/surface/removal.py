@@ -1,7 +1,5 @@
 """Cutting moves into a height map, tile by tile: small tiles keep memory low and the work in the processor's cache."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

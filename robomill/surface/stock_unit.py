@@ -1,7 +1,5 @@
 """A stock in another unit than the program: suspected where the path lies outside of it and fits it in that unit."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """The feed moves of a path as one swept body that can be asked for the height it leaves along a line in plan."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Following one groove in a section plane: where its walls stand, how they lean, how its floor lies."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The part after the cut as a height map: exact heights at cell centres, exact shares of cells at walls."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

@@ -5,8 +5,6 @@ END and FINI. What may move the tool in another way (CIRCLE after a MOVARC, CYCL
 that move nothing are counted as ignored.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, field

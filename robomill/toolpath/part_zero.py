@@ -1,7 +1,5 @@
 """The part zero {W} in the robot's frame {M} from touched points."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

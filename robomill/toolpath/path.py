@@ -1,7 +1,5 @@
 """The toolpath: what the tool is told to do, in the part frame {W}. Units, arcs and modes are gone."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any

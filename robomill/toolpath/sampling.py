@@ -1,7 +1,5 @@
 """Cutting a path into short steps, so that forces and deflections are known all along it."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

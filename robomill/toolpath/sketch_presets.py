@@ -1,7 +1,5 @@
 """Ready-made sketches about the part zero: the paper's lines of Fig. 8 and what every shop knows. SI units, {W}."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

@@ -4,8 +4,6 @@ Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``b
 (``block_texts``).
 """
 
-from __future__ import annotations
-
 import threading
 from collections import OrderedDict
 from collections.abc import Callable

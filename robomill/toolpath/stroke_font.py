@@ -3,8 +3,6 @@
 A glyph is a list of strokes, a stroke a list of grid points written "xy"; "04 00" goes from (0, 4) to (0, 0).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

@@ -1,7 +1,5 @@
 """Program text from a path, a string or bytes: encodings, line ends, and what is no program at all."""
 
-from __future__ import annotations
-
 import codecs
 import os
 from pathlib import Path

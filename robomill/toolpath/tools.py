@@ -1,7 +1,5 @@
 """Tools as a program knows them: numbers, lengths and diameters."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol

@@ -39,8 +39,6 @@ Rules of the house:
   ``st.warning``. HTML is a ``markup.Html``: ``ui.note(pieces.badge("paper"), text)``; an f-string is words again.
 """
 
-from __future__ import annotations
-
 from robomill.ui.cached import kept_figure
 from robomill.ui.inputs import number
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles

@@ -1,8 +1,6 @@
 """Long work of a page, made beside it: waited for where it is short; else its progress stands where its answer will,
 with a way to stop it, and a button that begins it again."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

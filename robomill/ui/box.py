@@ -1,7 +1,5 @@
 """What stands on a number box, and what a number typed into it means: no screen is needed for either."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Things kept for everyone on the server, bounded by the bytes they take: the longest unused make room for new ones."""
 
-from __future__ import annotations
-
 import sys
 import threading
 from collections import OrderedDict

@@ -1,7 +1,5 @@
 """Declared fields on the page: number boxes, switches and choices as ``quantities`` says them, of any owner."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The paper's milling test on one chart: what it claims, what it measured, and what comes out of process data here."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import streamlit as st

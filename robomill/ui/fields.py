@@ -1,7 +1,5 @@
 """Fields over planes and boxes from the cache, by fingerprints of robot and grid."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 

@@ -8,8 +8,6 @@ a second step, and a word that goes to the server between the two (a tick of pro
 default as if a person had chosen it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """The point in hand of the maps and the lesson: which one it is, and the pose that is reached there."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

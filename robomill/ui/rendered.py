@@ -1,8 +1,6 @@
 """A rendered picture on a page. The page does not wait for it: it is drawn beside it, and put in its place when it is
 there; until then the place shows the picture before it, greyed."""
 
-from __future__ import annotations
-
 import uuid
 from collections.abc import Callable, Sequence
 from typing import Any

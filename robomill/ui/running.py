@@ -1,8 +1,6 @@
 """A run on a page: at once where it is short; beside the page where it is long, with its progress and a way to stop it;
 only when asked for where it takes minutes. Until it is there, the page shows the run before it, greyed."""
 
-from __future__ import annotations
-
 import streamlit as st
 
 from robomill.arrays import digest

@@ -1,7 +1,5 @@
 """What every page begins with: page config, style, project store and sidebar."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

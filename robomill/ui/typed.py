@@ -1,7 +1,5 @@
 """What was typed: how widgets are seeded, refused input that stays with its sentence, edits of a page cut off."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

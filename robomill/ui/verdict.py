@@ -1,7 +1,5 @@
 """The verdict as start, robot, toolpath and milling show it: its tiles, its one sentence and what it leaves out."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

@@ -1,7 +1,5 @@
 """The cut as a film: pictures of the part as far as it is cut, drawn one by one, then written as GIF or MP4."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal

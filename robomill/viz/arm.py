@@ -1,7 +1,5 @@
 """The arm as a turnable figure: links as tubes, frames {M}, {W}, {T}, the part, the path, force and displacement."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Deviation along the path: by component, by joint, with its band, and by two methods."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

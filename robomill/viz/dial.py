@@ -1,7 +1,5 @@
 """How the tool meets the part at one place: the dial, seen from the spindle with the feed pointing up."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

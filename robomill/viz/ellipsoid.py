@@ -1,7 +1,5 @@
 """Compliance at a point as a body: where the tip goes under the same force in every direction."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

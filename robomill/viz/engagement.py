@@ -1,7 +1,5 @@
 """What pushes back along the path, and how the tool meets the part there."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

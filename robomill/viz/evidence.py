@@ -1,7 +1,5 @@
 """What was claimed, what was measured and what is computed here, on one scale."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

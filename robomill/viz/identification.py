@@ -3,8 +3,6 @@
 Arrays come in display units; nothing here converts. Joints keep their colours, words stand beside them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

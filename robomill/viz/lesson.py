@@ -1,7 +1,5 @@
 """The lesson's small figure: determinant and largest compliance on the way to the edge of the workspace."""
 
-from __future__ import annotations
-
 from robomill.arrays import FloatArray
 from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, figure, palette

@@ -1,7 +1,5 @@
 """A level of a measured map, the same level of the joint model, and their difference (the paper's Fig. 13)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The measuring room's figures: the groove's middle line and floor along its length, and how its error is spread."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a picture of a toolpath needs, and how much of a long path is drawn: thinned by shape, and said in words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

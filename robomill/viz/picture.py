@@ -1,7 +1,5 @@
 """A rendered picture as a value: everything that the drawing process needs, as plain arrays in mm."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Tool, spindle and arm as solids in {W}, where they stand at a station of the cut; in mm, for the rendered picture."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

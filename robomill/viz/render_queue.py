@@ -1,7 +1,5 @@
 """Pictures that are drawn beside whoever asked: one after the other, what is wanted no more left out."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field

@@ -4,8 +4,6 @@
 presets in parallel projection, fitted to the block and to what stands on it; the pieces are in ``stage``.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

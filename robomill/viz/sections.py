@@ -1,7 +1,5 @@
 """The groove's cross-section as an engineering drawing: material hatched, the ideal dashed, dimension lines."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

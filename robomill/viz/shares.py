@@ -1,7 +1,5 @@
 """Joint shares as bars, what stiffer joints buy, and the deviation along the six lines of the paper's Fig. 8."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ Points in m, in the frame of the figure. What is opaque goes into one trace and 
 each trace by itself, and thirty of them take it a second.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

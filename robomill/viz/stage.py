@@ -1,7 +1,5 @@
 """The pieces of a rendered picture: the block as sheet and skirt, the ideal's outline and ghost, tool, words."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

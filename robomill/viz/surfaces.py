@@ -1,7 +1,5 @@
 """The machined surface as a turnable figure, coloured by its signed error."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

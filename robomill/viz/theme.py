@@ -5,8 +5,6 @@ errors are blue (below the ideal, gouge) to orange (material left), sizes run th
 readable with any colour vision, and words stand beside the colours.
 """
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable
 from dataclasses import dataclass

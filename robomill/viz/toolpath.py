@@ -1,7 +1,5 @@
 """The whole toolpath as a picture, from above or turnable: coloured by a quantity, with the line that is pointed at."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

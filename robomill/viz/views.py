@@ -1,7 +1,5 @@
 """From a result to what the figures need: plain arrays in the frame and unit of the picture."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The workspace in three dimensions: cells as voxels with only their outer faces, boxes as wires, beside the arm."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

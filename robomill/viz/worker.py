@@ -7,8 +7,6 @@ one has another reason. One worker, not two: a second takes half a gigabyte, and
 faster than one (software OpenGL uses all cores by itself).
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """What is known of every cell of a grid: the laws of one configuration at every point, and what follows from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -5,8 +5,6 @@ branch with det(J) of one sign and away from zero; no joint swings by more than 
 comes back a whole turn away around a face, as it does around a singular line that passes through.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compliance, joint shares and dexterity over a grid: the laws of one configuration at every point."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Grids of points in {M}: planes and boxes, with a budget that refuses what memory cannot hold."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What holds at many configurations, as kernels fill it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from robomill.compiled import Out1, Out3

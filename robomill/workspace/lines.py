@@ -1,7 +1,5 @@
 """Deviation along straight lines across the workspace under a constant force normal to the feed (Fig. 8)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Fields, files, command line, pages, colour scales and hover texts find what they
 one more ``MapQuantity`` in one of the lists below.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal

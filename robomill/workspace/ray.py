@@ -1,7 +1,5 @@
 """The way outwards: configurations along a horizontal ray from the base to the very edges of the workspace."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

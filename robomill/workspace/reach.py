@@ -1,7 +1,5 @@
 """Where the arm can work: reach at one or several tilts, and the largest machining box inside it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Which part of the workspace to look at: everything in reach, the largest machining box, or the paper's box."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray, frozen

@@ -1,7 +1,5 @@
 """One pass over the points of a grid: inverse kinematics, Jacobian, joint shares, determinant."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray

@@ -1,7 +1,5 @@
 """Tilting of a joint's bearing and link."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Spindle, holder and their bearings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, Self
 

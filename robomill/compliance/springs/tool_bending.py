@@ -1,7 +1,5 @@
 """Bending of the cutter."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self

@@ -1,7 +1,5 @@
 """The force models, one a file: a new file in this folder is found by itself."""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 from collections.abc import Mapping

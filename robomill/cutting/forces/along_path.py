@@ -1,7 +1,5 @@
 """A force that turns with the path."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """A force that stays as it is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

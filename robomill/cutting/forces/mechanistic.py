@@ -1,7 +1,5 @@
 """From the material: mechanistic coefficients."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """G-code (RS274/NGC with LinuxCNC's semantics): from program text to canonical moves and toolpaths."""
 
-from __future__ import annotations
-
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.gcode.reading import interpret, read_gcode

@@ -4,8 +4,6 @@ An arc is the turn of a point about ``centre`` in one of the planes G17 (x, y), 
 from the positive end of the third axis, along which it may climb (helix). Lengths in m, angles in rad.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

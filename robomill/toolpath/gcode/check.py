@@ -1,7 +1,5 @@
 """Checks on a line before it is executed: which motion it makes, and that every word has a use."""
 
-from __future__ import annotations
-
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.cycle_rules import is_cycle

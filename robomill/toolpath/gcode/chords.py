@@ -1,7 +1,5 @@
 """Canonical moves as the straight pieces of a Toolpath."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

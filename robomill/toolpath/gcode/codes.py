@@ -3,8 +3,6 @@
 G codes are ten times their number (G41.1 -> 411).
 """
 
-from __future__ import annotations
-
 LETTERS = "xyzabcijkrfspql@^"
 """The words of a line as the rules take them: values of these letters (``@ ^``: polar), NaN where not given,"""
 X, _, Z, A, B, C, I, J, K, R, F, S, P, Q, L, RADIUS, ANGLE = range(len(LETTERS))  # noqa: E741

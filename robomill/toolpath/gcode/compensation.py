@@ -6,8 +6,6 @@ is known; a contour that the cutter cannot follow without gouging is refused. Co
 plane (G17: x, y; G18: z, x) in program units.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

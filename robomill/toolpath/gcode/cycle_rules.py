@@ -6,8 +6,6 @@ of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
-from __future__ import annotations
-
 import math
 
 from robomill.toolpath.gcode.codes import I, J, K, L, P, Q, R, X, Z

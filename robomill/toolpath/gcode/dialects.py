@@ -1,7 +1,5 @@
 """Dialects: what a program looks like that was not written for LinuxCNC, and what it means then."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

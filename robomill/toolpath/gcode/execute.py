@@ -1,7 +1,5 @@
 """What a line does, in the standard's order of execution."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

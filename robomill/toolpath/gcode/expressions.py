@@ -1,7 +1,5 @@
 """Values of a line that is read word by word: the rules of ``value_rules``, and their refusals in words."""
 
-from __future__ import annotations
-
 import math
 import re
 

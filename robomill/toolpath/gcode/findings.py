@@ -1,7 +1,5 @@
 """What is noticed while a program is read: kept once per kind, with the first line and a count."""
 
-from __future__ import annotations
-
 from robomill.provenance import Finding, Level
 
 NO_UNITS = "no-units"

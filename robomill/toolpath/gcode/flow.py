@@ -1,7 +1,5 @@
 """O words: which lines open, close and branch, found once; subroutines by name."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field

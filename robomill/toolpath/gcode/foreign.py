@@ -1,7 +1,5 @@
 """Words of languages that are not read, so that a refusal can name the word and its language, and say what to do."""
 
-from __future__ import annotations
-
 import re
 
 _LEFT_OUT = re.compile(r"\([^()]*\)|;.*|<[^>]*>")

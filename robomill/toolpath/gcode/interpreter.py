@@ -1,7 +1,5 @@
 """From program text to canonical moves: runs the lines, follows O words, and keeps the budgets."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from robomill.errors import GCodeError

@@ -7,8 +7,6 @@ plain Python that numba can compile.
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

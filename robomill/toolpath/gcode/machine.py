@@ -4,8 +4,6 @@ Lengths here are in program units (mm or inch, whatever G20/G21 says) and angles
 them; the rules of ``motion_rules`` make them m and rad in the machine frame.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -13,8 +13,6 @@ done"; ``moves.SENTENCES`` says what each code means, with the figures that are 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 # One function serves lists, arrays, objects and records: no annotation would say more than the names.
 
-from __future__ import annotations
-
 import math
 
 from robomill.toolpath.gcode.codes import ANGLE, RADIUS, F, I, J, K, P, R, X

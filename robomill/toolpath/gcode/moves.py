@@ -1,7 +1,5 @@
 """The moves of a line: its words handed to the rules of ``motion_rules``, their refusals in words, and returns home."""
 
-from __future__ import annotations
-
 import math
 
 from robomill.toolpath.gcode import cycle_rules as cycles

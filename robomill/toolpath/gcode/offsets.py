@@ -1,7 +1,5 @@
 """Where zero is: G10, G52, G54 to G59.3, G92 and its kin, and tool lengths G43, G49."""
 
-from __future__ import annotations
-
 from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine

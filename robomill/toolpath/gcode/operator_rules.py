@@ -6,8 +6,6 @@ Problems are codes, 0 for none; ``expressions.SENTENCES`` says what each means, 
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
-from __future__ import annotations
-
 import math
 
 from robomill.units import to_si

@@ -1,7 +1,5 @@
 """O words and subroutines: where the program goes on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any

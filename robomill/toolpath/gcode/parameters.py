@@ -1,7 +1,5 @@
 """Numbered and named parameters, with the ones the machine itself provides."""
 
-from __future__ import annotations
-
 import math
 from array import array
 from collections.abc import Callable, Sequence

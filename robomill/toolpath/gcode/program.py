@@ -1,7 +1,5 @@
 """What an interpreter makes of a program: canonical moves in the machine frame, recorded one by one, kept as arrays."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The two ways in: ``interpret`` for canonical moves, ``read_gcode`` for a toolpath."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

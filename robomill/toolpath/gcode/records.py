@@ -1,7 +1,5 @@
 """What the rules read and write, as records: the state of a machine, a move, and the text of a program."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A program in the figures of the shop floor: for the command line's JSON and for files of moves."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Splines G5, G5.1 and NURBS G5.2/G5.3 in the plane G17, as straight pieces between points of the curve."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

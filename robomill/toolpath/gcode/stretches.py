@@ -1,7 +1,5 @@
 """The lines of a program, and stretches of plain ones among them that are read and moved along together."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from functools import cached_property

@@ -1,7 +1,5 @@
 """What is read, what is left out and what is refused, as a table; every row holds the program that tests it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """G76: cutting a thread along Z in passes, each a little deeper (lathe)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -13,8 +13,6 @@ changes no parameter, so a line that is refused can be read again.
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 # One function serves bytes, lists and arrays: no annotation would say more than the names.
 
-from __future__ import annotations
-
 import math
 
 from robomill.toolpath.gcode import operator_rules as op

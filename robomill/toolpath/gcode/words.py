@@ -1,7 +1,5 @@
 """One line of a program, as words: letters with values, G and M codes by modal group, settings and comments."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from robomill.errors import GCodeError

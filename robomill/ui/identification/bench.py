@@ -1,7 +1,5 @@
 """What is read from the bench, fitted and planned: kept by what it depends on, in the session only and bounded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """What the compliances found mean for the project's cut: the deviation along its path with a band."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The identification page's inputs: measurements, robot, model, what was noticed, and the button that uses it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The virtual laboratory: a robot whose compliances are hidden, a noisy dial gauge, a budget, and a score."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any

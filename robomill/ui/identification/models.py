@@ -1,7 +1,5 @@
 """Models side by side on the same tests: which springs the measurements support."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

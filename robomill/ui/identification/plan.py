@@ -1,7 +1,5 @@
 """Which poses to measure next: goal, plan, measuring sheet, and the filled-in sheet back."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

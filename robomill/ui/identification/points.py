@@ -1,7 +1,5 @@
 """Where the tests were loaded and read: the lines of pull, and the points that were fitted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the load tests say: compliances with their intervals, residuals by test."""
 
-from __future__ import annotations
-
 import html
 
 import numpy as np

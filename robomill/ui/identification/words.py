@@ -1,7 +1,5 @@
 """What an identification says on the screen: sentences, tiles and columns. Pure functions, no widgets."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

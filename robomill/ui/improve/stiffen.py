@@ -1,7 +1,5 @@
 """One remedy for the project's cut: a stiffer joint, ranked by what it leaves of the largest deviation."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import streamlit as st

@@ -6,8 +6,6 @@ tab that was in front, and a new tab that of the one that wrote last. A page say
 forgotten it, together with what stands in its boxes.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 import re

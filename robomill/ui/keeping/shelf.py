@@ -5,8 +5,6 @@ is one file: a line that says what it is, then the project as Save writes it and
 hold), earlier states of it. Files are written beside and renamed; a sum tells one that is damaged.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

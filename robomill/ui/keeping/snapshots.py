@@ -1,7 +1,5 @@
 """Projects kept under a name: opened again, deleted, put beside each other and the one in force."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Writes projects to the shelf beside the page: in one thread, the newest of each tab, large ones seldom."""
 
-from __future__ import annotations
-
 import atexit
 import logging
 import secrets

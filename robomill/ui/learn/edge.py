@@ -1,7 +1,5 @@
 """The lesson's second half: the arm is dragged to the edge of its workspace and the ellipsoid stretches."""
 
-from __future__ import annotations
-
 import numpy as np
 import streamlit as st
 

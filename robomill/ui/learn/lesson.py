@@ -1,7 +1,5 @@
 """The lesson: push along Y, where does the tip go? One question, one picture, then the reason."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import dataclass
 from functools import partial

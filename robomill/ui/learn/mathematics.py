@@ -1,7 +1,5 @@
 """Equations (13) to (15) with the numbers of now, and the table of what of the paper is reproduced."""
 
-from __future__ import annotations
-
 import html
 
 import numpy as np

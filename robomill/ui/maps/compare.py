@@ -1,7 +1,5 @@
 """Up to three robots or compliance sets side by side, with the difference to the first."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The compliance page's tiles, its left column, what-if factors and what stiffness buys."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

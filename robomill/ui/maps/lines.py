@@ -1,7 +1,5 @@
 """Path deviations of Fig. 8: six straight lines on the borders and through the middle of the region's plane."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

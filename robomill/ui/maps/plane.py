@@ -1,7 +1,5 @@
 """What both map pages look at: region, tilt, plane and the slider that moves it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The full report of one pose: the arm with its compliance ellipsoid, joints, Jacobian, C, shares that sum to it."""
 
-from __future__ import annotations
-
 import numpy as np
 import streamlit as st
 

@@ -1,7 +1,5 @@
 """The pictures of the compliance page: nine maps, joint shares, dominant joint, six lines, comparison."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any

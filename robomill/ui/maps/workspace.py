@@ -1,7 +1,5 @@
 """The workspace page: reach and dexterity as planes, two planes, or voxels; the largest machining box."""
 
-from __future__ import annotations
-
 import html
 import re
 from functools import partial

@@ -1,7 +1,5 @@
 """The milling page's body: inputs on the left, one scrubber, and three questions that share it."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

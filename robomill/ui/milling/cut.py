@@ -1,7 +1,5 @@
 """Cutter, stock, tolerance and accuracy of the cut."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A film of the cut, made beside the page: progress, cancel, then GIF or MP4 to watch and to take away."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from typing import Any

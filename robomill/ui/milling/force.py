@@ -1,7 +1,5 @@
 """The force on the tool: which model, its numbers, engagement and coupling."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

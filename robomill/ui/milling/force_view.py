@@ -1,7 +1,5 @@
 """How hard it pushes: force along the path with its peak and its band, engagement, the alloy's rows, the coupling."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robomill.arrays import FloatArray

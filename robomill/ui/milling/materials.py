@@ -1,7 +1,5 @@
 """Material rows: pick one, see its source, edit its coefficients, add a row of one's own."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import partial

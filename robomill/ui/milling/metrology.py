@@ -1,7 +1,5 @@
 """What the measuring room would say: section, profile along the groove, best fit, areas, a measured profile beside."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

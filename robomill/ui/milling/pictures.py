@@ -1,7 +1,5 @@
 """Pictures of the machined surface: rendered, beside the ideal one, or turnable; surfaces to take away."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -1,7 +1,5 @@
 """One scrubber for everything: code line, arm, engagement and force, the point on the curve, the section."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """What gives beside the joints: tool, spindle, bending of the joints, the arm's weight; each with its own line."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any

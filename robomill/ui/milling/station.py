@@ -1,7 +1,5 @@
 """What stands at the station: program lines, arm, dial, section, shares; all drawn for one sample of the path."""
 
-from __future__ import annotations
-
 import html
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The table of tools: filled from a file or by hand; a tool that cuts and is not in it is asked for by its number."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial

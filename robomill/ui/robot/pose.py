@@ -1,7 +1,5 @@
 """A configuration of the arm, chosen with sliders and number boxes, and what holds at it."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

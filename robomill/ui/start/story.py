@@ -1,7 +1,5 @@
 """What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
 
-from __future__ import annotations
-
 import html
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A component of the page that is written for the browser: its files stand beside the module that shows it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The path in detail: what was found while it was read, its extents, lengths and feeds, and one line of it in words."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The table of straight cuts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import streamlit as st

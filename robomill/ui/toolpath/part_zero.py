@@ -1,7 +1,5 @@
 """Where the part zero {W} lies in the robot's frame {M}: by numbers, or by three touched points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import streamlit as st

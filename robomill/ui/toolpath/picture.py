@@ -1,7 +1,5 @@
 """The path as a picture: coloured by what was asked, seen from above, turned, or with the arm."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import Any

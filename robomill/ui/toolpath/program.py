@@ -1,7 +1,5 @@
 """The program's inputs: a file, its dialect, its text with findings in place, and what was refused."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A program with line numbers and findings in place; the line pointed at is shared by code, list and picture."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where on the board the arm reaches, for the pad, and whether it can follow a path: both kept by fingerprint."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

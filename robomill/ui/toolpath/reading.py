@@ -1,7 +1,5 @@
 """Reading a big program beside the page: progress, a cancel button, and the path in the project once it is read."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

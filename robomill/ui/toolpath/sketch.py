@@ -1,7 +1,5 @@
 """The sketch's inputs: ready-made sketches, feeds and heights, the table of shapes, and the way out as G-code."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd

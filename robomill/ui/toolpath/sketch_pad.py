@@ -5,8 +5,6 @@ project, so that undo, the table and saved files see the same sketch. The pad is
 changes: after undo, a preset, or an edit of the table.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

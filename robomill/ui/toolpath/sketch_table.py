@@ -1,7 +1,5 @@
 """A sketch as the table and the pad show it, in display units, and back: pure functions."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Where the path comes from: switching between program, table of lines and sketch without losing the path."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import PurePath
 from typing import Any

@@ -1,7 +1,5 @@
 """What the page says about a path: its numbers, counted once and not at every rerun, and the words made of them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """What the toolpath page says first: one sentence, and the tiles."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
