@@ -57,8 +57,12 @@ def test_contributions_of_many_at_once():
     rng = np.random.default_rng(2)
     J_v, C_theta, F = rng.normal(size=(4, 2, 3, 5)), rng.random(5), rng.normal(size=(2, 3))
     C_joint = rm.joint_contributions(J_v, C_theta)
-    each = rm.joint_contributions(J_v, np.broadcast_to(C_theta, (4, 2, 5)))
-    np.testing.assert_array_equal(each, C_joint)
+    for shape in ((4, 2, 5), (2, 5), (4, 1, 5), (1, 5)):
+        each = rm.joint_contributions(J_v, np.broadcast_to(C_theta, shape))
+        np.testing.assert_array_equal(each, C_joint)
+    np.testing.assert_array_equal(
+        rm.joint_contributions(J_v[0, 0], np.broadcast_to(C_theta, (4, 2, 5)))[3, 1], C_joint[0, 0]
+    )
     assert C_joint.shape == (4, 2, 5, 3, 3)
     delta = deflection(C_joint, F)
     for index in np.ndindex(4, 2):

@@ -10,7 +10,7 @@ from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.compliance.spring import TYPED, extra_contributions
 from robomill.compliance.springs import SPRINGS as KINDS
-from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.joint_bending import JointBending, bending_axes
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
@@ -192,3 +192,45 @@ def test_turned_bending_axes_stay_with_the_link_after_the_joint():
         levers = [np.cross(turned[:3, axis], reach) for axis in (0, 1)]
         expected = 3e-7 * np.outer(levers[0], levers[0]) + 5e-7 * np.outer(levers[1], levers[1])
         np.testing.assert_allclose(C, expected, atol=1e-16)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_axes_that_turn_with_a_joint_are_square_to_it_and_lie_as_the_next_frame_does(seed):
+    """Frames turned at random: x is what is seen of the next x from above z; where that is along z, the next y."""
+    frames = np.tile(np.eye(4), (5, 4, 1, 1))
+    frames[..., :3, :3] = Rotation.random(20, random_state=seed).as_matrix().reshape(5, 4, 3, 3)
+    frames[4, 2, :3, :3] = frames[4, 1, :3, :3] @ [
+        [0, 1, 0],
+        [0, 0, 1],
+        [1, 0, 0],
+    ]  # x of the third along z of the second
+    for joint in (0, 1, 2):
+        x, y = bending_axes(frames, joint, turned=True)
+        z, after = frames[:, joint, :3, 2], frames[:, joint + 1, :3, :3]
+        np.testing.assert_allclose(np.linalg.norm(x, axis=1), 1.0, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.det(np.stack([x, y, z], axis=-1)), 1.0, atol=1e-12)
+        np.testing.assert_allclose(np.stack([x, y], axis=1) @ z[..., None], 0.0, atol=1e-12)
+        for n in range(5):
+            seen = after[n, :, 1] if (n, joint) == (4, 1) else after[n, :, 0]
+            np.testing.assert_allclose(np.cross(z[n], np.cross(seen, z[n])), (seen @ x[n]) * x[n], atol=1e-12)
+            assert seen @ x[n] > 0.0
+        x, y = bending_axes(frames, joint, turned=False)
+        np.testing.assert_array_equal(np.stack([x, y], axis=-1), frames[:, joint, :3, :2])
+
+
+def test_the_last_joint_bends_about_axes_that_turn_with_the_tool():
+    """Against twisting it by hand: a tool frame that is turned anyhow keeps the axes of the joint's own turn."""
+    tool = np.eye(4)
+    tool[:3, :3], tool[:3, 3] = Rotation.random(random_state=3).as_matrix(), (0.1, -0.05, 0.2)
+    robot = ROBOT.replace(T_tool=tool)
+    for theta in THETA:
+        frames = joint_frames(robot, theta)
+        z, seen = frames[-2, :3, 2], frames[-1, :3, 0]
+        x = (seen - (seen @ z) * z) / np.linalg.norm(np.cross(seen, z))
+        moved = []
+        for axis, give in ((x, 3e-7), (np.cross(z, x), 5e-7)):
+            arm = frames[-1, :3, 3] - frames[-2, :3, 3]
+            turn = 1e3 * give * (np.cross(arm, FORCE) @ axis) * axis  # enlarged, for the digits
+            moved.append((Rotation.from_rotvec(turn).apply(arm) - Rotation.from_rotvec(-turn).apply(arm)) / 2e3)
+        C = JointBending(robot.n, 3e-7, 5e-7, turned=True).compliance(robot, theta)
+        np.testing.assert_allclose(C @ FORCE, np.sum(moved, axis=0), rtol=1e-3, atol=1e-12)

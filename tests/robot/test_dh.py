@@ -94,3 +94,11 @@ def test_screws():
     for angle, shift in ((0.3, 0.5), (-2.1, -0.4), (np.pi / 2, 0.0)):
         np.testing.assert_allclose(screw_x(angle, shift), screw(0, angle, shift), atol=1e-16)
         np.testing.assert_allclose(screw_z(angle, shift), screw(2, angle, shift), atol=1e-16)
+
+
+def test_multiples_of_a_right_angle_are_exact_however_often_it_goes_round():
+    """As degrees give them: their rounding grows with the number of turns."""
+    pattern = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
+    for k in (*range(-40, 41), 1001, -2002, 30_003):
+        for angle in (np.radians(90.0 * k), k * (np.pi / 2), np.nextafter(k * np.pi / 2, 0.0)):
+            assert exact_cos_sin(float(angle)) == pattern[k % 4]

@@ -11,6 +11,7 @@ from robomill.kinematics import dexterity
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, axis_points, box_grid, plane_grid
 from robomill.workspace.quantities import map_quantities, map_quantity
+from robomill.workspace.reach import reach
 
 MEASURES = {
     "det_J": dexterity.determinant,
@@ -127,3 +128,18 @@ def test_a_planar_arm_keeps_its_elbow_side_over_a_map():
     mirrored = other[:, 0] + 2 * np.arctan2(0.4 * np.sin(other[:, 1]), 0.5 + 0.4 * np.cos(other[:, 1]))
     mirrored = (mirrored + np.pi) % (2 * np.pi) - np.pi
     assert (np.abs(mirrored) > robot.limits[0, 1] - 1e-9).all()
+
+
+@pytest.mark.parametrize("block", [1, 7, 16, 48, 100])
+def test_a_grid_in_blocks_is_the_grid_at_once(monkeypatch, block):
+    """48 points in blocks that end with it and blocks that do not."""
+    robot, grid = rm.load_robot("slavkovic_5r"), box_grid([-0.5, -2.4, -0.2], [0.4, -1.5, 0.4], 0.3)
+    assert grid.shape == (4, 4, 3)
+    whole, mask = compliance_field(robot, grid, 0.1, -0.2), reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)])
+    for module in ("solve", "reach"):
+        monkeypatch.setattr(f"robomill.workspace.{module}.BLOCK", block)
+    parts = compliance_field(robot, grid, 0.1, -0.2)
+    for name in ("theta", "reached", "J", "shares", "det_J"):
+        np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name))
+    np.testing.assert_array_equal(reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)]), mask)
+    assert 0 < mask.sum() < grid.cells

@@ -36,3 +36,30 @@ def test_the_whole_ray_is_in_reach_and_nothing_behind_its_end() -> None:
     np.testing.assert_allclose(rm.tool_pose(robot, way.theta)[:, :3, 3], way.p, atol=1e-9)
     behind = rm.pose_from_world([0.0, -way.radius[-1] - 1e-5, 0.0, 0.0, 0.0])
     assert not rm.inverse_kinematics(robot, behind).reached
+
+
+@pytest.mark.parametrize("radii", [7, 12, 121])
+@pytest.mark.parametrize("z", [0.0, -0.5, 0.4])
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_both_ends_are_edges_however_coarsely_one_looks(monkeypatch, radii: int, z: float, shift: float) -> None:
+    """An elbow that cannot fold keeps the tool from the base: a hundredth of a millimetre further in or out nothing is
+    reached, and between them everything is. At z = 0.4 m the inner edge lies next to the first radius looked at."""
+    monkeypatch.setattr("robomill.workspace.ray.RADII", radii)
+    robot = rm.load_robot("slavkovic_5r")
+    T_base = np.array(robot.T_base)
+    T_base[0, 3] += shift
+    limits = np.array(robot.limits_all)
+    limits[2] *= 0.5
+    robot, point = robot.replace(T_base=T_base, limits_all=limits), np.array([0.9 + shift, -1.2, z])
+
+    def reached(radius) -> np.ndarray:
+        across = (point[:2] - [shift, 0.0]) / np.linalg.norm(point[:2] - [shift, 0.0])
+        places = [[*(np.array([shift, 0.0]) + r * across), z, 0.0, 0.0] for r in np.atleast_1d(radius)]
+        return rm.inverse_kinematics(robot, rm.pose_from_world(places)).reached
+
+    way = ray_through(robot, point)
+    assert way.radius[way.start] == pytest.approx(np.linalg.norm(point[:2] - [shift, 0.0]), abs=1e-12)
+    low, high = way.radius[[0, -1]]
+    assert reached(np.linspace(low, high, 40)).all()
+    assert not reached([low - 1e-5, high + 1e-5]).any()
+    assert np.isfinite(way.theta).all()
