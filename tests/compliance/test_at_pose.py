@@ -114,3 +114,23 @@ def test_what_is_not_one_configuration_is_refused(theta):
 def test_unknown_components_are_refused(name):
     with pytest.raises(KinematicsError, match="two of x, y, z"):
         at_pose(rm.load_robot("planar_2r"), [0.1, 0.2]).component(name)
+
+
+@pytest.mark.parametrize("unknown", [[0], [2], [0, 4], range(5)])
+def test_one_joint_that_is_not_known_leaves_nothing_known(unknown):
+    robot = rm.load_robot("slavkovic_5r")
+    theta = np.full(5, 0.3)
+    theta[list(unknown)] = np.nan
+    here = at_pose(robot, theta)
+    assert not here.reached
+    for value in (
+        here.frames,
+        here.T_MT,
+        here.J,
+        here.C_joint,
+        here.C,
+        here.C_X,
+        *here.principal,
+        here.delta([1, 2, 3]),
+    ):
+        assert np.isnan(value).all()

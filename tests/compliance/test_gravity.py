@@ -80,3 +80,16 @@ def test_refusals():
         LinkMasses([-1.0], np.zeros((1, 3)))
     with pytest.raises(RobotError, match="found 2 masses and 1 centres of mass"):
         LinkMasses([1.0, 2.0], np.zeros((1, 3)))
+
+
+def test_weight_pulls_down_by_what_a_kilogram_weighs():
+    """Along -z of {M}: an arm stretched out sinks; a mass on one link loads its joint by m g times its level arm."""
+    sag = gravity_sag(ROBOT, np.zeros(5), LinkMasses(LINKS.mass, np.zeros((5, 3)))).sum(axis=0)
+    assert sag[2] < -10 * np.abs(sag[0])
+    mass = np.array([0.0, 0.0, 0.0, 0.0, 7.0])
+    for theta in THETA:
+        frames = joint_frames(ROBOT, theta)
+        axis, arm = frames[1, :3, 2], frames[-1, :3, 3] - frames[1, :3, 3]
+        torque = ROBOT.chain.sign[1] * axis @ np.cross(arm, [0.0, 0.0, -7.0 * 9.80665])
+        found = gravity_torques(ROBOT, theta, LinkMasses(mass, np.zeros((5, 3))))
+        assert found[1] == pytest.approx(torque, rel=1e-9)

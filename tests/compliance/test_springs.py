@@ -234,3 +234,19 @@ def test_the_last_joint_bends_about_axes_that_turn_with_the_tool():
             moved.append((Rotation.from_rotvec(turn).apply(arm) - Rotation.from_rotvec(-turn).apply(arm)) / 2e3)
         C = JointBending(robot.n, 3e-7, 5e-7, turned=True).compliance(robot, theta)
         np.testing.assert_allclose(C @ FORCE, np.sum(moved, axis=0), rtol=1e-3, atol=1e-12)
+
+
+def test_another_tool_sticks_out_as_it_says_or_as_much_more_as_it_is_longer():
+    """Never less than its own diameter; a spindle gives the same whatever it holds."""
+    stated = ToolBending(8e-3, 40e-3, E=500e9, core=0.7)
+    for cutter, longer, stick_out in (
+        (Cutter("flat", 10e-3), 15e-3, 55e-3),
+        (Cutter("flat", 10e-3), -12e-3, 28e-3),
+        (Cutter("flat", 10e-3), -35e-3, 10e-3),
+        (Cutter("flat", 10e-3, stick_out=25e-3), 15e-3, 25e-3),
+    ):
+        found = stated.of_tool(cutter, longer)
+        assert (found.diameter, found.E, found.core) == (10e-3, 500e9, 0.7)
+        assert found.stick_out == pytest.approx(stick_out)
+        spindle = SpindleSpring(1e-7)
+        assert spindle.of_tool(cutter, longer) is spindle

@@ -8,11 +8,13 @@ import pytest
 from scipy.optimize import minimize
 
 import robomill as rm
-from robomill.workspace.clear import SWING, _cell_of, _finer, _wrapped, clear_cells, largest_clear_box
+from robomill.workspace.clear import _cell_of, _finer, _wrapped, clear_cells, largest_clear_box
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 from robomill.workspace.reach import Box
 from robomill.workspace.region import largest_region
 from tests.kinematics.oracles import numeric_jacobian, pose
+
+QUARTER = np.radians(90.0)
 
 
 def det(robot, theta):
@@ -143,14 +145,14 @@ def clear_by_hand(shape, able, branch, det, theta):
         clear = all(able[p] for p in corners)
         for p, q in edges:
             clear &= branch[p] == branch[q] and det[p] * det[q] > 0.0
-            clear &= bool((np.abs(short(theta[q] - theta[p])) < SWING).all())
+            clear &= bool((np.abs(short(theta[q] - theta[p])) < QUARTER).all())
         for p, one, other in itertools.product(corners, wide, wide):
             if one < other:
                 e, f = np.eye(3, dtype=int)[[one, other]]
                 loop = [p, tuple(p + e), tuple(p + e + f), tuple(p + f), p]
                 if all(q in corners for q in loop):
                     left = sum(short(theta[b] - theta[a]) for a, b in itertools.pairwise(loop))
-                    clear &= bool((np.abs(left) < SWING).all())
+                    clear &= bool((np.abs(left) < QUARTER).all())
         found[cell] = clear
     return found
 

@@ -7,9 +7,11 @@ import pytest
 
 import robomill as rm
 from robomill.errors import WorkspaceError
+from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
 from robomill.workspace.reach import Box, against_paper, largest_box, reach
+from tests.telling import told
 
 
 def corners(grid):
@@ -148,3 +150,26 @@ def test_six_lines_on_borders_and_middle():
     assert [len(line.p) for line in lines] == [3] * 6
     assert lines[0].name == "along X_M at Y_M = −1500 mm"
     assert lines[5].name == "along Y_M at X_M = 200 mm"
+
+
+def test_a_long_search_says_how_far_it_is(monkeypatch):
+    """Points block by block, boxes height by height, each from nothing on in even parts."""
+    monkeypatch.setattr("robomill.workspace.reach.BLOCK", 30)
+    monkeypatch.setattr("robomill.workspace.solve.BLOCK", 30)
+    robot, grid = rm.load_robot("slavkovic_5r"), box_grid([-0.3, -1.5, 0.0], [0.3, -1.2, 0.2], 0.1)
+    mask = reach(robot, grid)
+    assert mask.all()
+    assert mask.size == 84
+    for work, stage in ((lambda: reach(robot, grid), "Reach"), (lambda: compliance_field(robot, grid), "Map")):
+        assert told(work)[stage] == pytest.approx([0.0, 30 / 84, 60 / 84])
+    boxes = told(lambda: largest_box(mask, *corners(grid)))["Boxes"]
+    assert set(boxes) == {1 / 3, 2 / 3}  # boxes of one height have none
+
+
+def test_reach_asks_for_what_it_keeps(monkeypatch):
+    """Three coordinates and a flag a point."""
+    asked = []
+    monkeypatch.setattr(Grid, "check_budget", lambda grid, bytes_per_cell: asked.append(bytes_per_cell))
+    grid = box_grid([-0.1, -1.4, 0.0], [0.1, -1.2, 0.0], 0.1)
+    mask = reach(rm.load_robot("slavkovic_5r"), grid)
+    assert asked == [(grid.points().nbytes + mask.nbytes) / grid.cells]
