@@ -1,7 +1,5 @@
 """A joint as compliance and as stiffness: one over the other, in units of joints that turn and that slide."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
