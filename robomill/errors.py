@@ -34,6 +34,11 @@ class GCodeError(ToolpathError):
         super().__init__(message, where=f"line {line}" if line else None)
         self.line = line
 
+    @classmethod
+    def at(cls, line: int, message: str) -> "GCodeError":
+        """The refusal of a line, which is named first."""
+        return cls(f"Line {line}: {message}", line=line)
+
 
 class CuttingError(RobomillError):
     """A cutter, material, force or engagement that makes no sense."""

@@ -112,7 +112,7 @@ def read_apt(path_or_text: Source) -> Toolpath:
         values = [v.strip() for v in rest.split(",")] if rest.strip() else []
         _statement(state, findings, word, values, line)
         if len(state.rows) > MAX_POINTS:
-            raise GCodeError(f"Line {line}: more than {MAX_POINTS} points; split the file.", line=line)
+            raise GCodeError.at(line, f"more than {MAX_POINTS} points; split the file.")
         if word == "FINI":
             break
     if len(state.rows) < 2:
@@ -157,10 +157,10 @@ def _statements(text: str) -> list[tuple[int, str]]:
 def _numbers(values: list[str], line: int, word: str) -> list[float]:
     if not all(_NUMBER.match(v) for v in values):
         bad = next(v for v in values if not _NUMBER.match(v))
-        raise GCodeError(f"Line {line}: {word} has {bad!r}; expected a number.", line=line)
+        raise GCodeError.at(line, f"{word} has {bad!r}; expected a number.")
     numbers = [float(v) for v in values]
     if not all(math.isfinite(n) for n in numbers):
-        raise GCodeError(f"Line {line}: {word} has a number that is too large.", line=line)
+        raise GCodeError.at(line, f"{word} has a number that is too large.")
     return numbers
 
 
@@ -170,7 +170,7 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
     elif word == "GODLTA":
         numbers = _numbers(values, line, word)
         if len(numbers) != 3 or not state.rows:
-            raise GCodeError(f"Line {line}: GODLTA needs three steps and a point before it.", line=line)
+            raise GCodeError.at(line, "GODLTA needs three steps and a point before it.")
         at = [float(v) / to_si(1.0, state.unit) for v in state.rows[-1][:3]]
         _go(state, [a + n for a, n in zip(at, numbers)], line)
     elif word == "RAPID":
@@ -190,22 +190,22 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
     elif word == "MULTAX":
         state.axis = state.axis if not values or values[0].upper() == "ON" else (0.0, 0.0, 1.0)
     elif word in _MOVES:
-        raise GCodeError(f"Line {line}: {word} moves the tool in a way that is not read; write GOTO points.", line=line)
+        raise GCodeError.at(line, f"{word} moves the tool in a way that is not read; write GOTO points.")
     elif word not in _SILENT:
         findings.add("unknown-word", "ignored", line, f"{word[:20]} is not known and is left out")
 
 
 def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) -> None:
     if len(numbers) not in (3, 6):
-        raise GCodeError(f"Line {line}: found {len(numbers)} numbers; a point has x,y,z or x,y,z,i,j,k.", line=line)
+        raise GCodeError.at(line, f"found {len(numbers)} numbers; a point has x,y,z or x,y,z,i,j,k.")
     if len(numbers) == 6:
         size = math.sqrt(sum(v * v for v in numbers[3:]))
         if size < 1e-9:
-            raise GCodeError(f"Line {line}: the tool axis i,j,k is 0; expected a direction.", line=line)
+            raise GCodeError.at(line, "the tool axis i,j,k is 0; expected a direction.")
         state.axis = (numbers[3] / size, numbers[4] / size, numbers[5] / size)
     cutting = bool(state.rows) and not state.rapid and not is_start
     if cutting and state.feed <= 0:
-        raise GCodeError(f"Line {line}: a cut needs a feed; FEDRAT comes first.", line=line)
+        raise GCodeError.at(line, "a cut needs a feed; FEDRAT comes first.")
     point = [to_si(v, state.unit) for v in numbers[:3]]
     feed = state.feed if cutting else 0.0
     turning = (state.speed, state.tool, state.ccw and state.speed > 0.0)
@@ -220,7 +220,7 @@ def _feed(state: _State, values: list[str], line: int) -> None:
         state.rapid = True
         return
     if len(numbers) != 1 or float(numbers[0]) < 0:
-        raise GCodeError(f"Line {line}: FEDRAT has {','.join(values)!r}; expected one rate of 0 or more.", line=line)
+        raise GCodeError.at(line, f"FEDRAT has {','.join(values)!r}; expected one rate of 0 or more.")
     if any(w in words for w in ("IPR", "MMPR", "PERREV")):
         unit = "in" if "IPR" in words else "mm" if "MMPR" in words else state.unit
         state.feed = to_si(float(numbers[0]), unit) * state.speed
@@ -240,12 +240,12 @@ def _spindle(state: _State, values: list[str], line: int) -> None:
     if numbers:
         state.speed = to_si(abs(float(numbers[0])), "1/min")
     elif not any(w in words for w in ("ON", "CLW", "CCLW")):
-        raise GCodeError(f"Line {line}: SPINDL has {','.join(values)!r}; expected a speed or OFF.", line=line)
+        raise GCodeError.at(line, f"SPINDL has {','.join(values)!r}; expected a speed or OFF.")
 
 
 def _units(state: _State, values: list[str], line: int) -> None:
     found = values[0].upper() if values else ""
     unit = {"MM": "mm", "METRIC": "mm", "MILLIMETERS": "mm", "INCH": "in", "INCHES": "in", "IN": "in"}.get(found)
     if unit is None:
-        raise GCodeError(f"Line {line}: UNITS has {found!r}; expected MM or INCHES.", line=line)
+        raise GCodeError.at(line, f"UNITS has {found!r}; expected MM or INCHES.")
     state.unit = state.unit_said = unit

@@ -68,7 +68,7 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
     nul = data.find(b"\0")
     if nul >= 0:
         line = data.count(b"\n", 0, nul) + 1
-        raise GCodeError(f"Line {line}: found a NUL byte; this is a binary file, expected program text.", line=line)
+        raise GCodeError.at(line, "found a NUL byte; this is a binary file, expected program text.")
     head = data[:65536]
     control = sum(head.count(bytes([c])) for c in range(32) if c not in (9, 10, 12, 13, 27))
     if control * 100 > len(head):

@@ -160,7 +160,7 @@ def _check_absolute(raw: str, number: int, machine: Machine) -> None:
         if not (machine.arc_absolute if centre else absolute):
             wanted = "G90.1" if centre else "G90"
             message = f"{letter}=AC( ) is a place where steps count; write the step, or {wanted} before it."
-            raise GCodeError(f"Line {number}: {message}", line=number)
+            raise GCodeError.at(number, f"{message}")
 
 
 def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
@@ -191,8 +191,6 @@ def _in_seconds(found: re.Match[str]) -> str:
 def _from_grbl(raw: str, number: int, findings: Findings) -> str:
     text = raw.strip().upper()
     if text.startswith(("$H", "$J")):
-        raise GCodeError(
-            f"Line {number}: {text[:2]} moves the machine in a way the program does not say; remove it.", line=number
-        )
+        raise GCodeError.at(number, f"{text[:2]} moves the machine in a way the program does not say; remove it.")
     findings.add("controller-line", "ignored", number, "lines for the controller ($, !, ~, ?) are left out")
     return ""

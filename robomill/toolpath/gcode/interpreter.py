@@ -59,7 +59,7 @@ class Interpreter(OWords):
         machine = self.machine
         line = machine.line = index + 1
         if len(raw) > MAX_LINE:
-            raise GCodeError(f"Line {line}: {len(raw)} characters long; at most {MAX_LINE} can be read.", line=line)
+            raise GCodeError.at(line, f"{len(raw)} characters long; at most {MAX_LINE} can be read.")
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
@@ -106,9 +106,8 @@ class Interpreter(OWords):
     # --- budgets, ends, comments
     def _tick(self, index: int) -> None:
         if self.steps > self.budget:
-            raise GCodeError(
-                f"Line {index + 1}: more than {MAX_STEPS} lines were executed in loops; the program may not end.",
-                line=index + 1,
+            raise GCodeError.at(
+                index + 1, f"more than {MAX_STEPS} lines were executed in loops; the program may not end."
             )
         checkpoint(min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0), "Reading the program")
         if self.cancel is not None and self.cancel():
@@ -132,9 +131,7 @@ class Interpreter(OWords):
 
     def _percent(self, index: int, text: str) -> None:
         if len(text) > 1 and text[1] not in "(;":
-            raise GCodeError(
-                f"Line {index + 1}: found % and more; a % that ends the program stands alone.", line=index + 1
-            )
+            raise GCodeError.at(index + 1, "found % and more; a % that ends the program stands alone.")
         if not self.percent:
             self.machine.findings.add("percent", "warning", index + 1, "% ends the program, but none starts it")
         self.finish(index + 1)
@@ -158,7 +155,7 @@ class Interpreter(OWords):
         last = len(self.file.lines)
         if len(self.calls) > 1:
             label = self.calls[-1].label
-            raise GCodeError(f"Line {last}: the file ends inside O{label}; close it with endsub or M99.", line=last)
+            raise GCodeError.at(last, f"the file ends inside O{label}; close it with endsub or M99.")
         self.machine.findings.add("no-end", "warning", last, "the program ends without M2, M30 or %")
         self.finish(last)
 

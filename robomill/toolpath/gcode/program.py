@@ -194,7 +194,7 @@ class Recorder:
         after = self.count + len(rows)
         if after > MAX_MOVES:
             line = int(rows["line"][-1])
-            raise GCodeError(f"Line {line}: the program makes more than {MAX_MOVES} moves; split it.", line=line)
+            raise GCodeError.at(line, f"the program makes more than {MAX_MOVES} moves; split it.")
         for name in _COLUMNS:
             if name in self._columns or rows[name].any():
                 self._with_room(name, after)[self.count : after] = rows[name]

@@ -84,7 +84,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     columns: dict[str, Any] = machine.recorder.columns()
     if not np.isfinite(columns["end"]).all() or not np.isfinite(columns["centre"]).all():
         bad = int(columns["line"][np.flatnonzero(~np.isfinite(columns["end"]).all(axis=1))[:1]].sum())
-        raise GCodeError(f"Line {bad}: a coordinate is too large; expected finite lengths.", line=bad)
+        raise GCodeError.at(bad, "a coordinate is too large; expected finite lengths.")
     if not machine.unit_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     program = Program(

@@ -35,7 +35,7 @@ class Block:
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
-        return GCodeError(f"Line {self.line}: {message}", line=self.line)
+        return GCodeError.at(self.line, f"{message}")
 
 
 def normalise(raw: str, line: int) -> str:
@@ -53,9 +53,9 @@ def normalise(raw: str, line: int) -> str:
             break
         close, nested = raw.find(")", bracket), raw.find("(", bracket + 1)
         if close < 0:
-            raise GCodeError(f"Line {line}: a comment is not closed; add ).", line=line)
+            raise GCodeError.at(line, "a comment is not closed; add).")
         if 0 <= nested < close:
-            raise GCodeError(f"Line {line}: a comment holds another (; comments cannot be nested.", line=line)
+            raise GCodeError.at(line, "a comment holds another (; comments cannot be nested.")
         out += [raw[at:bracket].translate(_BLANKS).lower(), raw[bracket : close + 1]]
         at = close + 1
     return "".join(out)
