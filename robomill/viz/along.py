@@ -55,7 +55,7 @@ class Along:
         """value (m,) as a line; ``hover`` is the format of its number, "" leaves it out of the hover text."""
         words: dict[str, Any] = {"hovertemplate": hover} if hover else {"hoverinfo": "skip"}
         i = self.chosen
-        self.fig.add("scatter", x=self.s[i], y=value[i], mode="lines", name=name, line=line, **words, **more)
+        self.fig.lines(self.s[i], value[i], line, name=name, **words, **more)
 
     def shade(self, band: tuple[FloatArray, FloatArray], name: str, fill: str, legend: bool = True) -> None:
         """The region between two curves (m,)."""
@@ -93,19 +93,9 @@ def shade(
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     runs = [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
     for k, run in enumerate(run for run in runs if np.any(high[run] - low[run] > 1e-9)):
-        fig.add(
-            "scatter",
-            x=np.concatenate([s[run], s[run][::-1]]),
-            y=np.concatenate([high[run], low[run][::-1]]),
-            mode="lines",
-            fill="toself",
-            fillcolor=fill,
-            line={"width": 0},
-            name=name,
-            legendgroup=name,
-            showlegend=legend and k == 0,
-            hoverinfo="skip",
-        )
+        there, back = np.concatenate([s[run], s[run][::-1]]), np.concatenate([high[run], low[run][::-1]])
+        named = {"name": name, "legendgroup": name, "showlegend": legend and k == 0}
+        fig.area(there, back, fill, mode="lines", line={"width": 0}, **named)
 
 
 def add_band(fig: Chart, s: FloatArray, value: FloatArray, half: FloatArray, name: str, *, dark: bool) -> None:
@@ -129,19 +119,9 @@ def add_picks(fig: Chart, s: FloatArray, value: FloatArray, words: Sequence[str]
         good = good[np.linspace(0, len(good) - 1, MAX_PICKS).astype(int)]
     for trace in fig.traces:
         trace.update(hoverinfo="skip", hovertemplate=None)
-    fig.add(
-        "scatter",
-        x=s[good],
-        y=value[good],
-        mode="markers",
-        name="pick",
-        showlegend=False,
-        text=[words[int(i)] for i in good],
-        hovertemplate="%{text}<extra></extra>",
-        marker={"size": 14, "color": CLEAR, "line": {"width": 0}},
-        selected=_CLEAR,
-        unselected=_CLEAR,
-    )
+    hover = {"text": [words[int(i)] for i in good], "hovertemplate": "%{text}<extra></extra>"}
+    unseen = {"size": 14, "color": CLEAR, "line": {"width": 0}}
+    fig.dots(s[good], value[good], unseen, name="pick", showlegend=False, selected=_CLEAR, unselected=_CLEAR, **hover)
     fig.lay_out(dragmode="pan", clickmode="event+select", hovermode="closest", hoverdistance=-1)
 
 
@@ -150,4 +130,4 @@ def add_point(fig: Chart, x: float, y: float, *, dark: bool) -> None:
     if np.isfinite(x) and np.isfinite(y):
         p = palette(dark)
         marker = {"size": 11, "color": p.accent, "line": {"width": 2, "color": p.background}}
-        fig.add("scatter", x=[x], y=[y], mode="markers", name="station", marker=marker, **QUIET)
+        fig.dots([x], [y], marker, name="station", **QUIET)

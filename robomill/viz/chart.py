@@ -33,6 +33,18 @@ class Chart:
         """Draw a trace over what is there."""
         self.traces.append(drawn(kind, **what))
 
+    def lines(self, x: Any, y: Any, line: dict[str, Any], **more: Any) -> None:
+        """Draw a line through points of the plane."""
+        self.add("scatter", x=x, y=y, mode="lines", line=line, **more)
+
+    def dots(self, x: Any, y: Any, marker: dict[str, Any], **more: Any) -> None:
+        """Draw markers at points of the plane."""
+        self.add("scatter", x=x, y=y, mode="markers", marker=marker, **more)
+
+    def area(self, x: Any, y: Any, fill: str, **more: Any) -> None:
+        """Fill an outline in the plane, without a rim unless ``more`` says one."""
+        self.add("scatter", x=x, y=y, fill="toself", fillcolor=fill, hoverinfo="skip", **{"mode": "none", **more})
+
     def add_traces(self, traces: Iterable[Trace]) -> None:
         """Draw traces over what is there, one after the other."""
         self.traces.extend(traces)

@@ -40,16 +40,8 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> Chart:
     ring = np.linspace(0.0, 2.0 * np.pi, 121)
     if dial.engaged and dial.phi_ex > dial.phi_st:
         _material(fig, dial, dark)
-    fig.add(
-        "scatter",
-        x=np.cos(ring),
-        y=np.sin(ring),
-        mode="lines",
-        fill="toself",
-        fillcolor=rgba(p.panel, 0.96),
-        line={"color": p.joint, "width": 1.6},
-        hoverinfo="skip",
-    )
+    rim = {"mode": "lines", "line": {"color": p.joint, "width": 1.6}}
+    fig.area(np.cos(ring), np.sin(ring), rgba(p.panel, 0.96), **rim)
     if dial.engaged and dial.phi_ex > dial.phi_st:
         _arc(fig, dial, dark)
     _teeth(fig, dial, p.muted)
@@ -58,12 +50,9 @@ def dial_figure(dial: Dial, *, dark: bool, height: int = 320) -> Chart:
     say(fig, "feed ↑", 0, 1.86, p.muted)
     size = float(np.hypot(*dial.force[:2]))
     words = f"{size:.0f} N across" if dial.engaged or size > 0 else "in air"
-    down = (
-        ""
-        if abs(dial.force[2]) < 0.05
-        else f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
-    )
-    say(fig, words + down, 0, -1.72, p.text, size=13)
+    if abs(dial.force[2]) >= 0.05:
+        words += f", {abs(dial.force[2]):.0f} N {'into' if dial.force[2] < 0 else 'out of'} the part"
+    say(fig, words, 0, -1.72, p.text, size=13)
     fig.lay_out(
         showlegend=False,
         hovermode="closest",
@@ -87,48 +76,20 @@ def _material(fig: Chart, dial: Dial, dark: bool) -> None:
     top = 1.62
     outline_x = np.concatenate([x, [x[-1]], [x[0]], [x[0]]])
     outline_y = np.concatenate([y, [top], [top], [y[0]]])
-    fig.add(
-        "scatter",
-        x=outline_x,
-        y=outline_y,
-        mode="none",
-        fill="toself",
-        hoverinfo="skip",
-        fillcolor=rgba(p.metal, 0.4),
-        fillpattern={
-            "shape": "/",
-            "size": 8,
-            "solidity": 0.08,
-            "fgcolor": p.metal_edge,
-            "bgcolor": rgba(p.metal, 0.28),
-        },
-    )
+    hatched = {"shape": "/", "size": 8, "solidity": 0.08, "fgcolor": p.metal_edge, "bgcolor": rgba(p.metal, 0.28)}
+    fig.area(outline_x, outline_y, rgba(p.metal, 0.4), fillpattern=hatched)
 
 
 def _arc(fig: Chart, dial: Dial, dark: bool) -> None:
     p = palette(dark)
     phi = np.linspace(dial.phi_st, dial.phi_ex, 61)
     x, y = _place(phi)
-    fig.add(
-        "scatter",
-        x=np.concatenate([[0.0], x, [0.0]]),
-        y=np.concatenate([[0.0], y, [0.0]]),
-        mode="none",
-        fill="toself",
-        fillcolor=rgba(p.warm, 0.16),
-        hoverinfo="skip",
-    )
+    fig.area(np.concatenate([[0.0], x, [0.0]]), np.concatenate([[0.0], y, [0.0]]), rgba(p.warm, 0.16))
     arc = dial.phi_ex - dial.phi_st
-    fig.add(
-        "scatter",
-        x=x,
-        y=y,
-        mode="lines",
-        line={"color": p.warm, "width": 5},
-        name="arc of engagement",
-        hovertemplate=f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>"
-        f"depth {format_value(dial.depth, dial.unit)}<extra></extra>",
+    hover = (
+        f"arc {arc:.0f}°, from {dial.phi_st:.0f}° to {dial.phi_ex:.0f}°<br>depth {format_value(dial.depth, dial.unit)}"
     )
+    fig.lines(x, y, {"color": p.warm, "width": 5}, name="arc of engagement", hovertemplate=f"{hover}<extra></extra>")
     x, y = _place(0.5 * (dial.phi_st + dial.phi_ex), 1.27)
     say(fig, f"{arc:.0f}°", float(x), float(y), p.warm, size=13, bgcolor=rgba(p.background, 0.75), borderpad=2)
 
@@ -138,7 +99,7 @@ def _teeth(fig: Chart, dial: Dial, colour: str) -> None:
     for tooth in range(dial.flutes):
         phi = 20.0 + turn * 360.0 * tooth / dial.flutes
         x, y = zip(_place(phi, 0.72), _place(phi, 1.0), strict=True)
-        fig.add("scatter", x=x, y=y, mode="lines", line={"color": colour, "width": 2}, hoverinfo="skip")
+        fig.lines(x, y, {"color": colour, "width": 2}, hoverinfo="skip")
 
 
 def _turning(fig: Chart, dial: Dial, colour: str) -> None:
@@ -146,7 +107,7 @@ def _turning(fig: Chart, dial: Dial, colour: str) -> None:
     turn = 1.0 if dial.hand == "right" else -1.0
     phi = 250.0 + turn * np.linspace(-24, 24, 25)
     x, y = _place(phi, 1.17)
-    fig.add("scatter", x=x, y=y, mode="lines", line={"color": colour, "width": 1.4}, hoverinfo="skip")
+    fig.lines(x, y, {"color": colour, "width": 1.4}, hoverinfo="skip")
     arrow(fig, (x[-3], y[-3]), (x[-1], y[-1]), colour, 1.4)
 
 
@@ -154,16 +115,10 @@ def _forces(fig: Chart, dial: Dial, dark: bool) -> None:
     p = palette(dark)
     scale = dial.scale or 1.0
     if dial.others is not None and len(dial.others):
-        fig.add(
-            "scatter",
-            x=-dial.others[:, 1] / scale,
-            y=dial.others[:, 0] / scale,
-            mode="markers",
-            name="the alloy's other rows",
-            marker={"size": 8, "color": rgba(p.accent, 0.35), "line": {"width": 1.2, "color": p.accent}},
-            hovertemplate="another row of the alloy<extra></extra>",
-        )
+        ring = {"size": 8, "color": rgba(p.accent, 0.35), "line": {"width": 1.2, "color": p.accent}}
+        said = {"name": "the alloy's other rows", "hovertemplate": "another row of the alloy<extra></extra>"}
+        fig.dots(-dial.others[:, 1] / scale, dial.others[:, 0] / scale, ring, **said)
     for force, colour, width in ((dial.peak, rgba(p.accent, 0.45), 2), (dial.force, p.accent, 3.4)):
         if force is not None and float(np.hypot(force[0], force[1])) >= 1e-9:
             arrow(fig, (0.0, 0.0), (-force[1] / scale, force[0] / scale), colour, width)
-    fig.add("scatter", x=[0], y=[0], mode="markers", marker={"size": 6, "color": p.joint}, hoverinfo="skip")
+    fig.dots([0], [0], {"size": 6, "color": p.joint}, hoverinfo="skip")

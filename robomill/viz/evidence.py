@@ -63,19 +63,12 @@ def _row(fig: Chart, claim: Claim, y: int, unit: str, dark: bool) -> None:
         ends = [format_value(v, unit, 2, with_unit=False) for v in (claim.low, claim.high)]
         text += f"  ({ends[0]} to {ends[1]})"
         hover = f"{format_value(claim.low, unit)} to {format_value(claim.high, unit)}<extra></extra>"
-        bar = {"mode": "lines", "line": {"color": colour, "width": 9}, "opacity": 0.35, "hovertemplate": hover}
-        fig.add("scatter", x=[claim.low, claim.high], y=[y, y], **bar)
-    lead = {"mode": "lines", "line": {"color": colour, "width": 1.5}, "opacity": 0.5, "hoverinfo": "skip"}
-    fig.add("scatter", x=[0.0, claim.value], y=[y, y], **lead)
+        bar = {"color": colour, "width": 9}
+        fig.lines([claim.low, claim.high], [y, y], bar, opacity=0.35, hovertemplate=hover)
+    fig.lines([0.0, claim.value], [y, y], {"color": colour, "width": 1.5}, opacity=0.5, hoverinfo="skip")
     symbol = "diamond" if claim.kind == "measured" else "circle"
-    fig.add(
-        "scatter",
-        x=[claim.value],
-        y=[y],
-        mode="markers",
-        cliponaxis=False,
-        marker={"size": 13, "color": colour, "line": {"width": 1.5, "color": p.background}, "symbol": symbol},
-        hovertemplate=f"{claim.label}: {value}<br>{claim.kind}. {claim.note}<extra></extra>",
-    )
+    mark = {"size": 13, "color": colour, "line": {"width": 1.5, "color": p.background}, "symbol": symbol}
+    hover = f"{claim.label}: {value}<br>{claim.kind}. {claim.note}<extra></extra>"
+    fig.dots([claim.value], [y], mark, cliponaxis=False, hovertemplate=hover)
     # Above its mark, not beside it: a telephone has no room for both.
     say(fig, f"{text}  {claim.label}", 0, y, p.text, size=13, xref="paper", xanchor="left", yshift=14)

@@ -68,21 +68,15 @@ def _fitted(fig: Chart, shown: Intervals, low: FloatArray, high: FloatArray, dar
     for k in y:
         if known[k]:
             line = {"color": rgba(colours[k % 7], 0.42), "width": 11}
-            fig.add("scatter", x=[low[k], high[k]], y=[k, k], mode="lines", line=line, **QUIET)
+            fig.lines([low[k], high[k]], [k, k], line, **QUIET)
             place = {"xshift": 8, "align": "left"}
             say(fig, shown.words[k], 1.0, float(k), p.text, size=12.5, xref="paper", xanchor="left", **place)
         else:
             say(fig, shown.words[k], 0.02, float(k), p.muted, size=12.5, xref="paper", xanchor="left")
-    fig.add(
-        "scatter",
-        x=np.clip(shown.value[known], low[known], None),
-        y=y[known],
-        mode="markers",
-        name="fitted, with its 95 % interval",
-        marker={"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}},
-        text=[shown.words[k] for k in y[known]],
-        hovertemplate="%{text}<extra></extra>",
-    )
+    dots = {"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}}
+    hover = {"text": [shown.words[k] for k in y[known]], "hovertemplate": "%{text}<extra></extra>"}
+    fitted = np.clip(shown.value[known], low[known], None)
+    fig.dots(fitted, y[known], dots, name="fitted, with its 95 % interval", **hover)
 
 
 def _compared(fig: Chart, shown: Intervals, dark: bool) -> None:
@@ -91,11 +85,11 @@ def _compared(fig: Chart, shown: Intervals, dark: bool) -> None:
     for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
         marker = {"size": 9, "symbol": symbol, "color": colour, "line": {"width": 1.6}}
         hover = f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>"
-        fig.add("scatter", x=values, y=y - 0.3, mode="markers", name=name, marker=marker, hovertemplate=hover)
+        fig.dots(values, y - 0.3, marker, name=name, hovertemplate=hover)
     if shown.truth is not None:
         marker = {"size": 11, "symbol": "x-thin", "line": {"width": 2.4, "color": colour}}
         hover = "truth: %{x:.2f}<extra></extra>"
-        fig.add("scatter", x=shown.truth, y=y, mode="markers", name="truth", marker=marker, hovertemplate=hover)
+        fig.dots(shown.truth, y, marker, name="truth", hovertemplate=hover)
 
 
 def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: bool) -> Chart:
@@ -183,25 +177,17 @@ def gaps_figure(
 def _by_row(fig: Chart, row: IntArray, y: FloatArray, name: str, shown: str, marker: dict[str, Any]) -> None:
     """One value a row of the file; ``shown`` ends the template of what is read off it."""
     hover = f"row %{{x}}<br>%{{y:{shown}<extra>{name}</extra>"
-    fig.add("scatter", x=row, y=y, mode="markers", name=name, marker=marker, hovertemplate=hover)
+    fig.dots(row, y, marker, name=name, hovertemplate=hover)
 
 
 def _ring(fig: Chart, row: IntArray, y: FloatArray, name: str, dark: bool) -> None:
     """Rings around rows that stand out, each named where they are few."""
     bad = palette(dark).bad
-    fig.add(
-        "scatter",
-        x=row,
-        y=y,
-        mode="markers+text" if len(row) <= 12 else "markers",
-        name=name,
-        text=[f"row {r}" for r in row],
-        textposition="top center",
-        textfont={"size": 12, "color": bad},
-        hoverinfo="skip",
-        cliponaxis=False,
-        marker={"size": 15, "symbol": "circle-open", "color": bad, "line": {"width": 2}},
-    )
+    ring = {"size": 15, "symbol": "circle-open", "color": bad, "line": {"width": 2}}
+    fig.dots(row, y, ring, name=name, hoverinfo="skip", cliponaxis=False)
+    if len(row) <= 12:
+        words = {"text": [f"row {r}" for r in row], "textposition": "top center"}
+        fig.traces[-1].update(words, mode="markers+text", textfont={"size": 12, "color": bad})
 
 
 def models_figure(
@@ -212,34 +198,13 @@ def models_figure(
     y = np.arange(len(names))
     fig = figure(dark=dark, height=84 + _ROW * len(names), revision="models", margin={"l": 8, "r": 96, "t": 34, "b": 8})
     for k in y:
-        fig.add(
-            "scatter",
-            x=[in_sample[k], left_out[k]],
-            y=[k, k],
-            mode="lines",
-            showlegend=False,
-            hoverinfo="skip",
-            line={"color": rgba(p.warm, 0.55), "width": 6},
-        )
+        fig.lines([in_sample[k], left_out[k]], [k, k], {"color": rgba(p.warm, 0.55), "width": 6}, **QUIET)
         say(fig, f"{left_out[k]:.2f} %", 1.0, float(k), p.text, size=13, xref="paper", xshift=8, xanchor="left")
-    fig.add(
-        "scatter",
-        x=in_sample,
-        y=y,
-        mode="markers",
-        name="on its own data",
-        hovertemplate="%{x:.2f} %<extra></extra>",
-        marker={"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}},
-    )
-    fig.add(
-        "scatter",
-        x=left_out,
-        y=y,
-        mode="markers",
-        name="on poses left out",
-        hovertemplate="%{x:.2f} %<extra></extra>",
-        marker={"size": 11, "color": p.accent},
-    )
+    for values, name, marker in (
+        (in_sample, "on its own data", {"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}}),
+        (left_out, "on poses left out", {"size": 11, "color": p.accent}),
+    ):
+        fig.dots(values, y, marker, name=name, hovertemplate="%{x:.2f} %<extra></extra>")
     values = np.concatenate([in_sample, left_out])
     values = values[np.isfinite(values) & (values > 0)]
     ends = (values.min() / 1.6, values.max() * 1.6) if len(values) else (0.1, 100.0)

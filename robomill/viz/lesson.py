@@ -17,26 +17,10 @@ def ray_figure(
     p = palette(dark)
     fig = figure(dark=dark, height=250, revision="ray", showlegend=False, margin={"l": 8, "r": 8, "t": 8, "b": 8})
     for values, colour, suffix, title in zip(curves, (p.accent, p.caution), ("", "2"), titles[1:], strict=True):
-        fig.add(
-            "scatter",
-            x=radius,
-            y=values,
-            mode="lines",
-            line={"color": colour, "width": 3},
-            xaxis=f"x{suffix}",
-            yaxis=f"y{suffix}",
-            hovertemplate=f"{title}: %{{y:.3f}}<extra></extra>",
-        )
-        fig.add(
-            "scatter",
-            x=[radius[here]],
-            y=[values[here]],
-            mode="markers",
-            xaxis=f"x{suffix}",
-            yaxis=f"y{suffix}",
-            marker={"color": p.text, "size": 12},
-            hoverinfo="skip",
-        )
+        axes = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
+        hover = f"{title}: %{{y:.3f}}<extra></extra>"
+        fig.lines(radius, values, {"color": colour, "width": 3}, hovertemplate=hover, **axes)
+        fig.dots([radius[here]], [values[here]], {"color": p.text, "size": 12}, hoverinfo="skip", **axes)
         top = suffix == ""
         domain = [0.56, 1.0] if top else [0.0, 0.44]
         below = "" if top else titles[0]

@@ -11,7 +11,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.units import UNITS, format_number
-from robomill.viz.chart import Chart
+from robomill.viz.chart import Chart, drawn
 from robomill.viz.theme import ABOVE, SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette, say
 from robomill.workspace.quantities import Colours, MapQuantity
 
@@ -193,19 +193,10 @@ def _traces(sheet: MapSheet, panel: Map, index: int, used: list[str], dark: bool
     ]
     if sheet.point is not None:
         size = {"size": 7, "color": p.text, "line": {"color": p.background, "width": 1.4 if sheet.on_plane else 2}}
-        traces.append(
-            {
-                "type": "scatter",
-                "x": [sheet.point[0]],
-                "y": [sheet.point[1]],
-                "mode": "markers",
-                "hoverinfo": "skip",
-                "marker": {"symbol": "circle" if sheet.on_plane else "circle-open", **size},
-                "selected": {"marker": {"opacity": 1}},
-                "unselected": {"marker": {"opacity": 1}},
-                **axes,
-            }
-        )
+        mark = {"symbol": "circle" if sheet.on_plane else "circle-open", **size}
+        either = {key: {"marker": {"opacity": 1}} for key in ("selected", "unselected")}
+        x, y = ([place] for place in sheet.point)
+        traces.append(drawn("scatter", x=x, y=y, mode="markers", hoverinfo="skip", marker=mark, **either, **axes))
     return traces
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.viz.chart import Chart
+from robomill.viz.chart import QUIET, Chart
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, diverging, figure, palette, rgba
 
 
@@ -50,15 +50,8 @@ def level_figure(level: Level, *, dark: bool, revision: str) -> Chart:
         hovertemplate="X %{x:.0f}, Y %{y:.0f}<br>%{z:.3f} " + level.unit + "<extra></extra>",
     )
     if len(level.points):
-        fig.add(
-            "scatter",
-            x=level.points[:, 0],
-            y=level.points[:, 1],
-            mode="markers",
-            showlegend=False,
-            hoverinfo="skip",
-            marker={"size": 4.5, "color": rgba(p.background, 0.85), "line": {"color": rgba(p.text, 0.8), "width": 1}},
-        )
+        dots = {"size": 4.5, "color": rgba(p.background, 0.85), "line": {"color": rgba(p.text, 0.8), "width": 1}}
+        fig.dots(*level.points.T, dots, **QUIET)
     fig.lay_out(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {level.length_unit}", dark=dark, showgrid=False, range=_span(level.x)),

@@ -40,15 +40,8 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
     if curves.measured is not None:
-        plot.fig.add(
-            "scatter",
-            x=curves.measured[0],
-            y=curves.measured[1],
-            mode="markers",
-            name="measured",
-            marker={"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}},
-            hovertemplate="measured %{y:+.4f} " + unit,
-        )
+        marks = {"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}}
+        plot.fig.dots(*curves.measured, marks, name="measured", hovertemplate="measured %{y:+.4f} " + unit)
     for side, words in ((1, "+ tolerance"), (-1, "− tolerance")):
         plot.level(side * curves.tolerance, p.bad, "solid")
         say(plot.fig, words, 1, side * curves.tolerance, p.bad, xref="paper", xanchor="right", yshift=9)

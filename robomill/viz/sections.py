@@ -47,15 +47,15 @@ def section_figure(drawing: SectionDrawing, *, dark: bool) -> Chart:
     step = max(d.depth, 0.12 * d.width, 1e-6) if np.isfinite(d.depth) else 1.0
     bottom = float(np.min(z)) - 0.9 * step
     hatched = {"shape": "/", "size": 9, "solidity": 0.06, "fgcolor": p.metal_edge, "bgcolor": rgba(p.metal, 0.22)}
-    filled = {"mode": "none", "fill": "toself", "fillcolor": rgba(p.metal, 0.30), "fillpattern": hatched}
-    fig.add("scatter", x=[u[0], *u, u[-1]], y=[bottom, *z, bottom], name="material", hoverinfo="skip", **filled)
+    fill = rgba(p.metal, 0.30)
+    fig.area([u[0], *u, u[-1]], [bottom, *z, bottom], fill, name="material", fillpattern=hatched)
     keep = np.isfinite(d.ideal)
     for x, y, name, line in (
         (u, z, "machined", {"color": p.text, "width": 2.6}),
         (d.u_ideal[keep], d.ideal[keep], "ideal", {"color": p.accent, "width": 1.8, "dash": "dash"}),
     ):
         hover = f"across %{{x:.3f}} {d.unit}<br>height %{{y:.3f}} {d.unit}<extra>{name}</extra>"
-        fig.add("scatter", x=x, y=y, mode="lines", name=name, line=line, hovertemplate=hover)
+        fig.lines(x, y, line, name=name, hovertemplate=hover)
     if np.isfinite([d.wall_left, d.wall_right, d.depth]).all():
         _dimensions(fig, d, step, dark)
     plain: dict[str, Any] = {"dark": dark, "showgrid": False, "constrain": "domain"}

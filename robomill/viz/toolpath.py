@@ -72,8 +72,7 @@ def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> 
     for name, colour, chosen, legend in _classes(picture, dark):
         draw(_lines(picture, ends, chosen, every), {"color": colour, "width": 5}, name=name, showlegend=legend)
     if picture.value is not None:
-        bar = _scale(picture, dark)
-        fig.add("scatter3d", x=[None], y=[None], z=[None], mode="markers", marker=bar, **QUIET)
+        fig.add("scatter3d", x=[None], y=[None], z=[None], mode="markers", marker=_scale(picture, dark), **QUIET)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
     times = float(np.clip(round(0.22 * float(size.max()) / max(float(size[2]), 1e-9)), 1, 50))
     ratio = 1.9 * np.maximum(size * [1.0, 1.0, times] / float(size.max()), 0.1)
@@ -96,22 +95,14 @@ def _stock(fig: Chart, picture: PathPicture, dark: bool) -> None:
         return
     p = palette(dark)
     (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
-    filled = {"fill": "toself", "fillcolor": rgba(p.metal, 0.26), "line": {"color": p.line, "width": 1}}
-    fig.add(
-        "scatter",
-        x=[x0, x1, x1, x0, x0],
-        y=[y0, y0, y1, y1, y0],
-        mode="lines",
-        name="stock",
-        hoverinfo="skip",
-        **filled,
-    )
+    rim = {"mode": "lines", "line": {"color": p.line, "width": 1}}
+    fig.area([x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], rgba(p.metal, 0.26), name="stock", **rim)
 
 
 def _dots(fig: Chart, at: FloatArray, marker: dict[str, Any], name: str = "") -> None:
     """Marks at points (q, 3), named in the legend where there is a name."""
     named: dict[str, Any] = {"name": name} if name else {"showlegend": False}
-    fig.add("scatter", x=at[:, 0], y=at[:, 1], mode="markers", hoverinfo="skip", marker=marker, **named)
+    fig.dots(at[:, 0], at[:, 1], marker, hoverinfo="skip", **named)
 
 
 def _ends(picture: PathPicture) -> tuple[FloatArray, FloatArray]:
@@ -203,7 +194,7 @@ def _halo(fig: Chart, picture: PathPicture, dark: bool) -> None:
     q = picture.points[_selected(picture)]
     if len(q):
         line, name = {"color": palette(dark).text, "width": 8}, f"{picture.noun} {picture.selected}"
-        fig.add("scatter", x=q[:, 0], y=q[:, 1], mode="lines", name=name, hoverinfo="skip", line=line)
+        fig.lines(q[:, 0], q[:, 1], line, name=name, hoverinfo="skip")
 
 
 def _marks(fig: Chart, picture: PathPicture, dark: bool) -> None:
@@ -217,8 +208,7 @@ def _marks(fig: Chart, picture: PathPicture, dark: bool) -> None:
         worst = {"size": 12, "symbol": "diamond-open", "color": p.text, "line": rim}
         _dots(fig, picture.points[picture.worst][None], worst, "worst")
     if picture.value is not None:
-        bar = _scale(picture, dark)
-        fig.add("scatter", x=[None], y=[None], mode="markers", marker=bar, **QUIET)
+        fig.dots([None], [None], _scale(picture, dark), **QUIET)
 
 
 def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
@@ -239,17 +229,9 @@ def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
             w + (f"<br>{picture.title.lower()} {v:.{picture.digits}f} {picture.unit}" if np.isfinite(v) else "")
             for w, v in zip(words, value, strict=True)
         ]
-    fig.add(
-        "scatter",
-        x=q[:, 0],
-        y=q[:, 1],
-        mode="markers",
-        name="points",
-        showlegend=False,
-        text=words,
-        customdata=np.column_stack(data),
-        hovertemplate=hover + "<extra></extra>",
-        marker={"size": 9, "color": palette(dark).accent, "opacity": 0.01},
-        selected={"marker": {"opacity": 0.01}},
-        unselected={"marker": {"opacity": 0.01}},
+    faint = {"opacity": 0.01}
+    said = {"text": words, "customdata": np.column_stack(data), "hovertemplate": hover + "<extra></extra>"}
+    picked = {"selected": {"marker": faint}, "unselected": {"marker": faint}}
+    fig.dots(
+        *q.T[:2], {"size": 9, "color": palette(dark).accent, **faint}, name="points", showlegend=False, **said, **picked
     )
