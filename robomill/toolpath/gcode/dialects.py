@@ -89,13 +89,11 @@ class Dialect:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             if code in HARMLESS[self.name]:
-                machine.findings.add(
-                    "harmless-g", "ignored", block.line, f"{g_name(code)} is left out: it moves nothing"
-                )
+                machine.note("harmless-g", "ignored", f"{g_name(code)} is left out: it moves nothing")
             else:
                 raise block.refuse(f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
         for code in block.unknown_m:
-            machine.findings.add("unknown-m", "ignored", block.line, f"M{code} is not known and is left out")
+            machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 
     def unused_word(self, machine: Machine, block: Block, letter: str, use: str) -> None:
         """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
@@ -103,7 +101,7 @@ class Dialect:
             return
         if self.name == "linuxcnc" or letter in "ijkr":
             raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
-        machine.findings.add("unused-word", "ignored", block.line, f"{letter.upper()} without {use} is left out")
+        machine.note("unused-word", "ignored", f"{letter.upper()} without {use} is left out")
 
     def subprogram(self, block: Block) -> tuple[int, int]:
         """Number and repeats of M98 P... L...; Fanuc also writes them as P<repeats><number>."""
@@ -160,7 +158,7 @@ def _check_absolute(raw: str, number: int, machine: Machine) -> None:
         if not (machine.arc_absolute if centre else absolute):
             wanted = "G90.1" if centre else "G90"
             message = f"{letter}=AC( ) is a place where steps count; write the step, or {wanted} before it."
-            raise GCodeError.at(number, f"{message}")
+            raise GCodeError.at(number, message)
 
 
 def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:

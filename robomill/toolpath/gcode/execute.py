@@ -10,6 +10,7 @@ from robomill.toolpath.gcode.cycle_rules import is_cycle
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.mode_rules import set_modes, set_plane, set_rates, switch
 from robomill.toolpath.gcode.motion_rules import MOST, dwell
+from robomill.toolpath.gcode.program import PROBE
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 
@@ -20,15 +21,10 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     plain = moves.plain_words(block)
     set_rates(machine, plain)
     if g.get(modal.SPINDLE_MODE) == 960:
-        machine.findings.add(
-            "surface-speed", "warning", block.line, "G96: the spindle speed follows the diameter and is not known"
-        )
+        machine.note("surface-speed", "warning", "G96: the spindle speed follows the diameter and is not known")
     if "f" in words and machine.feed_mode != 930 and g.get(modal.UNITS, machine.unit_code) != machine.unit_code:
-        machine.findings.add(
-            "feed-units",
-            "suspicious",
-            block.line,
-            f"F and {g_name(g[modal.UNITS])} on one line: F counts in the units before it",
+        machine.note(
+            "feed-units", "suspicious", f"F and {g_name(g[modal.UNITS])} on one line: F counts in the units before it"
         )
     if "t" in words:
         offsets.known_tool(machine, block, round(words["t"]))
@@ -38,10 +34,9 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     _execute_g(machine, block, plain)
     if modal.TOOL in block.m or block.m.get(modal.IO) == 66:
         if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
-            machine.findings.add(
+            machine.note(
                 "position-after-tool",
                 "warning",
-                block.line,
                 "after the tool change, axes without a word go on from the last straight move",
             )
         machine.p = list(machine.sent)
@@ -51,7 +46,7 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
 def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     m = block.m
     if modal.IO in m:
-        machine.findings.add("input-output", "ignored", block.line, f"M{m[modal.IO]}: inputs and outputs are left out")
+        machine.note("input-output", "ignored", f"M{m[modal.IO]}: inputs and outputs are left out")
         machine.store.numbered[5399] = -1.0
     if modal.TOOL in m:
         _change_tool(machine, block)
@@ -68,9 +63,7 @@ def _execute_m(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
     if modal.OVERRIDE in m:
         machine.need_compensation_off(block, f"M{m[modal.OVERRIDE]}")
     if modal.USER in m:
-        machine.findings.add(
-            "user-m", "ignored", block.line, f"M{m[modal.USER]} is made by the user of a machine and is left out"
-        )
+        machine.note("user-m", "ignored", f"M{m[modal.USER]} is made by the user of a machine and is left out")
 
 
 def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None:
@@ -92,9 +85,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
             raise block.refuse(f"M61 needs Q, a tool number of 0 or more, up to {MOST}.")
     else:
         if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
-            machine.findings.add(
-                "no-tool", "warning", block.line, "M6 without a tool selected by T: no tool is in the spindle"
-            )
+            machine.note("no-tool", "warning", "M6 without a tool selected by T: no tool is in the spindle")
         machine.need_compensation_off(block, "M6")
         number = machine.selected
         machine.spindle = 0
@@ -188,8 +179,8 @@ def _probe(machine: Machine, block: Block) -> None:
     end = moves.find_end(machine, block)
     if block.motion in (382, 384) and end == machine.p:
         raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
-    machine.probe_to(block.line, end)
-    machine.findings.add("probing", "warning", block.line, "probing: the probe is taken to travel its whole way")
+    machine.go(PROBE, block.line, end)
+    machine.note("probing", "warning", "probing: the probe is taken to travel its whole way")
     machine.store.put(5061, end)
     machine.store.numbered[5070] = 0.0
     machine.p = end

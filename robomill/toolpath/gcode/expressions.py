@@ -52,7 +52,7 @@ class Reader:
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
-        return GCodeError.at(self.line, f"{message}")
+        return GCodeError.at(self.line, message)
 
     def rest(self, length: int = 20) -> str:
         """What comes next, for messages."""

@@ -8,21 +8,8 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.words import normalise
 
 KEYWORDS = (
-    "sub",
-    "endsub",
-    "call",
-    "do",
-    "while",
-    "repeat",
-    "if",
-    "elseif",
-    "else",
-    "endif",
-    "break",
-    "continue",
-    "endwhile",
-    "endrepeat",
-    "return",
+    *("sub", "endsub", "call", "do", "while", "repeat", "if", "elseif", "else", "endif"),
+    *("break", "continue", "endwhile", "endrepeat", "return"),
 )
 """In the order in which they are tried; what follows a keyword is its argument."""
 

@@ -133,7 +133,7 @@ class Interpreter(OWords):
         if len(text) > 1 and text[1] not in "(;":
             raise GCodeError.at(index + 1, "found % and more; a % that ends the program stands alone.")
         if not self.percent:
-            self.machine.findings.add("percent", "warning", index + 1, "% ends the program, but none starts it")
+            self.machine.note("percent", "warning", "% ends the program, but none starts it")
         self.finish(index + 1)
         self.ended = True
 

@@ -8,12 +8,13 @@ import math
 from typing import Any
 
 from robomill.errors import GCodeError
+from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import LETTERS
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
-from robomill.toolpath.gcode.program import FEED, PROBE, TAP, TRAVERSE, Move, Recorder
+from robomill.toolpath.gcode.program import TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool, Tools, own_copy
 from robomill.units import from_si, to_si
@@ -21,18 +22,8 @@ from robomill.units import from_si, to_si
 UNITS = {200: "in", 210: "mm"}
 _NO_TOOL = Tool(0)
 _SAVED = (
-    "unit_code",
-    "plane",
-    "absolute",
-    "arc_absolute",
-    "feed_mode",
-    "feed",
-    "speed",
-    "spindle",
-    "retract_r",
-    "spindle_mode",
-    "diameter_mode",
-    "system",
+    *("unit_code", "plane", "absolute", "arc_absolute", "feed_mode", "feed", "speed", "spindle"),
+    *("retract_r", "spindle_mode", "diameter_mode", "system"),
 )
 XYZABC = "xyzabc"
 
@@ -82,6 +73,10 @@ class Machine:
         self.dwells, self.dwell_time, self.waited = 0, 0.0, 0.0
         self.moves = 0
         self.messages: list[tuple[int, str]] = []
+
+    def note(self, code: str, level: Level, message: str) -> None:
+        """Note something of the line that is being executed."""
+        self.findings.add(code, level, self.line, message)
 
     # --- units
     @property
@@ -141,18 +136,6 @@ class Machine:
         row.plane = plane
         write_arc(self, end, centre, turn, v_f, row)
         self.recorder.add(row)
-
-    def traverse(self, line: int, end: list[float]) -> None:
-        """Record a rapid to ``end`` (6,)."""
-        self.go(TRAVERSE, line, end)
-
-    def feed_to(self, line: int, end: list[float]) -> None:
-        """Record a feed move to ``end`` (6,)."""
-        self.go(FEED, line, end)
-
-    def probe_to(self, line: int, end: list[float]) -> None:
-        """Record a probing move to its programmed end."""
-        self.go(PROBE, line, end)
 
     # --- tools
     def find_tool(self, number: int) -> Tool | None:

@@ -6,7 +6,7 @@ from robomill.toolpath.gcode import cycle_rules as cycles
 from robomill.toolpath.gcode import motion_rules as rules
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, Q, g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.program import FEED, TAP, Move, Rows
+from robomill.toolpath.gcode.program import FEED, TAP, TRAVERSE, Move, Rows
 from robomill.toolpath.gcode.words import Block
 from robomill.units import format_si
 
@@ -143,12 +143,10 @@ def drill(machine: Machine, block: Block) -> None:
     rows.keep()
     demand(machine, block, refusal)
     if block.motion == 880:
-        machine.findings.add(
-            "manual-retract", "warning", block.line, "G88 stops for a retract by hand, which the path leaves out"
-        )
+        machine.note("manual-retract", "warning", "G88 stops for a retract by hand, which the path leaves out")
     if cycles.is_tap(block.motion) and machine.plane != 17:
         message = f"{g_name(block.motion)} outside of G17 taps along the wrong axes, as LinuxCNC does"
-        machine.findings.add("tap-axes", "warning", block.line, message)
+        machine.note("tap-axes", "warning", message)
 
 
 def centre_of_arc(
@@ -179,14 +177,14 @@ def home(machine: Machine, block: Block, code: int) -> None:
     """G28 and G30: by way of the point on the line to the stored point, which is 5161... or 5181... (mm)."""
     machine.need_compensation_off(block, f"G{code // 10}")
     end = find_end(machine, block)
-    machine.traverse(block.line, end)
+    machine.go(TRAVERSE, block.line, end)
     stored = 5161 if code == 280 else 5181
     values = machine.store.values(stored, 6)
     target = [machine.from_user(v) for v in values[:3]] + values[3:]
     target = _machine_end(machine, dict(zip(XYZABC, target)))
     chosen = [letter in block.words for letter in XYZABC]
     final = [t if c or not any(chosen) else e for t, e, c in zip(target, end, chosen)]
-    machine.traverse(block.line, final)
+    machine.go(TRAVERSE, block.line, final)
     machine.p = final
 
 

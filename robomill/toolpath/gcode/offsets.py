@@ -199,11 +199,8 @@ def tool_length(machine: Machine, block: Block, code: int) -> None:
     number = round(block.words["h"]) if "h" in block.words else machine.tool.number
     tool = machine.tool if "h" not in block.words else known_tool(machine, block, number)
     if machine.tools is None and number:
-        machine.findings.add(
-            "no-tool-table",
-            "info",
-            block.line,
-            f"{g_name(code)}: no tool table; the program is taken to say where the tip goes",
+        machine.note(
+            "no-tool-table", "info", f"{g_name(code)}: no tool table; the program is taken to say where the tip goes"
         )
     length = [from_si(v, machine.unit) for v in tool.offset]
     if code == 432:
@@ -252,7 +249,5 @@ def compensation_on(machine: Machine, block: Block) -> None:
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
     left = (code in (410, 411)) == (radius >= 0)
     if radius == 0:
-        machine.findings.add(
-            "zero-diameter", "warning", block.line, f"{name} with a diameter of 0: the contour is followed as it is"
-        )
+        machine.note("zero-diameter", "warning", f"{name} with a diameter of 0: the contour is followed as it is")
     machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)

@@ -46,22 +46,7 @@ _MOST_LOG = 709.7
 OPERATORS = ("]", "and", "or", "xor", "eq", "ne", "ge", "le", "gt", "lt", "+", "-", "*", "/", "mod", "**")
 CLOSE, AND, OR, XOR, EQ, NE, GE, LE, GT, LT, PLUS, MINUS, TIMES, OVER, MOD, POWER = range(len(OPERATORS))
 BINDS = (1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 4, 4, 5, 5, 5, 6)
-FUNCTIONS = (
-    "abs",
-    "acos",
-    "asin",
-    "atan",
-    "cos",
-    "exists",
-    "exp",
-    "fix",
-    "fup",
-    "ln",
-    "round",
-    "sin",
-    "sqrt",
-    "tan",
-)
+FUNCTIONS = ("abs", "acos", "asin", "atan", "cos", "exists", "exp", "fix", "fup", "ln", "round", "sin", "sqrt", "tan")
 ABS, ACOS, ASIN, ATAN, COS, EXISTS, EXP, FIX, FUP, LN, ROUND, SIN, SQRT, TAN = range(len(FUNCTIONS))
 
 

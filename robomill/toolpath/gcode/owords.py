@@ -166,7 +166,7 @@ class OWords:
                 self.pc = entry.node.start + 1
                 return
             if holds:
-                self._left_over(index, entry, "break in an earlier while")
+                self._left_over(entry, "break in an earlier while")
             self.broke = False
         elif not holds:
             self.pc = self._end_of(entry, argument) + 1
@@ -188,7 +188,7 @@ class OWords:
             del counters[index]
             self.pc = self._end_of(entry, argument) + 1
             if self.continued:
-                self._left_over(index, entry, "continue in an earlier do")
+                self._left_over(entry, "continue in an earlier do")
                 self.pc, self.continued = index, False
         else:
             counters[index] -= 1
@@ -205,7 +205,7 @@ class OWords:
         if entry.node.kind == "while":
             self.broke = True
             if self.continued:
-                self._left_over(index, entry, "continue in an earlier do")
+                self._left_over(entry, "continue in an earlier do")
                 self.pc, self.continued = entry.node.start, False
 
     def _do_continue(self, entry: flow.OLine, argument: Reader, index: int) -> None:
@@ -213,14 +213,10 @@ class OWords:
         self.pc = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
         self.continued = entry.node.kind == "do"
 
-    def _left_over(self, index: int, entry: flow.OLine, cause: str) -> None:
+    def _left_over(self, entry: flow.OLine, cause: str) -> None:
         """LinuxCNC keeps one flag each for break and continue; the reference's quirk is followed and said."""
-        self.machine.findings.add(
-            "loop-flags",
-            "warning",
-            index + 1,
-            f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop",
-        )
+        message = f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop"
+        self.machine.note("loop-flags", "warning", message)
 
     # --- subroutines
     def _call(self, label: str, argument: Reader, index: int) -> None:
@@ -278,9 +274,7 @@ class OWords:
             lines = Lines(read_file(path, SUBROUTINE, GCodeError, regular=True))
         except GCodeError as exc:
             raise reader.refuse(f"O{label} is called, but {exc}") from None
-        self.machine.findings.add(
-            "sub-file", "info", reader.line, f"O{label} is read from {path.name} beside the program"
-        )
+        self.machine.note("sub-file", "info", f"O{label} is read from {path.name} beside the program")
         self.others[label] = File(path.name, lines, folder)
         return self.others[label]
 
@@ -292,7 +286,7 @@ class OWords:
         reader = Reader("", block.line, self.machine.store)
         if code == 99:
             if len(self.calls) == 1:
-                self.machine.findings.add("m99-ends", "info", block.line, "M99 in the main program is taken as its end")
+                self.machine.note("m99-ends", "info", "M99 in the main program is taken as its end")
                 self.finish(block.line)
                 self.ended = True
             else:

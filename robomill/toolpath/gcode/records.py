@@ -7,40 +7,19 @@ import numpy as np
 from robomill.compiled import Axes, InInt1
 from robomill.toolpath.gcode.codes import LETTERS
 
+_NUMBERS = ("rotation", "factor", "feed", "speed", "waited", "dwell_time", "initial_level")
+_CODES = (
+    *("unit_code", "units_said", "system", "dwells", "motion", "plane"),
+    *("feed_mode", "spindle", "spindle_mode", "in_spindle", "moves"),
+)
+_FLAGS = ("absolute", "retract_r", "mist", "flood", "arc_absolute", "arc_not_allowed")
 STATE = np.dtype(
     [
-        ("p", "f8", 6),
-        ("sent", "f8", 6),
-        ("g5x", "f8", 6),
-        ("g92", "f8", 6),
-        ("at", "f8", 3),
-        ("turned", "f8", 3),
+        *((name, "f8", 6) for name in ("p", "sent", "g5x", "g92")),
+        *((name, "f8", 3) for name in ("at", "turned")),
         ("cycle", "f8", len(LETTERS)),
         ("figures", "f8", 3),
-        ("rotation", "f8"),
-        ("factor", "f8"),
-        ("feed", "f8"),
-        ("speed", "f8"),
-        ("waited", "f8"),
-        ("dwell_time", "f8"),
-        ("initial_level", "f8"),
-        ("unit_code", "i8"),
-        ("units_said", "i8"),
-        ("system", "i8"),
-        ("dwells", "i8"),
-        ("motion", "i8"),
-        ("plane", "i8"),
-        ("feed_mode", "i8"),
-        ("spindle", "i8"),
-        ("spindle_mode", "i8"),
-        ("in_spindle", "i8"),
-        ("moves", "i8"),
-        ("absolute", "?"),
-        ("retract_r", "?"),
-        ("mist", "?"),
-        ("flood", "?"),
-        ("arc_absolute", "?"),
-        ("arc_not_allowed", "?"),
+        *((name, kind) for names, kind in ((_NUMBERS, "f8"), (_CODES, "i8"), (_FLAGS, "?")) for name in names),
     ]
 )
 """What of the machine the rules of motion read and change; attributes of ``Machine``, where they are explained."""

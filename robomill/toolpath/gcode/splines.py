@@ -8,6 +8,7 @@ from robomill.arrays import FloatArray
 from robomill.toolpath.gcode.codes import I, J
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import find_end, need_feed
+from robomill.toolpath.gcode.program import FEED
 from robomill.toolpath.gcode.words import Block
 
 PIECES = 15
@@ -85,7 +86,7 @@ def finish(machine: Machine, block: Block) -> None:
 
 def _run(machine: Machine, block: Block, control: list[tuple[float, float, float]], order: int) -> None:
     for x, y in curve(control, order):
-        machine.feed_to(block.line, [x, y, *machine.p[2:]])
+        machine.go(FEED, block.line, [x, y, *machine.p[2:]])
     machine.p = [control[-1][0], control[-1][1], *machine.p[2:]]
 
 

@@ -100,5 +100,5 @@ def thread(machine: Machine, block: Block) -> None:
             raise block.refuse(f"G76 would need more than {MAX_PASSES} passes; give a larger J.")
     for _ in range(min(round(words.get("h", 0.0)), MAX_PASSES) + 1):
         shape.cut(shape.end_depth, (shape.end_depth - peak) * slope)
-    machine.traverse(block.line, end)
+    machine.go(TRAVERSE, block.line, end)
     machine.p = end

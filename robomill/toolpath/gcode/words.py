@@ -35,7 +35,7 @@ class Block:
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
-        return GCodeError.at(self.line, f"{message}")
+        return GCodeError.at(self.line, message)
 
 
 def normalise(raw: str, line: int) -> str:
@@ -53,7 +53,7 @@ def normalise(raw: str, line: int) -> str:
             break
         close, nested = raw.find(")", bracket), raw.find("(", bracket + 1)
         if close < 0:
-            raise GCodeError.at(line, "a comment is not closed; add).")
+            raise GCodeError.at(line, "a comment is not closed; add ).")
         if 0 <= nested < close:
             raise GCodeError.at(line, "a comment holds another (; comments cannot be nested.")
         out += [raw[at:bracket].translate(_BLANKS).lower(), raw[bracket : close + 1]]
