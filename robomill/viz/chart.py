@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 Trace = dict[str, Any]
-QUIET = {"showlegend": False, "hoverinfo": "skip"}  # a trace that neither the legend nor the mouse tells of
+QUIET: dict[str, Any] = {
+    "showlegend": False,
+    "hoverinfo": "skip",
+}  # a trace that neither the legend nor the mouse tells of
 
 
 def drawn(kind: str, **what: Any) -> Trace:

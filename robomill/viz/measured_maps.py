@@ -51,7 +51,7 @@ def level_figure(level: Level, *, dark: bool, revision: str) -> Chart:
     )
     if len(level.points):
         dots = {"size": 4.5, "color": rgba(p.background, 0.85), "line": {"color": rgba(p.text, 0.8), "width": 1}}
-        fig.dots(*level.points.T, dots, **QUIET)
+        fig.dots(level.points[:, 0], level.points[:, 1], dots, **QUIET)
     fig.lay_out(
         plot_bgcolor=rgba(p.muted, 0.16),
         xaxis=axis(f"X<sub>M</sub>, {level.length_unit}", dark=dark, showgrid=False, range=_span(level.x)),

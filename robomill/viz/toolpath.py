@@ -218,7 +218,7 @@ def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
     words = [
         f"{picture.noun} {b}" + ("" if c else ", rapid") for b, c in zip(block, picture.cutting[kept], strict=True)
     ]
-    hover = "%{text}<br>x %{x:.2f}, y %{y:.2f}, z %{customdata[1]:.2f} " + picture.length_unit
+    hover = f"%{{text}}<br>x %{{x:.2f}}, y %{{y:.2f}}, z %{{customdata[1]:.2f}} {picture.length_unit}<extra></extra>"
     data: list[FloatArray] = [block.astype(float), q[:, 2]]
     if picture.tools is not None:
         words = [f"{w}<br>{plain(picture.tool_names.get(n, ''))}" for w, n in zip(words, picture.tools[kept].tolist())]
@@ -230,8 +230,7 @@ def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
             for w, v in zip(words, value, strict=True)
         ]
     faint = {"opacity": 0.01}
-    said = {"text": words, "customdata": np.column_stack(data), "hovertemplate": hover + "<extra></extra>"}
+    said: dict[str, Any] = {"text": words, "customdata": np.column_stack(data)}
     picked = {"selected": {"marker": faint}, "unselected": {"marker": faint}}
-    fig.dots(
-        *q.T[:2], {"size": 9, "color": palette(dark).accent, **faint}, name="points", showlegend=False, **said, **picked
-    )
+    dots = {"size": 9, "color": palette(dark).accent, **faint}
+    fig.dots(q[:, 0], q[:, 1], dots, name="points", showlegend=False, hovertemplate=hover, **said, **picked)
