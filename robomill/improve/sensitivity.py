@@ -46,9 +46,7 @@ def mean_known(gain: FloatArray) -> FloatArray:
 
 def stiffened(robot: Robot, factors: ArrayLike) -> Robot:
     """The robot with each free joint's stiffness multiplied by ``factors`` (n,) > 0; one number serves all joints."""
-    factors = np.broadcast_to(as_floats(factors, "stiffness factors", (), error=KinematicsError), (robot.n,))
-    _positive(factors)
-    return robot.replace(C_theta=robot.C_theta / factors)
+    return robot.replace(C_theta=robot.C_theta / np.broadcast_to(_above_zero(factors, ()), (robot.n,)))
 
 
 def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArray:
@@ -57,11 +55,9 @@ def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArra
     ``axis`` is the joint axis of ``shares``; factors (n,) multiply the stiffness.
     """
     shares = np.asarray(shares, dtype=np.float64)
-    factors = as_floats(factors, "stiffness factors", (shares.shape[axis],), error=KinematicsError)
-    _positive(factors)
     shape = [1] * shares.ndim
     shape[axis] = -1
-    return shares / factors.reshape(shape)
+    return shares / _above_zero(factors, (shares.shape[axis],)).reshape(shape)
 
 
 def compliance_sensitivity(
@@ -100,7 +96,7 @@ def deflection_sensitivity(
 
 def _sensitivity(parts: FloatArray, factor: float, joint_numbers: tuple[int, ...]) -> Sensitivity:
     """From vectors parts (..., n, d) whose sum over joints is the vector the measure is the length of."""
-    _positive(np.array([factor]))
+    _above_zero(factor, ())
     whole = parts.sum(axis=-2)
     before = np.linalg.norm(whole, axis=-1)
     after = np.linalg.norm(whole[..., None, :] - (1.0 - 1.0 / factor) * parts, axis=-1)
@@ -109,6 +105,8 @@ def _sensitivity(parts: FloatArray, factor: float, joint_numbers: tuple[int, ...
     return Sensitivity(factor, before, gain, ranking, joint_numbers or tuple(range(1, gain.shape[-1] + 1)))
 
 
-def _positive(factors: FloatArray) -> None:
-    if (factors <= 0).any() or not np.isfinite(factors).all():
+def _above_zero(factors: ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+    checked = as_floats(factors, "stiffness factors", shape, error=KinematicsError)
+    if (checked <= 0).any():
         raise KinematicsError("stiffness factors: expected numbers above zero (1.1 is 10 % stiffer).")
+    return checked

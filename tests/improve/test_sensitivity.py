@@ -5,7 +5,13 @@ import pytest
 
 import robomill as rm
 from robomill.errors import KinematicsError
-from robomill.improve.sensitivity import compliance_sensitivity, deflection_sensitivity, scaled_shares, stiffened
+from robomill.improve.sensitivity import (
+    compliance_sensitivity,
+    deflection_sensitivity,
+    mean_known,
+    scaled_shares,
+    stiffened,
+)
 
 
 @pytest.fixture(scope="module")
@@ -111,5 +117,14 @@ def test_one_number_serves_all_joints_and_a_bad_one_is_refused(point):
             scaled_shares(C_joint, [1, 1, bad, 1, 1], 0)
         with pytest.raises(KinematicsError, match="above zero"):
             compliance_sensitivity(C_joint, "yy", bad)
-    with pytest.raises(KinematicsError, match="above zero"):
-        compliance_sensitivity(C_joint, "yy", float("inf"))
+    for bad in (float("inf"), float("nan")):
+        with pytest.raises(KinematicsError, match="finite"):
+            compliance_sensitivity(C_joint, "yy", bad)
+
+
+def test_a_mean_is_over_places_where_every_joint_is_known():
+    grid = np.array([[[1.0, 2.0, 3.0], [np.nan, 7.0, 7.0]], [[3.0, 4.0, 11.0], [8.0, 8.0, np.nan]]])
+    np.testing.assert_array_equal(mean_known(grid), [2.0, 3.0, 7.0])
+    np.testing.assert_array_equal(mean_known(grid[0, 0]), grid[0, 0])
+    for shape in ((3,), (4, 3), (2, 4, 3)):
+        np.testing.assert_array_equal(mean_known(np.full(shape, np.nan)), [np.nan] * 3)
