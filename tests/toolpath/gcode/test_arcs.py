@@ -209,3 +209,42 @@ def test_the_bend_of_a_spiral_is_the_sagitta_of_a_short_chord(ends, sweep):
     points = at(a + h * np.linspace(0, 1, 2001)) - at(a)
     sagitta = np.abs((points * np.conj(chord)).imag).max() / abs(chord)
     assert found == pytest.approx(8.0 * sagitta / h**2, rel=2e-3)
+
+
+@pytest.mark.parametrize("plane", PLANES)
+def test_an_arc_may_leave_a_box_only_where_its_circle_does(plane: int) -> None:
+    """A short arc of a circle of radius 2 in the middle of a box of 5 by 5, and pushed towards each side in turn."""
+    first, second, third = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[plane]
+    for way in (*np.eye(3), *-np.eye(3)):
+        for push, leaves in ((0.0, False), (0.4, False), (0.6, True)):
+            centre = 10.0 + push * way
+            start, end = centre.copy(), centre.copy()
+            start[[first, second]] += [1.2, 1.6]
+            end[[first, second]] += [1.6, 1.2]
+            arc = Arcs(start[None], end[None], centre[None], np.array([plane]), np.array([-0.2838]))
+            expected = leaves and way[third] == 0.0
+            assert arc.may_leave(np.full(3, 7.5), np.full(3, 12.5)).tolist() == [expected]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_programs_extents_are_those_of_its_points(seed: int) -> None:
+    """Whichever arc or line reaches farthest on a side."""
+    r = np.random.default_rng(seed)
+    lines = ["G21 F100"]
+    for _ in range(12):
+        u, v, w = r.uniform(-9, 9, 3)
+        lines.append(f"G17 G{r.choice([0, 1])} X{u:.3f} Y{v:.3f} Z{w:.3f}")
+        plane = int(r.choice([17, 18, 19]))
+        i, j = PLANES[plane][3:5]
+        lines.append(f"G{plane} G{r.choice([2, 3])} {i}{r.uniform(1, 9):.3f} {j}{r.uniform(-9, 9):.3f}")
+    program = interpret("\n".join(lines) + "\nM2\n")
+    cut = np.flatnonzero(program.kind != 0)
+    points = np.concatenate(
+        [
+            sampled(program, row, 20_001) if program.kind[row] == 2 else [program.start[row], program.end[row]]
+            for row in cut
+        ]
+    )
+    lower, upper = program.extents
+    np.testing.assert_allclose(lower, points.min(axis=0), atol=1e-9)
+    np.testing.assert_allclose(upper, points.max(axis=0), atol=1e-9)

@@ -12,7 +12,7 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
-from robomill.toolpath.gcode.motion_rules import swept
+from robomill.toolpath.gcode.motion_rules import straight_length, swept
 
 # G17 written in another plane: x, y, z become first, second and third axis.
 PERMUTED = {17: "XYZIJK", 18: "ZXYKIJ", 19: "YZXJKI"}
@@ -232,3 +232,18 @@ def test_huge_numbers_are_read_or_refused(text: str, fast: bool, monkeypatch: py
             path = to_toolpath(ends("G21 F1\n" + text.format(huge=huge)))
             assert np.isfinite(path.p).all()
             assert np.isfinite(path.v_f).all()
+
+
+def test_a_feed_counts_along_the_way_of_the_tip_else_of_the_turning_axes() -> None:
+    rng = np.random.default_rng(3)
+    for moved in ([1, 1, 1, 1, 1, 1], [1, 0, 0, 0, 0, 0], [0, 1, 0, 1, 1, 0], [0, 0, 1, 0, 0, 0]):
+        p, step = rng.normal(size=(2, 6))
+        step *= moved
+        assert straight_length(p, p + step) == pytest.approx(np.linalg.norm(step[:3]))
+        assert straight_length(p, p + step * [0, 0, 0, 1, 1, 1]) == pytest.approx(np.linalg.norm(step[3:]))
+        for tip in np.eye(6)[:3]:
+            for small, counted in ((0.9e-7, np.linalg.norm(step[3:])), (1.1e-7, 1.1e-7)):
+                start = np.concatenate([[0.0] * 3, p[3:]])
+                for way in (1, -1):
+                    end = start + step * [0, 0, 0, 1, 1, 1] + way * small * tip
+                    assert straight_length(start, end) == pytest.approx(counted, rel=1e-6)

@@ -99,3 +99,18 @@ def test_any_number_of_tools_may_be_measured_without_a_table():
     np.testing.assert_allclose(read(f"{start}G43\n", *HERE), [-3, 0, 193], atol=1e-9)
     np.testing.assert_allclose(read(f"{start}G43 H1\nG43.2 H2\n", *HERE), [-3, 0, 143], atol=1e-9)
     np.testing.assert_allclose(read(f"{start}T9 M6\nG43\n", *HERE), [0, 0, 200], atol=1e-9)
+
+
+@pytest.mark.parametrize("code", ["G41", "G42"])
+def test_d_names_the_tool_whose_radius_keeps_off(code):
+    """Of a line along x the centre keeps half the named tool's diameter off, on its side; D0 or none is the one in use."""
+    tools = {number: Tool(number, diameter) for number, diameter in ((1, 4e-3), (2, 10e-3), (7, -6e-3))}
+    for word, y in (("", 2.0), ("D1", 2.0), ("D2", 5.0), ("D7", -3.0), ("D0", 2.0), ("D2.00009", 5.0)):
+        program = interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code} {word}\nG1 X20\nX40\nG40\nM2\n", tools=tools)
+        side = 1.0 if code == "G41" else -1.0
+        np.testing.assert_allclose(program.end[1:3, 1] * 1e3, y * side, atol=1e-9)
+    for word in ("D2.001", "D1.5", "D-1", "D3"):
+        with pytest.raises(GCodeError, match="Line 3: "):
+            interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code} {word}\nG1 X20\nM2\n", tools=tools)
+    with pytest.raises(GCodeError, match="give a tool table"):
+        interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code}\nG1 X20\nM2\n")
