@@ -103,7 +103,7 @@ def test_any_number_of_tools_may_be_measured_without_a_table():
 
 @pytest.mark.parametrize("code", ["G41", "G42"])
 def test_d_names_the_tool_whose_radius_keeps_off(code):
-    """Of a line along x the centre keeps half the named tool's diameter off, on its side; D0 or none is the one in use."""
+    """Of a line along x the centre keeps half the named tool's diameter off, on its side; D0: the one in use."""
     tools = {number: Tool(number, diameter) for number, diameter in ((1, 4e-3), (2, 10e-3), (7, -6e-3))}
     for word, y in (("", 2.0), ("D1", 2.0), ("D2", 5.0), ("D7", -3.0), ("D0", 2.0), ("D2.00009", 5.0)):
         program = interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code} {word}\nG1 X20\nX40\nG40\nM2\n", tools=tools)
