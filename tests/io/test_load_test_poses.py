@@ -284,3 +284,38 @@ def test_a_map_by_cables_is_made_at_poses_of_the_flange():
     J = rm.geometric_jacobian(robot, q)[:, :3]
     order = np.argsort(np.linalg.norm(field.p - loads(T, tip)[0], axis=1))
     np.testing.assert_allclose(field.C[order], np.einsum("mik,k,mjk->mij", J, arm.C_theta, J), rtol=1e-4, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("columns", "bad", "column"),
+    [
+        ({}, {"cable_x": 0.7}, "cable_x"),
+        ({}, {"cable_x": 0.8 * 1.03, "cable_z": 0.6 * 1.03}, "cable_x"),
+        ({}, {"load_N": 0.0}, "load_N"),
+        ({**NO_READING, **GAUGE, "reading_mm": 0.1}, {"gauge_y": 1.0}, "gauge_x"),
+        ({}, {"X_mm": 9000.0}, ""),
+        (
+            {**NO_CABLE, **PULLEY, **{f"{at}{a}_mm": 1000.0 for a in "xyz" for at in ("hook_", "FP")}},
+            {f"hook_{a}_mm": 2000.0 for a in "xyz"},
+            "pulley_x_mm",
+        ),
+    ],
+)
+@pytest.mark.parametrize("at", [0, 1, 2])
+def test_one_bad_row_among_good_ones_is_the_one_that_is_named(columns, bad, column, at):
+    good = {k: np.full(3, v) for k, v in {**LINE, **columns}.items() if v is not None}
+    robot = ARMS["kuka_kr270"][1]
+    assert len(read_load_tests(csv(good, *HEAD), robot)) == 3
+    for key, value in bad.items():
+        good[key][at] = value
+    with pytest.raises(LoadTestError) as refused:
+        read_load_tests(csv(good, *HEAD), robot)
+    assert refused.value.where == f"row {4 + at}" + (f", column {column}" if column else "")
+
+
+def test_a_direction_is_used_at_length_one_if_it_was_written_a_little_off():
+    robot = ARMS["kuka_kr270"][1]
+    for stretch in (0.985, 1.0, 1.015):
+        line = {k: np.array([v * stretch if k.startswith("cable") else v]) for k, v in LINE.items() if v is not None}
+        tests = read_load_tests(csv(line, *HEAD), robot)
+        np.testing.assert_allclose(tests.wrench[0, :3], [320.0, 0.0, 240.0], atol=1e-9)

@@ -8,9 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robomill.compliance.gravity import LinkMasses
+from robomill.compliance.springs.joint_bending import JointBending
+from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
+from robomill.identification.measured_field import MeasuredField
 from robomill.io.beside import Beside
 from robomill.io.programs import program_from_bytes
 from robomill.io.projects import load_setup, open_project, setup_from_toml, setup_to_toml
@@ -18,6 +23,7 @@ from robomill.io.robot_writer import robot_to_toml
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.io.tables import parse_toml
+from robomill.provenance import Provenance
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, SketchSource
@@ -238,3 +244,50 @@ def test_a_cutter_that_cannot_be_is_refused_with_its_table_and_key():
     text = SAMPLE.read_text(encoding="utf-8").replace('kind = "flat"', 'kind = "drill"', 1)
     with pytest.raises(RobomillError, match=r"^setup.toml, \[cutter\], tip_angle_deg: A drill needs a tip angle"):
         setup_from_toml(text, "setup.toml", Beside(SAMPLE.parent))
+
+
+CHANGES = {
+    "description": 'a long "one"\nin two lines',
+    "tolerance": 1e-3 / 7,
+    "floor_tolerance": 1e-4 / 3,
+    "feed_tolerance": 2e-4 / 3,
+    "step": 1e-3 / 3,
+    "cell": 0.3e-3,
+    "engagement": True,
+    "spin": -0.7 / 3,
+    "rapid_rate": 0.2 / 3,
+    "springs": (ToolBending(8e-3, 0.04 / 3), SpindleSpring(1e-7 / 3), JointBending(3, 1e-7, 2e-7 / 3)),
+    "links": LinkMasses(np.arange(1.0, 6.0) / 3, np.arange(15.0).reshape(5, 3) / 7e2, Provenance("measured", "scales")),
+    "tools": ToolTable((TableTool(3), TableTool(4, Cutter("ball", 0.857e-3), 16.667e-3, name="small"))),
+    "provenance": {"force": Provenance("synthetic", "made up"), "stock": Provenance("measured", "by hand")},
+    "measured_map": MeasuredField(
+        [[0.03333, -1.3, 0], [0.1, -1.3, 0]],
+        [np.eye(3) * 1e-6 / 3, np.diag([1e-6, 2e-6, 5e-6]) / 7],
+        np.deg2rad([[10.5, 20.25], [3.0, -7.125]]),
+        1 / 3,
+        Provenance("synthetic", "made up"),
+        np.full((2, 3, 3), 1e-8 / 3),
+    ),
+}
+
+
+@pytest.mark.parametrize("names", [*([name] for name in CHANGES), [*CHANGES], []], ids=lambda n: "-".join(n)[:30])
+def test_whatever_is_changed_comes_back(setup, names: list[str]) -> None:
+    """Each field off its default alone, all of them, and none; and what is written of the copy is the same text."""
+    changed = setup.replace(**{name: CHANGES[name] for name in names}, add_sag="links" in names)
+    text = setup_to_toml(changed)
+    again = setup_from_toml(text)
+    assert again.digest() == changed.digest()
+    assert (changed.digest() == setup.digest()) == (not {*names} - {"description", "provenance"})
+    assert (again.description, again.provenance) == (changed.description, changed.provenance)
+    assert setup_to_toml(again) == text
+
+
+def test_the_spin_is_written_only_where_it_is_chosen(setup) -> None:
+    for spin, written in (
+        ("least_motion", {}),
+        ("least_deviation", {"spin": "least_deviation"}),
+        (0.25, {"spin_rad": 0.25}),
+    ):
+        data = parse_toml(setup_to_toml(setup.replace(spin=spin)), "x")
+        assert {key: data[key] for key in data if key.startswith("spin")} == written

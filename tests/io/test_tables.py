@@ -64,13 +64,15 @@ def test_what_is_not_toml_names_the_line() -> None:
 
 
 def test_values_come_in_si_and_defaults_as_they_are() -> None:
-    t = table('a_mm = 2\nb = [1, 2.5]\nc = "text"\nd = true\ne = 3\nf = [[1, 2], [3, 4]]\ng = ["x", "y"]\nh = "two"')
+    numbers = "a_mm = 2\nb = [1, 2.5]\nd = true\ne = 3\nf = [[1, 2], [3, 4]]\ni = [1, -2]\n"
+    t = table(numbers + 'c = "text"\ng = ["x", "y"]\nh = "two"')
     assert t.number("a_mm", "mm") == 0.002
     assert t.numbers("b", 2, "mm") == [0.001, 0.0025]
     assert t.text("c") == "text"
     assert t.flag("d", False) is True
     assert t.whole("e") == 3
     np.testing.assert_array_equal(t.rows("f", 2, "kN"), [[1e3, 2e3], [3e3, 4e3]])
+    assert t.wholes("i") == [1, -2]
     assert t.words("g") == ["x", "y"]
     assert t.choice("h", ("one", "two")) == "two"
     t.finish()
@@ -81,6 +83,7 @@ def test_values_come_in_si_and_defaults_as_they_are() -> None:
     assert nothing.text("c", "else") == "else"
     assert nothing.flag("d", True) is True
     assert nothing.whole("e", 7) == 7
+    assert nothing.wholes("i", (4,)) == (4,)
     assert nothing.words("g") == []
     assert nothing.choice("h", ("one", "two"), "one") == "one"
     assert nothing.tables("i") == []
@@ -119,6 +122,10 @@ def test_the_key_may_name_the_unit() -> None:
         ("a = 1", lambda t: t.flag("a", False), "f.toml, a: expected true or false, found 1."),
         ("a = 1.5", lambda t: t.whole("a"), "f.toml, a: expected a whole number, found 1.5."),
         ("a = true", lambda t: t.whole("a"), "f.toml, a: expected a whole number, found True."),
+        ("a = [1, 1.5]", lambda t: t.wholes("a"), "f.toml, a: expected a list of whole numbers, found [1, 1.5]."),
+        ("a = [true]", lambda t: t.wholes("a"), "f.toml, a: expected a list of whole numbers, found [True]."),
+        ("a = 1", lambda t: t.wholes("a", ()), "f.toml, a: expected a list of whole numbers, found 1."),
+        ("", lambda t: t.wholes("a"), "f.toml, a: missing; add it."),
         ("a = 'c'", lambda t: t.choice("a", ("x", "y")), "f.toml, a: expected one of x, y, found 'c'."),
         ("a = 1", lambda t: t.numbers("a", 2, "mm"), "f.toml, a: expected a list of 2 numbers, found 1."),
         ("a = [1]", lambda t: t.numbers("a", 2, "mm"), "f.toml, a: expected a list of 2 numbers, found 1: [1]."),

@@ -8,7 +8,16 @@ from robomill.errors import RobotError
 from robomill.io.urdf import dh_from_axes, read_urdf
 
 
-def urdf_text(rng, n, parallel=False):
+def tip_along(axis):
+    """Roll, pitch and yaw of a frame whose z is ``axis``."""
+    x = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    x /= np.linalg.norm(x)
+    R = np.column_stack([x, np.cross(axis, x), axis])
+    return np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(R[2, 0]), np.arctan2(R[1, 0], R[0, 0])
+
+
+def urdf_text(rng, n, parallel=False, flange=0):
+    """A random chain; with ``flange`` 1 or -1 the tip's z is the last joint's axis, or against it."""
     links = "".join(f'<link name="l{i}"/>' for i in range(n + 2))
     joints = ""
     for i in range(n):
@@ -21,19 +30,21 @@ def urdf_text(rng, n, parallel=False):
             f'<origin xyz="{xyz[0]} {xyz[1]} {xyz[2]}" rpy="{rpy[0]} {rpy[1]} {rpy[2]}"/>'
             f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>'
         )
+    roll, pitch, yaw = tip_along(flange * axis / np.linalg.norm(axis)) if flange else (0.1, -0.2, 0.3)
     joints += (
         f'<joint name="tool" type="fixed"><parent link="l{n}"/><child link="l{n + 1}"/>'
-        '<origin xyz="0.1 0.2 0.3" rpy="0.1 -0.2 0.3"/></joint>'
+        f'<origin xyz="0.1 0.2 0.3" rpy="{roll} {pitch} {yaw}"/></joint>'
     )
     return f'<robot name="random">{links}{joints}</robot>'
 
 
+@pytest.mark.parametrize("flange", [0, 1, -1])
 @pytest.mark.parametrize("seed", range(6))
-def test_urdf_agrees_with_pinocchio(tmp_path, seed):
+def test_urdf_agrees_with_pinocchio(tmp_path, seed, flange):
     pin = pytest.importorskip("pinocchio")
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 8))
-    text = urdf_text(rng, n, parallel=seed % 2 == 0)
+    text = urdf_text(rng, n, parallel=seed % 2 == 0, flange=flange)
     path = tmp_path / "arm.urdf"
     path.write_text(text)
     robot = read_urdf(path)
