@@ -162,7 +162,7 @@ def gauges(table: Columns) -> tuple[FloatArray, FloatArray] | None:
         m = len(table.row)
         read.append(np.full(m, np.nan) if reading is None else reading)
         along.append(np.broadcast_to(np.eye(3)[int(k) - 1], (m, 3)) if u is None else u)
-    readings = np.stack(read, axis=-1)
+    readings = np.stack(read, axis=1)
     return (readings, np.stack(along, axis=1)) if np.isfinite(readings).any() else None
 
 

@@ -253,3 +253,14 @@ def test_a_sheet_joins_a_table_that_is_written_another_way(head: str, more: str)
 def test_a_sheet_of_other_columns_or_units_joins_nothing(more: str) -> None:
     with pytest.raises(SurfaceError, match=r"^sheet.csv, row 1: found the columns .* expected Fx_N, m_Nm"):
         append_rows("Fx_N,m_Nm\n1,2\n3,4\n", more, LAYOUT, "sheet.csv")
+
+
+def test_a_number_among_names_is_a_column_that_is_passed_over():
+    name, unit = next((quantity, unit) for quantity, units in UNITS.items() for unit in units if unit in SUFFIXES)
+    column = NAMES[name][0] + SUFFIXES[unit][0]
+    columns, _ = read_columns(f"7;{column};-1,5\n1;2;3\n4;5;6\n", LAYOUT, "mine.csv")
+    np.testing.assert_array_equal(columns.values[name], np.array([2.0, 5.0]) * ONE[unit])
+    assert columns.passed_over == ("7", "-1,5")
+    for header in ("7;8;9", "7,5;-8;1e3"):
+        with pytest.raises(SurfaceError, match="found numbers, expected a header"):
+            read_columns(f"{header}\n1;2;3\n4;5;6\n", LAYOUT, "mine.csv")

@@ -319,3 +319,16 @@ def test_a_direction_is_used_at_length_one_if_it_was_written_a_little_off():
         line = {k: np.array([v * stretch if k.startswith("cable") else v]) for k, v in LINE.items() if v is not None}
         tests = read_load_tests(csv(line, *HEAD), robot)
         np.testing.assert_allclose(tests.wrench[0, :3], [320.0, 0.0, 240.0], atol=1e-9)
+
+
+def test_a_pulley_a_millimetre_from_its_hook_still_says_where_to():
+    apart = {**NO_CABLE, **{f"{at}{a}_mm": 0.0 for a in "xyz" for at in ("hook_", "FP", "pulley_")}}
+    line = {k: np.array([v]) for k, v in {**LINE, **apart}.items() if v is not None}
+    for gap, reads in ((0.99, False), (1.0, True), (1.01, True)):
+        line["pulley_y_mm"][0] = gap
+        if reads:
+            wrench = read_load_tests(csv(line, *HEAD), ARMS["kuka_kr270"][1]).wrench
+            np.testing.assert_allclose(wrench[0, :3], [0.0, 400.0, 0.0], atol=1e-9)
+        else:
+            with pytest.raises(LoadTestError, match="the pulley is where the hook is"):
+                read_load_tests(csv(line, *HEAD), ARMS["kuka_kr270"][1])
