@@ -1,73 +1,71 @@
 """Rapids that run through material: a machine would break the tool there, and the simulation must say so."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from robomill.provenance import Finding, named
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
+from robomill.surface.collisions import collisions
+from robomill.surface.passes import Passes
 from robomill.surface.stock import fitting_cell
-from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
-LEAST_DEPTH = 1e-6  # m: less than this is rounding
-MANY = 50  # lines: more are not looked for
 MOST_CELLS = 4_000_000  # a large block is looked at in larger cells than it is cut in
 
 
-def rapid_notes(lines: Sequence[int]) -> tuple[Finding, ...]:
-    """Rapids that break the tool, by their lines."""
-    if not lines:
-        return ()
-    also = f" (also line {named(lines[1:])})" if len(lines) > 1 else ""
-    text = f"a rapid runs through material that no cut removes; lift the tool first{also}."
-    return (Finding("warning", lines[0], text, code="rapid-in-material"),)
+class Crashes(NamedTuple):
+    """Source lines of rapids through material, in order: through what no cut removes (``lines``: what they leave is not
+    known), and through what is only cut ``later``; and of a ``first`` one that ends in it (0: it does not).
 
-
-def rapids_through_material(setup: SimulationSetup, path: Toolpath) -> tuple[int, ...]:
-    """Source lines of rapids that pass through material which no cut of the program removes, in order.
-
-    Told by cutting the stock once with the feed moves and once with all, at the cells' centres, where heights are
-    exact; so a rapid through material that is cut only later is not found. The first ``MANY`` lines are found.
+    Where a machine stands before its first move is not known, and a program may be the end of a longer one, so the
+    first is said and no more.
     """
+
+    lines: tuple[int, ...] = ()
+    later: tuple[int, ...] = ()
+    first: int = 0
+
+    def notes(self) -> tuple[Finding, ...]:
+        """What they break, by their lines."""
+        found = []
+        if self.first:
+            text = "the first rapid ends in the material: the tool is taken to stand there, and to break nothing."
+            found.append(Finding("warning", self.first, text, code="begins-in-material"))
+        for lines, which, code in (
+            (self.lines, "no cut removes", "rapid-in-material"),
+            (self.later, "is cut only later", "rapid-before-cut"),
+        ):
+            if lines:
+                also = f" (also line {named(lines[1:])})" if len(lines) > 1 else ""
+                text = f"a rapid runs through material that {which}; lift the tool first{also}."
+                found.append(Finding("warning", lines[0], text, code=code))
+        return tuple(found)
+
+
+def crashes(setup: SimulationSetup, path: Toolpath) -> Crashes:
+    """Rapids of a program that pass through material which no cut before them has removed."""
     moves = path.step_length > 0
     feed, rapid = moves & path.cutting, moves & ~path.cutting
-    rapid[: np.argmax(moves) + 1] = False  # where the machine stands before its first move is not known
+    begins = int(np.argmax(moves))
     low, high = setup.stock_block.lower, setup.stock_block.upper
     tools = tooling(setup, path)
     widest = max(cutter.radius for cutter in tools.cutters)
     reach = np.array([widest, widest, 0.0])
-    ends = np.stack([np.roll(path.p, 1, axis=0), path.p])
-    near = (ends.min(axis=0) <= high + reach).all(axis=1) & (ends.max(axis=0)[:, :2] >= (low - reach)[:2]).all(axis=1)
-    suspects = np.flatnonzero(rapid & near)
-    if not len(suspects):
-        return ()
-
+    start, start_axis = np.roll(path.p, 1, axis=0), np.roll(path.k, 1, axis=0)
+    start[begins], start_axis[begins] = path.p[begins], path.k[begins]
+    lowest, highest = np.minimum(start, path.p), np.maximum(start, path.p)
+    near = (lowest <= high + reach).all(axis=1) & (highest[:, :2] >= (low - reach)[:2]).all(axis=1)
+    if not (rapid & near).any():
+        return Crashes()
     length, width, _ = setup.stock_block.size
     cell = max(setup.cell, fitting_cell(float(length), float(width), MOST_CELLS))
-
-    def heights(rapids: np.ndarray) -> np.ndarray:
-        chosen = feed.copy()
-        chosen[rapids] = True
-        return cut(setup.stock_block, cell, tools, path.p, path.k, chosen, must_touch=False).z
-
-    base = heights(np.zeros(0, dtype=int))
-
-    def cuts(rapids: np.ndarray) -> bool:
-        return bool((base - heights(rapids)).max() > LEAST_DEPTH)
-
-    bad: set[int] = set()
-
-    def look(rapids: np.ndarray) -> None:
-        """Halve a group that cuts until single rapids are left."""
-        if len(bad) >= MANY or not len(rapids) or not cuts(rapids):
-            return
-        if len(rapids) == 1:
-            bad.add(int(path.block[rapids[0]]))
-            return
-        for half in np.array_split(rapids, 2):
-            look(half)
-
-    look(suspects)
-    return tuple(sorted(bad))
+    moves_made = Passes(np.hstack([start, path.p]), np.hstack([start_axis, path.k]))
+    met = collisions(setup.stock_block, cell, tools, moves_made, (feed, rapid & near))
+    first = int(path.block[begins]) if met.early[begins] else 0
+    met.early[begins] = met.left[begins] = False
+    lines, later = (tuple(sorted(set(path.block[some].tolist()))) for some in (met.left, met.early & ~met.left))
+    return Crashes(lines, tuple(line for line in later if line not in lines), first)

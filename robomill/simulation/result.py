@@ -18,7 +18,7 @@ from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.posture import posture_notes
-from robomill.simulation.rapids import rapid_notes, rapids_through_material
+from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import tool_notes, tooling
@@ -198,15 +198,24 @@ class SimulationResult:
         return deviation(self.ideal, self.machined)
 
     @cached_property
+    def _crashes(self) -> Crashes:
+        return crashes(self.setup, self.setup.toolpath)
+
+    @property
     def rapids(self) -> tuple[int, ...]:
         """Source lines of rapids through material that no cut removes: what they leave is not judged."""
-        return rapids_through_material(self.setup, self.setup.toolpath)
+        return self._crashes.lines
+
+    @property
+    def early_rapids(self) -> tuple[int, ...]:
+        """Source lines of rapids through material that is cut only later."""
+        return self._crashes.later
 
     @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:
         """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material, thin
         walls."""
-        return self.machined.notes() + rapid_notes(self.rapids) + thin_wall_notes(self.path.block[self.gauge.thin])
+        return self.machined.notes() + self._crashes.notes() + thin_wall_notes(self.path.block[self.gauge.thin])
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup

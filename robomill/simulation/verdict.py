@@ -60,6 +60,7 @@ class Verdict:
 
 GONE = "a wall that should stand is cut away"
 RAPID = "a rapid runs through material that no cut removes"
+EARLY_RAPID = "A rapid runs through material that is cut only later"
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
     "tight": "within tolerance, tight",
@@ -94,6 +95,8 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         said += "."
     if unknown and level != "missed":
         said = f"{said} {unknown}.".strip()
+    if result.early_rapids:
+        said += f" {EARLY_RAPID} (line {named(result.early_rapids)})."
     return Verdict(level, share, said, *readings)
 
 

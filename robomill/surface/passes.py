@@ -93,8 +93,8 @@ def joined(moves: Passes) -> Passes:
     return Passes(np.hstack([ends[first, :3], ends[last, 3:]]), axes[first])
 
 
-def at_one_axis(moves: Passes, R: float, cell: float) -> tuple[FloatArray, FloatArray]:
-    """Moves whose axis turns divided into pieces of constant axis: ends (q, 6) m, axes (q, 3).
+def at_one_axis(moves: Passes, R: float, cell: float) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Moves whose axis turns divided into pieces of constant axis: ends (q, 6) m, axes (q, 3), and of which move (q,).
 
     Each piece takes the axis of its middle, so no point of a cutter of radius R strays by more than about a tenth of
     a cell.
@@ -108,7 +108,7 @@ def at_one_axis(moves: Passes, R: float, cell: float) -> tuple[FloatArray, Float
     a, b = moves.ends[owner, :3], moves.ends[owner, 3:]
     split = np.hstack([a + n / count * (b - a), np.where(n + 1 == count, b, a + (n + 1) / count * (b - a))])
     k = k_a[owner] + (n + 0.5) / count * (k_b - k_a)[owner]
-    return split, k / np.linalg.norm(k, axis=1, keepdims=True)
+    return split, k / np.linalg.norm(k, axis=1, keepdims=True), owner
 
 
 def leaning(axes: FloatArray) -> BoolArray:

@@ -41,7 +41,7 @@ def cut_upright(z: FloatArray, cells: Cells, cutter: Cutter, ends: FloatArray) -
     z_centre, z_low, share = np.full(size, np.inf), np.full(size, np.inf), np.zeros((*size, 11))
     flat = np.empty(size[0] * size[1], dtype=np.int64)
     index, mean, wall = [np.zeros(0, dtype=np.int64)], [np.zeros(0)], [np.zeros((0, 6))]
-    for i, chosen in _tiles(z.shape, cells, low, high):
+    for i, chosen in tiles(z.shape, cells, low, high):
         part = z[i : i + size[0]]
         n = len(part)
         tile = Heights(part, cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
@@ -71,7 +71,7 @@ def cut_tilted(z: FloatArray, cells: Cells, cutter: Cutter, moves: tuple[FloatAr
     plan_boxes(cutter.radius, ends, axes, top, boxes)
     tilted = TiltedMoves(ends, axes, boxes)
     overhang = np.zeros(z.shape, dtype=bool)
-    for i, chosen in _tiles(z.shape, cells, boxes[:, 0], boxes[:, 1]):
+    for i, chosen in tiles(z.shape, cells, boxes[:, 0], boxes[:, 1]):
         part = z[i : i + rows]
         tile = Heights(part, cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
         hidden = Hidden(np.full(part.shape, np.inf), np.full(part.shape, -np.inf))
@@ -88,7 +88,7 @@ def rows_of_tile(shape: tuple[int, ...]) -> int:
     return int(min(shape[0], max(1, TILE_CELLS // shape[1])))
 
 
-def _tiles(shape: tuple[int, ...], cells: Cells, low: FloatArray, high: FloatArray) -> Iterator[tuple[int, IntArray]]:
+def tiles(shape: tuple[int, ...], cells: Cells, low: FloatArray, high: FloatArray) -> Iterator[tuple[int, IntArray]]:
     """First row of each tile that moves meet in x, and these moves: their range is (low, high), (n,) m."""
     rows = rows_of_tile(shape)
     for i in range(0, shape[0], rows):

@@ -189,7 +189,7 @@ def _cut_with(
     how many cells are undercut, and whether the cutter leans."""
     z, cells, cell = grid
     flat = z.reshape(-1)
-    ends, axes = at_one_axis(moves, cutter.radius, cell)
+    ends, axes, _ = at_one_axis(moves, cutter.radius, cell)
     leans = leaning(axes)
     before = flat[edge.index]
     flat[edge.index] = before + JUST_ABOVE

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+import robomill as rm
 from robomill.cutting.tool import Cutter
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.simulation.rapids import MANY, rapids_through_material
+from robomill.simulation.rapids import crashes
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -19,7 +20,7 @@ SLOT = "G1 X-60 Y0 F600\nG1 Z-1\nG1 X60\n"  # lines 3 to 5: outside, down, throu
 
 def told(text):
     setup = SETUP.replace(source=GCodeSource(f"G21 G90\nG0 X-60 Y0 Z5\n{text}M2\n", "part.nc"))
-    return rapids_through_material(setup, setup.source.read())
+    return crashes(setup, setup.source.read()).lines
 
 
 @pytest.mark.parametrize(
@@ -60,12 +61,52 @@ def test_what_was_cut_before_is_no_material(back, found):
     assert all(line > 5 for line in lines), "feed moves are meant to cut"
 
 
+@pytest.mark.parametrize(
+    ("text", "later"),
+    [
+        ("G0 X0 Y0\nG0 Z-1\nG1 X60 F600\n", (4,)),  # straight down where the cut begins
+        ("G0 X-30 Y0\nG0 Z-1\nG0 X30\nG0 Z5\nG0 X-60\nG0 Z-1\nG1 X60 F600\n", (4, 5, 6)),
+        ("G0 X-60 Z-1\nG1 X0 F600\nG0 X5\nG1 X60\nG1 X0\n", (5,)),  # 5 mm on, out of the slot
+        ("G0 X-60 Z-1\nG1 X0 F600\nG0 X-5\nG1 X60\n", ()),  # back in the slot
+        ("G0 X-60 Z-1\nG1 X60 F600\nG0 Z5\nG0 X-60\nG0 Z-2\nG1 X60\nG0 X-60\n", ()),  # in two depths, and back
+        ("G0 X-60 Z-1\nG1 X60 F600\nG0 Z-2\nG0 X-60\nG1 X60\n", (6,)),  # back a pass too deep
+    ],
+)
+def test_what_is_cut_only_later_is_material_until_then(text, later):
+    setup = SETUP.replace(source=GCodeSource(f"G21 G90\nG0 X-60 Y0 Z5\n{text}M2\n", "part.nc"))
+    found = crashes(setup, setup.source.read())
+    assert (found.lines, found.later, found.first) == ((), later, 0)
+
+
+def test_what_is_cut_only_later_is_said_in_the_verdict():
+    program = GCodeSource("G21 G90 S12000 M3\nG0 X-30 Y0 Z5\nG0 Z-1\nG1 X60 F600\nG0 Z5\nM2\n", "part.nc")
+    run = rm.simulate(SETUP.replace(source=program))
+    assert run.early_rapids == (3,)
+    assert "(line 3)" in run.verdict.sentence
+    assert [note.line for note in run.surface_notes if note.code == "rapid-before-cut"] == [3]
+
+
+@pytest.mark.parametrize(
+    ("first", "line"),
+    [
+        ("G0 X0 Y0 Z-1", 2),  # there is metal all round, wherever it came from
+        ("G0 X0 Y0 Z0", 0),  # on it
+        ("G0 X-44.5 Y0 Z-1", 0),  # beside it, by more than the radius
+        ("G0 X-43.5 Y0 Z-1", 2),
+        ("G1 X0 Y0 Z-1 F600", 0),  # a feed move is meant to cut
+    ],
+)
+def test_where_the_first_rapid_ends_counts(first, line):
+    setup = SETUP.replace(source=GCodeSource(f"G21 G90\n{first}\nG1 X60 F600\nM2\n", "part.nc"))
+    assert crashes(setup, setup.source.read()).first == line
+
+
 def test_every_bad_line_is_named_once_and_in_order():
     assert told("G0 Z-1\nG0 X60\nG0 Y10\nG0 X-60 Z-2\nG0 Z5\nG0 Y0\nG0 X0\nG0 Z-3\n") == (4, 6, 10)
 
 
-def test_the_first_fifty_of_many_bad_lines_are_found():
+def test_however_many_bad_lines_are_found():
     """Sixty rapids through the block, back and forth, each deeper than the one before."""
     across = "".join(f"G0 X{(-1) ** n * -60} Z{-1 - 0.05 * n:.2f}\nG0 X{(-1) ** n * 60}\n" for n in range(60))
     lines = told(across)
-    assert lines == tuple(range(4, 4 + 2 * MANY, 2))
+    assert lines == tuple(range(4, 4 + 2 * 60, 2))

@@ -68,7 +68,7 @@ def test_a_turning_axis_is_divided_so_that_no_point_strays():
     R, cell, turn = 0.004, 5e-4, 0.3
     k = np.array([[np.sin(a), 0.0, np.cos(a)] for a in (0.0, turn)])
     moves = Passes(np.array([[0, 0, 0, 0.01, 0.02, -0.003], [0, 0, 0, 1, 0, 0]]), np.vstack([k.ravel(), [*UP, *UP]]))
-    ends, axes = at_one_axis(moves, R, cell)
+    ends, axes, owner = at_one_axis(moves, R, cell)
     n = len(ends) - 1  # pieces of the first move
     assert turn / n * R <= 0.2 * cell < turn / (n - 1) * R
     np.testing.assert_array_equal(ends[:n, 3:][:-1], ends[:n, :3][1:])

@@ -1,0 +1,68 @@
+"""Moves that must not cut and do: made in the order of the program, each meets what the feed moves before it left."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.cutting.tooling import Tooling
+from robomill.progress import slices
+from robomill.surface.passes import Passes, at_one_axis, leaning
+from robomill.surface.raster import stock_heights
+from robomill.surface.removal import rows_of_tile, tiles
+from robomill.surface.stock import Stock, stock_grid
+
+
+class Met(NamedTuple):
+    """Which moves (n,) bool run through material: what no move at feed before them removed, and what none ever does."""
+
+    early: BoolArray
+    left: BoolArray
+
+
+def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made: tuple[BoolArray, BoolArray]) -> Met:
+    """What ``moves`` (n,) meet that are not meant to cut.
+
+    ``made`` is (feed, asked), (n,) bool each: those that cut, and those that are asked about; others are not made.
+    Ends and axes finite. ``tooling`` says which cutter makes each. Told at the centres of cells of about ``cell`` m,
+    where heights are exact.
+    """
+    from robomill.surface.cells_kernels import Heights
+    from robomill.surface.collision_kernels import Program, make_in_order
+    from robomill.surface.tilt_kernels import TiltedMoves
+
+    n = np.flatnonzero(made[0] | made[1])
+    cells, widest = stock_grid(stock, cell), max(cutter.radius for cutter in tooling.cutters)
+    ends, axes, owner = at_one_axis(Passes(moves.ends[n], moves.axes[n]), widest, cell)
+    z = np.empty((cells.nx, cells.ny))
+    z[...] = stock_heights(stock, cells.x, cells.y)
+    boxes = _boxes(ends, axes, widest, float(z.max(initial=0.0)))
+    shapes = np.array([cutter.solid for cutter in tooling.cutters], dtype=np.float64)
+    feed = made[0][n][owner]
+    program = Program(shapes, np.array(tooling.of_step[n][owner]), feed.astype(np.int64))
+    early, left = np.zeros((2, len(owner)), dtype=np.int64)
+    for i, chosen in tiles(z.shape, cells, boxes[:, 0], boxes[:, 1]):
+        if feed[chosen].all():
+            continue
+        tile = Heights(z[i : i + rows_of_tile(z.shape)], cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
+        for some in slices(len(chosen), "Rapids"):
+            make_in_order(program, TiltedMoves(ends, axes, boxes), chosen[some], tile, early)
+        # Once more, when all is cut.
+        make_in_order(program, TiltedMoves(ends, axes, boxes), chosen[early[chosen] > 0], tile, left)
+    return Met(*(np.isin(np.arange(len(made[0])), n[owner[met > 0]]) for met in (early, left)))
+
+
+def _boxes(ends: FloatArray, axes: FloatArray, R: float, top: float) -> FloatArray:
+    """(q, 4) m: limits in plan, x and y, of what moves of a cutter of radius R meet below ``top``."""
+    from robomill.surface.tilt_kernels import plan_boxes
+
+    boxes, leans = np.empty((len(ends), 4)), leaning(axes)
+    boxes[:, 0::2] = np.minimum(ends[:, :2], ends[:, 3:5]) - R
+    boxes[:, 1::2] = np.maximum(ends[:, :2], ends[:, 3:5]) + R
+    if leans.any():
+        leaning_boxes = np.empty((int(leans.sum()), 4))
+        plan_boxes(R, ends[leans], axes[leans], top, leaning_boxes)
+        boxes[leans] = leaning_boxes
+    return boxes
