@@ -390,3 +390,20 @@ def test_tests_are_values():
     assert len(tests.joined(tests)) == 18
     assert len(tests.select(tests.wrench[:, 0] > 0)) == 3
     assert (tests.joined(tests).pose_index()[:9] == tests.joined(tests).pose_index()[9:]).all()
+
+
+def test_what_is_held_at_zero_is_what_both_fits_say():
+    """Named are parameters that scipy's fit above zero leaves at zero and a free fit makes negative."""
+    seen = set()
+    for seed in range(16):
+        theta = np.random.default_rng(seed).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (3, 5))
+        tests = simulated_tests(ROBOT, *three_directions(theta, 250.0), noise=3e-3, seed=seed)
+        D, b = Model().terms(ROBOT, tests)[:, :3, 0].reshape(-1, 5), tests.displacement[:, :3].ravel()
+        size = np.abs(D).max(axis=0)
+        at_zero = nnls(D / size, b)[0] == 0.0
+        below = np.linalg.lstsq(D / size, b, rcond=None)[0] < 0.0
+        assert identify(ROBOT, tests).active_bounds == tuple(
+            f"joint {j}" for j in range(1, 6) if (at_zero & below)[j - 1]
+        ), seed
+        seen |= {*zip(at_zero.tolist(), below.tolist())}
+    assert len(seen) == 4, "every combination comes up"

@@ -11,7 +11,7 @@ from scipy import stats
 import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
-from robomill.identification.plan import Loads, _best, box_candidates, next_best
+from robomill.identification.plan import MARGIN, Loads, _best, box_candidates, candidates_around, next_best
 from robomill.identification.synthesis import simulated_tests
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
@@ -245,3 +245,23 @@ def test_noise_and_what_is_counted_with_another_shape_a_plan():
     holes = Loads(np.vstack([PATH.theta, np.full((1, 5), np.nan)]), np.vstack([PATH.F, PATH.F[:1]]))
     with_holes, whole = (next_best(ROBOT, TESTS, RESULT, candidates, goal=g) for g in (holes, PATH))
     assert with_holes.path_after == whole.path_after
+
+
+@pytest.mark.parametrize("tilt", [0.1, np.pi / 6])
+def test_candidates_around_the_tests_fill_their_box_and_its_margin(tilt):
+    tips = rm.tool_pose(ROBOT, TESTS.with_joints(ROBOT).theta)[:, :3, 3]
+    found = candidates_around(ROBOT, TESTS, tilt=tilt, load=40.0)
+    x_M = rm.world_from_pose(rm.tool_pose(ROBOT, found.theta))
+    low, high = tips.min(axis=0) - MARGIN, tips.max(axis=0) + MARGIN
+    assert ((x_M[:, :3] >= low - 1e-9) & (x_M[:, :3] <= high + 1e-9)).all()
+    assert (np.abs(x_M[:, 3:]) <= tilt + 1e-9).all()
+    assert (x_M[:, :3].min(axis=0) < tips.min(axis=0)).all(), "into the margin"
+    assert (x_M[:, :3].max(axis=0) > tips.max(axis=0)).all()
+    assert np.abs(x_M[:, 3:]).max() > 0.9 * tilt
+    np.testing.assert_allclose(np.linalg.norm(found.F, axis=1), 40.0)
+
+
+def test_the_usual_candidates_tilt_by_thirty_degrees():
+    for found in (candidates_around(ROBOT, TESTS), box_candidates(ROBOT, *BOX)):
+        tilts = np.abs(rm.world_from_pose(rm.tool_pose(ROBOT, found.theta))[:, 3:])
+        assert np.radians(29.0) < tilts.max() <= np.radians(30.0) + 1e-9

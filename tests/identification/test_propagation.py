@@ -9,8 +9,9 @@ import robomill as rm
 from robomill.identification.confidence import quantile
 from robomill.identification.estimate import identify
 from robomill.identification.knowledge import Knowledge
+from robomill.identification.measured_field import MeasuredField
 from robomill.identification.models import Model
-from robomill.identification.propagation import length_derivative, uncertain_deflection
+from robomill.identification.propagation import length_derivative, uncertain_by_map, uncertain_deflection
 from robomill.identification.synthesis import simulated_tests
 from robomill.io.samples import samples_dir
 from tests.identification.oracles import guessed, monte_carlo
@@ -139,3 +140,20 @@ def test_quantiles():
     assert quantile(76) == pytest.approx(1.9917, abs=1e-4)
     found = uncertain_deflection(ROBOT, THETA, F, Knowledge.of(RESULT, ROBOT))
     np.testing.assert_allclose(found.half_width(), quantile(RESULT.dof) * found.std)
+
+
+def test_a_map_carries_the_forces_spread_through_its_own_matrices():
+    """Linear in the force: drawn forces, displaced by the map one by one, scatter as said; both parts add up."""
+    C = rm.cartesian_compliance(ROBOT, THETA)
+    field = MeasuredField(PATH[:, :3], C, PATH[:, 3:], 0.1, stderr=np.abs(C) * 0.02)
+    A = np.array([[5.0, 0.0, 0.0], [3.0, 8.0, 0.0], [-2.0, 1.0, 4.0]])
+    p = PATH[:, :3]
+    alone, both = uncertain_by_map(field, p, F), uncertain_by_map(field, p, F, A @ A.T)
+    drawn = np.random.default_rng(8).normal(size=(40_000, 3)) @ A.T
+    for k in range(5):
+        expected = np.cov(C[k] @ drawn.T)
+        got = both.covariance[k] - alone.covariance[k]
+        np.testing.assert_allclose(got, expected, atol=0.03 * np.abs(expected).max())
+        np.testing.assert_allclose(both.by_force[k], np.sqrt(np.diag(C[k] @ A @ A.T @ C[k].T)), rtol=1e-9)
+    np.testing.assert_array_equal(alone.by_force, np.zeros((5, 3)))
+    np.testing.assert_allclose(both.delta, np.einsum("mij,mj->mi", C, F), rtol=1e-9)

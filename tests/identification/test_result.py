@@ -14,6 +14,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.record import identification_report
 from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.provenance import Provenance
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 THETA = np.random.default_rng(0).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (15, 5))
@@ -99,3 +100,26 @@ def test_the_report_is_the_result_in_plain_numbers():
     assert report["condition_before_scaling"] == pytest.approx(RESULT.condition[0])
     down = LoadTests(np.tile([0, 0, -250.0], (15, 1)), TESTS.displacement[2::3, :3], theta=THETA)
     assert identification_report(rm.identify(ROBOT, down))["C_theta"][0] is None
+
+
+def test_half_an_interval_is_a_share_of_the_value_where_both_are_known():
+    values = np.array([2e-7, 0.0, 5e-7, 4e-7, 1e-7])
+    ends = np.array([[1e-7, 3e-7], [0.0, 1e-7], [0.0, np.inf], [3e-7, 6e-7], [0.5e-7, 2e-7]])
+    stderr = np.where(np.arange(5) == 2, np.inf, 1e-8)
+    found = replace(RESULT, parameters=values, parameter_ci95=ends, parameter_stderr=stderr).relative_half
+    np.testing.assert_allclose(found, [0.5, np.inf, np.inf, 0.375, 0.75])
+
+
+def test_springs_found_take_the_place_of_others_and_of_what_was_found_earlier():
+    rich = rm.identify(ROBOT, TESTS, "joints+bending+tool")
+    found = replace(rich, parameters=np.array([*RESULT.C_theta, 1e-7, 2e-7, 0, 0, 0, 0]))  # bending at joint 2 alone
+    by_hand = [JointBending(2, 9e-7, 9e-7, Provenance("user", "typed")), SpindleSpring(1e-8)]
+    measured = [JointBending(3, 1e-7, 1e-7, Provenance("measured", "before"))]
+    made_up = [JointBending(4, 1e-7, 1e-7, Provenance("synthetic", "before"))]
+    given = [*by_hand, *measured, *made_up]
+    robot, springs = found.adopted(ROBOT, "mine.csv", ROBOT, given)
+    assert [*springs] == [by_hand[1], *measured, *made_up, *found.springs(ROBOT)]
+    np.testing.assert_array_equal(robot.C_theta, found.applied_to(ROBOT).C_theta)
+    assert robot.provenance["compliance.identified"].kind == "computed"
+    _, springs = found.adopted(ROBOT, "mine.csv", robot, given)  # once more, beside what was identified
+    assert [*springs] == [by_hand[1], *found.springs(ROBOT)]

@@ -100,3 +100,13 @@ def test_a_measuring_sheet_leaves_the_readings_open_and_says_where_to_go() -> No
     said = remarks[0].replace("−", "-")
     assert said.startswith(f"# Test 1: X, Y, Z = {x * 1e3:.0f}, {y * 1e3:.0f}, {z * 1e3:.0f} mm; A, B = ")
     assert f"{np.rad2deg(a):.1f}, {np.rad2deg(b):.1f}°" in said
+
+
+@pytest.mark.parametrize("width", [5, 6])
+def test_world_poses_read_back_with_the_turn_about_the_tool_where_there_is_one(width):
+    rng = np.random.default_rng(4)
+    x_M = rng.uniform(-1, 1, (7, width))
+    tests = LoadTests(rng.normal(size=(7, 6)) * 100, rng.normal(size=(7, 6)) * 1e-4, x_M=x_M)
+    back = read_load_tests(load_tests_to_csv(tests, "a remark", digits=9))
+    assert back.x_M.shape == (7, width)
+    np.testing.assert_allclose(back.x_M, x_M, atol=1e-7)
