@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import qmc
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
@@ -108,6 +107,8 @@ def box_candidates(
     high = np.concatenate([np.asarray(upper, dtype=np.float64), span])
     if (high < low).any():
         raise LoadTestError("Plan: the upper corner of the box lies below its lower corner.")
+    from scipy.stats import qmc  # takes a second, in which no other page runs
+
     points = low + (high - low) * qmc.Halton(5, seed=seed).random(poses)
     solved = inverse_kinematics(robot, pose_from_world(points))
     theta = solved.theta[solved.reached]

@@ -4,6 +4,7 @@ a_2, d_4 and a_5 are assumed; they are 191 of 14 112 tried that meet the paper's
 search and its criteria stand in ``tests/paper/lengths.py``, which finds these lengths again by plane geometry.
 """
 
+from dataclasses import dataclass, field
 from functools import cache, lru_cache
 
 import numpy as np
@@ -73,7 +74,8 @@ def over_lengths(result: SimulationResult, i: int) -> FloatArray | None:
     """(g, 3) m: the deflection at sample i along feed, feed-normal and axial with each of ``lengths``.
 
     Same pose, force, joint compliances and springs; the assumed joint limits are left out. None where the lengths do
-    not matter or are not the assumed ones: another arm, lengths that were edited, a measured map in force.
+    not matter or are not the assumed ones: another arm, lengths that were edited, a measured map in force; nor where
+    the arm has no closed form, as with a tool turned aside.
     """
     robot, setup = result.setup.robot, result.setup
     if not are_assumed(robot) or setup.measured_map is not None or not result.reached[i]:
@@ -82,17 +84,25 @@ def over_lengths(result: SimulationResult, i: int) -> FloatArray | None:
     bare = robot.replace(C_theta_all=np.zeros(robot.rows), compliance_sets={}, provenance={}, limits=ANY)
     every_branch = np.ones(len(branch_names()), dtype=bool)
     found = []
-    for other, arm in _arms(bare):
+    for other, arm in _arms(_Bare(bare.digest(), bare)):
         theta = nearest(other, arm, T_MT, near, rules(other, arm, every_branch, False, False)).theta[0]
         C_joint = joint_contributions(geometric_jacobian(other, theta)[:3], robot.C_theta)
         found.append((C_joint.sum(axis=0) + springs) @ result.F[i])
-    return np.asarray(np.array(found) @ result.R_MF[i])
+    return np.asarray(np.array(found) @ result.R_MF[i]) if found else None
+
+
+@dataclass(frozen=True)
+class _Bare:
+    """A robot that is known again by its numbers."""
+
+    digest: str
+    robot: Robot = field(compare=False)
 
 
 @lru_cache(maxsize=4)
-def _arms(robot: Robot) -> tuple[tuple[Robot, Decoupled], ...]:
-    """The robot with each of ``lengths``, and what its closed form needs."""
-    found = []
+def _arms(bare: _Bare) -> tuple[tuple[Robot, Decoupled], ...]:
+    """The robot with each of ``lengths``, and what its closed form needs; none where it has no closed form."""
+    robot, found = bare.robot, []
     for a_2, d_4, a_5 in lengths():
         a, d = np.array(robot.a), np.array(robot.d)
         a[1], d[3], a[4] = a_2, d_4, a_5

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from robomill import budgets
+from robomill.progress import checkpoint
 
+LOOK_S = 0.05  # who waits for what another one makes looks so often whether it is still wanted
 ENTRY = 1000  # bytes of an entry beside its value
 NOTHING = object()
 
@@ -43,13 +45,15 @@ class Commons:
         with self._lock:
             self._held[key] = value
             self._held.move_to_end(key)
-            for each in self._taken | {key}:
-                self._weights[each] = ENTRY + weight(self._held[each])
+            again = {each: self._held[each] for each in self._taken | {key}}
             self._taken = {key}
+        weights = {each: ENTRY + weight(held) for each, held in again.items()}  # takes its time: others need not wait
+        with self._lock:
+            self._weights |= {each: heavy for each, heavy in weights.items() if each in self._held}
             over = sum(self._weights.values()) - self._most()
             while over > 0 and len(self._held) > 1:
                 oldest, _ = self._held.popitem(last=False)
-                over -= self._weights.pop(oldest)
+                over -= self._weights.pop(oldest, 0)
                 self._taken.discard(oldest)
 
     def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
@@ -58,11 +62,15 @@ class Commons:
         with self._lock:
             mine = self._making.setdefault(key, threading.Lock())
         try:
-            with mine:
+            while not mine.acquire(timeout=LOOK_S):
+                checkpoint()
+            try:
                 found = self.find(key, NOTHING)
                 if found is NOTHING:
                     found = make()
                     self.put(key, found)
+            finally:
+                mine.release()
             return found
         finally:
             with self._lock:

@@ -33,6 +33,17 @@ def claims(project: Project, process: bool = False) -> list[Claim]:
 
     With ``process`` also the two that come out of process data, with the band of the alloy's rows: these take longer.
     """
+    rows = _papers(process)
+    setup = project.setup
+    known = [preset_setup(DEFAULT_PRESET), *([_process_setup()] if process else [])]
+    if setup.digest() not in {each.digest() for each in known} and running.there(setup):
+        rows = [*rows, dataclasses.replace(_computed("robomill, your set-up", setup), kind="user")]
+    return rows
+
+
+@cached.shared(lambda process: process, "The paper's test, computed")
+def _papers(process: bool) -> list[Claim]:
+    """What is the same for everyone."""
     plain, force = preset_setup(DEFAULT_PRESET), f"{SLOT.force:.0f} N"
     third = plain.robot.with_compliance_set("table_3")
     rows = [
@@ -42,20 +53,20 @@ def claims(project: Project, process: bool = False) -> list[Claim]:
         Claim("paper, predicted from its measured map", "paper", SLOT.from_map, note="raw data not printed"),
         Claim("paper, measured on the part", "measured", SLOT.measured, note="in the paper's words", rough=True),
     ]
-    known = [plain]
     if process:
-        known.append(_process_setup())
-        rows.append(_computed("process data, Table 2", known[-1]))
-        rows.append(_computed("process data, Table 3", known[-1].replace(robot=third)))
-    if project.setup.digest() not in {setup.digest() for setup in known} and running.there(project.setup):
-        rows.append(dataclasses.replace(_computed("robomill, your set-up", project.setup), kind="user"))
+        rows.append(_computed("process data, Table 2", _process_setup()))
+        rows.append(_computed("process data, Table 3", _process_setup().replace(robot=third)))
     return rows
 
 
 def _computed(label: str, setup: SimulationSetup) -> Claim:
-    result = cached.result(setup)
-    value, low, high = sideways(result)
+    value, low, high = _sideways(setup)
     return Claim(label, "computed", value, low, high, note="middle of the groove")
+
+
+@cached.shared(cached.by_setup, "The groove at mid-cut")
+def _sideways(setup: SimulationSetup) -> tuple[float, float, float]:
+    return sideways(cached.result(setup))
 
 
 def panel(project: Project, dark: bool) -> None:

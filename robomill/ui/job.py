@@ -15,6 +15,7 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
+from robomill.ui.turns import Turn
 
 EVERY_S = 0.4
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
@@ -72,8 +73,14 @@ class Job:
 
     def _run(self) -> None:
         try:
-            with watched(Progress(self._unwanted, lambda now: self.reach(now.share, now.stage))):
-                self.made = self.work(self)
+            with Turn(self._unwanted) as turn:
+
+                def stopped() -> bool:
+                    turn.let_pass()
+                    return self._unwanted()
+
+                with watched(Progress(stopped, lambda now: self.reach(now.share, now.stage))):
+                    self.made = self.work(self)
         except Cancelled:
             self.stop.set()
         except RobomillError as exc:

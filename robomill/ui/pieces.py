@@ -195,11 +195,9 @@ def figure(
     caption: str = "",
     alt: str = "",
     on_pick: Callable[[Mapping[str, Any]], None] | None = None,
-    lazy: bool = False,
 ) -> None:
     """A plotly figure that keeps its camera, with its table twin and CSV beneath and PNG in its own tool bar.
 
-    A ``lazy`` table is made when it is opened: maps are redrawn at every slider step, their tables are not.
     ``name`` is the file name of what is taken away (default: the key), ``alt`` what a screen reader says,
     ``on_pick`` gets the point that was clicked, as plotly says it (its x, y and customdata).
     """
@@ -224,13 +222,15 @@ def figure(
     more: dict[str, Any] = {}
     if on_pick is not None:
         more = {"on_select": partial(_picked, key, on_pick), "selection_mode": "points"}
-    st.plotly_chart(fig.figure, key=key, theme=None, config=config, alt=alt or None, **more)
+    from robomill.viz.sent import Sent
+
+    st.plotly_chart(Sent(fig), key=key, theme=None, config=config, alt=alt or None, **more)
     if caption or table is not None:
         with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute", gap="small"):
             if caption:
                 note(caption)
             if table is not None:
-                table_twin(table, file_name, key if lazy else "")
+                table_twin(table, file_name, key)
 
 
 def _picked(key: str, take: Callable[[Mapping[str, Any]], None]) -> None:
@@ -241,11 +241,13 @@ def _picked(key: str, take: Callable[[Mapping[str, Any]], None]) -> None:
         take(points[0])
 
 
-def table_twin(table: Callable[[], Mapping[str, Any]], name: str, asked: str = "") -> None:
-    """The numbers behind a figure, to read and to take away as CSV; made when opened where ``asked`` names a key."""
-    more: dict[str, Any] = {"key": f"table-of-{asked}", "on_change": "rerun"} if asked else {}
-    popover = st.popover("Table", icon=":material/table:", type="tertiary", **more)
-    if asked and not popover.open:
+def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "") -> None:
+    """The numbers behind the figure ``key`` (default: its ``name``), to read and to take away as CSV; made when they
+    are opened: figures are redrawn at every edit, their tables are not."""
+    popover = st.popover(
+        "Table", icon=":material/table:", type="tertiary", key=f"table-of-{key or name}", on_change="rerun"
+    )
+    if not popover.open:
         return
     with popover:
         import pandas as pd

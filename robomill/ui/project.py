@@ -171,10 +171,11 @@ class Project:
         return digest((self.setup.digest(), self.known, self.bench.digest()))
 
 
-def presets() -> list[str]:
+@lru_cache(maxsize=1)
+def presets() -> tuple[str, ...]:
     """Folder name of every sample with a set-up, the default first."""
     names = (path.parent.name for path in samples_dir().glob("*/setup.toml"))
-    return sorted(names, key=lambda name: (name != DEFAULT_PRESET, name))
+    return tuple(sorted(names, key=lambda name: (name != DEFAULT_PRESET, name)))
 
 
 @lru_cache(maxsize=32)

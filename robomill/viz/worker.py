@@ -31,6 +31,7 @@ NO_OPENGL = (
     f"Rendered pictures need an OpenGL library that this machine lacks; as root, run: {MEND}. "
     "Everything else works without it."
 )
+NICE = 10  # by so much the drawing process gives way
 FREE_DEATHS = 2  # in a row, after which the next attempt has to wait
 LONGEST_PAUSE_S = 60.0
 REMEMBERED = 64  # pictures that ended the process
@@ -277,6 +278,8 @@ def main() -> None:
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     stdin = sys.stdin.buffer
+    with contextlib.suppress(AttributeError, OSError):  # pages go first: they are complete before their pictures come
+        os.nice(NICE)
     from robomill.viz import scene
 
     scene.load()

@@ -64,6 +64,16 @@ def test_only_the_assumed_lengths_have_a_range():
     assert over_lengths(run, run.worst) is None
 
 
+def test_an_arm_that_has_no_closed_form_has_no_range():
+    """A tool that leans in its holder, typed on the page of the robot."""
+    aside, lean = np.array(SETUP.robot.T_tool), np.radians(3.0)
+    turn = [[np.cos(lean), 0.0, np.sin(lean)], [0.0, 1.0, 0.0], [-np.sin(lean), 0.0, np.cos(lean)]]
+    aside[:3, :3] = aside[:3, :3] @ np.array(turn)
+    run = rm.simulate(SETUP.replace(robot=SETUP.robot.replace(T_tool=aside)))
+    assert run.worst >= 0
+    assert over_lengths(run, run.worst) is None
+
+
 def test_the_record_carries_the_range():
     record = lengths_record(run := rm.simulate(SETUP), run.worst)
     found = over_lengths(run, run.worst) * 1e3

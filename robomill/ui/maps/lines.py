@@ -52,7 +52,6 @@ def show(region: Region) -> None:
         "lines",
         name="path-lines",
         table=lambda: _line_columns(panels, robot),
-        lazy=True,
         alt="Deviation along six straight lines, total and by joint.",
         caption=f"Fig. 8: borders and middle of the region's plane, {format_si(FORCE, 'N', 0)} normal to the feed "
         "(left of it), deviation along that normal, deflected minus commanded; tool vertical. "

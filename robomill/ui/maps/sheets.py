@@ -98,7 +98,6 @@ def draw(cut: Slice, drawn: MapSheet, key: str, caption: str, alt: str, table: C
         alt=alt,
         table=table,
         on_pick=take,
-        lazy=True,
     )
     clicked = session.drop("maps.clicked")
     if clicked is not None:

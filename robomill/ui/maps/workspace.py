@@ -215,7 +215,6 @@ def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
         name=f"workspace-{what.name}",
         alt=f"{what.title} over a plane of the workspace.",
         table=lambda: _columns(region, grid, what),
-        lazy=True,
         caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
     )
 
@@ -260,7 +259,6 @@ def _solid(region: Region) -> None:
         caption=caption,
         alt="The arm with the cells of its workspace as voxels.",
         table=lambda: _columns(region, grid, what),
-        lazy=True,
     )
 
 

@@ -20,7 +20,7 @@ from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 
-STATIONS, FEW_STATIONS = 41, 13
+STATIONS, FEW_STATIONS = 21, 13
 MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
 MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
