@@ -42,7 +42,7 @@ with left:
 with right:
     if source.kind == "sketch":
         with st.container(border=True, key="toolpath.drawing"):
-            board = board_reach(setup, -source.sketch.depth, unit)
+            board = ui.attempt(board_reach, setup, -source.sketch.depth, unit)
             sketch_pad(source.sketch, setup.cutter.diameter, board)
     if path is None or reach is None:
         st.stop()

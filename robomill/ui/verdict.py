@@ -13,7 +13,7 @@ from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.tooth import LEFT_OUT
 from robomill.simulation.verdict import WORDS as JUDGED
 from robomill.simulation.verdict import Reading, Verdict, missed_words, unjudged_words
-from robomill.ui import cached, session, uncertainty
+from robomill.ui import cached, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_count, format_many, format_percent, format_si
 
@@ -52,12 +52,13 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
 
 
 def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
-    """Between which ends the verdict's numbers may lie instead, from the cache."""
-    return _ranges(result, session.known(result.setup))
+    """Between which ends the verdict's numbers may lie instead, from the cache; none while that is being found."""
+    return pieces.attempt(_ranges, result, session.known(result.setup)) or ()
 
 
 @cached.shared(
-    lambda result, known: (cached.by_result(result), None if known is None else (known.covariance, known.source))
+    lambda result, known: (cached.by_result(result), None if known is None else (known.covariance, known.source)),
+    "Between which ends the verdict lies",
 )
 def _ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ...]:
     return ranges(result, known)

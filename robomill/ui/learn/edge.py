@@ -25,7 +25,7 @@ from robomill.workspace.quantities import map_quantity
 from robomill.workspace.ray import Ray, ray_through
 
 
-@shared(lambda robot, point: (fields.geometry_key(robot), point))
+@shared(lambda robot, point: (fields.geometry_key(robot), point), "Moving out to the edge")
 def _ray(robot: Robot, point: Point) -> Ray:
     return ray_through(robot, point)
 
@@ -35,7 +35,9 @@ def edge(found: InHand) -> None:
     """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it."""
     st.html('<p class="rm-ask">Now drag the arm to the edge of its workspace.</p>')
     robot = found.pose.robot
-    way = _ray(robot, found.point)
+    way = pieces.attempt(_ray, robot, found.point)
+    if way is None:
+        return
     unit = session.project().view.length
     radius = from_si(way.radius, unit)
     if len(way.p) < 3:

@@ -14,7 +14,7 @@ from robomill.units import from_si
 BOARD_CELLS = (80, 80)
 BOARD_HALF = 0.4
 
-path_reach = shared(by_setup)(reach.path_reach)
+path_reach = shared(by_setup, "Following the path")(reach.path_reach)
 
 
 def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] | None:
@@ -39,7 +39,7 @@ def board_reach(setup: SimulationSetup, z: float, unit: str) -> dict[str, Any] |
     }
 
 
-@shared(lambda robot, *place: (robot.digest(), *place))
+@shared(lambda robot, *place: (robot.digest(), *place), "What the arm reaches of the board")
 def _board_runs(robot: Robot, T_MW: FloatArray, low: float, high: float, z: float) -> list[list[int]]:
     nx, ny = BOARD_CELLS
     x = low + (np.arange(nx) + 0.5) * (high - low) / nx
