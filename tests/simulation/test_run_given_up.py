@@ -15,6 +15,7 @@ from robomill.progress import Cancelled, Progress, watched
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.surface.mesh import to_mesh
+from tests.telling import told
 
 CASES = {
     "full slot": {},
@@ -59,6 +60,16 @@ def test_it_stops_at_every_stage_and_a_watched_run_is_the_same(setups: dict[str,
     assert ("What each step meets" in names) == setup.engagement
     for name in names:
         assert given_up_at(setup, name) == [name]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_shares_of_a_run_and_of_what_a_page_asks_of_it_rise(setups: dict[str, SimulationSetup], case: str) -> None:
+    heard = told(lambda: _everything(setups[case]))
+    assert len(heard) > 10
+    # Pieces that take long are told one by one.
+    assert len(heard["Sections"]) == 5
+    steps = heard.get("Force and deflection, step by step", [0.0])
+    np.testing.assert_allclose(steps, np.arange(len(steps)) / len(steps), atol=1e-12)
 
 
 def given_up_at(setup: SimulationSetup, name: str) -> list[str]:
