@@ -12,6 +12,7 @@ from robomill.surface.removal import EdgeCells
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
+from tests.telling import told
 
 FLAT = Cutter("flat", 0.008)
 STOCK = Stock((-0.02, -0.0103, -0.01), (0.02, 0.0097, 0.002))
@@ -186,3 +187,11 @@ def test_histogram_counts_areas():
     assert area.tolist() == pytest.approx([0.0, 0.0, 3 * DX * DY, 17 * DX * DY])  # what is beyond is in the last
     nothing = deviation(surface(np.zeros((2, 2))), surface(np.zeros((2, 2))))
     assert (nothing.worst, nothing.rms, nothing.cut_area, nothing.area_out(1e-3)) == ((0.0, 0.0), 0.0, 0.0, (0.0, 0.0))
+
+
+def test_a_comparison_tells_how_far_it_looks():
+    """Ring by ring of the cells around, until nothing nearer can be found."""
+    shares = told(lambda: deviation(*surfaces()))["Error of the surface"]
+    assert shares[0] == 0.0
+    assert np.ptp(np.diff(shares)) < 1e-12
+    assert told(lambda: deviation(*surfaces(shift=0 * SHIFT))) == {}

@@ -8,6 +8,7 @@ from robomill.errors import SurfaceError
 from robomill.surface.groove import groove_sections
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
+from tests.telling import told
 
 FLAT = Cutter("flat", 0.008, flutes=3)
 DELTA = np.array([0.0, 0.2295e-3, -0.1024e-3])  # the paper's slot with Table 2, in feed, feed-normal, axial
@@ -212,3 +213,9 @@ def test_where_another_pass_took_away_a_wall_that_should_stay_the_middle_is_not_
         assert "another pass" in section.note
     assert one.wall_right - one.wall_right_ideal == pytest.approx(1e-4, abs=1e-11)
     assert other.wall_left - other.wall_left_ideal == pytest.approx(-2e-4, abs=1e-11)
+
+
+def test_sections_tell_how_many_of_them_are_made():
+    stock, p, cutting, R = slot(0.0)
+    shares = told(lambda: groove_sections(stock, FLAT, CutPath(p, p + R @ DELTA, cutting), np.linspace(0.01, 0.09, 5)))
+    assert shares["Sections"] == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8])

@@ -111,3 +111,14 @@ def test_places_are_even_along_the_cut_and_rapids_have_none() -> None:
         spans = [*pairwise(moves), (200, 205), (-700, -700)]
         assert unit_doubt(SMALL, *slots(*spans)) == ()
         assert unit_doubt(SMALL, *slots((0, 4), (30, 35), (40, 40))) != ()
+
+
+@pytest.mark.parametrize(("wide", "doubted"), [(0.04, True), (0.049, True), (0.051, False), (0.4, False)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_block_that_would_be_five_times_as_wide_as_the_path_was_not_meant_either(wide, doubted, turned) -> None:
+    """Meant in centimetres: ``wide`` (m) one way and 0.03 m the other, then 10 times as much; its wider side counts."""
+    path, cutting = slots((12, 112), along=(0.0, 1.0) if turned else (1.0, 0.0))
+    size = np.array([0.03, wide] if turned else [wide, 0.03])
+    lower = [-0.5 * size[0], 0.0] if turned else [0.0, -0.5 * size[1]]
+    stock = Stock((*lower, -0.01), (lower[0] + size[0], lower[1] + size[1], 0.0))
+    assert bool(unit_doubt(stock, path, cutting)) == doubted
