@@ -1,5 +1,7 @@
 """The part as a solid: closed, outward, with the volume under its skin; stocks read from solids, asked by ray."""
 
+import itertools
+
 import numpy as np
 import pytest
 import shapely
@@ -150,3 +152,42 @@ def test_skin_along_a_line(angle):
     for value, q in zip(found, centre + w[:, None] * normal, strict=True):
         assert value == pytest.approx(max(highest(points, q[0], q[1]), stock.lower[2]), abs=1e-7)
     np.testing.assert_array_equal(skin_on_line(STOCK, centre, normal)(w), 0.0)
+
+
+@pytest.mark.parametrize("side", range(4))
+@pytest.mark.parametrize("left", [0.3e-3, 0.45e-3, 0.7e-3])
+def test_a_thin_wall_along_the_rim_stands_in_its_place(side, left):
+    """A slot beside one side of the block, in cells of 0.5 mm: ``left`` of it stands, more than half a cell."""
+    turn = np.array([[np.cos(a), np.sin(a)] for a in np.radians([0, 90, 180, 270])]).round()[side]
+    along = np.array([-turn[1], turn[0]])
+    rim, length = abs(turn @ PLATE.upper[:2]), 2 * abs(along @ PLATE.upper[:2])
+    middle = turn * (rim - left - 0.003)
+    ends = np.column_stack([[middle - 0.02 * along, middle + 0.02 * along], [-0.002, -0.002]])
+    mesh = to_mesh(cut(PLATE, 5e-4, Cutter("flat", 0.006), ends))
+    walls = mesh.vertices[mesh.skin :][mesh.owner[mesh.skin :] >= 0]
+    outer, inner = (np.abs(walls[:, :2] @ turn - (rim - left - wide)) < 1e-9 for wide in (0.0, 0.006))
+    assert (outer | inner).all()
+    cells = mesh.shape[1] if turn[0] else mesh.shape[0]
+    assert outer.sum() == inner.sum() == 2 * cells
+    assert volume(mesh) == pytest.approx(PLATE.size.prod() - 0.006 * 0.002 * length, rel=1e-9)
+
+
+@pytest.mark.parametrize("angle", [25, -25, 40, -40, 50, -50, 65, -65])
+def test_walls_of_a_slot_run_out_to_the_sides_of_the_block(angle):
+    """A slanted slot through the middle: on each side of the block each of its walls ends in two points, one over the
+    other, where its line meets that side, to half a cell (what was cut is known in the middle of cells)."""
+    feed = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    normal, half = np.array([-feed[1], feed[0]]), PLATE.upper[:2]
+    ends = np.column_stack([[-0.04 * feed, 0.04 * feed], [-0.002, -0.002]])
+    mesh = to_mesh(cut(PLATE, 5e-4, Cutter("flat", 0.006), ends))
+    walls = mesh.vertices[mesh.skin :][mesh.owner[mesh.skin :] >= 0]
+    met = 0
+    for axis, rim, wall in itertools.product((0, 1), (-1.0, 1.0), (-0.003, 0.003)):
+        at = np.zeros(2)
+        at[axis] = rim * half[axis]
+        at[1 - axis] = (wall - at[axis] * normal[axis]) / normal[1 - axis]
+        if abs(at[1 - axis]) < half[1 - axis] - 1e-3:
+            there = (walls[:, axis] == at[axis]) & (np.abs(walls[:, 1 - axis] - at[1 - axis]) < 2.5e-4)
+            assert there.sum() == 2, (axis, rim, wall)
+            met += 1
+    assert met >= 2

@@ -131,3 +131,19 @@ def test_the_skin_over_a_line_is_the_skin_at_its_points(angle):
         assert found == pytest.approx(float(stock_heights(stock, np.array([x]), np.array([y]))[0, 0]), abs=2e-6)
     plain = skin_on_line(Stock((0, 0, 0), (1, 1, 0.25)), centre, normal)
     assert plain(w).tolist() == [0.25] * 61
+
+
+@pytest.mark.parametrize("sides", [(64.0, 32.0), (32.0, 64.0), (64.0, 63.0), (64.0, 1.0)])
+@pytest.mark.parametrize("short", [0.0, 0.5e-9, -0.5e-9])
+def test_squares_end_with_the_mesh_where_it_ends_with_a_square(sides, short):
+    """To half a nanometre: every corner of the mesh is in a square that there is, of its own row and column."""
+    x, y = np.array(sides) * 1e-4 - short * np.array([sides[0] < 64, sides[1] < 64])
+    corners = np.array([[0.0, 0.0, 0.0], [x, 0.0, 0.0], [x, y, 0.0], [0.0, y, 0.0]])
+    stock = Stock((0.0, 0.0, -1e-3), (x, y, 0.0), corners[[[0, 1, 2], [0, 2, 3]]])
+    mesh = binned(stock)
+    rows, columns = (int(side / mesh.size) + 1 for side in stock.size[:2])
+    assert len(mesh.first) == rows * columns + 1
+    where = np.minimum(((corners[:, :2] - stock.lower[:2]) / mesh.size).astype(int), [rows - 1, columns - 1])
+    for corner, (i, j) in enumerate(where):
+        held = set(mesh.faces[mesh.first[i * columns + j] : mesh.first[i * columns + j + 1]])
+        assert held >= {n for n, face in enumerate([[0, 1, 2], [0, 2, 3]]) if corner in face}

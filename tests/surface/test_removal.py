@@ -71,3 +71,20 @@ def test_a_leaning_cutter_in_tiles_leaves_what_it_leaves_at_once(monkeypatch, ro
     z = np.zeros((24, 18))
     np.testing.assert_array_equal(cut_tilted(z, cells, MILL, (ends, axes)), undercut)
     np.testing.assert_allclose(z, whole, atol=1e-15)
+
+
+@pytest.mark.parametrize("pit", [-0.2e-3, -4e-3, -30e-3])
+def test_how_high_a_leaning_tool_cuts_is_told_by_what_stands_highest(pit):
+    """A pit in one corner of the block changes nothing elsewhere: the side of the tool cuts up to the top."""
+    cells = Cells(24, 18, 0.5e-3, 0.5e-3, 1e-3, 1e-3)
+    ends, axes = np.array([[6e-3, 6e-3, -6e-3, 9e-3, 11e-3, -5e-3]]), np.array([[0.6, 0.0, 0.8]])
+    plain, pitted = np.zeros((24, 18)), np.zeros((24, 18))
+    pitted[0, 0] = pit
+    undercut = cut_tilted(plain, cells, MILL, (ends, axes))
+    np.testing.assert_array_equal(cut_tilted(pitted, cells, MILL, (ends, axes)), undercut)
+    assert plain[0, 0] == 0.0
+    plain[0, 0] = pit
+    np.testing.assert_array_equal(pitted, plain)
+    # As far along X as the lower side of the tool goes at the top: the tip, the lean up to it, and the radius.
+    reached = cells.x0 + cells.dx * np.flatnonzero((pitted < 0.0).any(axis=1)).max()
+    assert reached == pytest.approx(9e-3 + 5e-3 * 0.75 + 4e-3 / 0.8, abs=1.5e-3)
