@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.removal import TILE_CELLS, _tiles, cut_tilted, cut_upright, rows_of_tile
+from robomill.surface.removal import TILE_CELLS, cut_tilted, cut_upright, rows_of_tile, tiles
 from robomill.surface.stock import Cells
 
 MILL = Cutter("flat", 8e-3)
@@ -29,9 +29,9 @@ def test_a_tile_has_the_moves_that_reach_the_centres_of_its_cells(monkeypatch):
         rows = np.arange(3 * tile, min(3 * tile + 3, 11))
         chosen = [n for n in range(len(low)) if low[n] <= rows[-1] and high[n] >= rows[0]]
         expected[3 * tile] = chosen
-    found = {i: chosen.tolist() for i, chosen in _tiles((11, 4), cells, low, high)}
+    found = {i: chosen.tolist() for i, chosen in tiles((11, 4), cells, low, high)}
     assert found == expected == {0: [1, 6], 3: [3, 4, 6], 6: [4, 6], 9: [5, 6]}
-    assert [i for i, _ in _tiles((11, 4), cells, low[4:5], high[4:5])] == [3, 6]
+    assert [i for i, _ in tiles((11, 4), cells, low[4:5], high[4:5])] == [3, 6]
 
 
 @pytest.mark.parametrize("rows", [1, 2, 5, 40])
