@@ -9,9 +9,11 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
 from robomill.progress import slices
+from robomill.surface.block_kernels import Blocks
 from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000
+BLOCK = 8  # moves, at least, that are passed over at once
 SAME = 2e-6  # m: tracks whose heights differ by less are one floor
 
 
@@ -48,7 +50,7 @@ class Outline:
         asked = np.ascontiguousarray(np.column_stack([places, height, start]))
         result = np.empty((len(asked), 4))
         for some in slices(len(asked), "Walls"):
-            walls_left(*self._tracks, asked[some], result[some])
+            walls_left(*self._tracks, self._blocks, asked[some], result[some])
         told, told_both, left, carried = result.T
         with np.errstate(invalid="ignore"):
             return Walls(told - radius, left - radius, np.asarray(np.abs(told_both - told) <= SAME), carried)
@@ -66,7 +68,7 @@ class Outline:
         asked = np.ascontiguousarray(np.column_stack([places, offset]))
         result = np.empty((len(asked), 5))
         for some in slices(len(asked), "Floors"):
-            floors_left(*self._tracks, asked[some], result[some])
+            floors_left(*self._tracks, self._blocks, asked[some], result[some])
         told, left, told_both, left_both, upright = result.T
         with np.errstate(invalid="ignore"):
             one = (told_both - told <= SAME + slack) & (left_both - left <= SAME + slack)
@@ -94,3 +96,21 @@ class Outline:
             for ends in (self.told, self.left)
         )
         return told, left
+
+    @cached_property
+    def _blocks(self) -> Blocks:
+        """The moves of every square in blocks: as many of them as there are moves in one."""
+        told, left = self._tracks
+        count = np.diff(told.first)
+        size = np.maximum(np.ceil(np.sqrt(count)).astype(np.int64), BLOCK)
+        blocks = -(-count // size)
+        of_square = np.append(0, np.cumsum(blocks))
+        square = np.repeat(np.arange(len(count)), blocks)
+        first = told.first[square] + (np.arange(len(square)) - of_square[square]) * size[square]
+        widest = np.maximum.reduceat(told.shapes[told.cutter, 1], first)
+        boxes = []
+        for ends in (told.ends, left.ends):
+            low = np.minimum.reduceat(np.minimum(ends[:, :3], ends[:, 3:]), first)
+            high = np.maximum.reduceat(np.maximum(ends[:, :3], ends[:, 3:]), first)
+            boxes.append(np.column_stack([0.5 * (low + high), 0.5 * (high - low), widest]))
+        return Blocks(of_square, np.append(first, len(told.ends)), *boxes)

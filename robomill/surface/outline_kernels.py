@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from robomill.compiled import In1, In2, Out1, Out2, OutInt1, kernel, part
 from robomill.cutting.profile_kernels import clip, radius_at, shape_of, upright_part
+from robomill.surface.block_kernels import NOTHING, Blocks, depth_in, seen_box, span
 from robomill.surface.envelope_kernels import move_between, nearest, swept_height
 
 ROUNDS = 6  # of growing the union along a line: a wall seldom stands behind more than two tracks
@@ -112,25 +113,48 @@ def below(tracks: Tracks, n: int, place: In1, height: float) -> bool:
 
 
 @part
-def wall_at(tracks: Tracks, other: Tracks, place: In1) -> float:
+def furthest_block(tracks: Tracks, blocks: Blocks, boxes: Out2, place: In1) -> int:
+    """The block which, of those over a place (11,) within the tool's own track, may reach furthest; -1 for none."""
+    i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
+    furthest_b, furthest_to = -1, -math.inf
+    for i in range(i0, i1):
+        row = i * tracks.squares[1]
+        for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+            box = seen_box(place, boxes[b])
+            start, to = span(box)
+            if start <= place[10] and to > furthest_to and box.low < place[9]:
+                furthest_b, furthest_to = b, to
+    return furthest_b
+
+
+@part
+def wall_at(tracks: Tracks, other: Tracks, blocks: Blocks, boxes: Out2, place: In1) -> float:
     """How far out along u the tracks around the tool reach at a height above its tip, m, of the moves that run below
     that height in ``other`` too; NaN where none is. ``place`` (11,) is c, k, u, the height, and a point within the
     tool's own track."""
     height, out, found = place[9], place[10], False
     i0, i1, j0, j1 = squares_near(tracks, place[0], place[1])
-    for _ in range(ROUNDS):
+    likely = furthest_block(tracks, blocks, boxes, place)
+    for turn in range(ROUNDS + 1):  # the likeliest block alone, then all that may reach further
         grown = False
         for i in range(i0, i1):
             row = i * tracks.squares[1]
-            for n in range(tracks.first[row + j0], tracks.first[row + j1]):
-                if not (below(tracks, n, place, height) and below(other, n, place, height)):
+            for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+                if turn == 0 and b != likely:
                     continue
-                move = seen_from(place, tracks.ends[n])
-                rho = radius_at(shape_of(tracks.shapes[tracks.cutter[n]]), height - (move.z + 0.5 * move.dz))
-                end = furthest(move, rho, 1.0)
-                if end > out and furthest(move, rho, -1.0) <= out + TOUCH:
-                    out, grown, found = end, True, True
-        if not grown:
+                box = seen_box(place, boxes[b])
+                start, to = span(box)
+                if to <= out + NOTHING or start > out + TOUCH or box.low >= height:
+                    continue
+                for n in range(blocks.first[b], blocks.first[b + 1]):
+                    if not (below(tracks, n, place, height) and below(other, n, place, height)):
+                        continue
+                    move = seen_from(place, tracks.ends[n])
+                    rho = radius_at(shape_of(tracks.shapes[tracks.cutter[n]]), height - (move.z + 0.5 * move.dz))
+                    end = furthest(move, rho, 1.0)
+                    if end > out and furthest(move, rho, -1.0) <= out + TOUCH:
+                        out, grown, found = end, True, True
+        if turn > 0 and not grown:
             break
     return out if found else math.nan
 
@@ -147,18 +171,35 @@ def inside(tracks: Tracks, n: int, place: In1, out: float) -> tuple[float, bool]
 
 
 @part
-def carried(told: Tracks, left: Tracks, place: In1, out: float, deep: bool) -> float:
+def carried(tracks: tuple[Tracks, Tracks], blocks: Blocks, place: In1, out: float, deep: bool) -> float:
     """How far (m) the wall that was told ``out`` along u has been carried. Where it is cut too ``deep``: that track
-    which is deepest over it in the end; else how far it still is to the next track on this side of it, < 0."""
+    which is deepest over it in the end; else how far it still is to the next track on this side of it, < 0. ``tracks``
+    as told and as left."""
+    told, left = tracks
     i0, i1, j0, j1 = squares_near(told, place[0], place[1])
-    deepest, found = -math.inf, 0.0
+    likely, likely_depth, least = -1, -math.inf, -math.inf
     for i in range(i0, i1):
         row = i * told.squares[1]
-        for n in range(told.first[row + j0], told.first[row + j1]):
-            if below(told, n, place, place[9]) and below(left, n, place, place[9]):
-                depth, behind = inside(left, n, place, out)
-                if depth > deepest and (deep or behind):
-                    deepest, found = depth, depth - inside(told, n, place, out)[0]
+        for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+            depth = depth_in(seen_box(place, blocks.left[b]), out)
+            if depth > likely_depth:
+                likely, likely_depth = b, depth
+    deepest, found = -math.inf, 0.0
+    for turn in range(2):  # how deep the likeliest block is, then the first of all moves that is deepest
+        deepest = -math.inf
+        for i in range(i0, i1):
+            row = i * told.squares[1]
+            for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+                if turn == 0 and b != likely:
+                    continue
+                if depth_in(seen_box(place, blocks.left[b]), out) + NOTHING < max(least, deepest):
+                    continue
+                for n in range(blocks.first[b], blocks.first[b + 1]):
+                    if below(told, n, place, place[9]) and below(left, n, place, place[9]):
+                        depth, behind = inside(left, n, place, out)
+                        if depth > deepest and (deep or behind):
+                            deepest, found = depth, depth - inside(told, n, place, out)[0]
+        least = deepest
     return found if deep else deepest
 
 
@@ -185,39 +226,70 @@ def track_over(tracks: Tracks, n: int, place: In1, offset: float) -> tuple[float
 
 
 @part
-def floor_at(told: Tracks, left: Tracks, place: In1, offset: float) -> Floor:
-    """The floor at c + offset u; both tracks hold the same moves in the same order."""
+def upright_at(told: Tracks, blocks: Blocks, place: In1, offset: float, low: float) -> float:
+    """Upward part of the normal of the surface told at c + offset u, at the height ``low`` of its lowest track, m."""
     i0, i1, j0, j1 = squares_near(told, place[0], place[1])
-    told_low, left_low, told_both, left_both, upright = math.inf, math.inf, math.inf, math.inf, 1.0
     for i in range(i0, i1):
         row = i * told.squares[1]
-        for n in range(told.first[row + j0], told.first[row + j1]):
-            high, r = track_over(told, n, place, offset)
-            moved, _ = track_over(left, n, place, offset)
-            left_low = min(left_low, moved)
-            if high < told_low:
-                told_low, upright = high, upright_part(shape_of(told.shapes[told.cutter[n]]), r)
-            if high < math.inf and moved < math.inf:
-                told_both, left_both = min(told_both, high), min(left_both, moved)
-    return Floor(told_low, left_low, told_both, left_both, upright)
+        for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+            box = seen_box(place, blocks.told[b])
+            if box.low > low + NOTHING or depth_in(box, offset) < -NOTHING:
+                continue
+            for n in range(blocks.first[b], blocks.first[b + 1]):
+                high, r = track_over(told, n, place, offset)
+                if high <= low < math.inf:
+                    return upright_part(shape_of(told.shapes[told.cutter[n]]), r)
+    return 1.0
+
+
+@part
+def floor_at(told: Tracks, left: Tracks, blocks: Blocks, place: In1, offset: float) -> Floor:
+    """The floor at c + offset u; both tracks hold the same moves in the same order."""
+    i0, i1, j0, j1 = squares_near(told, place[0], place[1])
+    told_low, left_low, told_both, left_both = math.inf, math.inf, math.inf, math.inf
+    likely, likely_low = -1, math.inf
+    for turn in range(3):  # the likeliest block is looked for, is looked at, then all that may lie lower
+        for i in range(i0, i1):
+            row = i * told.squares[1]
+            for b in range(blocks.of_square[row + j0], blocks.of_square[row + j1]):
+                if turn == 1 and b != likely:
+                    continue
+                one, other = seen_box(place, blocks.told[b]), seen_box(place, blocks.left[b])
+                over, moved_over = depth_in(one, offset) >= -NOTHING, depth_in(other, offset) >= -NOTHING
+                if turn == 0:
+                    if over and moved_over and other.low < likely_low:
+                        likely, likely_low = b, other.low
+                    continue
+                if not (over or moved_over):
+                    continue
+                if one.low >= told_both - NOTHING and other.low >= left_both - NOTHING:
+                    continue
+                for n in range(blocks.first[b], blocks.first[b + 1]):
+                    high, moved = track_over(told, n, place, offset)[0], track_over(left, n, place, offset)[0]
+                    told_low, left_low = min(told_low, high), min(left_low, moved)
+                    if high < math.inf and moved < math.inf:
+                        told_both, left_both = min(told_both, high), min(left_both, moved)
+    return Floor(told_low, left_low, told_both, left_both, upright_at(told, blocks, place, offset, told_low))
 
 
 @kernel
-def walls_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
+def walls_left(told: Tracks, left: Tracks, blocks: Blocks, places: In2, result: Out2) -> None:
     """result (q, 4): how far out along u (m) the wall stands from the tip, at places (q, 11), see ``wall_at``: as told,
     and as told and as left by the moves alone that run below the height in both; and how far it was ``carried``."""
     for q in range(len(places)):
-        result[q, 0] = wall_at(told, told, places[q])
-        result[q, 1] = wall_at(told, left, places[q])
-        result[q, 2] = wall_at(left, told, places[q])
+        place = places[q]
+        result[q, 0] = wall_at(told, told, blocks, blocks.told, place)
+        result[q, 1] = wall_at(told, left, blocks, blocks.told, place)
+        result[q, 2] = wall_at(left, told, blocks, blocks.left, place)
         error = result[q, 2] - result[q, 0]
-        result[q, 3] = carried(told, left, places[q], result[q, 0], error > 0.0) if abs(error) > TOUCH else error
+        known = abs(error) > TOUCH
+        result[q, 3] = carried((told, left), blocks, place, result[q, 0], error > 0.0) if known else error
 
 
 @kernel
-def floors_left(told: Tracks, left: Tracks, places: In2, result: Out2) -> None:
+def floors_left(told: Tracks, left: Tracks, blocks: Blocks, places: In2, result: Out2) -> None:
     """result (q, 5): the ``Floor`` at places (q, 10): c, k, u and the offset along u."""
     for q in range(len(places)):
-        floor = floor_at(told, left, places[q], places[q, 9])
+        floor = floor_at(told, left, blocks, places[q], places[q, 9])
         result[q, 0], result[q, 1], result[q, 2] = floor.told, floor.left, floor.told_both
         result[q, 3], result[q, 4] = floor.left_both, floor.upright
