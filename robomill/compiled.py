@@ -59,6 +59,7 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no
 F = TypeVar("F", bound=Callable[..., Any])
 _parts: list[Callable[..., Any]] = []  # marked, and not yet known to the compiler
 _called: set[Callable[..., Any]] = set()
+_lessons: list[Callable[[], None]] = []  # for the compiler, before it compiles anything
 _lock = threading.RLock()  # around the compiler's configuration
 _building = threading.Lock()
 _tried = False
@@ -101,6 +102,11 @@ def called(function: F) -> F:
     """Mark a long part that is called where it is used, not copied there: compiled once for all its callers."""
     _called.add(function)
     return part(function)
+
+
+def taught(lesson: Callable[[], None]) -> None:
+    """Have the compiler taught something that kernels need: called once it is loaded, before it compiles."""
+    _lessons.append(lesson)
 
 
 @overload
@@ -179,6 +185,8 @@ def _compile(function: Callable[..., Any], keep: bool = True) -> Any:
     from numba.extending import register_jitable
 
     options: dict[str, Any] = {**OPTIONS, "_nrt": False}  # no counting of references to arrays
+    while _lessons:
+        _lessons.pop()()
     while _parts:
         marked = _parts.pop()
         register_jitable(**options, forceinline=marked not in _called)(marked)

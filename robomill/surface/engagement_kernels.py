@@ -32,7 +32,7 @@ from robomill.cutting.profile_kernels import (
 from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
 from robomill.surface.rib_kernels import Walk, is_plain, next_change, walk_on
-from robomill.surface.step_kernels import Step
+from robomill.surface.step_kernels import Step, ask_for_rim
 from robomill.surface.turn_kernels import (
     ANGLES,
     COSINE,
@@ -51,7 +51,6 @@ ENDS = 7  # looks, at most, at a piece of the profile for where material begins 
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
-SMALL_HALF, LEAST_HALF = 2.0**-14, 2.0**-24  # numbers below the first are kept in steps of the second one
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, REST = range(7)
 # what is known of an angle: itself, its sine and cosine; then what is engaged at it: length, height along the axis,
@@ -155,6 +154,8 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
     """What is engaged at the angles of some rows. From the first row on they are the turn: there a round or pointed
     nose is as engaged at the ends of panels as at the nodes before, unless it jumps between the nodes about them."""
     plain, rows = is_plain(world, step), room.rows
+    if first == 0:
+        ask_for_rim(world.dexels, step, shape.R, end // ANGLES)
     for place in range(first, end):
         n = turn_row(place) if first == 0 else place
         row = rows[n]
@@ -367,12 +368,6 @@ def add_pieces(room: Room, count: int, total: FloatArray) -> None:
 
 
 @part
-def as_half(length: float) -> float:
-    """A length >= 0 as half precision keeps it where it is small, for there rounding it later costs microseconds."""
-    return length if length >= SMALL_HALF else math.floor(length / LEAST_HALF + 0.5) * LEAST_HALF
-
-
-@part
 def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArray, sectors: FloatArray) -> None:
     """The engaged part of one step, into ``total`` (8 e + 6,) and ``sectors`` (4 s,), see ``EngagedPart``."""
     rest = total[MOMENTS * len(room.exponents) :]
@@ -387,10 +382,10 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]
-        sectors[4 * n] = as_half(height / width) if width > 0.0 else 0.0
-        sectors[4 * n + 1] = as_half(low / height) if height > 0.0 else 0.0
-        sectors[4 * n + 2] = as_half(high / height) if height > 0.0 else 0.0
-        sectors[4 * n + 3] = as_half(face / width) if width > 0.0 else 0.0
+        sectors[4 * n] = height / width if width > 0.0 else 0.0
+        sectors[4 * n + 1] = low / height if height > 0.0 else 0.0
+        sectors[4 * n + 2] = high / height if height > 0.0 else 0.0
+        sectors[4 * n + 3] = face / width if width > 0.0 else 0.0
     if rest[PHI_EX] < rest[PHI_ST]:
         rest[PHI_ST] = rest[PHI_EX] = 0.0
         return

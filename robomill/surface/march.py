@@ -255,7 +255,7 @@ class March:
         do: tuple[bool, bool],
     ) -> tuple[FloatArray, np.ndarray]:
         from robomill.surface.engagement_kernels import REST
-        from robomill.surface.march_kernels import Steps, march
+        from robomill.surface.march_kernels import Steps, as_halves, march
 
         world, room = state
         found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
@@ -272,4 +272,6 @@ class March:
             runs[2].astype(np.int64),
         )
         march(world, room, steps, found, sectors, do)
-        return found, sectors.reshape(len(n), len(room.sectors), 4)
+        halves = np.empty((len(n), len(room.sectors), 4), dtype=np.float16)
+        as_halves(sectors.ravel(), sectors.view(np.int32).ravel(), halves.view(np.int16).ravel())
+        return found, halves

@@ -28,10 +28,19 @@ from robomill.surface.material_kernels import (
     is_upright,
     see_move,
 )
+from robomill.surface.soon import soon
 from robomill.surface.step_kernels import step_at
 from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
 
+Singles1 = Annotated[NDArray[np.float32], Axes("float32", 1)]
 Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
+Bits1 = Annotated[NDArray[np.int32], Axes("int32", 1)]
+Halves1 = Annotated[NDArray[np.int16], Axes("int16", 1, written=True)]
+
+ROWS_AHEAD = 6  # of columns, that are asked for while one is cut,
+LINE = 8  # columns at once, which come together from memory
+SMALL_HALF, LEAST_HALF = 2.0**-14, 2.0**-24  # half precision keeps numbers below the first in steps of the second
+HALF_BITS, HALF_BIAS = 13, (127 - 15) << 23  # fewer in its fraction than in single precision; between their exponents
 
 
 class Steps(NamedTuple):
@@ -140,6 +149,9 @@ def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
             y_low, y_high = max(y_low, behind[0]), min(y_high, behind[1])
         if y_low <= y_high:
             j, j_end = cells_between(y_low, y_high, dexels.y0, dexels.dy, dexels.heights.shape[1])
+            for n in range(j, j_end, LINE):
+                soon(dexels.heights, i + ROWS_AHEAD, n)
+                soon(dexels.names, i + ROWS_AHEAD, n)
             open_row(dexels, shape, move, r, (i, j, j_end))
 
 
@@ -282,3 +294,13 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
             go_on(world.runs[r], ends, steps.begins[n] == 1)
             if n + 1 == len(steps.ends) or steps.begins[n + 1] == 1:
                 cut_run(world, r, steps.stops[n] == 1)
+
+
+@kernel
+def as_halves(singles: Singles1, bits: Bits1, halves: Halves1) -> None:
+    """The bits of numbers (n,) >= 0 in half precision, from those in single precision; to the nearest."""
+    for n in range(len(singles)):
+        small = int(singles[n] / LEAST_HALF + 0.5)
+        even = (bits[n] >> HALF_BITS) & 1
+        other = (bits[n] + (1 << (HALF_BITS - 1)) - 1 + even - HALF_BIAS) >> HALF_BITS
+        halves[n] = small if singles[n] < SMALL_HALF else other

@@ -8,6 +8,8 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import part
 from robomill.cutting.engaged import FACING
+from robomill.surface.material_kernels import Dexels
+from robomill.surface.soon import soon
 
 
 class Step(NamedTuple):
@@ -60,3 +62,18 @@ def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, heading: FloatArray, 
         along,
         run,
     )
+
+
+@part
+def ask_for_rim(dexels: Dexels, step: Step, R: float, halves: int) -> None:
+    """Have the columns under the rim of radius R (m), cell by cell round the half turn ahead or both ``halves``, in the
+    processor's reach before they are looked at."""
+    x, y = (step.x - dexels.x0) / dexels.dx + 0.5, (step.y - dexels.y0) / dexels.dy + 0.5
+    fx, fy, lx, ly = R * step.fx / dexels.dx, R * step.fy / dexels.dy, R * step.lx / dexels.dx, R * step.ly / dexels.dy
+    pitch, sine, cosine = min(dexels.dx, dexels.dy) / R, 0.0, 1.0
+    sine_on, cosine_on = math.sin(pitch), math.cos(pitch)
+    for _ in range(int(halves * math.pi / pitch)):
+        i, j = math.floor(x + sine * fx + cosine * lx), math.floor(y + sine * fy + cosine * ly)
+        soon(dexels.heights, i, j)
+        soon(dexels.names, i, j)
+        sine, cosine = sine * cosine_on + cosine * sine_on, cosine * cosine_on - sine * sine_on
