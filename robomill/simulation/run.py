@@ -27,6 +27,7 @@ from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.threads import threads_in_cut
 from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut
 from robomill.toolpath.path import Toolpath
@@ -143,8 +144,10 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
 
 def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:
     """Where the force has no model, and why."""
-    force = bent.setup.force
-    return force.unjudged(conditions) + (turns_in_cut(bent.path, conditions) if force.follows_cut else ())
+    force, path = bent.setup.force, bent.path
+    turning = turns_in_cut(path, conditions) if force.follows_cut else ()
+    threads = threads_in_cut(path, conditions) if force.follows_cut or force.stated else ()
+    return force.unjudged(conditions) + turning + threads
 
 
 def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:

@@ -19,6 +19,7 @@ PER_MOVE: dict[str, type] = {
     "n_s": float,
     "tool": int,
     "ccw": bool,
+    "thread": bool,
     "dwell": float,
 }
 """Arrays of a path with one value a move, and their types."""
@@ -37,6 +38,7 @@ class Toolpath:
                              not known (G96)
     tool     (m,) int        tool number, 0 where not stated
     ccw      (m,) bool       True where the spindle turns counter-clockwise (M4), False where not stated
+    thread   (m,) bool       True where a tap or a thread cutter is led in step with the spindle
     dwell    (m,) s          time that the tool stands still before the move
     counts                   rapid moves, straight cuts and arcs of the program, None where there is none
     """
@@ -49,6 +51,7 @@ class Toolpath:
     n_s: FloatArray
     tool: IntArray
     ccw: BoolArray = field(default_factory=lambda: np.zeros(1, dtype=bool))
+    thread: BoolArray = field(default_factory=lambda: np.zeros(1, dtype=bool))
     dwell: FloatArray = field(default_factory=lambda: np.zeros(1))
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     units: str = "mm"

@@ -52,6 +52,7 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
         block=_spread(program.line, counts, program.line[0]),
         n_s=_spread(program.n_s, counts, program.n_s[0]),
         ccw=_spread(program.ccw, counts, program.ccw[0]),
+        thread=_spread(program.thread, counts, False),
         dwell=_at_first(program.dwell, first, len(p)),
         tool=_spread(program.tool, counts, program.tool[0]),
         findings=program.findings,

@@ -92,6 +92,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
     repeats = 1 if math.isnan(w[L]) else int(w[L])
     if m.moves + 1 + repeats * (10 + 3 * math.ceil(steps)) > len(rows):
         return NO_ROOM
+    m.motion = motion
     for axis in range(6):
         end[axis] = m.p[axis]
     if level < clearance:
@@ -109,7 +110,6 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
         _hole(m, motion, line, end, clearance, clear, bottom, rows)
     for axis in range(6):
         m.p[axis] = end[axis]
-    m.motion = motion
     return 0
 
 
@@ -149,6 +149,7 @@ def _go(m, kind: int, line: int, end, height: float, rows) -> None:
     row = rows[m.moves]
     row.line = line
     write_straight(m, kind, end, feed_speed(m) if kind == FEED else 0.0, row)
+    row.thread = is_tap(m.motion)
     m.moves += 1
 
 

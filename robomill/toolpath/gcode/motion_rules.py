@@ -186,6 +186,7 @@ def write_move(m, kind: int, end, v_f: float, row) -> None:
     row.v_f = v_f
     row.n_s = turning(m)
     row.ccw = m.spindle < 0
+    row.thread = False
     row.tool = m.in_spindle
     row.dwell, m.waited = m.waited, 0.0
     for axis in range(3):

@@ -46,6 +46,7 @@ class Program:
     v_f       (m,) m/s       feed rate, 0 for traverses
     n_s       (m,) 1/s       spindle speed, 0 where stopped, NaN where it follows the diameter (G96)
     ccw       (m,) bool      the spindle turns counter-clockwise (M4)
+    thread    (m,) bool      in step with the spindle, to cut a thread: G33, G33.1, G74, G76, G84
     dwell     (m,) s         stood still before the move
     tool      (m,) int       tool number in the spindle
     lift      (m, 3) m       from the programmed point to the tip of the tool that is there
@@ -65,6 +66,7 @@ class Program:
     v_f: FloatArray
     n_s: FloatArray
     ccw: BoolArray
+    thread: BoolArray
     dwell: FloatArray
     tool: IntArray
     lift: FloatArray
@@ -128,7 +130,7 @@ class Move:
     def __init__(self, line: int = 0) -> None:
         self.line = line
         self.kind = self.plane = self.turns = self.tool = 0
-        self.clockwise = self.ccw = False
+        self.clockwise = self.ccw = self.thread = False
         self.sweep = self.v_f = self.n_s = self.dwell = 0.0
         self.start, self.end, self.centre = [0.0] * 3, [0.0] * 3, [0.0] * 3
         self.rotary0, self.rotary = [0.0] * 3, [0.0] * 3

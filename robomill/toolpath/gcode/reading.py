@@ -8,6 +8,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import GCodeError
+from robomill.provenance import Level
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
@@ -99,6 +100,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     )
     _doubt_spindle(machine, program)
     _doubt_size(machine, program)
+    _doubt_spin(machine, program)
     return replace(program, findings=machine.findings.freeze())
 
 
@@ -133,6 +135,19 @@ def _doubt_spindle(machine: Machine, program: Program) -> None:
     if machine.selected and not program.tool.any() and cuts.any():
         message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
         machine.findings.add("no-change", "warning", 0, message)
+
+
+def _doubt_spin(machine: Machine, program: Program) -> None:
+    """Say how C is read where a cut has one: a machine whose table or head swivels by C stands otherwise."""
+    spun = np.flatnonzero((program.kind != TRAVERSE) & (program.kind != PROBE) & (program.rotary[:, 2] != 0.0))
+    leans = spun[program.rotary[spun, :2].any(axis=1)]
+    if len(spun):
+        message = (
+            "C is read as a turn of the tool about its own axis, which changes no cut; a machine whose table or head "
+            "swivels by C stands otherwise: post the program with the tool's lean in A and B"
+        )
+        level: Level = "warning" if len(leans) else "info"
+        machine.findings.add("c-spins", level, int(program.line[(leans if len(leans) else spun)[0]]), message)
 
 
 def _doubt_size(machine: Machine, program: Program) -> None:

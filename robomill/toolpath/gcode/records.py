@@ -40,6 +40,7 @@ MOVE = np.dtype(
         ("v_f", "f8"),
         ("n_s", "f8"),
         ("ccw", "?"),
+        ("thread", "?"),
         ("dwell", "f8"),
         ("tool", "i4"),
     ]

@@ -223,3 +223,12 @@ def test_turned_axes_are_written_where_one_of_them_turns(tmp_path: Path) -> None
     write_moves_jsonl(interpret("G21 G0 X1\nB30\nM2\n"), tmp_path / "moves.jsonl")
     rows = [json.loads(row) for row in (tmp_path / "moves.jsonl").read_text().splitlines()]
     np.testing.assert_allclose([row["rotary_deg"] for row in rows], [[0, 0, 0], [0, 30, 0]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "level"),
+    [("G1 X5 C90", "info"), ("G1 X5 B10 C90", "warning"), ("G1 X5 B10", None), ("G0 X5 C90", None)],
+)
+def test_how_c_is_read_is_said_where_a_cut_has_one(line, level):
+    found = [f for f in interpret(f"G21 G90 F100\n{line}\nM2\n").findings if f.code == "c-spins"]
+    assert [(f.level, f.line) for f in found] == ([] if level is None else [(level, 2)])
