@@ -114,3 +114,14 @@ def test_short_steps_keep_the_sense_and_wait_once() -> None:
         assert set(fine.ccw[fine.block == line]) == set(path.ccw[path.block == line])
     waits = np.flatnonzero(fine.dwell)
     assert (fine.block[waits] != fine.block[waits - 1]).all()
+
+
+def test_as_many_points_are_allowed_as_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Corners, cuts that begin, rapids and moves of no length: the count that is checked is the count that comes."""
+    path = read_gcode("G21 F600\nG0 X1\nG1 Y20\nX20\nX20.5 Y20.01\nG0 Z5\nX0\nG1 Z-1\nX0\nX9\nM2\n")
+    made = len(resample(path, 1.7e-3))
+    monkeypatch.setattr("robomill.budgets.samples", lambda: made)
+    assert len(resample(path, 1.7e-3)) == made
+    monkeypatch.setattr("robomill.budgets.samples", lambda: made - 1)
+    with pytest.raises(ToolpathError, match=f"would need {made:,} points; at most {made - 1:,} fit"):
+        resample(path, 1.7e-3)

@@ -66,6 +66,19 @@ def test_a_shift_put_aside_and_taken_up_again_is_the_same():
     np.testing.assert_allclose(there, [6e-3, -11e-3, -289e-3], atol=1e-12)
 
 
+def test_parameters_say_whether_a_shift_is_in_force_and_keep_what_is_put_aside():
+    shift = "G21 G90\nG0 X5 Y6 Z7\nG92 X1 A4\n"  # X5 is called 1 and A0 is called 4
+    for words, found in (
+        ("G21\n", [0, 0, 0]),
+        (shift, [1, 4, -4]),
+        (f"{shift}G92.2\n", [0, 4, -4]),
+        (f"{shift}G92.2\nG92.3\n", [1, 4, -4]),
+        (f"{shift}G92.1\n", [0, 0, 0]),
+        ("G21\nG52 X9\n", [1, 9, 0]),
+    ):
+        np.testing.assert_allclose(read(words, 5210, 5211, 5214), found, atol=1e-9)
+
+
 TOOL = (5401, 5402, 5403)
 
 

@@ -76,3 +76,20 @@ def test_after_a_nurbs_no_motion_is_in_force():
     with pytest.raises(GCodeError) as caught:
         interpret("F100\nG5.2 X1 Y3 P1\nX4 Y4 P1\nX8 Y0 P1\nG5.3\nX9\nM2\n")
     assert caught.value.line == 6
+
+
+def test_the_order_of_a_nurbs_is_what_its_largest_l_says():
+    """Three is what it is without a word; a later L3 does not lower it, as in the reference."""
+    begin, more = "G5.2 X3 Y4 P1", "X7 Y5 P1\nX9 Y-3 P1\nX12 Y0 P1\nG5.3"
+    plain, third, fourth, later = (
+        interpret(f"G21 G90 F100\nG0 X1 Y-2\n{text}\nM2\n").end
+        for text in (
+            f"{begin}\n{more}",
+            f"{begin} L3\n{more}",
+            f"{begin} L4\n{more}",
+            f"{begin} L4\n{more.replace('X9', 'L3 X9')}",
+        )
+    )
+    np.testing.assert_array_equal(third, plain)
+    np.testing.assert_array_equal(later, fourth)
+    assert np.abs(fourth - plain).max() > 1e-4
