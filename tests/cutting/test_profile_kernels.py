@@ -14,6 +14,7 @@ from robomill.cutting.profile_kernels import (
     FLANK,
     FLAT,
     NOSE,
+    contact_lag,
     edge_sums,
     heights,
     on_profile,
@@ -151,3 +152,19 @@ def test_an_edge_adds_up_to_its_integral(name, exponent):
             truth = [quad(lambda s, w=w: load(s)[0] * (1.0, *load(s)[1:])[w], *ends, epsabs=1e-14)[0] for w in range(3)]
             found = edge_sums(shape, piece_between(shape, stretch, *ends), faces, exponent)
             np.testing.assert_allclose(found, truth, rtol=2e-4, atol=1e-4 * abs(truth[0]))
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.8, 0.99])
+@pytest.mark.parametrize("rise", [0.0, 0.02, 0.4, 1.0, 1.3, 4.0])
+def test_the_cutter_cuts_lowest_where_a_search_along_its_way_finds_it(name, share, rise):
+    """A point beside a rising move: w behind it the tip is rise * w lower, and the profile is asked at its distance."""
+    shape = CUTTERS[name].solid
+    v = share * shape.R
+    w = np.linspace(0.0, math.sqrt(shape.R**2 - v * v), 2_001)
+    height = np.array([profile(shape, min(math.hypot(a, v), shape.R)) for a in w]) - rise * w
+    lag = contact_lag(shape, rise, v * v)
+    assert 0.0 <= lag <= w[-1] + 1e-12
+    assert profile(shape, min(math.hypot(lag, v), shape.R)) - rise * lag <= height.min() + 1e-9
+    if rise == 0.0:
+        assert lag == 0.0

@@ -131,3 +131,21 @@ def test_a_small_arm_takes_the_solution_nearest_to_where_it_stood():
         theta = np.array([[0.3, bend], [0.8, bend / 2], [-0.4, 1.5 * bend]])
         found = rm.inverse_kinematics(planar, rm.tool_pose(planar, theta), near=theta + 0.1 * np.sign(bend))
         np.testing.assert_allclose(found.theta, theta, atol=1e-8)
+
+
+@pytest.mark.parametrize("block", [1, 3, 4, 64])
+def test_poses_in_blocks_are_solved_as_they_are_at_once(monkeypatch, block):
+    """Ten poses, each from a start of its own or all from one."""
+    robot = rm.load_robot("planar_3r")
+    rng = np.random.default_rng(6)
+    theta = rng.uniform([-0.8, -0.3, -0.3], [0.8, 1.3, 1.3], (10, 3))
+    T_MT, starts = rm.tool_pose(robot, theta), theta + rng.uniform(-0.3, 0.3, (10, 3))
+    for near in (starts, starts[:1]):
+        monkeypatch.setattr(numeric, "BLOCK", 512)
+        known, found = numeric.solve_numerically(robot, T_MT, near, "position")
+        assert found.all()
+        np.testing.assert_allclose(rm.tool_pose(robot, known)[:, :3, 3], T_MT[:, :3, 3], atol=1e-7)
+        monkeypatch.setattr(numeric, "BLOCK", block)
+        parts, met = numeric.solve_numerically(robot, T_MT, near, "position")
+        np.testing.assert_allclose(parts, known, atol=1e-9)
+        assert met.all()

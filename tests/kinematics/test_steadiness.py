@@ -109,3 +109,11 @@ def test_an_arm_that_nowhere_can_do_its_task_passes_nothing_by_rounding():
         )
     assert passages(rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near="path")) == []
     assert near_singular(robot, determinant(robot, theta)).all()
+
+
+def test_standing_still_is_no_haste():
+    """The same pose again and again, alone or at the ends of a way: nothing turns, and nothing is said of it."""
+    here, there = [0.1, -1.3, 0, -0.3, 0.2], [0.2, -1.3, 0, -0.3, 0.2]
+    assert hasty_turns(line(here, here, 5)) == []
+    x_M = np.vstack([np.tile(here, (3, 1)), np.linspace(here, there, 20), np.tile(there, (3, 1))])
+    assert hasty_turns(rm.inverse_kinematics(ROBOT, rm.pose_from_world(x_M), near="path")) == []
