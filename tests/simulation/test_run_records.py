@@ -62,6 +62,21 @@ def test_turned_signs_are_suspected_aloud(turn, suspected):
     assert ("force-pulls" in {note.code for note in run.notes}) == suspected
 
 
+@pytest.mark.parametrize(("air", "metal", "suspected"), [(80.0, -30.0, False), (-80.0, 30.0, True)])
+def test_what_a_sensor_reads_in_the_air_is_no_cut(air, metal, suspected):
+    """A long way to the block, then as much within it as is cut: only there does a pull along the feed count."""
+    start, low = -160e-3, float(SETUP.stock_block.lower[0])
+    t = np.arange(0.0, 14.0, 0.01)
+    inside = start + 20e-3 * t > low - 5e-3  # the rim of the cutter comes before its axis
+    F = np.column_stack([np.where(inside, metal, air), np.full(len(t), 100.0), 0.0 * t])
+    one = GCodeSource(f"G21 G90 S12000 M3\nG0 X{1e3 * start} Y0 Z5\nG0 Z-2\nG1 X{1e3 * low + 30} F1200\nG0 Z18\nM2\n")
+    force = MeasuredForce(ForceRecord(t, F), cutoff=None)
+    run = rm.simulate(SETUP.replace(source=one, force=force, engagement=True))
+    engaged = run.conditions.engaged & run.judged
+    assert 0 < engaged.sum() < 0.4 * run.path.cutting.sum()
+    assert ("force-pulls" in {note.code for note in run.notes}) == suspected
+
+
 @pytest.mark.parametrize("turns_with", ["robot", "part"])
 def test_columns_in_x_y_z_turn_with_the_sensor(turns_with):
     rows = "\n".join(f"{0.1 * n:.1f},-30,100,0" for n in range(80))
