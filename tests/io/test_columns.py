@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import robomill.io.columns as columns_module
 from robomill.errors import LoadTestError, SurfaceError
-from robomill.io.columns import Layout, append_rows, read_columns, spelled
+from robomill.io.columns import LONGEST_NAME, MOST_COLUMNS, Layout, append_rows, read_columns, spelled
 
 UNITS = {
     "fx": ("N", "kN"),
@@ -264,3 +264,31 @@ def test_a_number_among_names_is_a_column_that_is_passed_over():
     for header in ("7;8;9", "7,5;-8;1e3"):
         with pytest.raises(SurfaceError, match="found numbers, expected a header"):
             read_columns(f"{header}\n1;2;3\n4;5;6\n", LAYOUT, "mine.csv")
+
+
+@pytest.mark.parametrize("count", [MOST_COLUMNS, MOST_COLUMNS + 1])
+def test_as_many_columns_as_are_said(count: int) -> None:
+    name, unit = next((quantity, unit) for quantity, units in UNITS.items() for unit in units if unit in SUFFIXES)
+    names = [NAMES[name][0] + SUFFIXES[unit][0], *(f"c{k}" for k in range(count - 1))]
+    given = "\n".join([";".join(names), *(";".join(["1"] * count) for _ in range(3))]) + "\n"
+    if count <= MOST_COLUMNS:
+        assert len(read_columns(given, LAYOUT, "mine.csv")[0].passed_over) == count - 1
+    else:
+        with pytest.raises(SurfaceError, match=f"found {count} columns, expected {MOST_COLUMNS} at most"):
+            read_columns(given, LAYOUT, "mine.csv")
+
+
+@pytest.mark.parametrize("length", [LONGEST_NAME, LONGEST_NAME + 1])
+def test_a_name_longer_than_any_is_none(length: int) -> None:
+    name, unit = next((quantity, unit) for quantity, units in UNITS.items() for unit in units if unit in SUFFIXES)
+    plain = NAMES[name][0] + SUFFIXES[unit][0]
+    blank = " " * (length - len(NAMES[name][0]) - len(unit) - 2)
+    written = f"{NAMES[name][0]}{blank}({unit})"
+    assert len(written) == length
+    given = f"{written};who\n1;2\n3;4\n5;6\n"
+    if length <= LONGEST_NAME:
+        expected = read_columns(given.replace(written, plain), LAYOUT, "mine.csv")[0].values[name]
+        np.testing.assert_array_equal(read_columns(given, LAYOUT, "mine.csv")[0].values[name], expected)
+    else:
+        with pytest.raises(SurfaceError, match="no column is known"):
+            read_columns(given, LAYOUT, "mine.csv")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import CuttingError
-from robomill.io.forces import read_forces
+from robomill.io.forces import GAP, read_forces
 
 ROWS = [f"{0.001 * i:.3f},{-60 + i},{100 + i},{-20}" for i in range(12)]
 HEAD = "t_s,F_feed_N,F_feed_normal_N,F_axial_N"
@@ -141,3 +141,37 @@ def test_mean_sizes_that_milling_has(size, unit):
     else:
         with pytest.raises(CuttingError, match=f"column F_x_N: the mean size .*is it in {unit}"):
             read_forces(given)
+
+
+@pytest.mark.parametrize("names", [HEAD, "t_s,F_x_N,F_y_N,F_z_N"])
+@pytest.mark.parametrize("turns_with", ["robot", "part"])
+def test_axes_are_the_robots_unless_the_sensor_sits_on_the_part(names, turns_with):
+    """Along the feed a force turns with the path, whoever carries the sensor."""
+    record = read_forces(text(head=names), turns_with=turns_with)
+    fixed = "W" if turns_with == "part" else "M"
+    assert record.frame == ("path" if names == HEAD else fixed)
+    np.testing.assert_allclose(record.F[3], [-57, 103, -20])
+
+
+@pytest.mark.parametrize(("size", "kept"), [(0.99, False), (1.0, True), (20_000.0, True), (20_001.0, False)])
+def test_mean_sizes_that_milling_has_are_kept(size, kept):
+    given = text([f"{0.001 * i:.3f},{size if i % 2 else -size}" for i in range(6)], "t_s,F_axial_N")
+    if kept:
+        assert np.abs(read_forces(given).F).max() == size
+    else:
+        with pytest.raises(CuttingError, match="mean size of all rows"):
+            read_forces(given)
+    assert np.abs(read_forces(given, trust_units=True).F).max() == size
+
+
+def test_a_gap_is_one_that_is_longer_than_rows_usually_are_apart():
+    """Rows a millisecond apart; a hole counts from a number of steps on that the module states."""
+    for steps, whole in ((GAP - 0.01, True), (GAP + 0.01, False)):
+        times = [0.0, 0.001, 0.002, 0.003, 0.003 + 0.001 * steps, 0.004 + 0.001 * steps]
+        given = text([f"{t:.6f},100" for t in times], "t_s,F_axial_N")
+        if whole:
+            assert len(read_forces(given).x) == 6
+        else:
+            with pytest.raises(CuttingError, match="a gap") as refused:
+                read_forces(given)
+            assert refused.value.where == "row 6, column t_s"
