@@ -51,3 +51,14 @@ def test_what_is_no_file(given: str, why: str) -> None:
         read_text(given, ProjectError, WORDS)
     assert given[-79:] in str(caught.value)
     assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize(("name", "said"), [("", "This "), ("mine.csv", "mine.csv")])
+def test_what_is_too_much_is_refused_by_its_name(tmp_path, name: str, said: str) -> None:
+    fits = "a" * (WORDS.most - 1) + "\n"
+    assert read_text(fits, ProjectError, WORDS, name) == (fits, name)
+    assert read_text(fits.encode(), ProjectError, WORDS, name) == (fits, name)
+    for given, what in ((fits + "b", "text"), ((fits + "b").encode(), "file")):
+        with pytest.raises(ProjectError) as refused:
+            read_text(given, ProjectError, WORDS, name)
+        assert str(refused.value).startswith(said if name else said + what)
