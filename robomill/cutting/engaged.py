@@ -36,11 +36,13 @@ class EngagedPart:
     sectors    (m, s, 4)    m, float16, means over each of the ``sector_edges``: the height engaged along the axis
                             (gaps count as zero), where it begins and where it ends, and how much of the end face is; 0
                             in air
+    known    (m,) bool      False where what stands before the step is not known (None: it is, everywhere)
     """
 
     exponents: tuple[float, ...]
     moments: FloatArray
     sectors: np.ndarray
+    known: BoolArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "moments", frozen(self.moments))
@@ -48,7 +50,8 @@ class EngagedPart:
 
     def at(self, index: IntArray) -> EngagedPart:
         """The part at some of the steps (k,)."""
-        return EngagedPart(self.exponents, self.moments[index], self.sectors[index])
+        known = None if self.known is None else self.known[index]
+        return EngagedPart(self.exponents, self.moments[index], self.sectors[index], known)
 
     def __len__(self) -> int:
         return len(self.moments)

@@ -8,6 +8,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_along, feed_share
+from robomill.cutting.unjudged import Unjudged
 from robomill.errors import SetupError
 from robomill.progress import gathered
 from robomill.provenance import Finding
@@ -57,6 +58,17 @@ def met_conditions(told: CutConditions, found: Engagement) -> CutConditions:
     """What was told, with what each step really meets."""
     arc: dict[str, Any] = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
     return replace(told, **arc)
+
+
+def unknown_material(conditions: CutConditions) -> tuple[Unjudged, ...]:
+    """Steps before which leaning cutters have cut more gaps above each other than a column of the stock can keep."""
+    known = None if conditions.part is None else conditions.part.known
+    where = np.zeros(len(conditions), dtype=bool) if known is None else conditions.cutting & ~known
+    why = (
+        "leaning cuts leave more layers of material above each other than are kept apart, so what stands there is not "
+        "known: cut fewer above each other, or part the program"
+    )
+    return (Unjudged("layers", where, why),) if where.any() else ()
 
 
 def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -26,7 +26,6 @@ class Engagement:
     a_e             m    radial width: the part of the cutter's width that meets material
     reach           m    highest engaged place above the tip, along the axis
     part                 the engaged part itself, for the force
-    lost                 how often a gap between layers of material could not be kept
     """
 
     phi_st: FloatArray
@@ -35,7 +34,6 @@ class Engagement:
     a_e: FloatArray
     reach: FloatArray
     part: EngagedPart
-    lost: int = 0
 
 
 def engage(march: March) -> Engagement:
@@ -43,10 +41,10 @@ def engage(march: March) -> Engagement:
     return engagement(march.exponents, *march.run())
 
 
-def engagement(exponents: tuple[float, ...], rows: FloatArray, sectors: np.ndarray, lost: int = 0) -> Engagement:
+def engagement(exponents: tuple[float, ...], rows: FloatArray, sectors: np.ndarray) -> Engagement:
     """Rows and sectors of what steps meet (see ``March``), by name."""
     count = len(exponents)
     moments = rows[:, : MOMENTS * count].reshape(len(rows), count, MOMENTS)
-    phi_st, phi_ex, a_p, a_e, reach = (frozen(column) for column in rows[:, MOMENTS * count :].T[:5])
-    part = EngagedPart(exponents, moments, sectors)
-    return Engagement(phi_st, phi_ex, a_p, a_e, reach, part, lost)
+    phi_st, phi_ex, a_p, a_e, reach, _, lost = (frozen(column) for column in rows[:, MOMENTS * count :].T)
+    known = np.asarray(lost == 0.0)  # a gap between layers of material that was closed may be met by any later step
+    return Engagement(phi_st, phi_ex, a_p, a_e, reach, EngagedPart(exponents, moments, sectors, known))

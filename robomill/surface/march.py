@@ -23,7 +23,7 @@ from robomill.toolpath.sampling import CORNER
 
 AT_ONCE = (256, 8192)  # steps that are marched together: at least, where none goes on after them, and at most
 JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
-SPARE_LAYERS = 2  # that leaning cutters may open in a column, beside those of the stock
+SPARE_LAYERS = (2, 6)  # that leaning cutters may open in a column, beside those of the stock; more where needed
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,15 +151,13 @@ class March:
         state[0].runs[:, ENDS:AXIS] = np.nan  # where a step goes is not known before
         return state
 
-    def _state(self, first: BoolArray) -> tuple[Any, Any]:
+    def _state(self, first: BoolArray, spare: int = SPARE_LAYERS[-1]) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
-        the steps that begin a run."""
+        the steps that begin a run; ``spare``: layers that leaning cutters may open in a column."""
         from robomill.surface.material_kernels import AXIS, ENDS, MOVE, NOBODY, RUN, SHAPE, Bounds, Dexels, World
 
         cells = stock_grid(self.stock, self.cell)
-        heights, facets = stock_layers(
-            self.stock, cells, SPARE_LAYERS if leaning(np.concatenate(self._axes)).any() else 0
-        )
+        heights, facets = stock_layers(self.stock, cells, spare if leaning(np.concatenate(self._axes)).any() else 0)
         names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
         dexels = Dexels(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
@@ -172,11 +170,13 @@ class March:
         return world, self._room()
 
     def _room(self) -> Any:
+        from robomill.surface import division_kernels as division
         from robomill.surface import engagement_kernels as kernels
+        from robomill.surface.rib_kernels import CIRCLES
         from robomill.surface.turn_kernels import ANGLES, half_turn
 
         places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
-        rows = np.zeros((kernels.ROWS, kernels.SUMS + 3 * len(self.exponents)))
+        rows = np.zeros((division.ROWS, kernels.SUMS + 3 * len(self.exponents)))
         for half in range(2):
             phi = half * np.pi + half_turn()
             main = rows[half * ANGLES : (half + 1) * ANGLES]
@@ -187,9 +187,11 @@ class March:
             np.zeros((3, 4)),
             np.zeros((places, 4)),
             rows,
-            np.zeros((kernels.GAPS, 7)),
-            np.zeros((kernels.GAPS * (2 * kernels.HALVINGS + 2), 4)),
+            np.zeros((division.GAPS, 7)),
+            np.zeros((division.GAPS * (2 * division.HALVINGS + 2), 4)),
             np.zeros((4 * PANELS * (2 if down else 1), 5)),
+            np.zeros((3 * CIRCLES, 4)),
+            np.zeros(1),
         )
 
     @cached_property
@@ -207,12 +209,21 @@ class March:
             return 0.5 * size
         return max(0.01 * size, *(valley(cutter.solid, size) for cutter in self.tooling.cutters))
 
-    def run(self) -> tuple[FloatArray, np.ndarray, int]:
-        """Meet and cut every step: rows (m, 8 n_e + 6) and sectors (m, s, 4) of what they meet, and how often a gap
-        between layers of material was closed because a column had no room for another."""
-        from robomill.surface.engagement_kernels import REST
+    def run(self) -> tuple[FloatArray, np.ndarray]:
+        """Meet and cut every step: rows (m, 8 n_e + 7) and sectors (m, s, 4) of what they meet. Where a column has no
+        room for another gap between layers of material, all is done again with more room in each."""
+        for spare in SPARE_LAYERS:
+            rows, sectors, lost = self._run(spare)
+            if not lost:
+                break
+        sectors.flags.writeable = False  # kept as they are
+        return rows, sectors
 
-        state, begins = self._state(self._begins), self._begins
+    def _run(self, spare: int) -> tuple[FloatArray, np.ndarray, bool]:
+        """Rows and sectors with so many layers to spare in a column, and whether they were not enough."""
+        from robomill.surface.division_kernels import REST
+
+        state, begins = self._state(self._begins, spare), self._begins
         rows = np.zeros((len(self.points), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(self.points), len(state[1].sectors), 4), dtype=np.float16)
         run, first = np.cumsum(begins) - 1, 0
@@ -223,8 +234,7 @@ class March:
             rows[self.steps[some]], sectors[self.steps[some]] = self._march(
                 state, n, self._ends[some], (run[some], begins[some], self._stops[some]), (True, True)
             )
-        sectors.flags.writeable = False  # kept as they are
-        return rows, sectors, int(state[0].dexels.lost[0])
+        return rows, sectors, bool(state[0].dexels.lost[0])
 
     def _stop_after(self, first: int) -> int:
         """Where the steps end that are marched together: where nothing goes on, so that none needs to know the next."""
@@ -233,7 +243,7 @@ class March:
         return int(n.start + 1 + ends[0]) if len(ends) else min(n.stop, len(self.steps))
 
     def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, np.ndarray]:
-        """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 6,) and sectors; cuts nothing."""
+        """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 7,) and sectors; cuts nothing."""
         rows, sectors = self._one(i, np.concatenate([a, b]), (True, False))
         return rows[0], sectors[0]
 
@@ -254,7 +264,7 @@ class March:
         runs: tuple[IntArray, BoolArray, BoolArray],
         do: tuple[bool, bool],
     ) -> tuple[FloatArray, np.ndarray]:
-        from robomill.surface.engagement_kernels import REST
+        from robomill.surface.division_kernels import REST
         from robomill.surface.march_kernels import Steps, as_halves, march
 
         world, room = state

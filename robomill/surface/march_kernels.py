@@ -13,7 +13,8 @@ from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
 from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, radius_at, shape_of
 from robomill.surface.cells_kernels import cells_between
-from robomill.surface.engagement_kernels import Room, add_part
+from robomill.surface.division_kernels import add_part
+from robomill.surface.engagement_kernels import Room
 from robomill.surface.envelope_kernels import POINT, Move, nearest, row_interval, swept_height
 from robomill.surface.material_kernels import (
     AXIS,
@@ -283,7 +284,7 @@ def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
 
 @kernel
 def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2, do: tuple[bool, bool]) -> None:
-    """Steps one after the other: ``do`` (meet, cut) them; what they meet goes to ``found`` (n, 8 e + 6), ``sectors``
+    """Steps one after the other: ``do`` (meet, cut) them; what they meet goes to ``found`` (n, 8 e + 7), ``sectors``
     (n, 4 s)."""
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]

@@ -11,27 +11,17 @@ from robomill.cutting.edge import MOMENTS
 from robomill.cutting.engaged import PANELS, full_slot, sector_edges
 from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stretch_ends
 from robomill.cutting.tool import DISH, Cutter
+from robomill.surface import division_kernels as division
 from robomill.surface import engagement_kernels as kernels
-from robomill.surface.engagement_kernels import (
-    HALVINGS,
-    LENGTH,
-    ROWS,
-    SUMS,
-    Ray,
-    Room,
-    add_part,
-    divide,
-    follow_jumps,
-    lay_out,
-    measure_stretch,
-)
+from robomill.surface.division_kernels import GAPS, HALVINGS, REST, ROWS, add_part, divide, follow_jumps
+from robomill.surface.engagement_kernels import LENGTH, SUMS, Ray, Room, lay_out, measure_stretch
 from robomill.surface.material_kernels import Bounds, Dexels, Facets, World
 from robomill.surface.rib_kernels import Walk
 from robomill.surface.step_kernels import step_at
 from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_end
 
 MM = 1e-3
-NO_WALK = Walk(*np.zeros(len(Walk._fields)))
+NO_WALK = Walk(np.zeros((12, 4)), 0, 1.0, 1.0, True, np.inf, 1.0)
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
     "ball": Cutter("ball", 8 * MM),
@@ -42,7 +32,7 @@ CUTTERS = {
 
 def room_for(halves=1):
     """Room as a march gives it, its first rows at the angles of one half turn or two."""
-    rows, gaps = np.zeros((ROWS, SUMS + 6)), 6 * PANELS
+    rows, gaps = np.zeros((ROWS, SUMS + 6)), GAPS
     for half in range(2):
         phi = half * np.pi + half_turn()
         rows[half * ANGLES : (half + 1) * ANGLES, :LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
@@ -54,6 +44,8 @@ def room_for(halves=1):
         np.zeros((gaps, 7)),
         np.zeros((gaps * (2 * HALVINGS + 2), 4)),
         np.zeros((4 * PANELS * halves, 5)),
+        np.zeros((12, 4)),
+        np.zeros(1),
     )
 
 
@@ -92,10 +84,12 @@ def made_up(room, world, shape, step, first, end):
 
 @pytest.mark.parametrize("halves", [1, 2])
 def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(monkeypatch, halves):
-    monkeypatch.setattr(kernels, "measure", made_up)
+    monkeypatch.setattr(division, "measure", made_up)
     room = room_for(halves)
     made_up(room, None, None, None, 0, ANGLES * halves)
-    count = follow_jumps(room, None, None, None, divide(room, None, None, None, NO_WALK, halves))
+    count = follow_jumps(
+        room, None, None, None, divide(room, None, None, None, NO_WALK, (36 * halves, 0.0, 36 * halves))
+    )
     row, middle, width, sector = room.pieces[:count].T
     order = np.argsort(middle)
     low, high = (middle - 0.5 * width)[order], (middle + 0.5 * width)[order]
@@ -124,7 +118,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
 def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
     room = room_for()
     room.rows[:, LENGTH] = 1.0 + 0.1 * np.cos(room.rows[:, PHI])
-    count, gaps, _ = divide(room, None, None, None, NO_WALK, 1)
+    count, gaps, _ = divide(room, None, None, None, NO_WALK, (36, 0.0, 36))
     assert (count, gaps) == (2 * PANELS, 0)
     row, middle, width, sector = room.pieces[:count].T
     np.testing.assert_allclose(middle, room.rows[row.astype(int), PHI])
@@ -235,7 +229,7 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     world = block_world()
     world = world._replace(bounds=world.bounds._replace(**limits))
     halves = 2 if along < -1e-6 else 1
-    total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
+    total, sectors = np.zeros(2 * MOMENTS + REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
     add_part(room_for(halves), world, cutter.solid, step, total, sectors)
     return total[: 2 * MOMENTS].reshape(2, MOMENTS), total[2 * MOMENTS :], sectors.reshape(-1, 4)
 

@@ -58,6 +58,40 @@ def test_a_cycle_waits_at_the_bottom() -> None:
     assert path.p[waits - 1, 2] == pytest.approx(-2e-3)
 
 
+HOLES = """G21 G90 M3 S600 F60
+G0 X0 Y0 Z5
+N5 G04 P300
+G82 G99 X1 Z-2 R1 P500
+X2
+X3 P250 (P9000)
+Y1 P1.5
+G80
+P40 G4
+G4 X2.5
+G0 Z5
+G89 X4 Z-1 R1 P0100
+M98 P2000 L1
+G80 G0 Z9
+M30
+O2000
+X5
+M99
+"""
+
+
+@pytest.mark.parametrize("padding", [0, 25_000])
+def test_fanuc_counts_dwells_without_a_point_in_milliseconds_and_linuxcnc_in_seconds(padding: int) -> None:
+    """By hand: what each line waits."""
+    text = HOLES.replace("M30", "M30" + "\n(more)" * padding)
+    path = read_gcode(text, dialect="fanuc")
+    waits = [0.3, 0.5, 0.5, 0.25, 1.5, 0.04, 2.5, 0.1, 0.1]
+    assert path.dwell.sum() == pytest.approx(sum(waits))
+    assert not any(found.code == "long-dwell" for found in path.findings)
+    plain = read_gcode("M3 S600 F60\nG82 X1 Z-2 R1 P500\nX2\nX3 P250\nG80\nM2\n")
+    assert plain.dwell.sum() == pytest.approx(500 + 500 + 250)
+    assert [found.level for found in plain.findings if found.code == "long-dwell"] == ["suspicious"]
+
+
 @pytest.mark.parametrize("padding", [0, 25_000])
 def test_a_speed_that_follows_the_diameter_is_not_known(padding: int) -> None:
     """Not zero: the spindle turns. M5 stops it in that mode too, and G97 makes the speed known again."""

@@ -80,7 +80,9 @@ class Dialect:
             if _SMOOTHING.search(raw):
                 findings.add("harmless-g", "ignored", number, "G5.1 Q is left out: it moves nothing")
             code = _SMOOTHING.sub("", "O" + raw[1:] if raw[:1] == ":" else raw)
-            return _TIP.sub("G43", _DWELL.sub(r"\1P", _DWELL_MS.sub(_in_seconds, code)))
+            if _dwells(code, machine.motion):
+                code = _IN_MS.sub(_in_seconds, code)
+            return _TIP.sub("G43", _DWELL.sub(r"\1P", code))
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
             return _from_grbl(raw, number, findings)
         return raw
@@ -142,7 +144,10 @@ _SILENT = re.compile(
     re.IGNORECASE,
 )
 _SMOOTHING = re.compile(r"\bG0?5\.1\s*Q[01]\b(?:\s*R\d+)?", re.IGNORECASE)
-_DWELL_MS = re.compile(r"(\bG0?4\s*)P(\d+)(?![\d.])", re.IGNORECASE)
+_IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
+_G_WORD = re.compile(r"G0*(\d+(?:\.\d+)?)|M0*9[789]\b", re.IGNORECASE)
+_CYCLES = frozenset({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88", "89"})
+_MOVES = frozenset({"0", "1", "2", "3", "33", "80"})
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
@@ -181,9 +186,18 @@ def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
     return code + (";" + comment if mark else "")
 
 
+def _dwells(code: str, motion: int) -> bool:
+    """Whether P is a dwell on a line of Fanuc's: of G4 or of a cycle, which may be in force (``motion``)."""
+    words = {found[1] or "call" for found in _G_WORD.finditer(_COMMENT.sub("", code))}
+    if words & {"10", "65", "66", "54.1", "call"}:
+        return False
+    in_force = str(motion // 10) in _CYCLES and not words & _MOVES
+    return bool(words & ({"4"} | _CYCLES)) or in_force
+
+
 def _in_seconds(found: re.Match[str]) -> str:
     """A dwell as these controls count it: milliseconds where its number has no point."""
-    return f"{found[1]}P{int(found[2][:12]) / 1000:.3f}"
+    return f"P{int(found[1][:12]) / 1000:.3f}"
 
 
 def _from_grbl(raw: str, number: int, findings: Findings) -> str:

@@ -6,7 +6,7 @@ import math
 
 from robomill.toolpath.gcode import codes
 from robomill.toolpath.gcode.codes import G_GROUP, M_GROUP, A, B, C, F, I, J, K, L, P, Q, R, S, X
-from robomill.toolpath.gcode.cycle_rules import cycle, is_cycle, pecks, takes_dwell
+from robomill.toolpath.gcode.cycle_rules import cycle, is_cycle, pecks
 from robomill.toolpath.gcode.line_rules import apply_settings, read_line
 from robomill.toolpath.gcode.motion_rules import (
     INVERSE_TIME,
@@ -96,7 +96,7 @@ def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
         turns = not (math.isnan(w[A]) and math.isnan(w[B]) and math.isnan(w[C]))
         if turns or has_centre or motion in (740, 840, 870, 880):
             return False
-        return has_axes and (takes_dwell(motion) or math.isnan(w[P])) and (pecks(motion) or math.isnan(w[Q]))
+        return has_axes and math.isnan(w[P]) and (pecks(motion) or math.isnan(w[Q]))  # controls count dwells otherwise
     if not (math.isnan(w[P]) and math.isnan(w[Q]) and math.isnan(w[L])):
         return False
     if is_arc(motion):

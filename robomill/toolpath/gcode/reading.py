@@ -26,6 +26,7 @@ from robomill.units import format_si, to_si
 LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
 MOST_SAID = 1000
+LONG_DWELL = 60.0  # s, on average over a program: so long none waits, so the number is in another unit
 """Stretches of a program that one finding counts."""
 
 
@@ -98,6 +99,12 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         dwell_time=machine.dwell_time,
         messages=tuple(machine.messages),
     )
+    if machine.dwell_time > LONG_DWELL * machine.dwells:
+        text = (
+            f"the program waits {machine.dwell_time:g} s in {machine.dwells} dwells, as P counts seconds here; where "
+            "it counts milliseconds (Fanuc, without a point) choose that dialect."
+        )
+        machine.findings.add("long-dwell", "suspicious", 0, text)
     _doubt_spindle(machine, program)
     _doubt_size(machine, program)
     _doubt_spin(machine, program)
