@@ -150,6 +150,10 @@ class ForceModel:
         """Mean force (m, 3) N for the material in force and each other of its alloy; none without a material."""
         return []
 
+    def at_ends(self, conditions: CutConditions) -> list[FloatArray]:
+        """Mean force (m, 3) N at the ends of what is assumed of it; none where nothing is."""
+        return []
+
 
 def feed_share(way: ArrayLike, k: ArrayLike) -> FloatArray:
     """Share (m,) of every way that lies across the tool axis: 1 on the level, 0 in a plunge, 1 where nothing moves.
@@ -233,6 +237,11 @@ def force_by_material(
 ) -> list[tuple[Material, FloatArray]]:
     """``force_on_tool`` for the material in force and each other of its alloy; none without a material."""
     return [(row, _on_tool(model, conditions, R_MF, F)) for row, F in model.by_material(conditions)]
+
+
+def force_at_ends(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike) -> list[FloatArray]:
+    """``force_on_tool`` at the ends of what is assumed of the force; none where nothing is."""
+    return [_on_tool(model, conditions, R_MF, F) for F in model.at_ends(conditions)]
 
 
 def _on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike, components: FloatArray) -> FloatArray:

@@ -134,6 +134,12 @@ class Material:
                 changes[name] = given[GIVES[name]] * (tangential.get(name) or 1.0)
         return self.replace(**changes)
 
+    def filled(self, other: Material) -> Material:
+        """The row with the coefficients that its source does not give as those of another one: so it widens no range of
+        a force that it does not know. Itself where it gives them all."""
+        missing = {name: getattr(other, name) for name in self.missing if getattr(other, name) is not None}
+        return self.replace(**missing) if missing else self
+
     @property
     def terms(self) -> tuple[EdgeTerm, ...]:
         """The row as force law of the edge; the terms of an ``unknown`` force are 0 and must not be relied on."""

@@ -75,10 +75,14 @@ class ProcessForce(ForceModel):
     @property
     def rows(self) -> tuple[Material, ...]:
         """The row in force, the others of its alloy, and, where shares are assumed, the row at the published ends."""
+        return (self.row, *(each.completed(self._shares) for each in self.alternatives), *self.ends)
+
+    @property
+    def ends(self) -> tuple[Material, ...]:
+        """The row with its assumed shares at the published ends; none where nothing is assumed."""
         assumed = [part for part in self.material.unknown if self._shares[part] is not None]
         ends = product(*(PUBLISHED[part] for part in assumed)) if assumed else ()
-        bounds = (self.material.completed(dict(zip(assumed, end, strict=True))) for end in ends)
-        return (self.row, *(each.completed(self._shares) for each in self.alternatives), *bounds)
+        return tuple(self.material.completed(dict(zip(assumed, end, strict=True))) for end in ends)
 
     @property
     def _shares(self) -> dict[str, float | None]:
@@ -160,8 +164,12 @@ class ProcessForce(ForceModel):
         return self._mean(self.row, conditions)
 
     def by_material(self, conditions: CutConditions) -> list[tuple[Material, FloatArray]]:
-        """Mean force (m, 3) N for each of ``rows``."""
-        return [(row, self._mean(row, conditions)) for row in self.rows]
+        """Mean force (m, 3) N for each of ``rows``; what a row's source does not give is as in the row in force."""
+        return [(row, self._mean(row.filled(self.row), conditions)) for row in self.rows]
+
+    def at_ends(self, conditions: CutConditions) -> list[FloatArray]:
+        """Mean force (m, 3) N for each of ``ends``."""
+        return [self._mean(row, conditions) for row in self.ends]
 
     def peak(self, conditions: CutConditions) -> ForceSpread:
         """Extremes over a revolution, with the lag of the helix (teeth alike, no run-out); 0 where ``components`` is.

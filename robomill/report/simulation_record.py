@@ -105,6 +105,9 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             }
             for name, reading in readings.items()
         },
+        "share_at_assumed_ends": verdict.far,
+        "gone": sorted(set(path.block[result.gauge.gone].tolist())),
+        "thin_wall": sorted(set(path.block[result.gauge.thin].tolist())),
         "tooth": _tooth(result),
         "left_out": list(LEFT_OUT),
         "not_judged": {

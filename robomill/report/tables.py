@@ -13,7 +13,8 @@ MEASURED = ("station", "width", "depth", "centre_offset", "floor_error")  # of e
 
 
 def deviation_columns(result: SimulationResult) -> Columns:
-    """Along the path: where, how far off in {M} and in the axes of the cut, by which joint, under which force.
+    """Along the path: where, how far off in {M} and in the axes of the cut, by which joint, under which force; and
+    whether a wall beside it is gone that should stand, or gives way.
 
     Under a measured map there are no joints: their model's shares would not add up to what was measured.
     """
@@ -38,6 +39,8 @@ def deviation_columns(result: SimulationResult) -> Columns:
             columns |= _vectors(f"{spring.name.replace(' ', '_')}_{{axis}}_mm", result.delta_spring[:, k], "mm")
     if result.sag is not None and result.setup.add_sag:
         columns |= _vectors("sag_{axis}_mm", result.sag.sum(axis=-2), "mm")
+    for name, found in (("gone", result.gauge.gone), ("thin_wall", result.gauge.thin)):
+        columns[name] = np.isin(np.arange(len(path)), found).astype(float)
     return columns
 
 

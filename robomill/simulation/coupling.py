@@ -126,11 +126,13 @@ class Coupling:
     settled       by step, in order     steps    (n,) their samples
     lines         source lines where they do not agree
     difference    m, largest difference of any component from the answer without coupling
+    judged        share of the steps in the material that are judged
     """
 
     settled: tuple[Settled, ...]
     lines: tuple[int, ...]
     difference: float
+    judged: float = 1.0
 
     @property
     def converged(self) -> bool:
@@ -152,8 +154,12 @@ class Coupling:
         """For the notes of the result."""
         if self.lines:
             return Finding("warning", 0, f"Coupling: on line {named(self.lines)} {self.why}.", code=COUPLING)
+        if self.judged == 0.0:
+            text = "Coupling: no step in the material is judged, so there is no force that deflection could agree with."
+            return Finding("info", 0, text, code=COUPLING)
+        steps = "every step" if self.judged == 1.0 else "every step that is judged"
         text = (
-            f"Coupling: force and deflection agree to {format_si(TOLERANCE, 'um', 1)} at every step "
+            f"Coupling: force and deflection agree to {format_si(TOLERANCE, 'um', 1)} at {steps} "
             f"({self.mean_iterations:.1f} evaluations a step, at most {self.iterations}); against one pass the "
             f"deflection differs by at most {format_si(self.difference, 'um')}."
         )

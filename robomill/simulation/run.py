@@ -139,7 +139,10 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
         return conditions, F, _reasons(bent, conditions), None
     coupled = march_coupled(bent, bent.delta(F))
     reasons = _reasons(bent, coupled.conditions) + coupled.unjudged
-    return coupled.conditions, coupled.F, reasons, coupled.coupling
+    cut = coupled.conditions.engaged
+    known = cut & ~np.any([np.zeros_like(cut), *(each.where for each in reasons)], axis=0)
+    judged = float(known.sum() / cut.sum()) if cut.any() else 1.0
+    return coupled.conditions, coupled.F, reasons, replace(coupled.coupling, judged=judged)
 
 
 def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from robomill.arrays import IntArray
 from robomill.provenance import Finding, named
+from robomill.simulation.assumed import far_share
 from robomill.simulation.gauge import Gauge, Readings
 from robomill.simulation.seen import Run
 from robomill.units import format_percent, format_si
@@ -43,6 +44,7 @@ class Verdict:
             moves a wall and counts there
     end     along the feed, where a cut begins or ends in the material: how far its end wall is moved
             (``feed`` and ``end`` decide only where the feed has a tolerance of its own)
+    far     the share of the tolerance used at the worse end of what is assumed of the force; NaN where nothing is
     """
 
     level: Level
@@ -52,6 +54,7 @@ class Verdict:
     floor: Reading
     feed: Reading
     end: Reading
+    far: float = float("nan")
 
     @property
     def red(self) -> bool:
@@ -78,7 +81,12 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
+    far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if stated else float("inf")))
+    if far > 1.0 and level == "ok":
+        level = "tight"
     said = f"{_said(result, readings, share)}: {WORDS[level]}"
+    if far > 1.0 and level == "tight":
+        said += f" (up to {format_percent(far)} at the ends of the share assumed of its force)"
     if len(gauge.gone):
         lines = named(result.path.block[gauge.gone].tolist())
         level, said = "out", f"{said}; {GONE} (line {lines}): {WORDS['out']}"
@@ -97,7 +105,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         said = f"{said} {unknown}.".strip()
     if result.early_rapids:
         said += f" {EARLY_RAPID} (line {named(result.early_rapids)})."
-    return Verdict(level, share, said, *readings)
+    return Verdict(level, share, said, *readings, far)
 
 
 def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:

@@ -77,7 +77,11 @@ def test_only_a_process_force_changes_with_the_cutter_and_knows_peak_and_rows():
     assert force.cut_by(other).cutter == other
     np.testing.assert_allclose(force.cut_by(other).components(SLOT)[:, 1] < force.components(SLOT)[:, 1], True)
     assert [row.unknown for row, _ in force.by_material(SLOT)] == [(), ("axial",)]
+    own, given = (F for _, F in force.by_material(SLOT))
+    np.testing.assert_allclose(given[:, 2], own[:, 2])  # a row that gives no axial force has no part in its range
+    assert (given[:, :2] != own[:, :2]).all()
     stated = PathForce(1.0)
+    assert stated.at_ends(SLOT) == []
     assert stated.cut_by(other) is stated
     assert stated.peak(SLOT) is None
     assert stated.by_material(SLOT) == []

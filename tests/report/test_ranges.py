@@ -37,7 +37,8 @@ def test_each_row_of_the_alloy_in_force_stays_within_the_range() -> None:
     found = next(r for r in ranges(result, None) if "alloy" in r.over)
     i, walls = result.verdict.wall.worst, []
     for material in (setup.force.material, *setup.force.alternatives):  # type: ignore[attr-defined]
-        filled = material.replace(**dict.fromkeys(material.missing, 0.0))  # as the range counts it, and its table says
+        own = setup.force.material  # type: ignore[attr-defined]
+        filled = material.replace(**{name: getattr(own, name) for name in material.missing})  # unknown is not zero
         other = simulate(setup.replace(force=dataclasses.replace(setup.force, material=filled, alternatives=())))  # type: ignore[type-var]
         walls.append(float(result.verdict.wall.value + other.delta_in_cut[i, 1] - result.delta_in_cut[i, 1]))
     assert len(walls) > 2

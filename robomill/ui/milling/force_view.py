@@ -112,7 +112,8 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         rows.append((material.title, feed, normal, axial if known else "not given", off, mark))
     head = ("Row", *(f"{name}, N" for name in COMPONENTS), "tip off, max", "")
     pieces.table(rows, " nnnn ", head, strong=0)
-    pieces.note("A row without axial coefficients pulls nowhere along its axis; its force there counts as 0.")
+    if not all(spread.axial):
+        pieces.note("A row that gives no axial force has no part in its range: there it counts as the row in force.")
 
 
 def coupling_facts(result: SimulationResult) -> None:
