@@ -197,13 +197,13 @@ def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) 
     room.fine[0] = 0.0
     measure(room, world, shape, step, 0, ANGLES * halves)
     walk, every = walk_on(world, shape, step, room.stretches, room.circles), HALF * halves
-    if walk.count == 0:
+    if walk.used == 0:
         return (every, 0.0, every), walk
     changed, phi = next_change(world, step, walk, room.rows, (0, 0, 0, every))
     if not walk.plain and (changed < every or alternates(world, step, walk, room.rows, ANGLES * halves)):
         room.fine[0] = fine_pitch(world)
         measure(room, world, shape, step, 0, ANGLES * halves)
-        walk = Walk(walk.circles, walk.count, walk.pitch, walk.fine, walk.plain, CLOSE, walk.rim)
+        walk = Walk(walk.circles, walk.used, walk.pitch, walk.fine, walk.plain, CLOSE, walk.rim)
         changed, phi = next_change(world, step, walk, room.rows, (0, 0, 0, every))
     return (changed, phi, every), walk
 

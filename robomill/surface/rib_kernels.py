@@ -28,13 +28,13 @@ Point = tuple[float, float, float]
 
 
 class Walk(NamedTuple):
-    """Steps along circles about the axis of the cutter: the circles (c, 4) m, of which ``count`` are walked (0: no
-    walk), and the angles of a step, rad, where no side is near and where one is. ``plain``: they see how high material
+    """Steps along circles about the axis of the cutter: the circles (c, 4) m, of which the first ``used`` are walked,
+    and the angles of a step, rad, where no side is near and where one is. ``plain``: they see how high material
     stands above them, others only whether it does. ``most``: so far from an angle looked at, rad, there is another;
     ``rim``: the widest radius, m."""
 
     circles: Out2
-    count: int
+    used: int
     pitch: float
     fine: float
     plain: bool
@@ -103,7 +103,7 @@ def look(world: World, step: Step, walk: Walk, row: FloatArray, end: int) -> boo
     """Note on every circle what stands there at the angle of a row, as one end of a gap: ``LOW`` or ``HIGH``; whether a
     side is near."""
     near = False
-    for n in range(walk.count):
+    for n in range(walk.used):
         walk.circles[n, end], by_side = seen_on(world, step, walk, n, (row[SINE], row[COSINE]))
         near = near or by_side
     return near
@@ -114,7 +114,7 @@ def stands_out(world: World, step: Step, walk: Walk, turn: tuple[float, float]) 
     """Whether at an angle (sine, cosine) material stands otherwise on a circle than at both ends of the gap, and
     whether a side is near."""
     near = False
-    for n in range(walk.count):
+    for n in range(walk.used):
         top, by_side = seen_on(world, step, walk, n, turn)
         near = near or by_side
         if jumps(top, walk.circles[n, LOW]) and jumps(top, walk.circles[n, HIGH]):
@@ -153,7 +153,7 @@ def next_change(
             row, left = row + 1, row + 1
             look(world, step, walk, rows[row], LOW)
         else:
-            for n in range(walk.count):
+            for n in range(walk.used):
                 walk.circles[n, LOW] = walk.circles[n, HIGH]
     return gaps, 0.0
 
@@ -169,7 +169,7 @@ def pace(walk: Walk, fine: bool) -> tuple[bool, float, tuple[float, float]]:
 def alternates(world: World, step: Step, walk: Walk, rows: FloatArray, count: int) -> bool:
     """Whether on a circle material begins and ends within a quarter of the radius over the angles of rows; where it
     ends at the top of the stock does not count."""
-    for n in range(walk.count):
+    for n in range(walk.used):
         r, t = walk.circles[n, RADIUS], walk.circles[n, HEIGHT]
         before, changed, last = -1.0, -math.inf, 0.0
         for row in range(count):
