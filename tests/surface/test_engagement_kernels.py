@@ -13,7 +13,7 @@ from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stret
 from robomill.cutting.tool import DISH, Cutter
 from robomill.surface import division_kernels as division
 from robomill.surface import engagement_kernels as kernels
-from robomill.surface.division_kernels import GAPS, HALVINGS, REST, ROWS, add_part, divide, follow_jumps
+from robomill.surface.division_kernels import GAPS, HALVINGS, REACH, REST, ROWS, SIZE, add_part, divide, follow_jumps
 from robomill.surface.engagement_kernels import LENGTH, SUMS, Ray, Room, lay_out, measure_stretch
 from robomill.surface.material_kernels import Bounds, Dexels, Facets, World
 from robomill.surface.rib_kernels import Walk
@@ -329,7 +329,7 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
     left = np.cross(k, f)
     world, halves = block_world(layers=6, dx=0.2 * MM), 2 if along < 0.0 else 1
     tip = np.array([2.0, -3.0, -depth / MM]) * MM
-    total, sectors = np.zeros(2 * MOMENTS + kernels.REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
+    total, sectors = np.zeros(2 * MOMENTS + REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
     add_part(room_for(halves), world, shape, step_at(tip, k, v, f, 0), total, sectors)
 
     phi = (np.arange(720) + 0.5) * np.pi / 360
@@ -361,5 +361,5 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
     for n in range(2):
         np.testing.assert_allclose(total[n * MOMENTS : (n + 1) * MOMENTS], expected[n], atol=2e-2 * expected[n].max())
     rest = total[2 * MOMENTS :]
-    assert rest[kernels.SIZE] == pytest.approx(size, rel=2e-2)
-    assert rest[kernels.REACH] == pytest.approx(reach, abs=0.1 * MM)
+    assert rest[SIZE] == pytest.approx(size, rel=2e-2)
+    assert rest[REACH] == pytest.approx(reach, abs=0.1 * MM)

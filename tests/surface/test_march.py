@@ -32,7 +32,7 @@ def test_step_by_step_is_the_march(kind, lean):
     p, cutting = passes(along(0.0, 0.002), along(0.003, 0.003)[:20])
     k = np.array([0.0, np.sin(lean), np.cos(lean)])
     march = March(STOCK, 2e-4, TOOLS[kind], p, k, cutting)
-    whole, _, _ = march.run()
+    whole, _ = march.run()
     for i in np.flatnonzero(cutting):
         row, _ = march.meet(i, p[i - 1], p[i])
         again, _ = march.meet(i, p[i - 1], p[i])
