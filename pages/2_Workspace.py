@@ -16,7 +16,7 @@ if box is not None:
     grid = ui.attempt(fields.solid, robot, box)
     known = ui.attempt(fields.field, robot, grid, view.A, view.B) if grid is not None else None
 if known is not None:
-    ui.attempt(fields.proposed_box, robot, view.A, view.B)
+    ui.attempt(fields.proposed, robot, "largest", view.A, view.B)
 
 ui.headline(f"Workspace · {robot.title or robot.name}", workspace.sentence(robot, known))
 if known is not None and box is not None:

@@ -19,7 +19,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
-from typing import Any, Literal, get_type_hints
+from typing import Any, Literal, Self, get_type_hints
 
 import numpy as np
 
@@ -232,6 +232,14 @@ def settle(value: Any, error: type[RobomillError], who: str = "") -> None:
     """
     for name, declared in quantities(type(value)).items():
         object.__setattr__(value, name, declared.settled(getattr(value, name), error, who))
+
+
+class Replaceable:
+    """A frozen dataclass of which changed copies are made; each is checked as a new one."""
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with fields changed."""
+        return replace(self, **changes)  # type: ignore[type-var]
 
 
 def described(value: Any) -> str:

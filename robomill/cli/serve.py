@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 LOOPBACK = "127.0.0.1"
@@ -32,10 +33,12 @@ def start_app(words: Sequence[str] = ()) -> int:
 def serve_options(serve: argparse.ArgumentParser) -> None:
     """The options of ``robomill serve``."""
     serve.add_argument("--address", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine)")
-    serve.add_argument("--port", type=_port, default=8501, help="port to listen on (default 8501)")
+    serve.add_argument("--port", type=partial(_whole, 65535), default=8501, help="port to listen on (default 8501)")
     serve.add_argument("--host-name", metavar="NAME", help="name by which browsers reach it, behind a reverse proxy")
     serve.add_argument("--base-path", metavar="PATH", help="path under which a reverse proxy offers it")
-    serve.add_argument("--max-upload-mb", type=_megabytes, default=100, metavar="MB", help="largest file (default 100)")
+    serve.add_argument(
+        "--max-upload-mb", type=partial(_whole, 100_000), default=100, metavar="MB", help="largest file (default 100)"
+    )
     serve.add_argument("--autosave", choices=("on", "off"), help="keep people's work beyond the page (default on)")
     serve.add_argument("--autosave-folder", metavar="DIR", help="where, in a folder that nobody else can read")
     serve.add_argument("--autosave-mb", metavar="MB", help="of all together (default 1000); the oldest goes first")
@@ -77,15 +80,7 @@ def _become(command: list[str], environment: dict[str, str]) -> int:
     return subprocess.call(command, env=environment)
 
 
-def _port(text: str) -> int:
-    return _whole(text, 65535)
-
-
-def _megabytes(text: str) -> int:
-    return _whole(text, 100_000)
-
-
-def _whole(text: str, most: int) -> int:
+def _whole(most: int, text: str) -> int:
     if not (text.isascii() and text.isdecimal() and len(text) < 9 and 0 < int(text) <= most):
         raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {most}, found {text!r:.40}")
     return int(text)

@@ -7,13 +7,13 @@ A coefficient that no source gives is None and ``unknown``, never zero; it may b
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
-from robomill.quantities import quantity, settle
+from robomill.quantities import Replaceable, quantity, settle
 from robomill.units import to_si
 
 MECHANISTIC = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
@@ -38,7 +38,7 @@ def _per_length(label: str) -> Any:
 
 
 @dataclass(frozen=True)
-class Material:
+class Material(Replaceable):
     """Cutting force coefficients of one alloy with one kind of cutter.
 
     Ktc, Krc, Kac  N/m^2   force per chip area: tangential, radial, axial
@@ -151,10 +151,6 @@ class Material:
         mc = float(self.mc or 0.0)
         K = float(self.kc11 or 0.0) * REFERENCE_CHIP**mc
         return (EdgeTerm(1.0 - mc, K, K * float(self.radial_ratio or 0.0), K * float(self.axial_ratio or 0.0)),)
-
-    def replace(self, **changes: Any) -> Material:
-        """A checked copy with fields changed; edited coefficients should come with their own provenance."""
-        return replace(self, **changes)
 
 
 def alternatives(material: Material, materials: Iterable[Material]) -> tuple[Material, ...]:

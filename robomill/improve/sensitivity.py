@@ -18,14 +18,13 @@ STIFFER = 1.1  # the usual question: 10 % stiffer
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity:
-    """What ``factor`` times the stiffness of each joint alone buys.
+    """What ``STIFFER`` times the stiffness of each joint alone buys.
 
     before (...,): the measure as it is (SI); gain (..., n): how much smaller it becomes with joint i stiffer (positive
     is better); ranking (n,): joints, 0-based, by their mean gain, best first; joint_numbers
     names them as the robot does.
     """
 
-    factor: float
     before: FloatArray
     gain: FloatArray
     ranking: IntArray
@@ -61,7 +60,7 @@ def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArra
 
 
 def compliance_sensitivity(
-    C_joint: ArrayLike, component: str = "yy", factor: float = STIFFER, joint_numbers: tuple[int, ...] = ()
+    C_joint: ArrayLike, component: str = "yy", joint_numbers: tuple[int, ...] = ()
 ) -> Sensitivity:
     """What a stiffer joint takes off |C_ab|, for C_joint (..., n, 3, 3) m/N at a point or over a grid.
 
@@ -71,38 +70,23 @@ def compliance_sensitivity(
     if len(component) != 2 or any(c not in "xyz" for c in component):
         raise KinematicsError(f"component {component!r}: expected two of x, y, z, such as 'yy'.")
     parts = C_joint[..., "xyz".index(component[0]), "xyz".index(component[1])]
-    return _sensitivity(parts[..., None], factor, joint_numbers)
+    return _sensitivity(parts[..., None], joint_numbers)
 
 
-def deflection_sensitivity(
-    delta_joint: ArrayLike,
-    direction: ArrayLike | None = None,
-    factor: float = STIFFER,
-    joint_numbers: tuple[int, ...] = (),
-) -> Sensitivity:
-    """What a stiffer joint takes off the deviation, for delta_joint (..., n, 3) m at a point or along a path.
-
-    The size of the deviation, or with ``direction`` (3,) the size of its part along that.
-    """
+def deflection_sensitivity(delta_joint: ArrayLike, joint_numbers: tuple[int, ...] = ()) -> Sensitivity:
+    """What a stiffer joint takes off the deviation's size, for delta_joint (..., n, 3) m at a point or on a path."""
     delta_joint = as_floats(delta_joint, "delta_joint", (None, 3), error=KinematicsError, finite=False)
-    if direction is not None:
-        along = as_floats(direction, "direction", (3,), error=KinematicsError)
-        size = float(np.linalg.norm(along))
-        if size == 0:
-            raise KinematicsError("direction: expected a vector other than zero.")
-        delta_joint = (delta_joint @ (along / size))[..., None]
-    return _sensitivity(delta_joint, factor, joint_numbers)
+    return _sensitivity(delta_joint, joint_numbers)
 
 
-def _sensitivity(parts: FloatArray, factor: float, joint_numbers: tuple[int, ...]) -> Sensitivity:
+def _sensitivity(parts: FloatArray, joint_numbers: tuple[int, ...]) -> Sensitivity:
     """From vectors parts (..., n, d) whose sum over joints is the vector the measure is the length of."""
-    _above_zero(factor, ())
     whole = parts.sum(axis=-2)
     before = np.linalg.norm(whole, axis=-1)
-    after = np.linalg.norm(whole[..., None, :] - (1.0 - 1.0 / factor) * parts, axis=-1)
+    after = np.linalg.norm(whole[..., None, :] - (1.0 - 1.0 / STIFFER) * parts, axis=-1)
     gain = before[..., None] - after
     ranking = np.argsort(-mean_known(gain), kind="stable")
-    return Sensitivity(factor, before, gain, ranking, joint_numbers or tuple(range(1, gain.shape[-1] + 1)))
+    return Sensitivity(before, gain, ranking, joint_numbers or tuple(range(1, gain.shape[-1] + 1)))
 
 
 def _above_zero(factors: ArrayLike, shape: tuple[int, ...]) -> FloatArray:

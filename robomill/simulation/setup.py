@@ -1,8 +1,5 @@
 """One simulation as a value: robot, path, part zero, cutter, force, stock, tolerance, numerics."""
 
-from __future__ import annotations
-
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,7 +17,7 @@ from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.provenance import Provenance
-from robomill.quantities import Quantity, quantity, settle, switch
+from robomill.quantities import Quantity, Replaceable, quantity, settle, switch
 from robomill.robot.model import Robot
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
@@ -36,7 +33,7 @@ SPIN = Quantity("Turn about z_T", "deg", step=5.0, digits=1)
 
 
 @dataclass(frozen=True, eq=False)
-class SimulationSetup:
+class SimulationSetup(Replaceable):
     """Everything ``simulate`` needs, SI units.
 
     robot       the machine; its C_theta is the one in force
@@ -195,7 +192,3 @@ class SimulationSetup:
     def digest(self) -> str:
         """SHA-256 over every number that the result depends on."""
         return self._digest
-
-    def replace(self, **changes: Any) -> SimulationSetup:
-        """A changed copy, checked again."""
-        return dataclasses.replace(self, **changes)

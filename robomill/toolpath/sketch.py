@@ -5,9 +5,6 @@ goes down to ``APPROACH`` above it as a rapid, plunges at the plunge feed, cuts 
 A shape that begins where the one before it ended is cut without lifting.
 """
 
-from __future__ import annotations
-
-import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +14,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import ToolpathError
-from robomill.quantities import choice, quantities, quantity, settle
+from robomill.quantities import Replaceable, choice, quantities, quantity, settle
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, from_si, to_si
 
@@ -42,7 +39,7 @@ MAX_COORDINATE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Element:
+class Element(Replaceable):
     """One shape: ``points`` (r, 2) m in {W}, cut ``depth`` m below the top face at ``v_f`` m/s.
 
     line        start, end                      rectangle   two opposite corners
@@ -71,10 +68,6 @@ class Element:
         object.__setattr__(self, "points", frozen(points))
         _check_extent(self.shape, points)
 
-    def replace(self, **changes: Any) -> Element:
-        """A changed copy, checked again."""
-        return dataclasses.replace(self, **changes)
-
     def outline(self) -> FloatArray:
         """(q, 2) m: the corners of the cut in order, arcs as chords within the chord error of the G-code reader."""
         if self.shape == "polygon":
@@ -96,7 +89,7 @@ class Element:
 
 
 @dataclass(frozen=True, eq=False)
-class Sketch:
+class Sketch(Replaceable):
     """Shapes in the order in which they are cut, and what they share; SI units, {W}.
 
     v_plunge    m/s  feed of plunges            n_s    1/s  spindle speed
@@ -122,10 +115,6 @@ class Sketch:
             )
         settle(self, ToolpathError, "Sketch")
         _tidy_numbers(self)
-
-    def replace(self, **changes: Any) -> Sketch:
-        """A changed copy, checked again."""
-        return dataclasses.replace(self, **changes)
 
     def toolpath(self) -> Toolpath:
         """The path in {W}; ``block`` is the 1-based number of the shape.

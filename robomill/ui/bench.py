@@ -6,11 +6,9 @@ A value of the project, so that undo, saving and autosave hold it; what is read 
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 from robomill.arrays import digest
 from robomill.errors import ProjectError
@@ -18,7 +16,7 @@ from robomill.identification.folds import LEAVE_OUT
 from robomill.identification.models import MODELS
 from robomill.identification.treatment import AUTO, BENDING_JOINTS, WEIGHTS, Treatment
 from robomill.io.samples import samples_dir
-from robomill.quantities import choice, quantity, settle, switch, whole
+from robomill.quantities import Replaceable, choice, quantity, settle, switch, whole
 from robomill.units import to_si
 
 OWN = "own"
@@ -42,7 +40,7 @@ def _titles(words: Mapping[str, str]) -> dict[str, str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
+class Bench(Replaceable):
     """Load tests and a measured map, each a sample or a person's own text, and how they are treated and used.
 
     robot: which one was measured, by name: that for which the sample was made, or the project's. ``bending``: joints at
@@ -143,10 +141,6 @@ class Bench:
         """As a file takes it up: texts that are too long for it are left out."""
         long = [name for name in ("own_text", "map_own_text") if len(getattr(self, name)) > MOST_KEPT]
         return self.replace(**dict.fromkeys(long, "")) if long else self
-
-    def replace(self, **fields: Any) -> Bench:
-        """A copy with fields replaced."""
-        return dataclasses.replace(self, **fields)
 
     def digest(self) -> str:
         """Fingerprint of all of it."""

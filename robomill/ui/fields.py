@@ -43,7 +43,7 @@ def region(robot: Robot, view: MapView) -> Box:
         return Box(view.lower, view.upper)
     if view.region == "paper":
         return Box(*PAPER_BOX)
-    found = _proposed(robot, view.region, view.A, view.B)
+    found = proposed(robot, view.region, view.A, view.B)
     if found is None:
         tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
         raise WorkspaceError(
@@ -143,14 +143,9 @@ def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
     return border_and_middle_lines(robot, box.lower[:2], box.upper[:2], z, points=points)
 
 
-def proposed_box(robot: Robot, A: float, B: float) -> Box | None:
-    """The largest machining box at this tilt, from the cache."""
-    return _proposed(robot, "largest", A, B)
-
-
 def box_there(robot: Robot, A: float, B: float) -> tuple[Box | None, bool]:
     """The largest machining box, where it is known already, and whether it is."""
-    found = commons.find(name_of(_proposed, _by_tilt(robot, "largest", A, B)), NOTHING)
+    found = commons.find(name_of(proposed, _by_tilt(robot, "largest", A, B)), NOTHING)
     return (None, False) if found is NOTHING else (found, True)
 
 
@@ -159,5 +154,6 @@ def _by_tilt(robot: Robot, kind: str, A: float, B: float) -> tuple[object, ...]:
 
 
 @shared(_by_tilt, "Looking for the largest box in reach")
-def _proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
+def proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
+    """The largest machining box at this tilt, or with another ``kind`` the bounds of all that is reached."""
     return largest_region(robot, A, B) if kind == "largest" else reach_extent(robot, A, B)

@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
+# What a file holds that is taken away, by the end of its name.
+MIME = {
+    **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml"},
+    **{"png": "image/png", "gif": "image/gif", "mp4": "video/mp4"},
+    **{"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"},
+}
 
 
 @dataclass(frozen=True)
@@ -257,17 +263,10 @@ def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "")
         st.dataframe(shown, hide_index=True, height=min(36 * (len(shown) + 1), 360), width=640)
         if len(frame) > len(shown):
             note(f"Showing {len(shown)} of {len(frame)} rows; the file has all of them.")
-        download("CSV", lambda: frame.to_csv(index=False), f"robomill-{name}.csv", "text/csv", key=f"csv:{name}")
+        download("CSV", lambda: frame.to_csv(index=False), f"robomill-{name}.csv", f"csv:{name}")
 
 
-def download(label: str, data: Callable[[], Any] | Any, file_name: str, mime: str, *, key: str) -> None:
-    """A download that is made only when it is asked for."""
-    st.download_button(
-        label,
-        data=data,
-        file_name=file_name,
-        mime=mime,
-        key=key,
-        icon=":material/download:",
-        on_click="ignore",
-    )
+def download(label: str, data: Callable[[], Any] | Any, file_name: str, key: str) -> None:
+    """A download that is made only when it is asked for; what it holds is told from the end of its name."""
+    more: dict[str, Any] = {"icon": ":material/download:", "on_click": "ignore"}
+    st.download_button(label, data, file_name, MIME[file_name.rpartition(".")[2]], key, **more)

@@ -25,7 +25,7 @@ from robomill.io.projects import load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.paper import BOX
-from robomill.quantities import choice, quantities, settle, switch
+from robomill.quantities import Replaceable, choice, quantities, settle, switch
 from robomill.quantities import quantity as number
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
@@ -140,7 +140,7 @@ class MapView:
 
 
 @dataclass(frozen=True, eq=False)
-class Project:
+class Project(Replaceable):
     """The set-up, how it and its maps are looked at, the preset it began with, load tests and what they let know."""
 
     setup: SimulationSetup
@@ -161,10 +161,6 @@ class Project:
     def holds(self, setup: SimulationSetup) -> bool:
         """Whether what is known is of the compliances of ``setup``."""
         return self.knowledge is not None and self.knowledge.holds_for(setup.robot, setup.springs)
-
-    def replace(self, **fields: Any) -> Project:
-        """A copy with fields replaced."""
-        return dataclasses.replace(self, **fields)
 
     def digest(self) -> str:
         """Fingerprint of what is remembered for undo: everything but the looking."""

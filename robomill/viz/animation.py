@@ -14,7 +14,6 @@ from robomill.viz.picture import SurfacePicture
 from robomill.viz.posed import posed
 
 Kind = Literal["gif", "mp4"]
-MIME = {"gif": "image/gif", "mp4": "video/mp4"}
 FRAMES = (12, 120)
 
 

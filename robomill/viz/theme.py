@@ -51,40 +51,25 @@ class Palette:
     bad: str
 
 
-LIGHT = Palette(
-    background="#FFFFFF",
-    panel="#F5F7F8",
-    text="#17222B",
-    muted="#5A6872",
-    grid="#E6EAED",
-    line="#B8C2C9",
-    accent="#0B6285",
-    warm="#B85C00",
-    metal="#D3D9DD",
-    metal_edge="#7D8A93",
-    link="#C9D2D8",
-    joint="#3D4E5A",
-    good="#0072B2",
-    caution="#B07400",
-    bad="#B3400A",
-)
-DARK = Palette(
-    background="#11181D",
-    panel="#1A242B",
-    text="#E4EAEE",
-    muted="#9BA9B3",
-    grid="#26323A",
-    line="#4A5963",
-    accent="#5CB6DA",
-    warm="#F0A04B",
-    metal="#5B6871",
-    metal_edge="#A9B5BD",
-    link="#6C7B86",
-    joint="#C9D4DB",
-    good="#5CB6DA",
-    caution="#E9B949",
-    bad="#F0803C",
-)
+# Each colour in light, and in dark.
+_COLOURS = {
+    "background": ("#FFFFFF", "#11181D"),
+    "panel": ("#F5F7F8", "#1A242B"),
+    "text": ("#17222B", "#E4EAEE"),
+    "muted": ("#5A6872", "#9BA9B3"),
+    "grid": ("#E6EAED", "#26323A"),
+    "line": ("#B8C2C9", "#4A5963"),
+    "accent": ("#0B6285", "#5CB6DA"),
+    "warm": ("#B85C00", "#F0A04B"),
+    "metal": ("#D3D9DD", "#5B6871"),
+    "metal_edge": ("#7D8A93", "#A9B5BD"),
+    "link": ("#C9D2D8", "#6C7B86"),
+    "joint": ("#3D4E5A", "#C9D4DB"),
+    "good": ("#0072B2", "#5CB6DA"),
+    "caution": ("#B07400", "#E9B949"),
+    "bad": ("#B3400A", "#F0803C"),
+}
+LIGHT, DARK = (Palette(**{name: both[k] for name, both in _COLOURS.items()}) for k in range(2))
 
 
 def palette(dark: bool) -> Palette:

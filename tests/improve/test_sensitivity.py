@@ -25,15 +25,13 @@ def point():
 def test_against_the_stiffer_robot(point):
     robot, theta, C_joint = point
     F = np.array([10.0, 100.0, -20.0])
-    of_point = compliance_sensitivity(C_joint, "xy", 1.1)
-    of_path = deflection_sensitivity(rm.deflection(C_joint, F), None, 1.1)
-    along = deflection_sensitivity(rm.deflection(C_joint, F), [0, 2, 0], 1.1)
+    of_point = compliance_sensitivity(C_joint, "xy")
+    of_path = deflection_sensitivity(rm.deflection(C_joint, F))
     for joint in range(5):
         factors = np.where(np.arange(5) == joint, 1.1, 1.0)
         C = rm.cartesian_compliance(stiffened(robot, factors), theta)
         assert of_point.before - of_point.gain[joint] == pytest.approx(abs(C[0, 1]), abs=1e-18)
         assert of_path.before - of_path.gain[joint] == pytest.approx(np.linalg.norm(C @ F), abs=1e-15)
-        assert along.before - along.gain[joint] == pytest.approx(abs((C @ F)[1]), abs=1e-15)
         np.testing.assert_allclose(scaled_shares(C_joint, factors, 0).sum(axis=0), C, atol=1e-18)
 
 
@@ -41,7 +39,7 @@ def test_ranking_names_the_joints_to_blame_at_the_milling_test(point):
     robot, _, _ = point
     theta = rm.inverse_kinematics(robot, rm.pose_from_world([0, -1.3, 0, 0, 0])).theta
     C_joint = rm.joint_contributions(rm.geometric_jacobian(robot, theta)[:3], robot.C_theta)
-    found = compliance_sensitivity(C_joint, "yy", 1.1, robot.joint_numbers)
+    found = compliance_sensitivity(C_joint, "yy", robot.joint_numbers)
     assert list(found.ranking[:2]) == [2, 4]
     # 10 % stiffer takes 1 - 1/1.1 of the joint's own share: 0.1473 and 0.0822 mm per 100 N.
     np.testing.assert_allclose(found.gain[[2, 4]] * 1e5, (1 - 1 / 1.1) * np.array([0.1473, 0.0822]), atol=1e-5)
@@ -63,8 +61,6 @@ def test_refusals(point):
             stiffened(robot, bad)
     with pytest.raises(KinematicsError, match="component"):
         compliance_sensitivity(C_joint, "qq")
-    with pytest.raises(KinematicsError, match="other than zero"):
-        deflection_sensitivity(C_joint[:, 0], [0, 0, 0])
 
 
 def test_over_a_path_the_ranking_is_by_the_mean_of_brute_force(point):
@@ -79,18 +75,15 @@ def test_over_a_path_the_ranking_is_by_the_mean_of_brute_force(point):
 
     shares = rm.deflection(rm.joint_contributions(rm.geometric_jacobian(robot, theta)[:, :3], robot.C_theta), F)
     with_hole = np.concatenate([shares, np.full((1, 5, 3), np.nan)])
-    for factor in (0.5, 1.1, 3.0):
-        gain = np.stack(
-            [sizes(robot) - sizes(stiffened(robot, np.where(np.arange(5) == j, factor, 1.0))) for j in range(5)], axis=1
-        )
-        found = deflection_sensitivity(with_hole, factor=factor)
-        np.testing.assert_allclose(found.gain[:4], gain, atol=1e-15)
-        np.testing.assert_allclose(found.before[:4], sizes(robot))
-        np.testing.assert_array_equal(found.ranking, np.argsort(-gain.mean(axis=0)))
-        np.testing.assert_allclose(found.mean, gain.mean(axis=0))
-        assert found.factor == factor
-        assert found.joint_numbers == (1, 2, 3, 4, 5)
-    assert deflection_sensitivity(shares).factor == pytest.approx(1.1)
+    gain = np.stack(
+        [sizes(robot) - sizes(stiffened(robot, np.where(np.arange(5) == j, 1.1, 1.0))) for j in range(5)], axis=1
+    )
+    found = deflection_sensitivity(with_hole)
+    np.testing.assert_allclose(found.gain[:4], gain, atol=1e-15)
+    np.testing.assert_allclose(found.before[:4], sizes(robot))
+    np.testing.assert_array_equal(found.ranking, np.argsort(-gain.mean(axis=0)))
+    np.testing.assert_allclose(found.mean, gain.mean(axis=0))
+    assert found.joint_numbers == (1, 2, 3, 4, 5)
     nothing = deflection_sensitivity(np.full((3, 5, 3), np.nan))
     np.testing.assert_array_equal(nothing.ranking, range(5))
     assert np.isnan(nothing.mean).all()
@@ -115,11 +108,6 @@ def test_one_number_serves_all_joints_and_a_bad_one_is_refused(point):
     for bad in (0.0, -2.0):
         with pytest.raises(KinematicsError, match="above zero"):
             scaled_shares(C_joint, [1, 1, bad, 1, 1], 0)
-        with pytest.raises(KinematicsError, match="above zero"):
-            compliance_sensitivity(C_joint, "yy", bad)
-    for bad in (float("inf"), float("nan")):
-        with pytest.raises(KinematicsError, match="finite"):
-            compliance_sensitivity(C_joint, "yy", bad)
 
 
 def test_a_mean_is_over_places_where_every_joint_is_known():

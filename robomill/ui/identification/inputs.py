@@ -80,7 +80,7 @@ def _templates(robot: Robot) -> None:
         for protocol, label in TEMPLATES.items():
             name = f"load-tests-{protocol.replace(' ', '-')}.csv"
             sheet = load_test_template(protocol, robot.n)
-            pieces.download(label, sheet, name, "text/csv", key=f"identification.template.{protocol}")
+            pieces.download(label, sheet, name, f"identification.template.{protocol}")
 
 
 def robot_choice(bench: Bench) -> None:

@@ -284,9 +284,8 @@ def _readings(robot: Robot, tests: LoadTests | None) -> None:
             columns[f"d{axis}, mm"] = np.round(from_si(tests.displacement[:, i], "mm"), 4)
         st.dataframe(columns, hide_index=True, height=min(36 * (len(tests) + 1) + 3, 320))
         remark = "Readings of a virtual laboratory: synthetic, no measurement of a real robot."
-        pieces.download(
-            "CSV", lambda: load_tests_to_csv(tests, remark), "laboratory.csv", "text/csv", key="identification.lab.csv"
-        )
+        text = partial(load_tests_to_csv, tests, remark)
+        pieces.download("CSV", text, "laboratory.csv", "identification.lab.csv")
 
 
 def _bare(robot: Robot) -> Robot:

@@ -1,5 +1,6 @@
 """Which poses to measure next: goal, plan, measuring sheet, and the filled-in sheet back."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -48,13 +49,8 @@ def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit:
     columns = plan_columns(robot, plan, unit)
     st.dataframe(columns, hide_index=True)
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        pieces.download(
-            "Measuring sheet (CSV)",
-            lambda: measuring_sheet(plan, bench.name),
-            "measuring-sheet.csv",
-            "text/csv",
-            key="identification.sheet",
-        )
+        sheet = partial(measuring_sheet, plan, bench.name)
+        pieces.download("Measuring sheet (CSV)", sheet, "measuring-sheet.csv", "identification.sheet")
         pieces.note("Fill in dx, dy, dz and bring the sheet back here: its rows join the tests.")
     upload(
         "Filled-in sheet (CSV)",

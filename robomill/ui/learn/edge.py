@@ -7,8 +7,6 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.dexterity import near_singular
-from robomill.paper import Point
-from robomill.robot.model import Robot
 from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.arm import arm
 from robomill.ui.cached import shared
@@ -24,10 +22,7 @@ from robomill.viz.voxels import widen
 from robomill.workspace.quantities import map_quantity
 from robomill.workspace.ray import Ray, ray_through
 
-
-@shared(lambda robot, point: (fields.geometry_key(robot), point), "Moving out to the edge")
-def _ray(robot: Robot, point: Point) -> Ray:
-    return ray_through(robot, point)
+_ray = shared(lambda robot, point: (fields.geometry_key(robot), point), "Moving out to the edge")(ray_through)
 
 
 @st.fragment

@@ -116,7 +116,7 @@ def reproduced() -> None:
         for r in found
     ]
     pieces.table(shown, "wwwww", ("Of the paper", "What it gives", "What robomill finds", "", "Reason"))
-    pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "text/csv", key="csv:reproduction")
+    pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "csv:reproduction")
 
 
 def _given(statement: Statement) -> Html:

@@ -12,7 +12,7 @@ from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
-from robomill.viz.animation import FRAMES, MIME, Kind, encode, film_frame, film_samples
+from robomill.viz.animation import FRAMES, Kind, encode, film_frame, film_samples
 from robomill.viz.views import headroom, surface_picture
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
@@ -94,6 +94,6 @@ def _finished(job: Job) -> None:
         st.image(job.made, width="stretch")
     else:
         st.video(job.made, autoplay=True, loop=True, muted=True)
-    pieces.download(f"Film {KINDS[film.kind]}", job.made, f"cut.{film.kind}", MIME[film.kind], key="milling.get.film")
+    pieces.download(f"Film {KINDS[film.kind]}", job.made, f"cut.{film.kind}", "milling.get.film")
     size = len(job.made) / 1e6
     pieces.note(f"{film.frames} pictures, {size:.1f} MB, displacement shown {format_times(film.times, 6)}.")

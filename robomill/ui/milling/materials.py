@@ -90,13 +90,8 @@ def _coefficients(material: Material) -> None:
         ),
     )
     pieces.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
-    pieces.download(
-        "Row as TOML",
-        partial(material_to_toml, material),
-        f"{material.name}.toml",
-        "application/toml",
-        key="milling.material.get",
-    )
+    text = partial(material_to_toml, material)
+    pieces.download("Row as TOML", text, f"{material.name}.toml", "milling.material.get")
 
 
 def _add(material: Material) -> None:

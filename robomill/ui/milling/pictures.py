@@ -116,35 +116,19 @@ def downloads(result: SimulationResult, i: int) -> None:
     setup = result.setup
     with st.container(horizontal=True, gap="small"):
         pieces.download(
-            "Deviation CSV",
-            lambda: csv_text(deviation_columns(result)),
-            "deviation.csv",
-            "text/csv",
-            key="milling.get.deviation",
+            "Deviation CSV", lambda: csv_text(deviation_columns(result)), "deviation.csv", "milling.get.deviation"
         )
-        pieces.download(
-            "Picture PNG",
-            partial(rendered.now, PLACE, *scene(result, i, False)),
-            "groove.png",
-            "image/png",
-            key="milling.get.png",
-        )
+        drawn = partial(rendered.now, PLACE, *scene(result, i, False))
+        pieces.download("Picture PNG", drawn, "groove.png", "milling.get.png")
         for kind in FORMATS:
-            pieces.download(
-                f"Surface {kind.upper()}", _mesh(result, kind), f"surface.{kind}", MIME[kind], key=f"milling.get.{kind}"
-            )
+            made = partial(_mesh, result, kind)
+            pieces.download(f"Surface {kind.upper()}", made, f"surface.{kind}", f"milling.get.{kind}")
     pieces.note(
         f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
         "VTP carries the signed error."
     )
 
 
-MIME = {"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"}
-
-
-def _mesh(result: SimulationResult, kind: str) -> Callable[[], bytes]:
-    def made() -> bytes:
-        error = np.asarray(result.error.error) if kind == "vtp" else None
-        return mesh_bytes(result.machined, kind, error=error)
-
-    return made
+def _mesh(result: SimulationResult, kind: str) -> bytes:
+    error = np.asarray(result.error.error) if kind == "vtp" else None
+    return mesh_bytes(result.machined, kind, error=error)

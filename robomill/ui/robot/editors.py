@@ -1,7 +1,5 @@
 """The robot page's inputs: which robot, its compliances, D-H table, limits and tool."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any

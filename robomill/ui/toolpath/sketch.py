@@ -114,4 +114,4 @@ def _export() -> None:
 
         return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
 
-    pieces.download("G-code of this sketch", text, "sketch.nc", "text/plain", key="toolpath.export")
+    pieces.download("G-code of this sketch", text, "sketch.nc", "toolpath.export")
