@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.units import UNITS, format_number
+from robomill.units import UNITS, format_number, from_si, unit_label
 from robomill.viz.chart import Chart, drawn
 from robomill.viz.theme import ABOVE, SEQUENTIAL, axis, colour_bar, diverging, figure, joint_colours, palette, say
+from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import Colours, MapQuantity
 
 PICKED_PER_MAP = 200  # points that can be clicked; each is an element of the page and costs time to draw
@@ -82,14 +83,17 @@ class Map:
     unit: str = ""
 
 
+Panels = Sequence[Sequence[Map | None]]
+
+
 @dataclass(frozen=True, eq=False)
 class MapSheet:
     """Panels in rows over one plane: u (nu,) across and v (nv,) upwards, in display units.
 
-    ``point`` (u, v) is marked in every panel; ``outline`` (lower, upper) is drawn as a dashed box.
+    ``point`` (u, v) is marked in every panel.
     """
 
-    rows: Sequence[Sequence[Map | None]]
+    rows: Panels
     u: FloatArray
     v: FloatArray
     u_title: str
@@ -97,7 +101,14 @@ class MapSheet:
     scales: dict[str, Scale] = field(default_factory=dict)
     point: tuple[float, float] | None = None
     on_plane: bool = True
-    outline: tuple[tuple[float, float], tuple[float, float]] | None = None
+
+    @classmethod
+    def over(cls, rows: Panels, grid: Grid, normal: str, unit: str, scales: dict[str, Scale], **more: Any) -> MapSheet:
+        """Panels over the cells of a plane, lengths in ``unit``; ``more``: the point in hand."""
+        across, upwards = (a for a in "xyz" if a != normal)
+        u, v = (from_si(getattr(grid, a), unit) for a in (across, upwards))
+        u_title, v_title = (f"{a.upper()}<sub>M</sub>, {unit_label(unit)}" for a in (across, upwards))
+        return cls(rows, u, v, u_title, v_title, scales, **more)
 
 
 def symmetric_limit(values: Sequence[FloatArray]) -> float:
@@ -244,7 +255,7 @@ def _decorate(
     place: tuple[tuple[float, float, bool], tuple[float, float, bool]],
     dark: bool,
 ) -> None:
-    """Axes, title and outline of one panel; ``place``: from, to and whether the axis is titled, across and upwards."""
+    """Axes and title of one panel; ``place``: from, to and whether the axis is titled, across and upwards."""
     p = palette(dark)
     name = _number(index)
     (x0, x1, lowest), (y0, y1, leftmost) = place
@@ -252,26 +263,22 @@ def _decorate(
         ("x", "y", [x0, x1], sheet.u, lowest, sheet.u_title),
         ("y", "x", [y0, y1], sheet.v, leftmost, sheet.v_title),
     ):
-        half = _half_step(points)
         fig.layout[f"{letter}axis{name}"] = {
             **axis("", dark=dark, showgrid=False, nticks=5 if len(sheet.rows[0]) < 3 or letter == "y" else 3),
             **({} if index == 0 else {"matches": letter}),
             "domain": domain,
             "anchor": f"{other}{name}",
             "showticklabels": shown,
-            "range": [float(points[0] - half), float(points[-1] + half)],
+            "range": whole_cells(points),
             "automargin": False,
             "visible": shown,
             "showline": False,
             "title": {"text": title, "standoff": 4, "font": {"size": 12, "color": p.muted}} if shown else {"text": ""},
         }
     say(fig, panel.title, x0, y1, p.text, size=13, yshift=2, align="left", **ABOVE)
-    if sheet.outline is not None:
-        (u0, v0), (u1, v1) = sheet.outline
-        corners = {"x0": u0, "y0": v0, "x1": u1, "y1": v1, "xref": f"x{name}", "yref": f"y{name}"}
-        line = {"color": p.text, "width": 1.4, "dash": "dash"}
-        fig.shape(type="rect", **corners, line=line, fillcolor="rgba(0,0,0,0)")
 
 
-def _half_step(points: FloatArray) -> float:
-    return 0.5 * float(np.diff(points).min()) if len(points) > 1 else 0.5
+def whole_cells(points: FloatArray) -> list[float]:
+    """From half a cell before the first point to half a cell after the last one."""
+    half = 0.5 * float(np.diff(points).min()) if len(points) > 1 else 0.5
+    return [float(points[0] - half), float(points[-1] + half)]

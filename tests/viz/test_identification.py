@@ -18,7 +18,8 @@ from robomill.viz.identification import (
     models_figure,
     residuals_figure,
 )
-from robomill.viz.measured_maps import Level, level_figure
+from robomill.viz.maps import Map, MapSheet, Scale
+from robomill.viz.measured_maps import level_figure
 from robomill.viz.theme import figure
 
 SHOWN = Intervals(
@@ -136,9 +137,9 @@ def test_a_band_is_laid_under_an_existing_figure() -> None:
 def test_a_level_keeps_its_orientation_and_mask(signed: bool) -> None:
     x, y = np.array([-1.0, 0.0, 1.0]), np.array([0.0, 1.0])
     values = np.array([[1.0, 2.0], [3.0, np.nan], [5.0, 6.0]])
-    fig = level_figure(
-        Level(x, y, values, np.zeros((0, 2)), (-6.0, 6.0), "C", "µm/N", "mm", signed), dark=False, revision="r"
-    )
+    scale = Scale.signed("C, µm/N", [values]) if signed else Scale("C, µm/N", 1.0, 6.0)
+    sheet = MapSheet([[Map("C", values, unit="µm/N")]], x, y, "X, mm", "Y, mm", {"main": scale})
+    fig = level_figure(sheet, np.zeros((0, 2)), dark=False, revision="r")
     z = np.asarray(fig.figure.data[0].z, dtype=float)
     assert z.shape == (2, 3), "rows of a heat map are y"
     assert z[0, 2] == 5.0

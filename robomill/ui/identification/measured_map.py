@@ -23,7 +23,8 @@ from robomill.ui.identification.inputs import robot_choice, upload
 from robomill.ui.project import View
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.deviation import both_figure
-from robomill.viz.measured_maps import Level, level_figure
+from robomill.viz.maps import Map, MapSheet, Scale
+from robomill.viz.measured_maps import level_figure
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import one_sign
@@ -162,37 +163,29 @@ def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: st
     measured = field.symmetric().compliance(grid.points())[:, :, 0, i, j]
     model = compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))).values(component)[:, :, 0]
     here = np.abs(field.p[:, 2] - z) < 1e-6
-    x, y, points = (from_si(v, unit) for v in (grid.x, grid.y, field.p[here][:, :2]))
+    points = from_si(field.p[here][:, :2], unit)
     sizes = [from_si(v, "um/N") for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
-    both = np.concatenate([sizes[0].ravel(), sizes[1].ravel()])
+    both, pair = sizes[:2], component[-2:]
     if not np.isfinite(both).any():
         pieces.note("Nothing was measured at this level.")
         return
-    signed = not one_sign(component[-2:])
-    top = float(np.nanmax(np.abs(both)))
-    limits = (-top, top) if signed else (float(np.nanmin(both)), float(np.nanmax(both)))
-    far = float(np.nanmax(np.abs(sizes[2]))) if np.isfinite(sizes[2]).any() else 1.0
+    title, apart = (f"{sign}C<sub>{pair}</sub>, {unit_label('um/N')}" for sign in ("", "Δ"))
+    scale = Scale(title, float(np.nanmin(both)), float(np.nanmax(both)))
+    scale = scale if one_sign(pair) else Scale.signed(title, both)
     rows = (
-        ("Measured", sizes[0], limits, signed),
-        ("Joint model", sizes[1], limits, signed),
-        ("Measured − joint model", sizes[2], (-far, far), True),
+        ("Measured", sizes[0], points, scale),
+        ("Joint model", sizes[1], points[:0], scale),
+        ("Measured − joint model", sizes[2], points, Scale.signed(apart, sizes[2:])),
     )
-    for k, (column, (name, values, ends, both_ways)) in enumerate(
+    for k, (column, (name, values, dots, colours)) in enumerate(
         zip(pieces.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
     ):
+        panel = Map(name, values, unit=unit_label("um/N"))
+        drawn = MapSheet.over([[panel]], grid, "z", unit, {"main": colours})
         with column, st.container(border=True):
-            title_text = f"C<sub>{component[-2:]}</sub>" if k < 2 else f"ΔC<sub>{component[-2:]}</sub>"
             pieces.strong(name)
-            dots = points if k != 1 else points[:0]
-            pieces.figure(
-                level_figure(
-                    Level(x, y, values, dots, ends, title_text, unit_label("um/N"), unit_label(unit), both_ways),
-                    dark=dark,
-                    revision=f"map-{k}",
-                ),
-                f"ident-map-{k}",
-                alt=f"{name} of {component} at this level.",
-            )
+            figure = level_figure(drawn, dots, dark=dark, revision=f"map-{k}")
+            pieces.figure(figure, f"ident-map-{k}", alt=f"{name} of {component} at this level.")
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         pieces.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
         pieces.table_twin(lambda: _columns(grid, sizes, component), "measured-map")

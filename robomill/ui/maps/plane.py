@@ -105,12 +105,6 @@ def title(normal: str, at: float, unit: str) -> str:
     return f"{normal.upper()}<sub>M</sub> = {format_si(at, unit, 0)}"
 
 
-def axes(normal: str, unit: str) -> tuple[str, str]:
-    """Titles across and upwards."""
-    u, v = (a for a in "xyz" if a != normal)
-    return tuple(f"{a.upper()}<sub>M</sub>, {unit_label(unit)}" for a in (u, v))  # type: ignore[return-value]
-
-
 def _take_region(kind: str, robot: Robot, view: MapView) -> None:
     if kind == "own":
         try:

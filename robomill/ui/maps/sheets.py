@@ -65,15 +65,9 @@ class Slice:
         unit, grid = self.region.unit, self.known.grid
         u, v = (a for a in "xyz" if a != self.normal)
         point = dict(zip("xyz", default_point(self.region.view, self.region.box, self.known), strict=True))
-        return MapSheet(
-            rows,
-            from_si(getattr(grid, u), unit),
-            from_si(getattr(grid, v), unit),
-            *plane.axes(self.normal, unit),
-            scales,
-            point=(float(from_si(point[u], unit)), float(from_si(point[v], unit))),
-            on_plane=abs(point[self.normal] - self.at) < 1e-6,
-        )
+        here = (float(from_si(point[u], unit)), float(from_si(point[v], unit)))
+        on_plane = abs(point[self.normal] - self.at) < 1e-6
+        return MapSheet.over(rows, grid, self.normal, unit, scales, point=here, on_plane=on_plane)
 
 
 def draw(cut: Slice, drawn: MapSheet, key: str, caption: str, alt: str, table: Callable[[], Any]) -> None:

@@ -201,11 +201,10 @@ def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
         shown = from_si(values, what.unit).squeeze(axis="xyz".index(normal))
         maps_row.append(Map(f"{what.title}, {plane.title(normal, at, unit)}", shown, unit=unit_label(what.unit)))
     assert grid is not None
-    u_name, v_name = (a for a in "xyz" if a != normal)
-    u, v = from_si(getattr(grid, u_name), unit), from_si(getattr(grid, v_name), unit)
-    titles = plane.axes(normal, unit)
-    sheet = MapSheet([maps_row], u, v, *titles, {"main": _scale(region, what)})
-    ratio = float(np.ptp(v) / max(np.ptp(u), 1e-9)) if len(u) > 1 else 1.0
+    whole = from_si(region.overview().values(what.name), what.unit)
+    scales = {"main": Scale.of(what, whole, region.robot.joint_numbers)}
+    sheet = MapSheet.over([maps_row], grid, normal, unit, scales)
+    ratio = float(np.ptp(sheet.v) / max(np.ptp(sheet.u), 1e-9)) if len(sheet.u) > 1 else 1.0
     width = 760 if len(ats) == 1 else 370
     height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
     fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
@@ -224,11 +223,6 @@ def _columns(region: Region, grid: Grid, what: MapQuantity) -> dict[str, FloatAr
     from robomill.io.maps import map_columns
 
     return map_columns([region.field(grid).field(what.name)])
-
-
-def _scale(region: Region, what: MapQuantity) -> Scale:
-    """The scale of a quantity over the whole region."""
-    return Scale.of(what, from_si(region.overview().values(what.name), what.unit), region.robot.joint_numbers)
 
 
 def _solid(region: Region) -> None:
