@@ -43,12 +43,18 @@ class Progress:
     def reach(self, share: float | None = None, stage: str = "") -> None:
         """Say how much of the stage is done, where that is known. Raises Cancelled where it is wanted no more."""
         if stage and stage != self.stage:
-            self.stage, self.share = stage, 0.0
+            self.stage, self.share, self.began = stage, 0.0, time.monotonic()
         if share is not None:
-            self.share = min(max(float(share), 0.0), 1.0)
+            self.share = max(self.share, min(float(share), 1.0))
         self.say(self)
         if self.stop():
             raise Cancelled
+
+    @property
+    def left_s(self) -> float:
+        """Seconds until the stage is done, as far as one can tell; NaN at its beginning."""
+        spent = time.monotonic() - self.began
+        return spent * (1.0 / self.share - 1.0) if self.share > 0.02 else float("nan")
 
 
 _watching: ContextVar[Progress | None] = ContextVar("watching", default=None)

@@ -6,7 +6,6 @@ Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``b
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
@@ -38,13 +37,8 @@ class GCodeSource:
         """Its lines, as every reader counts them."""
         return split_lines(self.text)
 
-    def read(
-        self,
-        tools: Tools | None = None,
-        progress: Callable[[float], None] | None = None,
-        cancel: Callable[[], bool] | None = None,
-    ) -> Toolpath:
-        """The path; raises GCodeError naming the line that cannot be read, or if ``cancel()`` is true.
+    def read(self, tools: Tools | None = None) -> Toolpath:
+        """The path; raises GCodeError naming the line that cannot be read.
 
         ``tools`` is the table that its T, H and D words mean; none or an empty one accepts every tool, of unknown size.
         The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again.
@@ -59,10 +53,7 @@ class GCodeSource:
         from robomill.toolpath.gcode import read_gcode
 
         data = self.text.encode()
-        if is_apt(data):
-            path = read_apt(data)
-        else:
-            path = read_gcode(data, dialect=self.dialect, tools=tools, progress=progress, cancel=cancel)
+        path = read_apt(data) if is_apt(data) else read_gcode(data, dialect=self.dialect, tools=tools)
         with _LOCK:
             _KEPT[key] = path
             while len(_KEPT) > MAX_KEPT:

@@ -35,7 +35,7 @@ def made(place: str, name: Any, make: Callable[[], Any], doing: str, seconds: fl
         if stopped or (seconds > ASK_S and session.kept(f"{place}.asked") != name):
             raise Underway(partial(_ask, place, name, doing, seconds))
         _supersede(group)
-        now = Job(lambda _: make(), name, group)
+        now = Job(make, name, group)
         job.begin(place, now)
     now.run = session.store().runs
     ended = job.finished(place, FIRST_S)
@@ -57,8 +57,12 @@ def _supersede(group: str) -> None:
 
 def words(doing: str, now: Job) -> str:
     """How far a job is."""
-    left = f", about {_long(now.left_s)} left" if now.left_s >= 1.0 else ""
-    return f"{now.stage or doing}: {100 * now.share:.0f} %{left}"
+    return f"{now.progress.stage or doing}: {100 * now.progress.share:.0f} %{left(now)}"
+
+
+def left(now: Job) -> str:
+    """How long a job goes on, where one can tell."""
+    return f", about {_long(now.progress.left_s)} left" if now.progress.left_s >= 1.0 else ""
 
 
 def _stop(place: str) -> None:

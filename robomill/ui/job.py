@@ -31,42 +31,27 @@ class Underway(Exception):  # noqa: N818 - no error
 
 @dataclass(eq=False)
 class Job:
-    """``work(job)`` made in a thread; it says its ``share`` (0 to 1) by ``reach`` and ends early once ``stop`` is set.
+    """``work()`` made in a thread; what it says of itself is its ``progress``, and it ends early once ``stop`` is set.
 
-    What the work says of its progress (``robomill.progress``) arrives here too. ``about`` is what it is made of;
-    ``made`` what it answered, ``error`` why it was refused. Of one ``group`` is what a new one may supersede; ``run``
-    is the run of the page that asked last.
+    ``about`` is what it is made of; ``made`` what it answered, ``error`` why it was refused. Of one ``group`` is what a
+    new one may supersede; ``run`` is the run of the page that asked last.
     """
 
-    work: Callable[[Job], Any]
+    work: Callable[[], Any]
     about: Any
     group: str = ""
     run: int = 0
-    share: float = 0.0
-    stage: str = ""
     made: Any = None
     error: RobomillError | None = None
     bug: BaseException | None = None
-    began: float = field(default_factory=time.monotonic)
     seen: float = field(default_factory=time.monotonic)
+    progress: Progress = field(default_factory=Progress)
     stop: threading.Event = field(default_factory=threading.Event)
     done: threading.Event = field(default_factory=threading.Event)
 
     def start(self) -> None:
         """Begin."""
         threading.Thread(target=self._run, daemon=True).start()
-
-    def reach(self, share: float, stage: str = "") -> None:
-        """Say how much of the work, or of a new ``stage`` of it, is done."""
-        if stage and stage != self.stage:
-            self.stage, self.share, self.began = stage, 0.0, time.monotonic()
-        self.share = max(self.share, min(float(share), 1.0))
-
-    @property
-    def left_s(self) -> float:
-        """Seconds until it is done, as far as one can tell; NaN at the beginning."""
-        spent = time.monotonic() - self.began
-        return spent * (1.0 / self.share - 1.0) if self.share > 0.02 else float("nan")
 
     def _unwanted(self) -> bool:
         return self.stop.is_set() or time.monotonic() - self.seen > ABANDONED_S
@@ -79,8 +64,9 @@ class Job:
                     turn.let_pass()
                     return self._unwanted()
 
-                with watched(Progress(stopped, lambda now: self.reach(now.share, now.stage))):
-                    self.made = self.work(self)
+                self.progress.stop = stopped
+                with watched(self.progress):
+                    self.made = self.work()
         except Cancelled:
             self.stop.set()
         except RobomillError as exc:
@@ -137,6 +123,6 @@ def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | Non
     job.seen = time.monotonic()
     with st.container(key=box(key)):
         bar, cancel = st.columns([4, 1], vertical_alignment="center")
-        bar.progress(job.share, words(job))
+        bar.progress(job.progress.share, words(job))
         with cancel:
             inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="stretch")

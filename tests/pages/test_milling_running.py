@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import pytest
@@ -67,7 +68,7 @@ def test_progress_over_the_run_before_and_then_the_new_one(app: AppTest, slow: S
     assert app.button(key="run.cancel")
     assert running.GREYED in words(app)
     assert "0.23 mm" in words(app)  # of the run before
-    assert store(app).values[running.PLACE].stage == "Marching"
+    assert store(app).values[running.PLACE].progress.stage == "Marching"
     slow.go.set()
     assert running_job(app).done.wait(30)
     app.run()
@@ -143,7 +144,7 @@ def test_a_page_without_a_run_before_shows_progress_and_keeps_its_inputs(app: Ap
 def test_work_that_nobody_looks_at_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(job, "ABANDONED_S", 0.05)
     slow = Slow()
-    made = Job(slow, None)
+    made = Job(partial(slow, None), None)
     made.start()
     assert made.done.wait(30)
     assert made.stop.is_set()

@@ -1,7 +1,5 @@
 """From program text to canonical moves: runs the lines, follows O words, and keeps the budgets."""
 
-from collections.abc import Callable
-
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check
@@ -20,18 +18,12 @@ MAX_STEPS = 1_000_000
 _CHECK_EVERY = 2048
 _LOOK_BEYOND = 20
 
-Progress = Callable[[float], None]
-Cancel = Callable[[], bool]
-
 
 class Interpreter(OWords):
     """Runs one program on one machine. ``file`` and ``pc`` are the line that comes next."""
 
-    def __init__(
-        self, machine: Machine, file: File, dialect: Dialect, progress: Progress | None, cancel: Cancel | None
-    ) -> None:
+    def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         super().__init__(machine, file, dialect)
-        self.progress, self.cancel = progress, cancel
         self.steps = 0
         self.budget = len(file.lines) + MAX_STEPS
         self.percent = False
@@ -110,10 +102,6 @@ class Interpreter(OWords):
                 index + 1, f"more than {MAX_STEPS} lines were executed in loops; the program may not end."
             )
         checkpoint(min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0), "Reading the program")
-        if self.cancel is not None and self.cancel():
-            raise GCodeError("Reading was cancelled.")
-        if self.progress is not None and self.file is self.main:
-            self.progress(min(index / max(len(self.main.lines), 1), 1.0))
 
     def _skip_percent(self) -> None:
         for index, raw in enumerate(self.main.lines):

@@ -13,7 +13,7 @@ from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.findings import NO_UNITS
-from robomill.toolpath.gcode.interpreter import Cancel, Interpreter, Progress
+from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import PROBE, TRAVERSE, Program
@@ -36,14 +36,12 @@ def read_gcode(
     chord_error: float = CHORD_ERROR,
     dialect: str = "auto",
     tools: Tools | None = None,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
 ) -> Toolpath:
     """The toolpath of a program in {W}: arcs as chords within ``chord_error`` (m), findings attached.
 
     Raises GCodeError naming the line that is refused, or if nothing moves.
     """
-    program = interpret(path_or_text, dialect=dialect, tools=tools, progress=progress, cancel=cancel)
+    program = interpret(path_or_text, dialect=dialect, tools=tools)
     return to_toolpath(program, chord_error)
 
 
@@ -52,15 +50,13 @@ def interpret(
     *,
     dialect: str = "auto",
     tools: Tools | None = None,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
     partial: bool = False,
 ) -> Program:
     """Canonical moves of a program: a path, the text itself, or its bytes (see ``read_source``).
 
-    ``tools`` is a tool table by number; without one every tool is accepted, of unknown size. ``progress`` is
-    called with the share that is done, ``cancel`` asked whether to stop. Raises GCodeError naming the line that is
-    refused; with ``partial`` the moves before it are returned instead, and the refusal is an error among the findings.
+    ``tools`` is a tool table by number; without one every tool is accepted, of unknown size. Raises
+    GCodeError naming the line that is refused; with ``partial`` the moves before it are returned instead, and the
+    refusal is an error among the findings.
     """
     data, name = read_source(source)
     lines = Lines(data)
@@ -68,7 +64,7 @@ def interpret(
     machine = Machine(tools)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
-    interpreter = Interpreter(machine, File(name, lines, folder), chosen, progress, cancel)
+    interpreter = Interpreter(machine, File(name, lines, folder), chosen)
     try:
         interpreter.run()
     except GCodeError as exc:

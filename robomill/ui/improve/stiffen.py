@@ -1,5 +1,6 @@
 """One remedy for the project's cut: a stiffer joint, ranked by what it leaves of the largest deviation."""
 
+from functools import partial
 from typing import Any
 
 import streamlit as st
@@ -36,9 +37,9 @@ def found(setup: SimulationSetup) -> Stiffening | None:
 def ask(setup: SimulationSetup) -> None:
     """The button that ranks the joints of a long path, or how far that has come."""
     if session.kept(KEY) is not None and session.kept(KEY).about.digest() == setup.digest():
-        jobs.waiting(KEY, lambda job: f"Cutting once with each joint twice as stiff: {job.stage}")
+        jobs.waiting(KEY, lambda job: f"Cutting once with each joint twice as stiff: {job.progress.stage}")
         return
-    rank = Job(lambda _: stiffer_joints(setup, cached.result), setup)
+    rank = Job(partial(stiffer_joints, setup, cached.result), setup)
     inputs.button("Rank the joints", "improve.rank", "play_arrow", jobs.begin, KEY, rank, type="primary")
     pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
 

@@ -31,13 +31,13 @@ class Film:
     camera: str
     dark: bool
 
-    def make(self, job: Job) -> bytes:
+    def make(self) -> bytes:
         """The film's bytes; its pictures wait their turn with those of the pages."""
         pictures: list[bytes] = []
         shown = cached.pictured(self.result.setup, self.times)
         how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
         still = surface_picture(self.result, shown, headroom=headroom(self.result), **how)
-        queue, owner = rendered.queue(), f"film.{id(job)}"
+        queue, owner = rendered.queue(), f"film.{id(self)}"
         try:
             for index in film_samples(self.result, self.frames).tolist():
                 checkpoint(len(pictures) / self.frames, "pictures")
@@ -79,8 +79,8 @@ def _progress() -> None:
 
 
 def _words(job: Job) -> str:
-    frames = job.about.frames
-    return f"Picture {round(job.share * frames)} of {frames}" if job.share < 1 else "Writing the file"
+    frames, share = job.about.frames, job.progress.share
+    return f"Picture {round(share * frames)} of {frames}" if share < 1 else "Writing the file"
 
 
 def _finished(job: Job) -> None:

@@ -71,11 +71,8 @@ def _take_dialect(name: str) -> None:
     source = session.project().setup.source
     assert source.kind == "program"
     changed = dataclasses.replace(source, dialect=name)
-    if reading.may_take_long(changed):
-        reading.read_beside(changed)
-        return
-    changed.read()
-    put(changed, f"program {source.name}")
+    if reading.read(changed):
+        put(changed, f"program {source.name}")
 
 
 def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
@@ -103,15 +100,11 @@ def take_program(data: bytes, name: str) -> None:
     if Path(name).suffix.lower() not in SUFFIXES:
         raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
     source = program_from_bytes(data, name)
-    if reading.may_take_long(source):
-        reading.read_beside(source)
-        return
     try:
-        source.read()
+        if reading.read(source):
+            _accept(source)
     except GCodeError as exc:
         _refuse(source, exc)
-    else:
-        _accept(source)
 
 
 def _accept(source: GCodeSource) -> None:
@@ -150,8 +143,5 @@ def _take_text(text: str) -> None:
     if not text.strip():
         raise ToolpathError("The program is empty; type at least one G1 move.")
     source = GCodeSource(text, old.name if old.kind == "program" else "program.nc")
-    if reading.may_take_long(source):
-        reading.read_beside(source)
-        return
-    source.read()
-    put(source, f"program {source.name}, edited")
+    if reading.read(source):
+        put(source, f"program {source.name}, edited")

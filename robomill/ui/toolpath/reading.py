@@ -15,19 +15,14 @@ BACKGROUND_CHARACTERS = 1_500_000
 ROUND = re.compile(r"\b(?:o\s*[\d<]|m\s*9[89]\b)", re.IGNORECASE)  # O words and calls: a few lines can go on for long
 
 
-def may_take_long(source: GCodeSource) -> bool:
-    """Whether a program is big, or may go round in loops."""
-    return len(source.text) > BACKGROUND_CHARACTERS or ROUND.search(source.text) is not None
-
-
-def reading(source: GCodeSource) -> Job:
-    """The work of reading ``source``, which keeps what it read."""
-    return Job(lambda made: source.read(progress=made.reach, cancel=made.stop.is_set), source)
-
-
-def read_beside(source: GCodeSource) -> None:
-    """Begin to read ``source`` while the page stays alive; an earlier reading is given up."""
-    job.begin(KEY, reading(source))
+def read(source: GCodeSource) -> bool:
+    """Whether ``source`` was read: a big program, and one that may go round in loops, is begun beside the page. Raises
+    its refusal."""
+    if len(source.text) > BACKGROUND_CHARACTERS or ROUND.search(source.text) is not None:
+        job.begin(KEY, Job(source.read, source))
+        return False
+    source.read()
+    return True
 
 
 def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeSource, RobomillError], None]) -> None:
@@ -46,6 +41,5 @@ def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeS
 
 
 def _words(made: Job) -> str:
-    size, left = len(made.about.text) / 1e6, made.left_s
-    wait = f", about {left:.0f} s left" if left >= 1 else ""
-    return f"Reading {made.about.name}: {100 * made.share:.0f} % of {size:.1f} MB{wait}"
+    size = len(made.about.text) / 1e6
+    return f"Reading {made.about.name}: {100 * made.progress.share:.0f} % of {size:.1f} MB{beside.left(made)}"

@@ -11,9 +11,11 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.files import PROGRAM as LIMIT
+from robomill.progress import Cancelled, Progress, watched
 from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, write_moves_jsonl
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.text import as_plain_bytes
+from tests.telling import told
 
 PROGRAM = "G21 G90\nG0 X1\nG1 Y2 F60\nM2\n"
 
@@ -151,12 +153,9 @@ def test_report_and_moves(tmp_path: Path) -> None:
 
 def test_progress_and_cancel() -> None:
     text = "G21 F100\n" + "G1 X1\nX2\n" * 100_000
-    seen: list[float] = []
-    interpret(text, progress=seen.append)
-    assert len(seen) > 2
-    assert seen == sorted(seen)
-    with pytest.raises(GCodeError, match="cancelled"):
-        interpret(text, cancel=lambda: True)
+    assert len(told(lambda: interpret(text))["Reading the program"]) > 2
+    with pytest.raises(Cancelled), watched(Progress(stop=lambda: True)):
+        interpret(text)
 
 
 def test_subroutines_in_files_beside_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
