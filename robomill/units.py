@@ -107,6 +107,13 @@ def format_significant(value: SupportsFloat, digits: int = 6) -> str:
     return _typeset(f"{number:.{digits}g}") if math.isfinite(number) else format_number(number, 0)
 
 
+def format_plain(value: float, digits: int) -> str:
+    """As files hold a number: so many decimals without trailing zeros, and no negative zero."""
+    text = f"{value:.{digits}f}"
+    text = text.rstrip("0").rstrip(".") if digits else text
+    return "0" if text == "-0" else text
+
+
 def format_percent(share: SupportsFloat, digits: int = 0, sign: bool = False) -> str:
     """A share of 1 in per cent: ``format_percent(0.42) == "42 %"``."""
     return format_si(share, "%", digits, sign)

@@ -6,7 +6,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.kinematics.transforms import tilt_from_axis
 from robomill.toolpath.path import Toolpath
-from robomill.units import from_si
+from robomill.units import format_plain, from_si
 
 DECIMALS = {"mm": 6, "in": 7}
 """Digits after the point of lengths, so that a program says where to go to about a nanometre."""
@@ -48,7 +48,7 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
             continue
         writer.spindle(int(path.tool[i]), float(speeds[i]), bool(path.ccw[i]))
         if path.dwell[i] > 0:
-            writer.line(["G4", "P" + _number(float(path.dwell[i]), _FEED_DECIMALS)])
+            writer.line(["G4", "P" + format_plain(float(path.dwell[i]), _FEED_DECIMALS)])
         position = [float(v) for v in lengths[i]] + ([float(v) for v in angles[i]] if tilted else [])
         writer.move(position, bool(path.cutting[i]), float(feeds[i]))
     writer.line(["M5"] if writer.speed else [])
@@ -92,7 +92,7 @@ class _Writer:
             self.line([f"T{tool}", "M6"])
             self.tool, self.speed = tool, 0.0
         if speed != self.speed or (speed and ccw != self.ccw):
-            self.line([f"S{_number(speed, _FEED_DECIMALS)}", "M4" if ccw else "M3"] if speed else ["M5"])
+            self.line([f"S{format_plain(speed, _FEED_DECIMALS)}", "M4" if ccw else "M3"] if speed else ["M5"])
             self.speed, self.ccw = speed, ccw
 
     def move(self, position: list[float], cutting: bool, feed: float) -> None:
@@ -100,19 +100,14 @@ class _Writer:
         motion = "G1" if cutting else "G0"
         digits = [self.digits] * 3 + [_ANGLE_DECIMALS] * 2
         words = [
-            letter + _number(value, d)
+            letter + format_plain(value, d)
             for letter, value, before, d in zip("XYZAB", position, self.at, digits)
             if value != before
         ]
         if motion != self.motion or not words:
             words.insert(0, motion)
         if cutting and feed != self.feed:
-            words.append("F" + _number(feed, _FEED_DECIMALS))
+            words.append("F" + format_plain(feed, _FEED_DECIMALS))
             self.feed = feed
         self.motion, self.at = motion, position + self.at[len(position) :]
         self.line(words)
-
-
-def _number(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
-    return "0" if text in ("-0", "") else text

@@ -6,7 +6,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.plan import Plan
-from robomill.units import format_many, from_si
+from robomill.units import format_many, format_plain, from_si
 
 AXES = "xyz"
 Block = list[tuple[str, FloatArray, int]]  # columns: name, values, decimals
@@ -88,7 +88,10 @@ def load_tests_to_csv(tests: LoadTests, remarks: str = "", digits: int = 4, blan
     lines = [f"# {line}" for line in head]
     lines.append(",".join(name for name, _, _ in columns))
     lines += [
-        ",".join("" if name in empty else _cell(values[k], places) for name, values, places in columns)
+        ",".join(
+            "" if name in empty or np.isnan(values[k]) else format_plain(values[k], places)
+            for name, values, places in columns
+        )
         for k in range(len(tests))
     ]
     return "\n".join(lines) + "\n"
@@ -124,10 +127,3 @@ def _readings(tests: LoadTests, digits: int) -> Block:
 def _block(name: str, values: FloatArray, unit: str, digits: int) -> Block:
     suffix = unit.replace(" ", "")
     return [(f"{name}{axis}_{suffix}", from_si(values[:, i], unit), digits) for i, axis in enumerate(AXES)]
-
-
-def _cell(value: float, places: int) -> str:
-    if np.isnan(value):
-        return ""
-    text = f"{value:.{places}f}".rstrip("0").rstrip(".") if places else f"{value:.0f}"
-    return "0" if text in ("-0", "") else text

@@ -82,21 +82,24 @@ def tilt_note(robot: Robot) -> str:
     return "A, B turn the tool about X and then Y: k_T = (sin B, −sin A cos B, cos A cos B)."
 
 
-def slider(region: Region, normal: str, at: float) -> None:
-    """The slider that moves the plane through the region."""
+def slider(
+    region: Region, normal: str, at: float, name: str = "at", side: str = "", move: Callable[..., None] | None = None
+) -> None:
+    """The slider that moves the plane (of two, the one on this ``side``) through the region, by ``move``."""
     i, unit = "xyz".index(normal), region.unit
     low, high = (float(from_si(float(v), unit)) for v in (region.box.lower[i], region.box.upper[i]))
-    name = f"{normal.upper()}ₘ, {unit_label(unit)}"
+    label = f"{normal.upper()}ₘ{side}, {unit_label(unit)}"
+    put = move or (lambda at: session.see(at=at, normal=normal))
     if high - low < 1e-9:
-        pieces.note(f"{name}: {format_si(at, unit, 1)}; the region has no depth here.")
+        pieces.note(f"{label}: {format_si(at, unit, 1)}; the region has no depth here.")
         return
     step = float(f"{(high - low) / 50:.1g}")
     inputs.slider(
-        name,
-        f"maps.at.{normal}:{unit}",
+        label,
+        f"maps.{name}.{normal}:{unit}",
         inputs.Span(round(low, 3), round(high, 3), step, f"%.{decimals(unit, 0)}f"),
         round(float(from_si(at, unit)), 3),
-        lambda v: session.see(at=to_si(v, unit), normal=normal),
+        lambda v: put(to_si(v, unit)),
     )
 
 

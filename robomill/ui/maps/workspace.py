@@ -18,14 +18,12 @@ from robomill.ui.point import in_hand, middle
 from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
-    decimals,
     format_many,
     format_number,
     format_percent,
     format_si,
     format_significant,
     from_si,
-    to_si,
     unit_label,
 )
 from robomill.viz.arm import ArmScene, arm_figure
@@ -160,7 +158,7 @@ def _plane(region: Region) -> None:
 
 
 def _pair(region: Region) -> None:
-    view, box, unit = region.view, region.box, region.unit
+    view, box = region.view, region.box
     normal, _ = region.at()
     i = "xyz".index(normal)
     low, high = float(box.lower[i]), float(box.upper[i])
@@ -171,24 +169,12 @@ def _pair(region: Region) -> None:
     inside = view.pair is not None and low <= min(view.pair) and max(view.pair) <= high
     first, second = map(float, view.pair) if view.pair is not None and inside else (low, high)
     left, right = st.columns(2, gap="large")
-    name, step = normal.upper() + "ₘ", float(f"{(high - low) / 50:.1g}")
-    for k, (column, at) in enumerate(((left, first), (right, second))):
-        with column:
-            ends = [float(from_si(v, unit)) for v in (low, high, at)]
-            inputs.slider(
-                f"{name} {('left' if k == 0 else 'right')}, {unit_label(unit)}",
-                f"maps.pair.{k}.{normal}:{unit}",
-                inputs.Span(ends[0], ends[1], float(from_si(step, unit)), f"%.{decimals(unit, 0)}f"),
-                ends[2],
-                partial(_put_pair, k, unit, (first, second)),
-            )
+    with left:
+        plane.slider(region, normal, first, "pair.0", " left", lambda at: session.see(pair=(at, second)))
+    with right:
+        plane.slider(region, normal, second, "pair.1", " right", lambda at: session.see(pair=(first, at)))
     moved = session.maps().pair
     _sheet(region, normal, [first, second] if moved is None else moved.tolist(), "pair")
-
-
-def _put_pair(k: int, unit: str, now: tuple[float, float], shown: float) -> None:
-    at = to_si(shown, unit)
-    session.see(pair=(at, now[1]) if k == 0 else (now[0], at))
 
 
 def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
