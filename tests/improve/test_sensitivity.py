@@ -108,6 +108,9 @@ def test_one_number_serves_all_joints_and_a_bad_one_is_refused(point):
     for bad in (0.0, -2.0):
         with pytest.raises(KinematicsError, match="above zero"):
             scaled_shares(C_joint, [1, 1, bad, 1, 1], 0)
+    for bad in (float("inf"), float("nan")):
+        with pytest.raises(KinematicsError, match="finite"):
+            scaled_shares(C_joint, [1, 1, bad, 1, 1], 0)
 
 
 def test_a_mean_is_over_places_where_every_joint_is_known():
