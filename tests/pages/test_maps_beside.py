@@ -36,7 +36,7 @@ def test_the_largest_box_is_looked_for_beside_the_page(app: AppTest, monkeypatch
             break
     assert not app.exception
     place = next(key for key, kept in store(app).values.items() if isinstance(kept, Job))
-    assert store(app).values[place].stage == "Boxes"
+    assert store(app).values[place].progress.stage == "Boxes"
     app.button(key=f"{place}.cancel").click().run()
     assert ended.wait(30)
     assert "not computed yet" in words(app)
