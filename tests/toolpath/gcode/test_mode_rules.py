@@ -58,7 +58,7 @@ PLAIN = {
     "G81 R1": False,
     "G81 Z-1 R1 P1": False,
     "G81 Z-1 R1 Q1": False,
-    "G82 Z-1 R1 P1": True,
+    "G82 Z-1 R1 P1": False,  # a dwell: the control says in which unit
     "G82 Z-1 R1 P1 Q1": False,
     "G83 Z-1 R1 Q1": True,
     "G83 Z-1 R1 Q1 P1": False,
