@@ -99,7 +99,7 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
                 "tolerance_mm": shown(reading.tolerance, "mm"),
                 "share": reading.share,
                 "length_out_of_tolerance_share": reading.share_out,
-                "judged": name in ("wall", "floor") or (name == "end" and result.setup.feed_tolerance is not None),
+                "judged": reading.stated,
                 "line": int(path.block[reading.worst]) if reading.worst >= 0 else None,
                 "station_mm": shown(path.s[reading.worst], "mm") if reading.worst >= 0 else None,
             }

@@ -51,21 +51,14 @@ def crashes(setup: SimulationSetup, path: Toolpath) -> Crashes:
     moves = path.step_length > 0
     feed, rapid = moves & path.cutting, moves & ~path.cutting
     begins = int(np.argmax(moves))
-    low, high = setup.stock_block.lower, setup.stock_block.upper
-    tools = tooling(setup, path)
-    widest = max(cutter.radius for cutter in tools.cutters)
-    reach = np.array([widest, widest, 0.0])
     start, start_axis = np.roll(path.p, 1, axis=0), np.roll(path.k, 1, axis=0)
-    start[begins], start_axis[begins] = path.p[begins], path.k[begins]
-    lowest, highest = np.minimum(start, path.p), np.maximum(start, path.p)
-    near = (lowest <= high + reach).all(axis=1) & (highest[:, :2] >= (low - reach)[:2]).all(axis=1)
-    if not (rapid & near).any():
-        return Crashes()
+    if rapid[begins]:
+        start[begins], start_axis[begins] = path.p[begins], path.k[begins]
     length, width, _ = setup.stock_block.size
     cell = max(setup.cell, fitting_cell(float(length), float(width), MOST_CELLS))
     moves_made = Passes(np.hstack([start, path.p]), np.hstack([start_axis, path.k]))
-    met = collisions(setup.stock_block, cell, tools, moves_made, (feed, rapid & near))
+    met = collisions(setup.stock_block, cell, tooling(setup, path), moves_made, (feed, rapid))
     first = int(path.block[begins]) if met.early[begins] else 0
     met.early[begins] = met.left[begins] = False
-    lines, later = (tuple(sorted(set(path.block[some].tolist()))) for some in (met.left, met.early & ~met.left))
-    return Crashes(lines, tuple(line for line in later if line not in lines), first)
+    lines, early = (set(path.block[some].tolist()) for some in (met.left, met.early))
+    return Crashes(tuple(sorted(lines)), tuple(sorted(early - lines)), first)

@@ -45,7 +45,7 @@ class SimulationSetup(Replaceable):
     tools       the tools of the program by number; empty: ``cutter`` for all (and where the program names none)
     tolerance   m, largest accepted deviation of walls, and of floors where ``floor_tolerance`` is None; or three
                 numbers (wall, floor, feed), as a sequence or as a mapping by these names
-    feed_tolerance   m, of the ends of cuts along the feed (None: told, not judged)
+    feed_tolerance   m, along the feed: of the tip on its way and of the ends of cuts (None: told, not judged)
     step        m, longest piece of path between two evaluations
     cell        m, cell size of the surfaces
     engagement  True: the force follows the arc of engagement found from the stock as it stands
@@ -80,7 +80,7 @@ class SimulationSetup(Replaceable):
         optional=True,
         above=0.0,
         step=0.05,
-        hint="Where a cut begins or ends in the material. Left out: given, but not judged.",
+        hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
     step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, step=0.5)
     cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, step=0.05, digits=4)

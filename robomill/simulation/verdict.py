@@ -20,17 +20,23 @@ Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
 class Reading:
     """One quantity of the verdict: its largest value (signed, m) at sample ``worst`` (-1: the cut leaves none, value
     NaN), its ``tolerance`` (m) and the ``share`` of it that is used; ``share_out`` is the share of the length out of
-    tolerance."""
+    tolerance. ``stated`` is False where the tolerance is that of another quantity and it is told, not judged."""
 
     worst: int
     value: float
     tolerance: float
     share_out: float = 0.0
+    stated: bool = True
 
     @property
     def share(self) -> float:
         """Of the tolerance; NaN where there is no value."""
         return abs(self.value) / self.tolerance
+
+    @property
+    def decides(self) -> bool:
+        """Whether the verdict rests on it, too."""
+        return self.stated and self.worst >= 0
 
 
 @dataclass(frozen=True)
@@ -63,7 +69,6 @@ class Verdict:
 
 GONE = "a wall that should stand is cut away"
 RAPID = "a rapid runs through material that no cut removes"
-EARLY_RAPID = "A rapid runs through material that is cut only later"
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
     "tight": "within tolerance, tight",
@@ -75,13 +80,12 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     """The verdict of a run. What has no model or no answer is counted and never green."""
     readings = _readings(result, gauge)
     wall, floor, feed, end = readings
-    stated = result.setup.feed_tolerance is not None
-    deciding = [r for r in (wall, floor, *([end, feed] if stated else [])) if r.worst >= 0]
+    deciding = [reading for reading in readings if reading.decides]
     share = max((r.share for r in deciding), default=float("nan"))
     if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
         share = result.max_deviation / wall.tolerance
     level: Level = "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
-    far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if stated else float("inf")))
+    far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
     if far > 1.0 and level == "ok":
         level = "tight"
     said = f"{_said(result, readings, share)}: {WORDS[level]}"
@@ -101,10 +105,8 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         level, said = "unjudged", f"{said}, where it is judged."
     else:
         said += "."
-    if unknown and level != "missed":
-        said = f"{said} {unknown}.".strip()
-    if result.early_rapids:
-        said += f" {EARLY_RAPID} (line {named(result.early_rapids)})."
+    for more in (unknown if level != "missed" else "", early_words(result)):
+        said = f"{said} {more}.".strip() if more else said
     return Verdict(level, share, said, *readings, far)
 
 
@@ -114,22 +116,23 @@ def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Rea
     floor_tolerance, feed_tolerance = (
         wall_tolerance if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance)
     )
+    stated = setup.feed_tolerance is not None
     along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
     feed = int(np.argmax(along)) if i.any() else -1
     value = float(result.delta_in_cut[feed, 0]) if feed >= 0 else float("nan")
     return (
         _reading(gauge.walls, wall_tolerance),
         _reading(gauge.floors, floor_tolerance),
-        Reading(feed, value, feed_tolerance),
-        _reading(gauge.ends, feed_tolerance),
+        Reading(feed, value, feed_tolerance, stated=stated),
+        _reading(gauge.ends, feed_tolerance, stated),
     )
 
 
-def _reading(found: Readings, tolerance: float) -> Reading:
+def _reading(found: Readings, tolerance: float, stated: bool = True) -> Reading:
     q = found.worst
     if q < 0:
-        return Reading(-1, float("nan"), tolerance)
-    return Reading(int(found.sample[q]), float(found.error[q]), tolerance, found.share_out(tolerance))
+        return Reading(-1, float("nan"), tolerance, stated=stated)
+    return Reading(int(found.sample[q]), float(found.error[q]), tolerance, found.share_out(tolerance), stated)
 
 
 def _said(result: Run, readings: tuple[Reading, Reading, Reading, Reading], share: float) -> str:
@@ -143,11 +146,10 @@ def _said(result: Run, readings: tuple[Reading, Reading, Reading, Reading], shar
         way = "too high" if floor.value > 0 else "too deep"
         parts.append((floor.share, f"floor {_size(floor)} {way} {_of(result, floor)}"))
     parts.sort(key=lambda part: -part[0])
-    if result.setup.feed_tolerance is not None:
-        if end.worst >= 0:
-            parts.append((end.share, f"end {_size(end)} along the feed {_of(result, end)}"))
-        elif feed.worst >= 0:
-            parts.append((feed.share, f"tip {_size(feed)} along the feed {_of(result, feed)}"))
+    along = [(r, name) for r, name in ((end, "end"), (feed, "tip")) if r.decides]
+    if along:
+        reading, name = max(along, key=lambda each: each[0].share)
+        parts.append((reading.share, f"{name} {_size(reading)} along the feed {_of(result, reading)}"))
     if not parts:
         largest, allowed = (format_si(v, "mm", 2) for v in (result.max_deviation, result.setup.tolerance))
         where = f"at line {result.worst_block} ({format_percent(share)} of {allowed})"
@@ -176,6 +178,12 @@ def unjudged_words(result: Run) -> str:
     if result.rapids:
         said.append(f"{RAPID[0].upper()}{RAPID[1:]} (line {named(result.rapids)}): not judged")
     return ". ".join(said)
+
+
+def early_words(result: Run) -> str:
+    """Which rapids come before what they run through is cut; "" where none does."""
+    lines = result.early_rapids
+    return f"A rapid runs through material that is cut only later (line {named(lines)})" if lines else ""
 
 
 def thin_wall_notes(block: IntArray) -> tuple[Finding, ...]:

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray
 from robomill.cutting.tooling import Tooling
 from robomill.progress import slices
-from robomill.surface.passes import Passes, at_one_axis, leaning
+from robomill.surface.passes import Passes, at_one_axis
 from robomill.surface.raster import stock_heights
 from robomill.surface.removal import rows_of_tile, tiles
 from robomill.surface.stock import Stock, stock_grid
@@ -31,16 +31,22 @@ def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made:
     """
     from robomill.surface.cells_kernels import Heights
     from robomill.surface.collision_kernels import Program, make_in_order
-    from robomill.surface.tilt_kernels import TiltedMoves
+    from robomill.surface.tilt_kernels import TiltedMoves, plan_boxes
 
-    n = np.flatnonzero(made[0] | made[1])
-    cells, widest = stock_grid(stock, cell), max(cutter.radius for cutter in tooling.cutters)
+    n, nothing = np.flatnonzero(made[0] | made[1]), np.zeros(len(made[0]), dtype=bool)
+    widest, top = max(cutter.radius for cutter in tooling.cutters), float(stock.upper[2])
     ends, axes, owner = at_one_axis(Passes(moves.ends[n], moves.axes[n]), widest, cell)
+    boxes = np.empty((len(ends), 4))
+    plan_boxes(widest, ends, axes, top, boxes)
+    feed = made[0][n][owner]
+    deepest = np.minimum(ends[:, 2], ends[:, 5]) - widest * np.hypot(axes[:, 0], axes[:, 1])
+    over = (boxes[:, ::2] <= stock.upper[:2]).all(axis=1) & (boxes[:, 1::2] >= stock.lower[:2]).all(axis=1)
+    if feed[over & (deepest < top)].all():
+        return Met(nothing, nothing)
+    cells = stock_grid(stock, cell)
     z = np.empty((cells.nx, cells.ny))
     z[...] = stock_heights(stock, cells.x, cells.y)
-    boxes = _boxes(ends, axes, widest, float(z.max(initial=0.0)))
     shapes = np.array([cutter.solid for cutter in tooling.cutters], dtype=np.float64)
-    feed = made[0][n][owner]
     program = Program(shapes, np.array(tooling.of_step[n][owner]), feed.astype(np.int64))
     early, left = np.zeros((2, len(owner)), dtype=np.int64)
     for i, chosen in tiles(z.shape, cells, boxes[:, 0], boxes[:, 1]):
@@ -52,17 +58,3 @@ def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made:
         # Once more, when all is cut.
         make_in_order(program, TiltedMoves(ends, axes, boxes), chosen[early[chosen] > 0], tile, left)
     return Met(*(np.isin(np.arange(len(made[0])), n[owner[met > 0]]) for met in (early, left)))
-
-
-def _boxes(ends: FloatArray, axes: FloatArray, R: float, top: float) -> FloatArray:
-    """(q, 4) m: limits in plan, x and y, of what moves of a cutter of radius R meet below ``top``."""
-    from robomill.surface.tilt_kernels import plan_boxes
-
-    boxes, leans = np.empty((len(ends), 4)), leaning(axes)
-    boxes[:, 0::2] = np.minimum(ends[:, :2], ends[:, 3:5]) - R
-    boxes[:, 1::2] = np.maximum(ends[:, :2], ends[:, 3:5]) + R
-    if leans.any():
-        leaning_boxes = np.empty((int(leans.sum()), 4))
-        plan_boxes(R, ends[leans], axes[leans], top, leaning_boxes)
-        boxes[leans] = leaning_boxes
-    return boxes

@@ -95,7 +95,7 @@ def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any
 
     def take() -> None:
         typed = st.session_state[key]
-        if typed != shown and (typed is not None or not elsewhere()):
+        if typed is not None or not elsewhere():
             submit(key, typed, lambda: write(box.typed(typed)))
 
     # Only a box without a default can be emptied. It comes up empty, and nobody has emptied it then.

@@ -12,7 +12,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.tooth import LEFT_OUT
 from robomill.simulation.verdict import WORDS as JUDGED
-from robomill.simulation.verdict import Reading, Verdict, missed_words, unjudged_words
+from robomill.simulation.verdict import Reading, Verdict, early_words, missed_words, unjudged_words
 from robomill.ui import cached, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_count, format_many, format_percent, format_si
@@ -118,13 +118,14 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
 
 
 def verdict_sentences(result: SimulationResult, unit: str = "mm") -> tuple[str, str]:
-    """What a gauge would read on the part, and beside it how much of the cut is not judged; "" where all is."""
+    """What a gauge would read on the part, and beside it how much of the cut is not judged and which rapids run through
+    material; "" where all is well."""
     if result.worst < 0:
         return result.verdict.sentence, ""
     if result.verdict.level == "unreached":
         return _sentence(missed_words(result)), ""
-    unknown = unjudged_words(result)
-    return _known_sentence(result, unit), _sentence(unknown) if unknown else ""
+    beside = [_sentence(words) for words in (unjudged_words(result), early_words(result)) if words]
+    return _known_sentence(result, unit), " ".join(beside)
 
 
 def _known_sentence(result: SimulationResult, unit: str) -> str:

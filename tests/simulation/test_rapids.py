@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import robomill as rm
@@ -10,6 +11,7 @@ from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
 from robomill.simulation.rapids import crashes
 from robomill.surface.stock import Stock
+from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.source import GCodeSource
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(
@@ -99,6 +101,32 @@ def test_what_is_cut_only_later_is_said_in_the_verdict():
 def test_where_the_first_rapid_ends_counts(first, line):
     setup = SETUP.replace(source=GCodeSource(f"G21 G90\n{first}\nG1 X60 F600\nM2\n", "part.nc"))
     assert crashes(setup, setup.source.read()).first == line
+
+
+def test_a_table_of_lines_begins_with_a_cut():
+    """The rapid back along the first line is in the slot that it cut."""
+    lines = toolpath_from_lines(
+        [[-60e-3, 0, -1e-3], [-60e-3, 0, -1e-3]], [[60e-3, 0, -1e-3], [-60e-3, 9e-3, -1e-3]], 0.01
+    )
+    assert crashes(SETUP, lines) == ((), (), 0)
+    deeper = toolpath_from_lines(
+        [[-60e-3, 0, -1e-3], [-60e-3, 0, -2e-3]], [[60e-3, 0, -1e-3], [-60e-3, 9e-3, -1e-3]], 0.01
+    )
+    assert crashes(SETUP, deeper).lines == (2,)
+
+
+@pytest.mark.parametrize(("lean", "lines"), [(0.0, ()), (0.2, ()), (0.6, (4,)), (-0.6, ())])
+def test_a_leaning_tool_reaches_over_the_block_with_its_body(lean, lines):
+    """Its tip goes by 4 mm beside the block's side, 5 mm under its top, and its body of 2 mm leans over the block."""
+    axis = np.array([-np.sin(lean), 0.0, np.cos(lean)])
+    p = np.array([[44e-3, -40e-3, 5e-3], [44e-3, -30e-3, -5e-3], [44e-3, 30e-3, -5e-3], [44e-3, 30e-3, 9e-3]])
+    cutting = np.array([False, False, False, True])
+    by = Toolpath(p, axis, np.zeros(4), cutting, np.array([1, 2, 4, 5]), np.zeros(4), np.zeros(4, dtype=int))
+    slim = SETUP.replace(cutter=Cutter("flat", 4e-3))
+    # At the height of the top a cylinder that leans is R / cos wide to either side.
+    inward = 44e-3 - np.tan(lean) * 5e-3 - 2e-3 / np.cos(lean) - 40e-3
+    assert (inward < 0.0) == bool(lines)
+    assert crashes(slim, by).lines == lines
 
 
 def test_every_bad_line_is_named_once_and_in_order():

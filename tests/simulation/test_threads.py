@@ -19,6 +19,7 @@ AFTER = "\nG0 Z5\nG0 X-20 Y20\nG1 Z-1 F300\nG1 X20\nG0 Z5\nM2\n"
         "M4\nG74 Z-6 R2 F300\nG80\nM3",
         "G33 Z-6 K1\nG0 Z5",
         "G33.1 Z-6 K1",
+        "G18 G7\nG76 P0.5 Z-6 I-1 J0.2 K0.8\nG17",
         "G84 Z-6 R2 F300\nX5\nX10\nG80",
     ],
 )
@@ -27,6 +28,7 @@ def test_lines_that_cut_a_thread_are_not_judged_and_no_others(lines):
     threads = [7 + i for i, line in enumerate(lines.split("\n")) if "Z-6" in line or line.startswith("X")]
     lost = run.not_judged
     assert sorted(set(run.path.block[lost].tolist())) == threads
+    assert not (run.path.thread & ~run.path.cutting).any(), "a rapid cuts no thread"
     assert "thread" in {each.code for each in run.unjudged}
     assert run.verdict.level in ("unjudged", "out")
     rest = run.path.cutting & ~lost & run.conditions.engaged

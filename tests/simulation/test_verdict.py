@@ -43,7 +43,7 @@ SHARES = (None, 0.5, 0.9, 1.2)
 @pytest.mark.parametrize("feed", [False, True])
 @pytest.mark.parametrize(("wall", "floor", "end"), list(itertools.product(SHARES, repeat=3)))
 def test_the_largest_share_that_decides(result: SimulationResult, feed: bool, wall, floor, end) -> None:
-    """Walls and floors decide, and the feed only with a tolerance of its own: its ends, or else the path's tip."""
+    """Walls and floors decide, and along the feed only with a tolerance of its own: the tip on its way, and ends."""
     run = toleranced(result, feed=feed)
     found = judge(run, gauge(wall, floor, end))
     tip = np.abs(np.einsum("mi,mi->m", run.delta, run.R_MF[:, :, 0]))[run.judged].max()  # along the feed

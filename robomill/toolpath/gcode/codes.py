@@ -50,7 +50,6 @@ M_GROUPS: dict[int, int] = {
 }
 
 PROBES = frozenset({382, 383, 384, 385})
-IN_STEP = frozenset({330, 331, 760})
 NEEDS_AXES = frozenset({100, 280, 300, 520, 920})
 """Non-modal words that use the axis words of their line."""
 

@@ -149,7 +149,6 @@ def _go(m, kind: int, line: int, end, height: float, rows) -> None:
     row = rows[m.moves]
     row.line = line
     write_straight(m, kind, end, feed_speed(m) if kind == FEED else 0.0, row)
-    row.thread = is_tap(m.motion)
     m.moves += 1
 
 

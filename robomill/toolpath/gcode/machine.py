@@ -9,7 +9,7 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.provenance import Level
-from robomill.toolpath.gcode.codes import IN_STEP, LETTERS
+from robomill.toolpath.gcode.codes import LETTERS
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
@@ -126,7 +126,6 @@ class Machine:
         """Record a straight move to ``end`` (6,) and, except for taps, stand there."""
         row, at, turned = Move(line), list(self.at), list(self.turned)
         write_straight(self, kind, end, feed_speed(self) if v_f is None and kind != TRAVERSE else v_f or 0.0, row)
-        row.thread = self.motion in IN_STEP
         if kind == TAP:
             self.at, self.turned, row.rotary = at, turned, turned
         self.recorder.add(row)

@@ -180,13 +180,18 @@ def straight_length(p, end) -> float:
     return math.hypot(math.hypot(end[3] - p[3], end[4] - p[4]), end[5] - p[5])
 
 
+def cuts_thread(motion: int) -> bool:
+    """True for G33, G33.1, G74, G76 and G84: in step with the spindle."""
+    return motion in (330, 331, 740, 760, 840)
+
+
 def write_move(m, kind: int, end, v_f: float, row) -> None:
     """Write a move of the tip to ``end`` (6,) of the current coordinate system; the next one starts there."""
     row.kind = kind
     row.v_f = v_f
     row.n_s = turning(m)
     row.ccw = m.spindle < 0
-    row.thread = False
+    row.thread = kind != TRAVERSE and cuts_thread(m.motion)
     row.tool = m.in_spindle
     row.dwell, m.waited = m.waited, 0.0
     for axis in range(3):
@@ -341,6 +346,7 @@ def make_move(m, w, motion: int, end, row) -> int:
         write_straight(m, FEED, end, feed_speed(m), row)
     else:
         write_straight(m, TRAVERSE, end, 0.0, row)
+    row.thread = False  # the mode that was written down is the one before
     m.arc_not_allowed = False
     m.initial_level = math.nan
     m.motion = motion

@@ -218,5 +218,5 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
             ("RMS error", format_si(error.rms, "um"), "over the cut area"),
         ]
     )
-    for finding in result.machined.notes():
+    for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
