@@ -30,6 +30,16 @@ def memory() -> int:
     return int(min(max(min(_limits(), default=4 * GIB), LEAST), MOST))
 
 
+@cache
+def cores() -> int:
+    """Cores that this process may use at once: those it may run on, and of a container its share of them."""
+    free = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    with suppress(OSError, ValueError):  # "max" is no number
+        quota, period = map(int, Path("/sys/fs/cgroup/cpu.max").read_text().split())
+        free = min(free, -(-quota // period))
+    return max(free, 1)
+
+
 def kept_results() -> int:
     """Bytes that results kept for all sessions may take together."""
     return int(KEPT_RESULTS * memory())

@@ -67,9 +67,9 @@ class Errors:
         return Errors(self.error[which], self.variance[which], self.size[which], self.load[which], self.fold[which])
 
     def thinned(self) -> Errors:
-        """Those that are known, at most about ``MOST`` of them."""
+        """Those that are known, at most ``MOST`` of them."""
         known = np.flatnonzero(np.isfinite(self.error))
-        return self.chosen(known[:: max(len(known) // MOST, 1)])
+        return self.chosen(known[:: max(-(-len(known) // MOST), 1)])
 
 
 def model_error(errors: Errors, dof: int) -> ModelError | None:

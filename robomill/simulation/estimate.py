@@ -3,7 +3,7 @@
 from robomill.simulation.setup import SimulationSetup
 
 # s on a desktop of 2024, measured.
-A_RUN, A_SAMPLE, A_NEIGHBOUR, A_STEP, A_COUPLED_STEP = 0.03, 20e-6, 4e-7, 150e-6, 3e-3
+A_RUN, A_SAMPLE, A_NEIGHBOUR, A_STEP, A_COUPLED_STEP = 0.03, 20e-6, 1e-7, 150e-6, 3e-3
 
 
 def run_seconds(setup: SimulationSetup) -> float:

@@ -4,12 +4,12 @@ turn comes is never begun."""
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
 
+from robomill import budgets
 from robomill.progress import Cancelled
 
 AT_ONCE_S = 0.2  # so long work goes on before it lets others pass
@@ -59,7 +59,7 @@ class Turns:
                 self._free += 1
 
 
-TURNS = Turns(os.cpu_count() or 1)
+TURNS = Turns(budgets.cores())
 
 
 class Turn:

@@ -99,3 +99,11 @@ def test_what_is_let_in_finds_room_under_the_limit_of_the_process() -> None:
     (samples, _), (_, cells) = (map(int, line.split()) for line in ran.stdout.splitlines())
     assert samples > 100_000
     assert cells > 1_200_000
+
+
+def test_no_more_cores_than_the_process_may_run_on():
+    """Told to a process that may run on one core only."""
+    alone = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
+    code = f"{alone}; from robomill import budgets; print(budgets.cores())"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "1"
