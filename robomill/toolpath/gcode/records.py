@@ -19,7 +19,9 @@ STATE = np.dtype(
         *((name, "f8", 3) for name in ("at", "turned")),
         ("cycle", "f8", len(LETTERS)),
         ("figures", "f8", 3),
-        *((name, kind) for names, kind in ((_NUMBERS, "f8"), (_CODES, "i8"), (_FLAGS, "?")) for name in names),
+        *((name, "f8") for name in _NUMBERS),
+        *((name, "i8") for name in _CODES),
+        *((name, "?") for name in _FLAGS),
     ]
 )
 """What of the machine the rules of motion read and change; attributes of ``Machine``, where they are explained."""

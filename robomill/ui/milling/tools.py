@@ -23,11 +23,8 @@ from robomill.units import from_si, to_si, unit_label
 
 FILE, UNIT, TABLE, ODD = "milling.tools.file", "milling.tools.unit", "milling.tools.table", "milling.tools.odd"
 OF_TOOL = ("number", "length")
-OF_CUTTER = (
-    *("kind", "diameter", "flutes", "corner_radius", "tip_angle", "tip_diameter"),
-    *("helix_angle", "stick_out", "flute_length", "hand"),
-)
 OF_SHAPE = ("corner_radius", "tip_angle", "tip_diameter")
+OF_CUTTER = ("kind", "diameter", "flutes", *OF_SHAPE, "helix_angle", "stick_out", "flute_length", "hand")
 NAME = "name"
 MAX_TABLE_MB = 2
 
