@@ -247,3 +247,11 @@ def test_a_feed_counts_along_the_way_of_the_tip_else_of_the_turning_axes() -> No
                 for way in (1, -1):
                     end = start + step * [0, 0, 0, 1, 1, 1] + way * small * tip
                     assert straight_length(start, end) == pytest.approx(counted, rel=1e-6)
+
+
+def test_what_is_allowed_is_a_share_of_the_larger_radius() -> None:
+    """Radii of 1000 and 999 mm: a thousandth of the first, and a little more than that of the second."""
+    for start, end in ((1000.0, 999.0), (999.0, 1000.0)):
+        for off, expected in ((1e-4, False), (-5e-4, True)):  # nearer to one another, farther apart
+            a, b = (start, end + off) if start > end else (start + off, end)
+            assert refused(f"G21 F60\nG3 X{a:.9f} Y{b:.9f} I{a:.9f} J0") == expected
