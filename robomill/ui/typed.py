@@ -5,6 +5,7 @@ from typing import Any
 
 import streamlit as st
 from streamlit.runtime.scriptrunner import get_script_run_ctx
+from streamlit.runtime.scriptrunner_utils.script_run_context import ThreadState
 
 from robomill.errors import RobomillError
 from robomill.ui import session
@@ -35,12 +36,13 @@ def unheard(key: str) -> bool:
 
 
 def elsewhere() -> bool:
-    """Whether what is heard came with a word of another part of the page: a tick of progress, a click in a fragment.
+    """In a callback: whether what is heard came with a word of another part of the page, as a tick of progress.
 
-    What a person does to an input outside such parts comes with a run of the whole page.
+    What a person does to an input comes with a run of the whole page, or of the fragment that the input is in.
     """
     run = get_script_run_ctx(suppress_warning=True)
-    return run is not None and bool(run.fragment_ids_this_run)
+    parts = (run and run.fragment_ids_this_run) or []
+    return bool(parts) and ThreadState.get().fragment_id not in parts
 
 
 def heard(key: str, shown: Any, take: Callable[[], None]) -> None:

@@ -94,7 +94,7 @@ def test_joint_shares_are_what_each_joint_moves_along_the_deviation(corner):
 
 def test_rows_of_the_alloy_are_runs_of_their_own():
     """Force and groove of each row: the simulation run again with the row's material; in the range alone, what another
-    row does not give counts as 0."""
+    row does not give is as in the row in force."""
     result = rm.simulate(PROCESS)
     spread = alloy_spread(result)
     forces, middle = stations.force_components(result, spread), 0.5 * float(result.path.s[-1])
@@ -104,7 +104,7 @@ def test_rows_of_the_alloy_are_runs_of_their_own():
     materials = (PROCESS.force.material, *PROCESS.force.alternatives)
     assert forces.shape[0] == len(materials) > 1
     for row, material in enumerate(materials):
-        filled = material.replace(**dict.fromkeys(material.missing, 0.0))
+        filled = material.replace(**{name: getattr(PROCESS.force.material, name) for name in material.missing})
         force = dataclasses.replace(PROCESS.force, material=filled, alternatives=())
         other = rm.simulate(PROCESS.replace(force=force))
         np.testing.assert_allclose(forces[row], other.force_components, atol=1e-9)
@@ -137,7 +137,7 @@ def test_no_row_of_the_alloy_knows_a_force_that_has_no_model():
     spread, against = alloy_spread(result), result.path.block == 5
     assert np.isnan(spread.F[:, against & result.conditions.engaged]).all()
     for row, material in enumerate(spread.materials):
-        filled = material.replace(**dict.fromkeys(material.missing, 0.0))
+        filled = material.replace(**{name: getattr(PROCESS.force.material, name) for name in material.missing})
         other = rm.simulate(
             result.setup.replace(force=dataclasses.replace(PROCESS.force, material=filled, alternatives=()))
         )
