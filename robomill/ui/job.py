@@ -15,10 +15,13 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
+from robomill.ui.ticks import heed_pages
 from robomill.ui.turns import Turn
 
 EVERY_S = 0.4
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
+
+heed_pages()
 
 
 class Underway(Exception):  # noqa: N818 - no error
