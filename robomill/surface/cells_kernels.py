@@ -17,6 +17,7 @@ from robomill.surface.envelope_kernels import Move, move_between, nearest, row_i
 from robomill.surface.tilt_kernels import (
     UPRIGHT,
     TiltedMoves,
+    ToolFrame,
     move_in_frame,
     tilted_interval,
     tool_frame,
@@ -214,16 +215,29 @@ def settle(tile: Heights, edge: EdgeRecord, mean: Out1, wall: Out2) -> None:
 
 
 @part
+def cells_in(box: FloatArray, tile: Heights) -> tuple[int, int, int, int]:
+    """(first, end) of the rows and (first, end) of the columns whose centres lie in ``box`` (4,) m."""
+    first, end = cells_between(box[0], box[1], tile.x0, tile.dx, tile.z.shape[0])
+    j_first, j_end = cells_between(box[2], box[3], tile.y0, tile.dy, tile.z.shape[1])
+    return first, end, j_first, j_end
+
+
+@part
+def interval_below(shape: Shape, move: Move, frame: ToolFrame, tile: Heights, i: int, j: int) -> tuple[float, float]:
+    """Heights (low, high) m over the centre of a cell inside a leaning cutter's move, not above the material there."""
+    line = vertical_line(frame, tile.x0 + i * tile.dx, tile.y0 + j * tile.dy)
+    return tilted_interval(shape, move, frame, line, tile.z[i, j])
+
+
+@part
 def cut_tilted(shape: Shape, ends: FloatArray, k: FloatArray, box: FloatArray, tile: Heights, hidden: Hidden) -> None:
     """Cut a move ``ends`` (6,) m of a cutter leaning along k (3,), seen from above within ``box`` (4,) m."""
     frame = tool_frame(k[0], k[1], k[2])
     move = move_in_frame(frame, ends)
-    first, end = cells_between(box[0], box[1], tile.x0, tile.dx, tile.z.shape[0])
-    j_first, j_end = cells_between(box[2], box[3], tile.y0, tile.dy, tile.z.shape[1])
+    first, end, j_first, j_end = cells_in(box, tile)
     for i in range(first, end):
         for j in range(j_first, j_end):
-            line = vertical_line(frame, tile.x0 + i * tile.dx, tile.y0 + j * tile.dy)
-            low, high = tilted_interval(shape, move, frame, line, tile.z[i, j])
+            low, high = interval_below(shape, move, frame, tile, i, j)
             if low >= high:
                 continue
             if high >= tile.z[i, j]:

@@ -8,16 +8,9 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import InInt1, Out2, OutInt1, kernel, part
 from robomill.cutting.profile_kernels import Shape, shape_of
-from robomill.surface.cells_kernels import Heights, cells_between, columns_near, lower_row, rows_near
+from robomill.surface.cells_kernels import Heights, cells_in, columns_near, interval_below, lower_row, rows_near
 from robomill.surface.envelope_kernels import Move, move_between, swept_height
-from robomill.surface.tilt_kernels import (
-    UPRIGHT,
-    TiltedMoves,
-    move_in_frame,
-    tilted_interval,
-    tool_frame,
-    vertical_line,
-)
+from robomill.surface.tilt_kernels import UPRIGHT, TiltedMoves, move_in_frame, tool_frame
 
 ROUNDING = 1e-6  # m: what is met by less than this is rounding
 
@@ -60,12 +53,10 @@ def make_leaning(shape: Shape, k: FloatArray, ends: FloatArray, box: FloatArray,
     """Likewise of a cutter leaning along k (3,), within ``box`` (4,) m: what it opens from above, not voids below."""
     frame = tool_frame(k[0], k[1], k[2])
     move = move_in_frame(frame, ends)
-    first, end = cells_between(box[0], box[1], tile.x0, tile.dx, tile.z.shape[0])
-    j_first, j_end = cells_between(box[2], box[3], tile.y0, tile.dy, tile.z.shape[1])
+    first, end, j_first, j_end = cells_in(box, tile)
     for i in range(first, end):
         for j in range(j_first, j_end):
-            line = vertical_line(frame, tile.x0 + i * tile.dx, tile.y0 + j * tile.dy)
-            low, high = tilted_interval(shape, move, frame, line, tile.z[i, j])
+            low, high = interval_below(shape, move, frame, tile, i, j)
             if low >= high or high < tile.z[i, j]:
                 continue
             if feed:

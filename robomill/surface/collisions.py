@@ -33,7 +33,7 @@ def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made:
     from robomill.surface.collision_kernels import Program, make_in_order
     from robomill.surface.tilt_kernels import TiltedMoves, plan_boxes
 
-    n, nothing = np.flatnonzero(made[0] | made[1]), np.zeros(len(made[0]), dtype=bool)
+    n = np.flatnonzero(made[0] | made[1])
     widest, top = max(cutter.radius for cutter in tooling.cutters), float(stock.upper[2])
     ends, axes, owner = at_one_axis(Passes(moves.ends[n], moves.axes[n]), widest, cell)
     boxes = np.empty((len(ends), 4))
@@ -42,19 +42,20 @@ def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made:
     deepest = np.minimum(ends[:, 2], ends[:, 5]) - widest * np.hypot(axes[:, 0], axes[:, 1])
     over = (boxes[:, ::2] <= stock.upper[:2]).all(axis=1) & (boxes[:, 1::2] >= stock.lower[:2]).all(axis=1)
     if feed[over & (deepest < top)].all():
-        return Met(nothing, nothing)
+        return Met(*np.zeros((2, len(made[0])), dtype=bool))
     cells = stock_grid(stock, cell)
     z = np.empty((cells.nx, cells.ny))
     z[...] = stock_heights(stock, cells.x, cells.y)
     shapes = np.array([cutter.solid for cutter in tooling.cutters], dtype=np.float64)
     program = Program(shapes, np.array(tooling.of_step[n][owner]), feed.astype(np.int64))
+    tilted = TiltedMoves(ends, axes, boxes)
     early, left = np.zeros((2, len(owner)), dtype=np.int64)
     for i, chosen in tiles(z.shape, cells, boxes[:, 0], boxes[:, 1]):
         if feed[chosen].all():
             continue
         tile = Heights(z[i : i + rows_of_tile(z.shape)], cells.x0 + i * cells.dx, cells.y0, cells.dx, cells.dy)
         for some in slices(len(chosen), "Rapids"):
-            make_in_order(program, TiltedMoves(ends, axes, boxes), chosen[some], tile, early)
+            make_in_order(program, tilted, chosen[some], tile, early)
         # Once more, when all is cut.
-        make_in_order(program, TiltedMoves(ends, axes, boxes), chosen[early[chosen] > 0], tile, left)
+        make_in_order(program, tilted, chosen[early[chosen] > 0], tile, left)
     return Met(*(np.isin(np.arange(len(made[0])), n[owner[met > 0]]) for met in (early, left)))
