@@ -368,11 +368,11 @@ def test_without_a_verb_the_app_is_served_on_this_machine_only(monkeypatch, word
 
 
 def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) -> None:
-    """A run of minutes: 5000 coupled steps."""
+    """A run of far longer than the terminal takes to be read: 50 000 coupled steps."""
     folder = Path(shutil.copytree(FLUTE, tmp_path / "flute"))
     text = (folder / "setup_process.toml").read_text()
     setup = folder / "long.toml"
-    setup.write_text(text.replace("step_mm = 1.0", "step_mm = 0.02\ncoupling = true"))
+    setup.write_text(text.replace("step_mm = 1.0", "step_mm = 0.002\ncoupling = true"))
     code = "import sys; from robomill.cli import main; sys.exit(main(['simulate', sys.argv[1]]))"
     leader, terminal = pty.openpty()
     process = subprocess.Popen([sys.executable, "-c", code, str(setup)], stdout=subprocess.PIPE, stderr=terminal)
