@@ -15,7 +15,7 @@ from robomill.simulation.band import deviation_band, size_band
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread
 from robomill.simulation.tooth import tooth
-from robomill.simulation.verdict import Reading
+from robomill.simulation.verdict_words import Reading
 
 Ends = tuple[float, float]
 NONE: Ends = (float("nan"), float("nan"))

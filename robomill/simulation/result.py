@@ -22,7 +22,8 @@ from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import tool_notes, tooling
-from robomill.simulation.verdict import Verdict, judge, thin_wall_notes
+from robomill.simulation.verdict import judge, thin_wall_notes
+from robomill.simulation.verdict_words import Verdict
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.groove import GrooveSection, groove_sections
 from robomill.surface.swept import CutPath

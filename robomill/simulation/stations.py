@@ -10,9 +10,6 @@ from robomill.surface.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
 
-SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
-ON_LINE = 1e-6  # m: cuts this close to a line lie on it
-
 
 def nearest_feed(result: SimulationResult, station: float) -> int:
     """Index of the sample at feed nearest to ``station``."""
@@ -34,25 +31,6 @@ def place_at(path: Toolpath, station: float) -> tuple[FloatArray, FloatArray]:
     found = station_at(path.p, path.cutting, min(max(station, 0.0), float(path.s[-1])))
     step = path.p[found.entry] - path.p[found.entry - 1]
     return found.centre, step / np.linalg.norm(step)
-
-
-def is_straight(path: Toolpath) -> bool:
-    """Whether every cut goes the same way (or back): a form error can then be told from a shift and a turn."""
-    step = np.diff(path.p, axis=0)[path.cutting[1:]]
-    length = np.linalg.norm(step, axis=1)
-    along = step[length > 0] / length[length > 0, None]
-    return bool(len(along) and np.abs(np.cross(along, along[0])).max() < SAME_WAY)
-
-
-def one_groove(path: Toolpath) -> bool:
-    """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
-    points = path.p[path.cutting][:, :2]
-    along = points[-1] - points[0]
-    length = float(np.linalg.norm(along))
-    if length < ON_LINE:
-        return False
-    off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
-    return bool(np.abs(off).max() <= ON_LINE)
 
 
 def joint_shares(result: SimulationResult, i: int) -> FloatArray:

@@ -12,6 +12,8 @@ from robomill.errors import ToolpathError
 from robomill.provenance import Finding
 from robomill.units import format_si
 
+SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
+ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 PER_MOVE: dict[str, type] = {
     "v_f": float,
     "cutting": bool,
@@ -101,6 +103,25 @@ class Toolpath:
         ends = self.p[self.cutting | np.append(self.cutting[1:], False)]
         ends = ends if len(ends) else self.p
         return ends.min(axis=0), ends.max(axis=0)
+
+    @cached_property
+    def goes_one_way(self) -> bool:
+        """Whether every cut goes the same way (or back): a form error can then be told from a shift and a turn."""
+        step = np.diff(self.p, axis=0)[self.cutting[1:]]
+        length = np.linalg.norm(step, axis=1)
+        along = step[length > 0] / length[length > 0, None]
+        return bool(len(along) and np.abs(np.cross(along, along[0])).max() < SAME_WAY)
+
+    @cached_property
+    def on_one_line(self) -> bool:
+        """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
+        points = self.p[self.cutting][:, :2]
+        along = points[-1] - points[0]
+        length = float(np.linalg.norm(along))
+        if length < ON_LINE:
+            return False
+        off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
+        return bool(np.abs(off).max() <= ON_LINE)
 
     def digest(self) -> str:
         """SHA-256 of the motion (findings do not count)."""

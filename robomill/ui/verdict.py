@@ -9,10 +9,9 @@ from robomill.arrays import digest
 from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import one_groove, place_at
 from robomill.simulation.tooth import LEFT_OUT
-from robomill.simulation.verdict import WORDS as JUDGED
-from robomill.simulation.verdict import Reading, Verdict, early_words, missed_words, unjudged_words
+from robomill.simulation.verdict_words import WORDS as JUDGED
+from robomill.simulation.verdict_words import Reading, Verdict, said, way
 from robomill.ui import cached, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_count, format_many, format_percent, format_si
@@ -25,7 +24,6 @@ WORDS = {
 }
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
 NOTHING = {"unreached": "nothing reached", "unjudged": "not judged"}
-WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep")}
 NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
 
 
@@ -47,8 +45,8 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
         "share": Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
     }
     found = ranges_of(result)
-    said = {name: [range_words(each, name, unit) for each in found] for name in made}
-    return [replace(tile, ranges=[words for words in said[name] if words]) for name, tile in made.items()]
+    words = {name: [range_words(each, name, unit) for each in found] for name in made}
+    return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
 
 
 def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
@@ -86,13 +84,19 @@ def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None
     if reading.worst < 0:
         return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
     allowed = format_si(reading.tolerance, unit, 2)
-    way = WAYS[name][0 if reading.value > 0 else 1]
     was = change = ""
     if before is not None and getattr(before, name).worst >= 0:
         was = format_si(getattr(before, name).value, unit, sign=True)
         change = format_si(reading.value - getattr(before, name).value, unit, sign=True)
     value = format_si(reading.value, unit, sign=True)
-    return Tile(label, value, f"{way} · {format_percent(reading.share)} of {allowed}", was, change, kind="computed")
+    return Tile(
+        label,
+        value,
+        f"{way(name, reading)} · {format_percent(reading.share)} of {allowed}",
+        was,
+        change,
+        kind="computed",
+    )
 
 
 def tip_tile(result: SimulationResult, unit: str) -> Tile:
@@ -114,51 +118,7 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     """What a gauge would read on the part, for a foreman, and how much of the cut is not judged."""
-    return " ".join(verdict_sentences(result, unit)).rstrip()
-
-
-def verdict_sentences(result: SimulationResult, unit: str = "mm") -> tuple[str, str]:
-    """What a gauge would read on the part, and beside it how much of the cut is not judged and which rapids run through
-    material; "" where all is well."""
-    if result.worst < 0:
-        return result.verdict.sentence, ""
-    if result.verdict.level == "unreached":
-        return _sentence(missed_words(result)), ""
-    beside = [_sentence(words) for words in (unjudged_words(result), early_words(result)) if words]
-    return _known_sentence(result, unit), " ".join(beside)
-
-
-def _known_sentence(result: SimulationResult, unit: str) -> str:
-    """What a gauge would read where it is known."""
-    verdict = result.verdict
-    wall, floor = verdict.wall, verdict.floor
-    if one_groove(result.path) and wall.worst >= 0 and floor.worst >= 0:
-        sideways, down = (format_si(abs(v.value), unit, 2) for v in (wall, floor))
-        return f"The groove is {sideways} off {_aside(result, wall)} and {down} {_way('floor', floor)}."
-    said = [
-        f"{name}s are up to {format_si(abs(v.value), unit, 2)} {_way(name, v)} (line {result.path.block[v.worst]})"
-        for name, v in (("wall", wall), ("floor", floor))
-        if v.worst >= 0
-    ]
-    if not said:
-        worst = format_si(result.max_deviation, unit, 2)
-        said = [f"no wall or floor is left to measure; the tip is {worst} off at line {result.worst_block}"]
-    return _sentence(", ".join(said))
-
-
-def _sentence(words: str) -> str:
-    return f"{words[0].upper()}{words[1:]}."
-
-
-def _way(name: str, reading: Reading) -> str:
-    return WAYS[name][0 if reading.value > 0 else 1]
-
-
-def _aside(result: SimulationResult, wall: Reading) -> str:
-    """Where a straight groove goes: along an axis of the part where the feed follows the other one."""
-    feed = np.abs(place_at(result.path, float(result.path.s[wall.worst]))[1][:2])
-    axis = "Y" if feed[0] > 0.999 * np.hypot(*feed) else "X" if feed[1] > 0.999 * np.hypot(*feed) else ""
-    return f"in {axis}" if axis else _way("wall", wall)
+    return " ".join(said(result, result.verdict, unit)).strip()
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

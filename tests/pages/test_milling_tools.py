@@ -69,7 +69,7 @@ def test_a_table_begins_with_the_cutter_in_force(app: AppTest) -> None:
     assert not app.exception
     (tool,) = store(app).project.setup.tools.tools
     assert tool.cutter == store(app).project.setup.cutter
-    assert "The groove is 0.23 mm off in Y and 0.10 mm too deep." in words(app)
+    assert "The groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used)." in words(app)
 
 
 @pytest.mark.parametrize("page", ["app", "6_Milling", "7_Improve"])

@@ -22,7 +22,10 @@ def type_program(app: AppTest, text: str) -> None:
 def test_it_says_what_was_read(app: AppTest) -> None:
     go(app, "5_Toolpath")
     assert not app.exception
-    assert "All in reach; the groove is 0.23 mm off in Y and 0.10 mm too deep." in words(app)
+    assert (
+        "All in reach; the groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used)."
+        in words(app)
+    )
     assert "1 cut within 100.0 × 0.0 × 0.0 mm." in words(app)
 
 

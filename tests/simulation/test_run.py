@@ -96,8 +96,7 @@ def test_verdicts(setup) -> None:
     assert [v.level for v in levels.values()] == ["out", "tight", "ok"]
     assert [v.red for v in levels.values()] == [True, False, False]
     assert levels[0.3e-3].sentence == (
-        "Wall 0.23 mm to the left at line 7 (77 % of 0.30 mm), floor 0.10 mm too deep at line 7 (34 % of 0.30 mm): "
-        "within tolerance."
+        "The groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used)."
     )
 
 

@@ -15,7 +15,6 @@ from robomill.simulation.run import simulate
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import (
     force_components,
-    is_straight,
     largest_deviations,
     nearest_judged,
     offset_band,
@@ -59,10 +58,10 @@ def test_a_groove_is_straight_while_every_cut_goes_one_way() -> None:
         k, zeros = np.tile([0.0, 0.0, 1.0], (m, 1)), np.zeros(m, dtype=int)
         return Toolpath(p, k, np.full(m, 0.01), np.arange(m) > 0, np.arange(m), np.zeros(m), zeros)
 
-    assert is_straight(path((0, 0), (0.01, 0.01), (0.03, 0.03)))
-    assert not is_straight(path((0, 0), (0.01, 0.0), (0.01, 0.01)))
-    assert not is_straight(path((0, 0), (0.01, 0.0), (0.02, 1e-4)))
-    assert is_straight(path((0, 0), (0.01, 0.0), (0.01, 0.0), (0.02, 0.0)))
+    assert path((0, 0), (0.01, 0.01), (0.03, 0.03)).goes_one_way
+    assert not path((0, 0), (0.01, 0.0), (0.01, 0.01)).goes_one_way
+    assert not path((0, 0), (0.01, 0.0), (0.02, 1e-4)).goes_one_way
+    assert path((0, 0), (0.01, 0.0), (0.01, 0.0), (0.02, 0.0)).goes_one_way
 
 
 def test_the_alloys_rows_by_sample_and_row(result: SimulationResult) -> None:

@@ -69,13 +69,13 @@ def test_one_way_and_one_groove(corner):
     )
     skew = run((-30, 0, -2), (0, 0.002, -2), (20, 0, -2))  # 2 um beside the line
     there_and_back = run((-30, 0, -2), (20, 0, -2), (-30, 0, -2))
-    assert [stations.is_straight(r.path) for r in (slot, back, ramp, beside, corner, skew)] == [True] * 2 + [
+    assert [r.path.goes_one_way for r in (slot, back, ramp, beside, corner, skew)] == [True] * 2 + [
         False,
         True,
         False,
         False,
     ]
-    grooves = [stations.one_groove(r.path) for r in (slot, back, ramp, beside, corner, skew, there_and_back)]
+    grooves = [r.path.on_one_line for r in (slot, back, ramp, beside, corner, skew, there_and_back)]
     assert grooves == [True, True, True, False, False, False, False]
 
 

@@ -10,7 +10,7 @@ from robomill.errors import RobomillError
 from robomill.io.profiles import MeasuredProfile, read_profile
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
-from robomill.simulation.stations import is_straight, offset_band
+from robomill.simulation.stations import offset_band
 from robomill.surface.deviation import Deviation
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
@@ -88,7 +88,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     found, block = along
     measured = session.kept(MEASURED)
     fit = None
-    if is_straight(result.path) and np.isfinite(found.centre_offset).sum() >= 3:
+    if result.path.goes_one_way and np.isfinite(found.centre_offset).sum() >= 3:
         fit = fit_groove(found)
     curves = ProfileCurves(
         from_si(found.station, unit),

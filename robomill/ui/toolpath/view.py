@@ -6,6 +6,7 @@ import numpy as np
 
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.verdict_words import said
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 from robomill.ui import pieces
@@ -18,7 +19,7 @@ from robomill.ui.toolpath.summary import (
     worst_first,
     written_in,
 )
-from robomill.ui.verdict import tip_tile, tone, verdict_sentences
+from robomill.ui.verdict import tip_tile, tone
 from robomill.units import (
     format_count,
     format_many,
@@ -45,7 +46,7 @@ def headline(
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
     if reach is not None and result is not None and not missed_blocks(reach)[0]:
-        lead = f"{lead} {verdict_sentences(result, unit)[1]}".rstrip()
+        lead = f"{lead} {said(result, result.verdict, unit)[1]}".rstrip()
     pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit), lead)
 
 
@@ -58,8 +59,8 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
         return f"{format_si(length, unit, 1)} of the cut cannot be reached."
     if result is None or (result.worst < 0 and result.verdict.level != "unjudged"):
         return "The arm reaches all of the path."
-    said = verdict_sentences(result, unit)[0]
-    return f"All in reach; {said[0].lower()}{said[1:]}"
+    words = said(result, result.verdict, unit)[0] or "the cut is not judged."
+    return f"All in reach; {words[0].lower()}{words[1:]}"
 
 
 def tiles(
