@@ -37,8 +37,8 @@ class Finding:
     """
 
     level: Level
-    line: int
     message: str
+    line: int = 0
     count: int = 1
     code: str = ""
 

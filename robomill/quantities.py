@@ -108,8 +108,10 @@ class Quantity:
 
     def settled(self, value: Any, error: type[RobomillError] = RobomillError, who: str = "") -> Any:
         """``value`` as the field keeps it: float, int, bool, code or frozen array; ``error`` where it cannot be."""
-        if value is None and self.optional:
-            return None
+        if value is None:
+            if self.optional:
+                return None
+            raise self._refusal("nothing", error, who)
         found = _CONVERTERS[self.kind](self, value, error, who)
         if self.kind in ("number", "array", "whole") and not np.all(self.allows(found)):
             worst = self._offending(found)

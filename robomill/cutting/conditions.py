@@ -183,11 +183,11 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
                 f"depth {format_si(highest[worst], 'mm')} is beyond the flute length "
                 f"{format_si(each.flute_length, 'mm')}; the shank would rub ({format_count(deep.size, 'step')})."
             )
-            found.append(Finding("warning", int(conditions.block[worst]), text, code="beyond-flutes"))
+            found.append(Finding("warning", text, int(conditions.block[worst]), code="beyond-flutes"))
     down = engaged & (conditions.along < -DISH) & computed
     for code, steps in (("thrust-end-teeth", down & ~tooling.drills), ("thrust-lips", down & tooling.drills)):
         if steps.any():
             count = format_count(int(steps.sum()), "step")
             text = f"the tool goes down into the material; its thrust is that {THRUSTS[code]}: not measured ({count})."
-            found.append(Finding("info", int(conditions.block[np.argmax(steps)]), text, code=code))
+            found.append(Finding("info", text, int(conditions.block[np.argmax(steps)]), code=code))
     return tuple(found)

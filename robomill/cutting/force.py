@@ -59,7 +59,7 @@ class ForceModel:
     follows_cut  whether it follows feed, depth and arc of engagement by itself, so that deflection can change it
     ends_with_material   whether the engagement, where it is computed, ends the force in air
     stated       whether its numbers are a person's, so that the page says where they come from
-    takes, example   the kind of material row it needs, and the sample it starts with
+    takes, example   the law of the material rows it needs, and the sample it starts with
     frame        ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame
     """
 
@@ -70,7 +70,7 @@ class ForceModel:
     follows_cut: ClassVar[bool] = False
     ends_with_material: ClassVar[bool] = True
     stated: ClassVar[bool] = True
-    takes: ClassVar[str] = ""
+    takes: ClassVar[type[Material] | None] = None
     example: ClassVar[str] = ""
     kinds: ClassVar[dict[str, type[ForceModel]]] = {}
 
@@ -104,7 +104,7 @@ class ForceModel:
 
     def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
         """What is unknown or assumed, for the result."""
-        return tuple(Finding("info", 0, words, code="force-note") for words in self.notes)
+        return tuple(Finding("info", words, code="force-note") for words in self.notes)
 
     @property
     def numbers(self) -> str:

@@ -13,7 +13,7 @@ from robomill.cutting.course import CASES, Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
-from robomill.cutting.materials import GIVES, PUBLISHED, Material
+from robomill.cutting.materials import PUBLISHED, Material
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
@@ -61,9 +61,9 @@ class ProcessForce(ForceModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         for row in (self.material, *self.alternatives):
-            if row.kind != self.takes:
+            if self.takes is not None and not isinstance(row, self.takes):
                 raise CuttingError(
-                    f"Material {row.name!r} has {row.kind} coefficients; a {self.kind} force needs {self.takes} ones.",
+                    f"{row.who} has {row.kind} coefficients; a {self.kind} force needs {self.takes.kind} ones.",
                     where="material",
                 )
 
@@ -108,7 +108,7 @@ class ProcessForce(ForceModel):
                     f"{self.material.title}: its source gives no {part} force; assumed {self._shares[part]:g} of the "
                     f"tangential one (published for aluminium: {low:g} to {high:g}, and that is the range shown)."
                 )
-                found.append(Finding("warning", 0, text, code=f"assumed-{part}-share"))
+                found.append(Finding("warning", text, code=f"assumed-{part}-share"))
         return tuple(found)
 
     @property
@@ -150,7 +150,7 @@ class ProcessForce(ForceModel):
         needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}
         lacking = [part for part in self.row.unknown if (needs[part] & conditions.engaged).any()]
         where = np.any([needs[part] for part in lacking], axis=0) if lacking else np.zeros_like(mills)
-        names = " and ".join(name for name in self.row.missing if GIVES[name] in lacking)
+        names = " and ".join(name for name in self.row.missing if self.material.gives[name] in lacking)
         shares = ", ".join(f"{part}_share" for part in lacking)
         why = f"{self.material.title} gives no {' and no '.join(lacking)} force: add {names} to the row, or assume a "
         why += f"share of the tangential force ({shares})"

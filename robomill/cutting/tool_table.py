@@ -120,5 +120,5 @@ class ToolTable(Mapping[int, TableTool]):
                 f"{each.label.lower()} {each.short(getattr(tool.cutter, each.name))}" for each in fields
             )
             text = f"Tool {number}: {assumed} assumed; its table does not say."
-            said.append(Finding("info", 0, text, code="tool-assumed"))
+            said.append(Finding("info", text, code="tool-assumed"))
         return tuple(said)

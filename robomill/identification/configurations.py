@@ -91,28 +91,28 @@ def _taken(robot: Robot, whole: bool, rows: IntArray) -> Finding:
             "Poses as X, Y, Z, A, B leave the turn about the tool axis open: it was taken as near home as the limits "
             "allow; give joints if the robot stood otherwise, since its compliance depends on it."
         )
-        return Finding("warning", 0, text, code="turn-about-the-tool")
+        return Finding("warning", text, code="turn-about-the-tool")
     if robot.n > 6:
         text = (
             f"A pose leaves an arm of {robot.n} joints a posture to choose: it was taken as near home as the limits "
             "allow; give joints if the robot stood otherwise, since its compliance depends on it."
         )
-        return Finding("warning", 0, text, code="posture-open")
+        return Finding("warning", text, code="posture-open")
     if whole and decoupled(robot) is None:
         text = (
             "A pose lets this arm stand in several ways, and its compliance depends on which: the one found near home "
             "was taken; give joints where it stood otherwise."
         )
-        return Finding("warning", 0, text, code="postures-open")
+        return Finding("warning", text, code="postures-open")
     if len(rows):
         text = (
             f"In {len(rows)} tests (row {rows[0]} is the first) the arm may also have stood with shoulder or elbow "
             "another way than at home, and its compliance depends on it: give joints where it did."
         )
-        return Finding("warning", int(rows[0]), text, len(rows), code="postures-open")
+        return Finding("warning", text, int(rows[0]), count=len(rows), code="postures-open")
     names = "X, Y, Z, A, B, C" if whole else "X, Y, Z, A, B"
     text = f"Joints were solved from {names} with shoulder and elbow as at home; give joints if they stood otherwise."
-    return Finding("info", 0, text, code="joints-solved")
+    return Finding("info", text, code="joints-solved")
 
 
 def checked(robot: Robot, theta: FloatArray, row: IntArray) -> None:

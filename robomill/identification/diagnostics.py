@@ -136,30 +136,30 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
     joints = {parameter.label for parameter in system.parameters if parameter.kind == "joint"}
     for label in active:
         text = f"{label.capitalize()} is held at zero: the tests ask for a negative compliance, which no spring has."
-        found.append(Finding("warning" if label in joints else "info", 0, text, code="held-at-zero"))
+        found.append(Finding("warning" if label in joints else "info", text, code="held-at-zero"))
     for label, other in lumped.items():
         text = f"{label.capitalize()} turns about the same line as {other} at these poses: one spring, counted there."
-        found.append(Finding("info", 0, text, code="lumped"))
+        found.append(Finding("info", text, code="lumped"))
     if len(fit.null):
         labels = tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k])
         what = f"tell {_listed(labels)} apart" if len(labels) > 1 else f"make {labels[0]} yield, so it stays unknown"
         text = f"These poses do not {what}; predictions near the measured poses still hold."
-        found.append(Finding("warning", 0, text, code="not-seen"))
+        found.append(Finding("warning", text, code="not-seen"))
     elif fit.condition[1] > CONDITION_WARNING:
         text = (
             f"Condition number {fit.condition[1]:.0f} after scaling: small errors of measurement are much magnified; "
             "add poses that differ more."
         )
-        found.append(Finding("warning", 0, text, code="condition"))
+        found.append(Finding("warning", text, code="condition"))
     if fit.dof == 0 and not system.stated:
         text = "As many unknowns as measured numbers: nothing is left to judge the noise by, so there are no intervals."
-        found.append(Finding("warning", 0, text, code="no-residuals"))
+        found.append(Finding("warning", text, code="no-residuals"))
     if system.stated and fit.dof > 0 and fit.sigma > 2.0:
         text = (
             f"The residuals are {fit.sigma:.1f} times the stated noise: the model does not explain all that was "
             "measured; compare it with bending or a tool spring."
         )
-        found.append(Finding("warning", 0, text, code="above-stated-noise"))
+        found.append(Finding("warning", text, code="above-stated-noise"))
     return found
 
 
@@ -171,7 +171,7 @@ def model_findings(error: float) -> tuple[Finding, ...]:
         f"Poses left out are missed by {format_si(error, '%', 0)}: springs or points may be missing from this model, "
         "and then a compliance can be off by more than its interval says, which knows scatter only."
     )
-    return (Finding("warning", 0, text, code="model-misses"),)
+    return (Finding("warning", text, code="model-misses"),)
 
 
 def _listed(labels: tuple[str, ...]) -> str:

@@ -99,7 +99,7 @@ class Offer:
         off = " ".join(point.sentence() for point in self.points)
         was, now = format_si(self.before, "%", 1), format_si(self.after, "%", 1)
         text = f"{off} Fitted, it takes the error on poses left out from {was} to {now}."
-        return Finding("warning", 0, text, len(self.points), code=f"fit-{self.fit_points}")
+        return Finding("warning", text, count=len(self.points), code=f"fit-{self.fit_points}")
 
 
 def found_points(
@@ -128,4 +128,4 @@ def found_points(
 def point_findings(points: tuple[FoundPoint, ...]) -> tuple[Finding, ...]:
     """Said of fitted points that the tests hold in no or not every direction."""
     loose = [point for point in points if point.flat is not None]
-    return tuple(Finding("warning", 0, point.sentence(), code=f"{point.point}-point-not-held") for point in loose)
+    return tuple(Finding("warning", point.sentence(), code=f"{point.point}-point-not-held") for point in loose)

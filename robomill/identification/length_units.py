@@ -49,7 +49,7 @@ def length_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
         f"Read as {slip}, {what} would take what the fit leaves over from {stated:.0%} to {least:.0%} of the "
         "displacements: is the unit right?"
     )
-    return (Finding("suspicious", 0, text, code="length-unit"),)
+    return (Finding("suspicious", text, code="length-unit"),)
 
 
 def _left_over(robot: Robot, tests: LoadTests) -> float:

@@ -165,19 +165,19 @@ class MeasuredField:
                 f"{100 * self.asymmetry[k]:.0f} % at "
                 f"{_point(self.p[k])}): an elastic arm's is, so look for a wrong sign, gauge or axis there."
             )
-            found.append(Finding("suspicious", 0, text, int(crooked.sum()), code="not-symmetric"))
+            found.append(Finding("suspicious", text, count=int(crooked.sum()), code="not-symmetric"))
         if negative.any():
             k = int(np.argmin(self.smallest))
             text = (
                 f"{int(negative.sum())} of {len(self.p)} matrices are not positive definite (first to mend: "
                 f"{_point(self.p[k])}): there a force would move the tip against itself."
             )
-            found.append(Finding("suspicious", 0, text, int(negative.sum()), code="not-positive"))
+            found.append(Finding("suspicious", text, count=int(negative.sum()), code="not-positive"))
         if float(np.ptp(self.AB, axis=0).max()) > 1e-6:
             text = (
                 "The points were measured at different tool orientations; the map does not interpolate between those."
             )
-            found.append(Finding("warning", 0, text, code="orientations"))
+            found.append(Finding("warning", text, code="orientations"))
         return tuple(found)
 
     # ---- inside ----------------------------------------------------------------------------------------------------

@@ -45,7 +45,7 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
     """Findings on where the lines meet, the load point, and the rows that cannot be."""
     if found.says != "met":
         level: Level = "suspicious" if found.says == "apart" else "info"
-        return [Finding(level, 0, NOTHING[found.says], code=f"pull-{found.says}")]
+        return [Finding(level, NOTHING[found.says], code=f"pull-{found.says}")]
     point = load_point(found, robot, tests)
     many = len(found.pulley)
     where = "one pulley" if many == 1 else f"{many} pulleys"
@@ -56,26 +56,26 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
             f"The lines of pull meet in {where} with a gap of {stated} (median); the tool stands too alike to tell the "
             "load point."
         )
-        said.append(Finding("info", 0, text, many, code="pull-met"))
+        said.append(Finding("info", text, count=many, code="pull-met"))
     elif point.off > max(point.off_half, 2e-3):
         gap = format_si(float(np.median(found.gap)), "mm", 1)
         text = (
             f"{point.sentence()} That is by the lines of pull alone: with it they pass {where} by {gap} (median), with "
             f"the stated one by {stated}."
         )
-        said.append(Finding("suspicious", 0, text, many, code="pull-load-point"))
+        said.append(Finding("suspicious", text, count=many, code="pull-load-point"))
     else:
         text = f"The lines of pull meet in {where} with the stated load point: gap {stated} (median)."
-        said.append(Finding("info", 0, text, many, code="pull-met"))
+        said.append(Finding("info", text, count=many, code="pull-met"))
     if found.pushes:
         all_of = len(found.pushes) > 0.8 * len(found.row)
         rows = "every row" if all_of else f"row {_listed(found.pushes)}"
         text = f"In {rows} the force points away from its pulley, and a cable only pulls: is its sign turned?"
-        said.append(Finding("suspicious", 0, text, len(found.pushes), code="pull-sign"))
+        said.append(Finding("suspicious", text, count=len(found.pushes), code="pull-sign"))
     if found.suspects:
         text = f"Row {_listed(found.suspects)}: the line of the force cannot be, it passes by the pulley of the others."
         first = found.suspects[0]
-        said.append(Finding("suspicious", first, text, len(found.suspects), code="pull-suspect"))
+        said.append(Finding("suspicious", text, first, count=len(found.suspects), code="pull-suspect"))
     return said
 
 
@@ -93,7 +93,7 @@ def disagreement(by_lines: FoundPoint | None, fitted: tuple[FoundPoint, ...]) ->
                 "the fit makes up for something that is not in its model (links that bend, the gauge point), so "
                 "believe the lines of pull."
             )
-            return [Finding("suspicious", 0, text, code="points-disagree")]
+            return [Finding("suspicious", text, code="points-disagree")]
     return []
 
 

@@ -57,7 +57,7 @@ def _signs(tests: LoadTests) -> list[Finding]:
         flipped = list(tests.components)
     if flipped:
         what = "the sign of the displacements" if len(flipped) == 3 else f"the sign of {flipped[0]}"
-        return [Finding("suspicious", 0, f"{'; '.join(found)}: is {what} or of the forces turned round?", code="sign")]
+        return [Finding("suspicious", f"{'; '.join(found)}: is {what} or of the forces turned round?", code="sign")]
     return []
 
 
@@ -70,12 +70,12 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
     given = float(np.median(np.sqrt(np.nansum(moved[loaded] ** 2, axis=1)) / size[loaded]))
     if given == 0.0:
         text = "Most displacements are zero: was the gauge read, and to enough digits?"
-        return [Finding("suspicious", 0, text, code="no-displacement")]
+        return [Finding("suspicious", text, code="no-displacement")]
     found = _off(given, _expected(tests, robot), PLAUSIBLE)
     if found is None:
         return []
     text = f"The displacements are about {found}: is their unit, or the forces', right?"
-    return [Finding("suspicious", 0, text, code="unit")]
+    return [Finding("suspicious", text, code="unit")]
 
 
 def _off(given: float, own: float | None, plausible: tuple[float, float]) -> str | None:
@@ -130,7 +130,7 @@ def _repeats(tests: LoadTests) -> list[Finding]:
         f"Row {again} repeats row {tests.row[original[copies[0]]]} to the last digit{others}; both are used: "
         "delete the copy unless it was measured twice."
     )
-    return [Finding("warning", again, text, len(copies), code="repeat")]
+    return [Finding("warning", text, again, count=len(copies), code="repeat")]
 
 
 def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, ...]:
@@ -140,7 +140,7 @@ def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, 
         text = (
             f"The angle runs against the torque in {int(against.sum())} of {len(tests)} tests: is a sign turned round?"
         )
-        found.append(Finding("suspicious", 0, text, code="sign"))
+        found.append(Finding("suspicious", text, code="sign"))
     given, own = np.abs(tests.angle / tests.torque), None
     if robot is not None and _knows(robot) and np.isin(tests.joint, robot.joint_numbers).all():
         same = tests.joint[:, None] == np.array(robot.joint_numbers)
@@ -148,5 +148,5 @@ def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, 
     off = _off(float(np.median(given)), own, PLAUSIBLE_JOINT)
     if off is not None:
         text = f"The angles a newton metre makes are about {off}: is their unit, or the torques', right?"
-        found.append(Finding("suspicious", 0, text, code="unit"))
+        found.append(Finding("suspicious", text, code="unit"))
     return tuple(found)

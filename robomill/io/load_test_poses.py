@@ -119,7 +119,7 @@ def _of_frame(table: Columns, robot: Robot | None, T: FloatArray, how: str) -> d
         T = T @ _needed(table, robot, "poses of the flange").T_tool
     base = "" if robot is None or "base" not in robot.provenance else f"; {robot.provenance['base'].source}"
     text = f"Poses are of the {frame} with {how}{base}."
-    return {"x_M": world_of(T), "findings": (Finding("info", table.place.head, text, code="pose-frame"),)}
+    return {"x_M": world_of(T), "findings": (Finding("info", text, table.place.head, code="pose-frame"),)}
 
 
 def force_and_points(table: Columns, robot: Robot | None, where: dict[str, Any]) -> dict[str, Any]:
@@ -193,7 +193,7 @@ def _hooks(
         f"The hook stands up to {far} (row {row}) from where most rows have it in the tool: is it one hook, measured "
         "in {M}, and are the poses right?"
     )
-    return point, (Finding("suspicious", row, text, code="hook-scatter"),)
+    return point, (Finding("suspicious", text, row, code="hook-scatter"),)
 
 
 def _unit(table: Columns, way: FloatArray) -> FloatArray:

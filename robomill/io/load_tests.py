@@ -60,13 +60,13 @@ def _read(given: str | Path | bytes, robot: Robot | None, name: str = "") -> Loa
     head = table.place.head
     postures = [column for column in table.passed_over if column.lower() in POSTURE and "x" in table]
     ignored = tuple(
-        Finding("ignored", head, f"Column {column!r} is not one of ours and is passed over.", code="passed-over")
+        Finding("ignored", f"Column {column!r} is not one of ours and is passed over.", head, code="passed-over")
         for column in table.passed_over
         if column not in postures
     )
     if postures:
         text = f"How the arm stood, said by {' and '.join(postures)}, is not read; give joints where it matters."
-        ignored += (Finding("warning", head, text, len(postures), code="posture-not-read"),)
+        ignored += (Finding("warning", text, head, count=len(postures), code="posture-not-read"),)
     made = Provenance(kind_of(head_of(table)), f"{name or 'pasted cells'}\n{table.remarks}".strip())
     return replace(tests, provenance=made, findings=ignored + tests.findings + _pose_suspicions(table))
 
@@ -91,7 +91,7 @@ def _pose_suspicions(table: Columns) -> tuple[Finding, ...]:
         if largest > 0.0 and not least <= largest <= most:
             beyond = f"No {columns[0].written} is larger than" if largest < least else f"{columns[0].written} reaches"
             text = f"{beyond} {largest:.3g}: are these poses in {other}?"
-            return (Finding("suspicious", 0, text, code="pose-unit"),)
+            return (Finding("suspicious", text, code="pose-unit"),)
     return ()
 
 
@@ -120,7 +120,7 @@ def _displacements(table: Columns, robot: Robot | None) -> LoadTests:
     F0, d0 = group(table, axes("f0")), group(table, axes("d0"))
     if F0 is None and d0 is None:
         text = "Displacements are taken as differences between loaded and unloaded readings; gravity cancels in them."
-        found += (Finding("info", 0, text, code="differences"),)
+        found += (Finding("info", text, code="differences"),)
     nothing, unknown = np.zeros((len(table.row), 3)), np.full((len(table.row), 3), np.nan)
     F, moved = (nothing if F is None else F), (unknown if moved is None else moved)
     return LoadTests(
@@ -164,7 +164,7 @@ def _compliances(table: Columns, robot: Robot | None) -> LoadTests:
     found: tuple[Finding, ...] = where.pop("findings", ())
     if load is None:
         text = f"No load_N column: residuals are stated for the paper's dead weight of {NOMINAL_LOAD:g} N."
-        found, load = (*found, Finding("info", 0, text, code="nominal-load")), np.full(m, NOMINAL_LOAD)
+        found, load = (*found, Finding("info", text, code="nominal-load")), np.full(m, NOMINAL_LOAD)
     if (load <= 0).any():
         k = int(np.argmax(load <= 0))
         raise table.refuse(k, "load", "expected a load above zero.")

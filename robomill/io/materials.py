@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from robomill.cutting.forces import FORCES
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
 from robomill.files import MATERIAL
@@ -13,6 +14,7 @@ from robomill.io.texts import read_text
 from robomill.quantities import quantities
 
 WORDS = ("name", "title", "alloy")
+LAWS = [model.takes for model in FORCES.values() if model.takes is not None]
 
 
 def material_names() -> list[str]:
@@ -41,21 +43,37 @@ def material_from_toml(text: str, where: str = "material") -> Material:
     top = Table(parse_toml(text, where, CuttingError), where, CuttingError)
     given: dict[str, Any] = {key: top.text(key) for key in WORDS}
     coefficients = top.table("coefficients")
-    given |= {name: read_quantity(coefficients, declared) for name, declared in quantities(Material).items()}
-    coefficients.finish()
+    law = _law(coefficients)
+    given |= {name: read_quantity(coefficients, declared) for name, declared in quantities(law).items()}
     given["provenance"] = top.provenance("provenance")
     top.finish()
     try:
-        return Material(**given)
+        return law(**given)
     except RobomillError as exc:
         raise CuttingError(f"{where}: {exc}", where=exc.where) from exc
+
+
+def _law(coefficients: Table) -> type[Material]:
+    """The law whose coefficients a row gives: of one only."""
+    keys = {law: [said.key for said in quantities(law).values()] for law in LAWS}
+    given = {law: [key for key in every if coefficients.has(key)] for law, every in keys.items()}
+    found = [law for law in LAWS if given[law]]
+    if len(found) == 1:
+        coefficients.asked.update(keys[found[0]])
+        coefficients.finish()
+        return found[0]
+    if not found:
+        known = ", or ".join(", ".join(every) for every in keys.values())
+        raise CuttingError(f"{coefficients.where}: found no coefficient that is known; known are {known}.")
+    words = " and ".join(", ".join(given[law]) for law in found)
+    raise CuttingError(f"{coefficients.where}: found {words}; a row is of one law, so make {len(found)} rows of it.")
 
 
 def material_to_toml(material: Material) -> str:
     """TOML text that ``material_from_toml`` reads back to an equal row."""
     lines = [f"{key} = {toml_value(getattr(material, key))}" for key in WORDS]
     lines += ["", "[coefficients]"]
-    for name, declared in quantities(Material).items():
+    for name, declared in quantities(type(material)).items():
         value = write_quantity(declared, getattr(material, name))
         if value is not None:
             lines.append(f"{declared.key} = {toml_value(value)}")

@@ -105,4 +105,4 @@ def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[Finding,
         )
     else:
         return ()
-    return (Finding("suspicious", 0, text, code="stock-unit"),)
+    return (Finding("suspicious", text, code="stock-unit"),)

@@ -60,7 +60,7 @@ def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = 
     if not tools:
         raise CuttingError(f"{place}: found no tools; expected lines such as 'T1 P1 D3.0 Z12.5'.")
     left_out = f"{', '.join(passed_over)}: not a column of a tool table, left out"
-    return _whole(tools, place, *[Finding("ignored", 0, left_out, code="column-left-out")] * bool(passed_over))
+    return _whole(tools, place, *[Finding("ignored", left_out, code="column-left-out")] * bool(passed_over))
 
 
 def tools_from_table(top: Table, beside: Beside = ALONE) -> ToolTable:
@@ -86,7 +86,7 @@ def _whole(tools: list[TableTool], place: str, *findings: Finding) -> ToolTable:
     if largest < SMALL:
         inches = format_si(to_si(from_si(largest, "mm"), "in"), "mm")
         shown = f"the largest tool is {format_si(largest, 'mm')} across; if the table counts in inches, it is {inches}"
-        findings += (Finding("suspicious", 0, shown, code="tool-units"),)
+        findings += (Finding("suspicious", shown, code="tool-units"),)
     try:
         return ToolTable(tuple(tools), findings)
     except CuttingError as exc:

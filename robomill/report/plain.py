@@ -54,7 +54,7 @@ def finding_lines(findings: Sequence[dict[str, Any]]) -> list[str]:
     lines = []
     for f in findings:
         times = f" ({f['count']} times)" if f["count"] > 1 else ""
-        lines.append(f"{f['level']:9} {Finding(f['level'], f['line'], f['message']).sentence}{times}")
+        lines.append(f"{f['level']:9} {Finding(f['level'], f['message'], f['line']).sentence}{times}")
     return lines
 
 

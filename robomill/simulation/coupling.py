@@ -153,17 +153,17 @@ class Coupling:
     def finding(self) -> Finding:
         """For the notes of the result."""
         if self.lines:
-            return Finding("warning", 0, f"Coupling: on line {named(self.lines)} {self.why}.", code=COUPLING)
+            return Finding("warning", f"Coupling: on line {named(self.lines)} {self.why}.", code=COUPLING)
         if self.judged == 0.0:
             text = "Coupling: no step in the material is judged, so there is no force that deflection could agree with."
-            return Finding("info", 0, text, code=COUPLING)
+            return Finding("info", text, code=COUPLING)
         steps = "every step" if self.judged == 1.0 else "every step that is judged"
         text = (
             f"Coupling: force and deflection agree to {format_si(TOLERANCE, 'um', 1)} at {steps} "
             f"({self.mean_iterations:.1f} evaluations a step, at most {self.iterations}); against one pass the "
             f"deflection differs by at most {format_si(self.difference, 'um')}."
         )
-        return Finding("info", 0, text, code=COUPLING)
+        return Finding("info", text, code=COUPLING)
 
     @property
     def why(self) -> str:

@@ -95,13 +95,13 @@ def suspicions(setup: SimulationSetup, pull: FloatArray) -> tuple[Finding, ...]:
             f"Force: on average it pulls the tool along its feed, with {format_short(along, 'N')}; a cut holds it "
             "back, but for some climb cuts. Did the sensor feel the force on the part (force_on), or in other axes?"
         )
-        found.append(Finding("suspicious", 0, text, code="force-pulls"))
+        found.append(Finding("suspicious", text, code="force-pulls"))
     if force.frame == "M" and not force.turns_with_part and np.abs(setup.T_MW[:3, :3] - np.eye(3)).max() > 1e-6:
         text = (
             "Force: its x, y and z are taken as the robot's, and the part is turned against them; where the sensor "
             "turns with the part, say so (force_axes)."
         )
-        found.append(Finding("suspicious", 0, text, code="force-axes"))
+        found.append(Finding("suspicious", text, code="force-axes"))
     return tuple(found)
 
 
@@ -123,7 +123,7 @@ def cut_notes(setup: SimulationSetup, conditions: CutConditions, known: BoolArra
         notes += unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)
     if not setup.engagement and setup.force.follows_cut:
         text = "The force is that of a full slot everywhere: the engagement with the part is switched off."
-        notes.append(Finding("warning", 0, text, code="full-slot"))
+        notes.append(Finding("warning", text, code="full-slot"))
     if conditions.engaged.any():
         notes += cut_warnings(setup.cutter, conditions, setup.force.follows_cut & known)
     return tuple(notes)

@@ -63,17 +63,17 @@ def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     notes = list(setup.measured_map.findings)
     if setup.springs:
         text = "The measured map holds whatever gives; the springs beside the joints are shown, not added."
-        notes.append(Finding("info", 0, text, code="springs-in-map"))
+        notes.append(Finding("info", text, code="springs-in-map"))
     arm = decoupled(setup.robot)
     if setup.robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis):
         text = (
             "The measured map holds for the turn about the tool axis it was taken with, which is not in it; on this "
             "arm that turn changes the compliance: measure and mill with the same one."
         )
-        notes.append(Finding("warning", 0, text, code="map-spin"))
+        notes.append(Finding("warning", text, code="map-spin"))
     largest = float(turned(setup, path).max())
     if NOTICED < largest <= MOST_TURNED:
         off = format_si(largest, "deg", 1)
         text = f"The tool stands up to {off} off the axis the measured map was taken with; it is used as it is."
-        notes.append(Finding("warning", 0, text, code="map-axis"))
+        notes.append(Finding("warning", text, code="map-axis"))
     return tuple(notes)

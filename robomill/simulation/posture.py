@@ -22,4 +22,4 @@ def posture_notes(robot: Robot, T_MT: FloatArray, F: FloatArray) -> tuple[Findin
         f"The arm has {robot.n} axes, so one posture of many was taken: at the worst point the deflection "
         f"ranges over {format_many((size.min(), size.max()), 'mm', 3, ' to ')} ({len(found)} postures looked at)."
     )
-    return (Finding("info", 0, text, code="posture"),)
+    return (Finding("info", text, code="posture"),)

@@ -1,7 +1,5 @@
 """Rapids that run through material: a machine would break the tool there, and the simulation must say so."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +32,7 @@ class Crashes(NamedTuple):
         found = []
         if self.first:
             text = "the first rapid ends in the material: the tool is taken to stand there, and to break nothing."
-            found.append(Finding("warning", self.first, text, code="begins-in-material"))
+            found.append(Finding("warning", text, self.first, code="begins-in-material"))
         for lines, which, code in (
             (self.lines, "no cut removes", "rapid-in-material"),
             (self.later, "is cut only later", "rapid-before-cut"),
@@ -42,7 +40,7 @@ class Crashes(NamedTuple):
             if lines:
                 also = f" (also line {named(lines[1:])})" if len(lines) > 1 else ""
                 text = f"a rapid runs through material that {which}; lift the tool first{also}."
-                found.append(Finding("warning", lines[0], text, code=code))
+                found.append(Finding("warning", text, lines[0], code=code))
         return tuple(found)
 
 

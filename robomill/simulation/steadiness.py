@@ -27,4 +27,6 @@ def _add(found: dict[tuple[str, int, int], Finding], code: str, line: int, joint
     """A finding, or one more of those found: the first one's words stay."""
     known = found.get((code, line, joint))
     count = 1 if known is None else known.count + 1
-    found[code, line, joint] = Finding("warning", line, words if known is None else known.message, count, code)
+    found[code, line, joint] = Finding(
+        "warning", words if known is None else known.message, line, count=count, code=code
+    )

@@ -105,5 +105,5 @@ def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
             f"The robot's tool frame is taken as that of tool {numbers[0]} ({length} long), the first that cuts; the "
             "tips of the others stand as much farther as they are longer."
         )
-        found.append(Finding("info", 0, text, code="tool-frame"))
+        found.append(Finding("info", text, code="tool-frame"))
     return tuple(found)

@@ -74,4 +74,4 @@ def thin_wall_notes(block: IntArray) -> tuple[Finding, ...]:
         f"a wall is left that is thinner than an eighth of its height (line {named(block.tolist())}); that it gives "
         "way to the cutter is not in the numbers."
     )
-    return (Finding("warning", int(block.min()), text, code="thin-wall"),)
+    return (Finding("warning", text, int(block.min()), code="thin-wall"),)

@@ -1,7 +1,5 @@
 """Moves that must not cut and do: made in the order of the program, each meets what the feed moves before it left."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

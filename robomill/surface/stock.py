@@ -87,14 +87,14 @@ class Stock:
         longest = float(self.size.max())
         if not SMALLEST <= longest <= LARGEST:
             text = f"Stock: the block is {format_si(longest, 'mm', 2)} long; check the unit of its numbers."
-            found.append(Finding("suspicious", 0, text, code="stock-unit"))
+            found.append(Finding("suspicious", text, code="stock-unit"))
         width = float(self.size[:2].min())
         if cutter.diameter > width:
             text = (
                 f"Stock: the cutter ({format_si(cutter.diameter, 'mm')}) is wider than the block"
                 f" ({format_si(width, 'mm')}); no groove with two walls can be left."
             )
-            found.append(Finding("warning", 0, text, code="wide-cutter"))
+            found.append(Finding("warning", text, code="wide-cutter"))
         return tuple(found)
 
 

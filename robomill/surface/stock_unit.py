@@ -43,7 +43,7 @@ def unit_doubt(stock: Stock, p: ArrayLike, cutting: ArrayLike) -> tuple[Finding,
                 f"Stock: it is {_size(stock.size)} and {found}; were its numbers {what}, it would be "
                 f"{_size(stock.size * times)} and hold {held} the path: check the unit."
             )
-            return (Finding("suspicious", 0, text, code="stock-unit"),)
+            return (Finding("suspicious", text, code="stock-unit"),)
     return ()
 
 

@@ -93,25 +93,25 @@ class ZMap:
                 f"Surface: in {self.overhang} cells the tilted cutter undercuts the material; a height map shows"
                 " what is seen from above, not the void below it."
             )
-            found.append(Finding("warning", 0, text, code="undercut"))
+            found.append(Finding("warning", text, code="undercut"))
         if self.leaning:
             text = (
                 "Surface: where a tilted cutter cut, walls slope over up to a cell in pictures and exported solids; "
                 "sections are exact."
             )
-            found.append(Finding("info", 0, text, code="walls-to-a-cell"))
+            found.append(Finding("info", text, code="walls-to-a-cell"))
         if self.skipped:
             text = f"Surface: {self.skipped} feed moves have an end that is not reached and were not cut."
-            found.append(Finding("warning", 0, text, code="not-cut"))
+            found.append(Finding("warning", text, code="not-cut"))
         if self.below:
             text = "Surface: the cutter goes through the bottom of the stock; heights end at its lower face."
-            found.append(Finding("warning", 0, text, code="through-bottom"))
+            found.append(Finding("warning", text, code="through-bottom"))
         if self.filled > self.dx * self.dy * self.cell:
             text = (
                 f"Surface: the stock has voids of {format_si(self.filled, 'mm3', 0)} below what is seen from above; a "
                 "height map has none, so pictures and exported solids are filled there."
             )
-            found.append(Finding("warning", 0, text, code="void-filled"))
+            found.append(Finding("warning", text, code="void-filled"))
         return tuple(found)
 
 

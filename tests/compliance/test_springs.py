@@ -140,7 +140,7 @@ def test_names_are_lines_of_the_result():
     [
         (lambda: ToolBending(0.0, 0.04), "Tool bending, Diameter: found 0 mm; expected more than 0 mm."),
         (lambda: ToolBending(8e-3, -0.04), "Stick-out: found −40 mm"),
-        (lambda: ToolBending(8e-3, None), "Stick-out: found None"),
+        (lambda: ToolBending(8e-3, None), "Stick-out: found nothing"),
         (lambda: ToolBending(8e-3, 0.04, E=math.inf), "Young's modulus: found inf"),
         (lambda: ToolBending(8e-3, 0.04, core=1.5), "Bending Ø / Ø: found 1.5; expected more than 0 to 1."),
         (lambda: SpindleSpring(-1e-6), "Spindle and holder, Across: found −1 µm/N; expected 0 µm/N or more."),

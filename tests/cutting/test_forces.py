@@ -11,10 +11,9 @@ from robomill.cutting.force import MeanForce
 from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.constant import ConstantForce
-from robomill.cutting.forces.kienzle import KienzleForce
+from robomill.cutting.forces.kienzle import KienzleForce, KienzleRow
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
-from robomill.cutting.forces.mechanistic import MechanisticForce
-from robomill.cutting.materials import Material
+from robomill.cutting.forces.mechanistic import MechanisticForce, MechanisticRow
 from robomill.cutting.tool import FAMILIES, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
@@ -130,8 +129,8 @@ def test_refused_models():
 
 def test_kienzle_without_exponent_is_a_mechanistic_row_without_edges():
     source = Provenance("user", "test")
-    kienzle = Material("k", "k", "x", source, kc11=8e8, mc=0.0, radial_ratio=0.3, axial_ratio=0.1)
-    mechanistic = Material("m", "m", "x", source, Ktc=8e8, Kte=0.0, Krc=2.4e8, Kre=0.0, Kac=8e7, Kae=0.0)
+    kienzle = KienzleRow("k", "k", "x", source, kc11=8e8, mc=0.0, radial_ratio=0.3, axial_ratio=0.1)
+    mechanistic = MechanisticRow("m", "m", "x", source, Ktc=8e8, Kte=0.0, Krc=2.4e8, Kre=0.0, Kac=8e7, Kae=0.0)
     np.testing.assert_allclose(
         KienzleForce(MILL, kienzle).components(SLOT), MechanisticForce(MILL, mechanistic).components(SLOT), rtol=1e-12
     )

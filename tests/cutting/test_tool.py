@@ -78,7 +78,7 @@ def test_title():
         ({"diameter": -8e-3}, "Diameter: found −8 mm"),
         ({"diameter": math.nan}, "Diameter: found nan"),
         ({"diameter": "8 mm"}, "Diameter: found '8 mm'; expected 0.001 mm or more"),
-        ({"diameter": None}, "Diameter: found None"),
+        ({"diameter": None}, "Diameter: found nothing"),
         ({"corner_radius": 1e-3}, "A flat end mill has no corner radius"),
         ({"kind": "bull", "corner_radius": 5e-3}, "larger than the cutter's radius 4.000 mm"),
         ({"kind": "bull"}, "needs a corner radius"),

@@ -9,9 +9,9 @@ from robomill.provenance import Finding, Provenance, named
 
 
 def test_a_finding_says_its_line_and_keeps_its_code() -> None:
-    found = Finding("warning", 12, "it rubs.", 3, "rubs")
+    found = Finding("warning", "it rubs.", 12, count=3, code="rubs")
     assert found.sentence == "Line 12: it rubs."
-    assert Finding("warning", 0, "It rubs.").sentence == "It rubs."
+    assert Finding("warning", "It rubs.").sentence == "It rubs."
     assert found.record() == {"level": "warning", "line": 12, "message": "it rubs.", "count": 3, "code": "rubs"}
 
 

@@ -87,7 +87,7 @@ def test_bounds_hold_what_they_include(field: str, good: object) -> None:
     [
         ("width", 0.0, "Sample, Width: found 0 mm; expected more than 0 mm to 5 mm."),
         ("width", 6e-3, "Sample, Width: found 6 mm; expected more than 0 mm to 5 mm."),
-        ("width", None, "Sample, Width: found None; expected more than 0 mm to 5 mm."),
+        ("width", None, "Sample, Width: found nothing; expected more than 0 mm to 5 mm."),
         ("width", math.nan, "Sample, Width: found nan; expected more than 0 mm to 5 mm."),
         ("turn", math.pi, "Sample, Turn: found 180°; expected −180° to less than 180°."),
         ("turn", -3.2, "Sample, Turn: found −183.346°; expected −180° to less than 180°."),
@@ -113,7 +113,7 @@ def test_bounds_hold_what_they_include(field: str, good: object) -> None:
         ("teeth", True, "Sample, Teeth: found True; expected 1 or more."),
         ("teeth", "2", "Sample, Teeth: found '2'; expected 1 or more."),
         ("teeth", 10**400, "Sample, Teeth: found 1000"),
-        ("any_whole", None, "Sample, Any: found None; expected a whole number."),
+        ("any_whole", None, "Sample, Any: found nothing; expected a whole number."),
         ("on", 1, "Sample, On: found 1; expected true or false."),
         ("hand", "x", "Sample, Hand: found 'x'; expected l or r."),
         ("hand", ["l"], "Sample, Hand: found ['l']; expected l or r."),

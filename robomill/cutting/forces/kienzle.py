@@ -1,9 +1,36 @@
 """From the material: Kienzle's coefficients."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from robomill.cutting.edge import EdgeTerm
+from robomill.cutting.materials import Material, per_area
 from robomill.cutting.process import ProcessForce
+from robomill.quantities import quantity
+from robomill.units import to_si
+
+#: Chip thickness and width at which kc1.1 holds.
+REFERENCE_CHIP = to_si(1.0, "mm")
+
+
+@dataclass(frozen=True)
+class KienzleRow(Material):
+    """F_t = kc11 (h / 1 mm)^(-mc) h b, kc11 in N/m^2; radial_ratio and axial_ratio are F_r / F_t and F_a / F_t."""
+
+    kind: ClassVar[str] = "kienzle"
+    gives: ClassVar[Mapping[str, str]] = {"radial_ratio": "radial", "axial_ratio": "axial"}
+
+    kc11: float = per_area("kc11", leads=True)
+    mc: float = quantity("mc", least=0.0, below=1.0)
+    radial_ratio: float | None = quantity("radial_ratio", optional=True, least=0.0)
+    axial_ratio: float | None = quantity("axial_ratio", optional=True, least=0.0)
+
+    @property
+    def terms(self) -> tuple[EdgeTerm, ...]:
+        """One term, in the power of the chip."""
+        K = self.kc11 * REFERENCE_CHIP**self.mc
+        return (EdgeTerm(1.0 - self.mc, K, K * (self.radial_ratio or 0.0), K * (self.axial_ratio or 0.0)),)
 
 
 @dataclass(frozen=True)
@@ -13,5 +40,5 @@ class KienzleForce(ProcessForce):
     kind: ClassVar[str] = "kienzle"
     title: ClassVar[str] = "From the material, Kienzle"
     rank: ClassVar[int] = 4
-    takes: ClassVar[str] = "kienzle"
+    takes: ClassVar[type[Material] | None] = KienzleRow
     example: ClassVar[str] = "al_wrought_cured_kienzle"

@@ -163,14 +163,14 @@ class MeasuredForce(ForceModel):
             return found
         began, last = (format_si(v, "s", 3) for v in (self.start, record.x[-1]))
         text = f"the first cut is taken to begin at {began} of the force record; what moves before it is no part of it."
-        found += (Finding("info", int(conditions.block[np.argmax(conditions.cutting)]), text, code="record-start"),)
+        found += (Finding("info", text, int(conditions.block[np.argmax(conditions.cutting)]), code="record-start"),)
         ends = float(conditions.t[conditions.cutting].max()) + self.start
         if record.x[-1] - ends > LEFT_OVER * (record.x[-1] - record.x[0]):
             text = (
                 f"Force: the record goes on to {last}, the last cut ends at {format_si(ends, 's', 3)}: is it of this "
                 "program, at this feed, and does it begin with the first cut?"
             )
-            found += (Finding("suspicious", 0, text, code="record-longer"),)
+            found += (Finding("suspicious", text, code="record-longer"),)
         return found
 
     def components(self, conditions: CutConditions) -> FloatArray:

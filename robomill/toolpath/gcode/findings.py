@@ -19,5 +19,8 @@ class Findings:
 
     def freeze(self) -> tuple[Finding, ...]:
         """All findings, the grave ones first, then by line."""
-        found = [Finding(level, line, message, n, code) for (code, level, message), (line, n) in self._found.items()]
+        found = [
+            Finding(level, message, line, count=n, code=code)
+            for (code, level, message), (line, n) in self._found.items()
+        ]
         return tuple(sorted(found, key=lambda f: f.order))

@@ -72,7 +72,7 @@ def _switch(kind: str) -> None:
         if wanted is Cutter:
             given[name] = setup.cutter
         elif wanted is Material:
-            given[name] = material_panel.rows(model.takes)[model.example]
+            given[name] = material_panel.rows(model.kind)[model.example]
         elif wanted == tuple[Material, ...]:
             given[name] = material_panel.others(given["material"])
         elif wanted is ForceRecord:

@@ -46,10 +46,10 @@ def _use(material: Material, from_editor: bool = False) -> None:
     setup = session.project().setup
     given = {"material": material, "alternatives": others(material)}
     force: Any = setup.force
-    if force.takes == material.kind:
+    if force.takes is type(material):
         force = replace(force, **given)
     else:
-        model: Any = next(model for model in FORCES.values() if model.takes == material.kind)
+        model: Any = next(model for model in FORCES.values() if model.takes is type(material))
         force = model(cutter=setup.cutter, **given)
     session.change(force=force, from_editor=from_editor)
 
@@ -57,7 +57,7 @@ def _use(material: Material, from_editor: bool = False) -> None:
 def picker(force: Any) -> None:
     """The row in force with its source, its coefficients and the way to a new one."""
     material: Material = force.material
-    found = rows(force.takes)
+    found = rows(force.takes.kind)
     inputs.choice(
         "Material",
         f"force.material.{force.kind}",
@@ -130,7 +130,7 @@ def _keep(material: Material, from_editor: bool = False) -> None:
 
 def coefficient_frame(material: Material) -> pd.DataFrame:
     """One row a coefficient in the units of the trade; empty where the source does not give it."""
-    said = [quantities(Material)[name] for name in material.coefficients]
+    said = quantities(type(material)).values()
     return pd.DataFrame(
         {
             "coefficient": [q.name for q in said],
@@ -142,7 +142,7 @@ def coefficient_frame(material: Material) -> pd.DataFrame:
 
 def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
     """``material`` with the table's coefficients, as a row of one's own. Raises CuttingError naming the coefficient."""
-    units = {name: quantities(Material)[name].unit for name in frame["coefficient"]}
+    units = {name: quantities(type(material))[name].unit for name in frame["coefficient"]}
     values = {
         name: None if inputs.empty(value) else to_si(float(value), units[name])
         for name, value in zip(frame["coefficient"], frame["value"], strict=True)

@@ -124,7 +124,7 @@ def _show_refused(refused: Refused, dark: bool) -> None:
         long = len(refused.source.text) > EDITABLE_CHARACTERS
         inputs.button("Mend it here", "toolpath.mend", "edit", _mend, refused, disabled=long)
         inputs.button("Leave it", "toolpath.leave", "close", _leave, type="tertiary")
-    level = (Finding("error", refused.line, refused.reason),) if refused.line else ()
+    level = (Finding("error", refused.reason, refused.line),) if refused.line else ()
     program_view(refused.source.text, level, dark, fixed=refused.line)
 
 

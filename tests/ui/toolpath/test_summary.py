@@ -52,11 +52,9 @@ def test_an_arc_is_one_move() -> None:
 
 
 def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
-    mild = Finding("ignored", 3, "M8 is left out: it moves nothing")
+    mild = Finding("ignored", "M8 is left out: it moves nothing", 3)
     assert finding_words(mild) == "line 3: M8 is left out: it moves nothing"
-    long = Finding(
-        "suspicious", 0, "the part is 4.0 x 2.0 mm across; if the program means inches, it is 101.6 x 50.8 mm"
-    )
+    long = Finding("suspicious", "the part is 4.0 x 2.0 mm across; if the program means inches, it is 101.6 x 50.8 mm")
     assert worst_first([mild, long])[0] is long
     said = finding_words(long)
     assert said == "the part is 4.0 x 2.0 mm across; if the program means inches …"
