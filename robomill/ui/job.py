@@ -15,7 +15,7 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import inputs, session
-from robomill.ui.ticks import heed_pages
+from robomill.ui.asked import heed_pages
 from robomill.ui.turns import Turn
 
 EVERY_S = 0.4

@@ -1,0 +1,35 @@
+"""A click on another page counts, whatever the page that is left still says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from screenshots import idle
+from server import Server
+
+pytestmark = pytest.mark.browser
+CLICKS = 5
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Address of pages that go on speaking until they are gone."""
+    server = Server(tmp_path_factory.mktemp("work"), page=Path(__file__).with_name("left_page.py"))
+    server.start()
+    yield server.url
+    server.stop()
+
+
+@pytest.mark.parametrize("speaking", ["part", "whole"])
+def test_a_page_that_was_clicked_comes_and_stays(page: Any, url: str, speaking: str) -> None:
+    for _ in range(CLICKS):
+        page.goto(f"{url}/{speaking}")
+        page.get_by_text("speaking").wait_for()
+        page.get_by_test_id("stSidebarNavLink").filter(has_text="other").click()
+        page.get_by_text("other 14").wait_for()
+        idle(page)
+        page.wait_for_timeout(300)
+        assert page.get_by_text("other 14").is_visible()
+        assert page.get_by_text("speaking").count() == 0

@@ -1,0 +1,97 @@
+"""What a page that has been left still says calls it back no more; everything else is asked for as before."""
+
+
+import pytest
+from streamlit.proto.ClientState_pb2 import ClientState
+
+from robomill.ui.asked import heeding_pages
+
+
+def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:
+    """What a browser says: the page it is on, how many boxes stand there, and which part of it is to run."""
+    made = ClientState(page_script_hash=page, fragment_id=part, is_auto_rerun=tick)
+    for box in range(boxes):
+        made.widget_states.widgets.add(id=f"box-{box}", double_value=1.0)
+    return made
+
+
+def link(page: str) -> ClientState:
+    """A click on a link: of the boxes of the page that is left nothing is said."""
+    return said(page, boxes=0)
+
+
+class Session:
+    """The runs that a server was asked for."""
+
+    def __init__(self) -> None:
+        self.runs: list[tuple[str, str, int]] = []
+
+    def say(self, what: ClientState | None) -> list[tuple[str, str, int]]:
+        """The runs after it: page, part, boxes."""
+        heeding_pages(lambda session, asked: session.runs.append(told(asked)))(self, what)
+        return self.runs
+
+
+def told(asked: ClientState | None) -> tuple[str, str, int]:
+    return (
+        ("same", "", 0)
+        if asked is None
+        else (asked.page_script_hash, asked.fragment_id, len(asked.widget_states.widgets))
+    )
+
+
+def test_a_page_runs_as_it_asks():
+    one = Session()
+    story = [link(""), said("start"), said("start", part="map"), said("start", part="bar", tick=True), None]
+    for what in story:
+        one.say(what)
+    assert one.runs == [told(what) for what in story]
+
+
+@pytest.mark.parametrize(
+    "late",
+    [said("start", part="bar", tick=True), said("start", part="picture"), said("start", part="picture", boxes=0)],
+    ids=["a tick", "a picture that looks again", "a part without boxes"],
+)
+def test_a_part_of_a_page_that_was_left_is_not_run(late: ClientState):
+    one = Session()
+    one.say(said("start"))
+    before = list(one.say(link("robot")))
+    assert one.say(late) == before
+
+
+def test_the_whole_of_a_page_that_was_left_is_the_page_that_was_asked_for():
+    """So nobody is left without a page, and what stands in its boxes is heard."""
+    one = Session()
+    one.say(said("start"))
+    one.say(link("robot"))
+    assert one.say(said("start", boxes=3))[-1] == ("robot", "", 3)
+    assert one.say(said("robot", part="map"))[-1] == ("robot", "map", 2)
+
+
+def test_back_and_forth():
+    one = Session()
+    for page in ("start", "robot", "start"):
+        assert one.say(link(page))[-1] == (page, "", 0)
+    assert one.say(said("start", part="bar", tick=True))[-1] == ("start", "bar", 2)
+    before = list(one.runs)
+    assert one.say(said("robot", part="bar", tick=True)) == before
+
+
+def test_a_session_that_nobody_has_asked_anything_yet_runs_what_it_is_told():
+    """The first request comes before anybody heeds, or from a page whose server was started again."""
+    assert Session().say(said("robot", part="map")) == [("robot", "map", 2)]
+
+
+def test_sessions_know_only_their_own_page():
+    one, other = Session(), Session()
+    one.say(link("robot"))
+    other.say(link("start"))
+    assert other.say(said("start", part="bar", tick=True))[-1] == ("start", "bar", 2)
+    assert one.say(said("robot", part="bar", tick=True))[-1] == ("robot", "bar", 2)
+
+
+def test_a_message_that_names_no_page_goes_through():
+    one = Session()
+    one.say(link("robot"))
+    assert one.say(said("", boxes=1))[-1] == ("", "", 1)
