@@ -1,6 +1,5 @@
 """What a page that has been left still says calls it back no more; everything else is asked for as before."""
 
-
 import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
 
