@@ -4,6 +4,7 @@ import time
 from typing import TextIO
 
 from robomill.progress import Progress
+from robomill.units import format_percent
 
 FIRST_S, EACH_S = 0.5, 0.2  # nothing is said of what is done sooner
 
@@ -20,7 +21,7 @@ class ProgressLine:
         if time.monotonic() < self._next or not self._stream.isatty():
             return
         self._next = time.monotonic() + EACH_S
-        text = f"{now.stage}: {100 * now.share:.0f} %"
+        text = f"{now.stage}: {format_percent(now.share)}"
         self._stream.write(f"\r{text:<{self._shown}}")
         self._stream.flush()
         self._shown = len(text)

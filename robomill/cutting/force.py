@@ -59,6 +59,7 @@ class ForceModel:
     follows_cut  whether it follows feed, depth and arc of engagement by itself, so that deflection can change it
     ends_with_material   whether the engagement, where it is computed, ends the force in air
     stated       whether its numbers are a person's, so that the page says where they come from
+    of_milling   whether it is what a milling cutter is pushed with, so that it says nothing of a tap
     takes, example   the law of the material rows it needs, and the sample it starts with
     frame        ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame
     """
@@ -70,6 +71,7 @@ class ForceModel:
     follows_cut: ClassVar[bool] = False
     ends_with_material: ClassVar[bool] = True
     stated: ClassVar[bool] = True
+    of_milling: ClassVar[bool] = True
     takes: ClassVar[type[Material] | None] = None
     example: ClassVar[str] = ""
     kinds: ClassVar[dict[str, type[ForceModel]]] = {}

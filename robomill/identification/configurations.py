@@ -15,7 +15,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, rotation_z, world_from_pose
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.units import format_many, format_si, to_si
+from robomill.units import format_many, format_percent, format_si, to_si
 
 OTHER_UNITS = {  # what a length is times when its number was meant in the one unit and stands under the other
     f"{meant} under a header in {said}": to_si(1.0, meant) / to_si(1.0, said)
@@ -72,7 +72,7 @@ def _other_unit(robot: Robot, poses: FloatArray, reached: BoolArray) -> str:
         scaled = np.concatenate([poses[:, :3] * factor, poses[:, 3:]], axis=1)
         share = inverse_kinematics(robot, pose_of(scaled), spin=spin).reached.mean()
         if share > max(0.5, 2.0 * reached.mean()):
-            return f"; read as {slip}, {share:.0%} of the poses would be reached"
+            return f"; read as {slip}, {format_percent(share)} of the poses would be reached"
     return ""
 
 

@@ -20,7 +20,7 @@ from robomill.identification.synthesis import simulated_tests
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.robot.model import Robot
-from robomill.units import format_si
+from robomill.units import format_percent, format_si
 
 SPREAD = 0.35  # standard deviation of the logarithm of a hidden compliance against the robot's own
 MAX_LOAD = 400.0  # N a student can hang on
@@ -113,7 +113,7 @@ class Laboratory:
         marks = np.interp(np.nan_to_num(error, nan=np.inf), [0.0, 0.1, 0.4], [1.0, 0.5, 0.0])
         points = 100.0 * float(marks.mean())
         worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
-        off = "was not seen" if np.isnan(error[worst]) else f"is {100 * error[worst]:.0f} % off"
+        off = "was not seen" if np.isnan(error[worst]) else f"is {format_percent(error[worst])} off"
         text = f"{points:.0f} of 100 points: joint {self.robot.joint_numbers[worst]} {off}."
         return Score(error, covered, points, text)
 

@@ -11,6 +11,7 @@ from robomill.identification.models import Model
 from robomill.identification.system import build_system
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
+from robomill.units import format_percent
 
 LENGTHS = {  # fields of the tests that are lengths, one or several of which a slip takes together
     "the load point": ("force_point",),
@@ -45,9 +46,10 @@ def length_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     (what, slip), least = min(found.items(), key=lambda each: each[1], default=(("", ""), np.inf))
     if not np.isfinite(stated) or least * BETTER > stated:
         return ()
+    was, now = format_percent(stated), format_percent(least)
     text = (
-        f"Read as {slip}, {what} would take what the fit leaves over from {stated:.0%} to {least:.0%} of the "
-        "displacements: is the unit right?"
+        f"Read as {slip}, {what} would take what the fit leaves over from {was} to {now} of the displacements: is the "
+        "unit right?"
     )
     return (Finding("suspicious", text, code="length-unit"),)
 

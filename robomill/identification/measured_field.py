@@ -22,7 +22,7 @@ from robomill.identification.map_error import between_points, noise_by_asymmetry
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_si
+from robomill.units import format_percent, format_si
 from robomill.vectors import angle_between
 
 GRID = 1e-6  # m: coordinates closer than this are one grid line
@@ -160,10 +160,10 @@ class MeasuredField:
         crooked, negative = self.asymmetry > ASYMMETRY, self.smallest <= 0.0
         if crooked.any():
             k = int(np.argmax(self.asymmetry))
+            worst = f"{format_percent(self.asymmetry[k])} at {_point(self.p[k])}"
             text = (
-                f"{int(crooked.sum())} of {len(self.p)} matrices are not symmetric (worst "
-                f"{100 * self.asymmetry[k]:.0f} % at "
-                f"{_point(self.p[k])}): an elastic arm's is, so look for a wrong sign, gauge or axis there."
+                f"{int(crooked.sum())} of {len(self.p)} matrices are not symmetric (worst {worst}): an elastic arm's "
+                "is, so look for a wrong sign, gauge or axis there."
             )
             found.append(Finding("suspicious", text, count=int(crooked.sum()), code="not-symmetric"))
         if negative.any():

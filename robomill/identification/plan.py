@@ -23,7 +23,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_si
+from robomill.units import format_percent, format_si
 
 MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 PRIOR = 1e-10  # information, scaled, that stands in where the tests have none
@@ -81,7 +81,8 @@ class Plan:
         with np.errstate(invalid="ignore", divide="ignore"):
             gain = np.where(np.isfinite(self.half_before), 1.0 - self.half_after / self.half_before, 1.0)
         k = int(np.nanargmax(np.where(self.half_before > 0, gain, -1.0)))
-        text = f"{len(self.F)} more tests should narrow the interval of {self.labels[k].label} by {100 * gain[k]:.0f} %"
+        interval = f"the interval of {self.labels[k].label} by {format_percent(gain[k])}"
+        text = f"{len(self.F)} more tests should narrow {interval}"
         if np.isfinite(self.path_before):
             was, now = format_si(self.path_before, "um"), format_si(self.path_after, "um")
             text += f", and the path's predicted deviation from ±{was} to ±{now} (one standard deviation)"

@@ -11,12 +11,13 @@ from robomill.units import format_plain, from_si
 DECIMALS = {"mm": 6, "in": 7}
 """Digits after the point of lengths, so that a program says where to go to about a nanometre."""
 
+STEP = 10  # from one line number to the next
 _FEED_DECIMALS = 4
 _ANGLE_DECIMALS = 6
 
 
-def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: str = "") -> str:
-    """The program of a path in {W}, in ``units`` ``"mm"`` (G21) or ``"in"`` (G20), with N in steps of ``numbers``.
+def write_gcode(path: Toolpath, *, units: str = "mm", title: str = "") -> str:
+    """The program of a path in {W}, in ``units`` ``"mm"`` (G21) or ``"in"`` (G20).
 
     Read again, it gives the same points, feeds and cutting moves; a start other than zero becomes a first rapid.
     A tilted tool axis becomes A and B: k = (sin B, -sin A cos B, cos A cos B). Raises ToolpathError for a cut
@@ -27,7 +28,7 @@ def write_gcode(path: Toolpath, *, units: str = "mm", numbers: int = 10, title: 
     slow = np.flatnonzero(path.cutting & ~(path.v_f > 0))
     if len(slow):
         raise ToolpathError(f"G-code: point {slow[0]} is cut with a feed of 0; give the path a feed above 0.")
-    writer = _Writer(units, numbers)
+    writer = _Writer(units)
     if title:
         writer.raw("(" + "".join(c for c in title if c.isprintable() and c not in "();") + ")")
     writer.line(["G21" if units == "mm" else "G20", "G90", "G94", "G17"])
@@ -67,9 +68,8 @@ def _angles(k: FloatArray) -> FloatArray:
 class _Writer:
     """Remembers what the machine knows, and writes only what is new to it."""
 
-    def __init__(self, units: str, step: int) -> None:
+    def __init__(self, units: str) -> None:
         self.digits = DECIMALS[units]
-        self.step = step
         self.lines: list[str] = []
         self.count = 0
         self.at: list[float] = [0.0] * 5
@@ -84,7 +84,7 @@ class _Writer:
     def line(self, words: list[str]) -> None:
         if words:
             self.count += 1
-            self.lines.append(" ".join(([f"N{self.count * self.step}"] if self.step else []) + words))
+            self.lines.append(" ".join([f"N{self.count * STEP}", *words]))
 
     def spindle(self, tool: int, speed: float, ccw: bool) -> None:
         """Change the tool and the spindle's speed and sense where they change."""

@@ -40,12 +40,10 @@ class Joint:
 def read_urdf(
     given: str | Path | bytes,
     *,
-    base: str | None = None,
     tip: str | None = None,
-    name: str | None = None,
     where: str = "",
 ) -> Robot:
-    """The serial arm from link ``base`` to link ``tip`` of a URDF file (defaults: the root and the only end link).
+    """The serial arm from the root to link ``tip`` of a URDF file (default: the only end link).
 
     ``given`` is its path or its bytes, ``where`` the file's name then. Frames {M} and {T} are those of the two links,
     and the flange is the tip too, if that stands on the last axis with its z along it, as makers' flanges do; joint
@@ -56,8 +54,8 @@ def read_urdf(
     text, where = read_text(given, RobotError, ROBOT, where)
     root = _root(text, where)
     links = [link.get("name", "") for link in root.findall("link")]
-    chain = _serial_chain([_joint(each, where) for each in root.findall("joint")], links, base, tip, where)
-    return _robot(chain, name or root.get("name") or Path(where).stem, where)
+    chain = _serial_chain([_joint(each, where) for each in root.findall("joint")], links, tip, where)
+    return _robot(chain, root.get("name") or Path(where).stem, where)
 
 
 def _root(text: str, where: str) -> ElementTree.Element:
@@ -109,8 +107,8 @@ def _joint(element: ElementTree.Element, where: str) -> Joint:
     )
 
 
-def _serial_chain(joints: list[Joint], links: list[str], base: str | None, tip: str | None, where: str) -> list[Joint]:
-    """Joints from base to tip, in order."""
+def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where: str) -> list[Joint]:
+    """Joints from the root to the tip, in order."""
     children: dict[str, list[Joint]] = {}
     parents: dict[str, Joint] = {}
     there = set(links)
@@ -128,15 +126,13 @@ def _serial_chain(joints: list[Joint], links: list[str], base: str | None, tip: 
     if tip is not None:
         if tip not in there:
             raise RobotError(f"{where}: has no link {tip!r}; its links are {_listed(links)}.")
-        return _walk_up(parents, tip, base, where)
+        return _walk_up(parents, tip, where)
     roots = [link for link in links if link not in parents]
-    if base is None and len(roots) != 1:
+    if len(roots) != 1:
         raise RobotError(
             f"{where}: {len(roots)} links ({_listed(roots)}) have no parent joint; a joint between them is missing."
         )
-    link = base if base is not None else roots[0]
-    if link not in there:
-        raise RobotError(f"{where}: has no link {link!r}; its links are {_listed(links)}.")
+    link = roots[0]
     moving = _above_what_moves(parents)
     chain: list[Joint] = []
     while children.get(link) and len(chain) <= len(parents):
@@ -167,14 +163,10 @@ def _above_what_moves(parents: dict[str, Joint]) -> set[str]:
     return moving
 
 
-def _walk_up(parents: dict[str, Joint], tip: str, base: str | None, where: str) -> list[Joint]:
+def _walk_up(parents: dict[str, Joint], tip: str, where: str) -> list[Joint]:
     chain: list[Joint] = []
     link = tip
-    while link != base:
-        if link not in parents:
-            if base is None:
-                break
-            raise RobotError(f"{where}: no joints lead from link {base!r} to link {tip!r}; one is missing.")
+    while link in parents:
         chain.append(parents[link])
         if len(chain) > len(parents):
             raise RobotError(f"{where}: the joints above link {tip!r} form a loop; only a serial arm can be read.")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
-from robomill.units import format_value, from_si
+from robomill.units import format_percent, format_value, from_si
 
 AXES = "XYZ"
 
@@ -109,7 +109,7 @@ def _reading(found: dict[str, Any]) -> str:
     value, allowed = format_value(found["value_mm"], "mm", sign=True), format_value(found["tolerance_mm"], "mm", 2)
     if not found["judged"]:
         return f"{value} at line {found['line']}, not judged by itself"
-    return f"{value} at line {found['line']}, {100 * found['share']:.0f} % of {allowed}"
+    return f"{value} at line {found['line']}, {format_percent(found['share'])} of {allowed}"
 
 
 def map_lines(record: dict[str, Any]) -> list[str]:
@@ -136,7 +136,9 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         shown = [float("nan") if v is None else from_si(v, "1e-7 rad/(N m)") for v in (value, *interval)]
         lines.append(f"{joint:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
     if record["cv_relative_error"] is not None:
-        lines.append(f"cross-validated error  {100 * record['cv_relative_error']:.1f} % of the measured displacement")
+        lines.append(
+            f"cross-validated error  {format_percent(record['cv_relative_error'], 1)} of the measured displacement"
+        )
     if record["bending_joints"]:
         lines.append(f"links bend at joint {', '.join(map(str, record['bending_joints']))}")
     for name, point in record["points"].items():
@@ -148,7 +150,7 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         band = record["band"]
         held = "too little was left out to check them"
         if band["held"] is not None:
-            held = f"they hold {100 * band['held']:.0f} % of what was left out"
+            held = f"they hold {format_percent(band['held'])} of what was left out"
         lines.append(f"95 % bands: {band['made_of']}; {held}")
     if record["unseen_joints"]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")

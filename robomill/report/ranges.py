@@ -16,6 +16,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread
 from robomill.simulation.tooth import tooth
 from robomill.simulation.verdict_words import Reading
+from robomill.units import format_percent
 
 Ends = tuple[float, float]
 NONE: Ends = (float("nan"), float("nan"))
@@ -50,7 +51,7 @@ def ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ..
         at = np.stack([turn.mean, turn.low, turn.high])
         found.append(_range(result, "as teeth come by", "computed", lambda i: at[:, i]))
     if known is not None:
-        found.append(_range(result, f"{LEVEL * 100:.0f} % band, {known.source}", "measured", *_band(result, known)))
+        found.append(_range(result, f"{format_percent(LEVEL)} band, {known.source}", "measured", *_band(result, known)))
     return tuple(found)
 
 

@@ -19,7 +19,7 @@ from robomill.units import format_many, format_percent, format_si, format_signif
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, box_grid
 from robomill.workspace.lines import border_and_middle_lines
-from robomill.workspace.reach import Box
+from robomill.workspace.reach import ReachBox
 
 
 def reproduction(evidence: Evidence) -> list[Row]:
@@ -71,7 +71,7 @@ def _jacobian(evidence: Evidence) -> Found:
 
 def _workspace(evidence: Evidence) -> Found:
     field = compliance_field(evidence.robot, box_grid(*PAPER_BOX, STEP))
-    share, size = float(field.reached.mean()), Box(*PAPER_BOX).size
+    share, size = float(field.reached.mean()), ReachBox(*PAPER_BOX).size
     return Found(
         f"{format_percent(share)} of the {format_many(size, 'mm', 0, ' × ')} box is in reach",
         share == 1.0 and np.allclose(size, BOX_SIZE),

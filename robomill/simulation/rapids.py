@@ -16,15 +16,15 @@ MOST_CELLS = 4_000_000  # a large block is looked at in larger cells than it is 
 
 
 class Crashes(NamedTuple):
-    """Source lines of rapids through material, in order: through what no cut removes (``lines``: what they leave is not
-    known), and through what is only cut ``later``; and of a ``first`` one that ends in it (0: it does not).
+    """Source lines of rapids through material, in order: through what no cut removes (``never``: what they leave is not
+    known), and through what is cut only later (``early``); and of a ``first`` one that ends in it (0: it does not).
 
     Where a machine stands before its first move is not known, and a program may be the end of a longer one, so the
     first is said and no more.
     """
 
-    lines: tuple[int, ...] = ()
-    later: tuple[int, ...] = ()
+    never: tuple[int, ...] = ()
+    early: tuple[int, ...] = ()
     first: int = 0
 
     def notes(self) -> tuple[Finding, ...]:
@@ -34,8 +34,8 @@ class Crashes(NamedTuple):
             text = "the first rapid ends in the material: the tool is taken to stand there, and to break nothing."
             found.append(Finding("warning", text, self.first, code="begins-in-material"))
         for lines, which, code in (
-            (self.lines, "no cut removes", "rapid-in-material"),
-            (self.later, "is cut only later", "rapid-before-cut"),
+            (self.never, "no cut removes", "rapid-in-material"),
+            (self.early, "is cut only later", "rapid-before-cut"),
         ):
             if lines:
                 also = f" (also line {named(lines[1:])})" if len(lines) > 1 else ""
@@ -57,6 +57,6 @@ def crashes(setup: SimulationSetup, path: Toolpath) -> Crashes:
     moves_made = Passes(np.hstack([start, path.p]), np.hstack([start_axis, path.k]))
     met = collisions(setup.stock_block, cell, tooling(setup, path), moves_made, (feed, rapid))
     first = int(path.block[begins]) if met.early[begins] else 0
-    met.early[begins] = met.left[begins] = False
-    lines, early = (set(path.block[some].tolist()) for some in (met.left, met.early))
-    return Crashes(tuple(sorted(lines)), tuple(sorted(early - lines)), first)
+    met.early[begins] = met.never[begins] = False
+    never, early = (set(path.block[some].tolist()) for some in (met.never, met.early))
+    return Crashes(tuple(sorted(never)), tuple(sorted(early - never)), first)

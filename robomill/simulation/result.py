@@ -205,12 +205,12 @@ class SimulationResult:
     @property
     def rapids(self) -> tuple[int, ...]:
         """Source lines of rapids through material that no cut removes: what they leave is not judged."""
-        return self._crashes.lines
+        return self._crashes.never
 
     @property
     def early_rapids(self) -> tuple[int, ...]:
         """Source lines of rapids through material that is cut only later."""
-        return self._crashes.later
+        return self._crashes.early
 
     @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:

@@ -149,7 +149,7 @@ def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:
     """Where the force has no model, and why."""
     force, path = bent.setup.force, bent.path
     turning = turns_in_cut(path, conditions) if force.follows_cut else ()
-    threads = threads_in_cut(path, conditions) if force.follows_cut or force.stated else ()
+    threads = threads_in_cut(path, conditions) if force.of_milling else ()
     return force.unjudged(conditions) + turning + threads + unknown_material(conditions)
 
 

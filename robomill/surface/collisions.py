@@ -17,7 +17,7 @@ class Met(NamedTuple):
     """Which moves (n,) bool run through material: what no move at feed before them removed, and what none ever does."""
 
     early: BoolArray
-    left: BoolArray
+    never: BoolArray
 
 
 def collisions(stock: Stock, cell: float, tooling: Tooling, moves: Passes, made: tuple[BoolArray, BoolArray]) -> Met:

@@ -10,6 +10,7 @@ from streamlit.runtime.scriptrunner import get_script_run_ctx
 
 from robomill.ui import inputs, job, pieces, session
 from robomill.ui.job import Job, Underway
+from robomill.units import format_percent
 
 FIRST_S = 0.3  # any work is waited for so long, lest the page changes twice
 ASK_S = 60.0  # what takes longer than this is asked for
@@ -57,7 +58,7 @@ def _supersede(group: str) -> None:
 
 def words(doing: str, now: Job) -> str:
     """How far a job is."""
-    return f"{now.progress.stage or doing}: {100 * now.progress.share:.0f} %{left(now)}"
+    return f"{now.progress.stage or doing}: {format_percent(now.progress.share)}{left(now)}"
 
 
 def left(now: Job) -> str:

@@ -19,7 +19,7 @@ from robomill.units import format_si
 from robomill.workspace.fields import ComplianceField, compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import LineDeviation, border_and_middle_lines
-from robomill.workspace.reach import Box
+from robomill.workspace.reach import ReachBox
 from robomill.workspace.region import FLAT, coarse_grid, flat_axis, largest_region, reach_extent
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.5)
@@ -34,15 +34,15 @@ def geometry_key(robot: Robot) -> str:
     return digest((robot.name, chain.T_0, chain.E, chain.sign, chain.offset, chain.prismatic, robot.limits))
 
 
-def region(robot: Robot, view: MapView) -> Box:
+def region(robot: Robot, view: MapView) -> ReachBox:
     """The box the maps cover. Raises WorkspaceError where nothing is in reach or a corner is on the wrong side."""
     if view.region == "own":
         if (view.upper < view.lower).any():
             axis = "XYZ"[int(np.argmax(view.upper < view.lower))]
             raise WorkspaceError(f"Region: {axis} ends before it begins; type the smaller number first.")
-        return Box(view.lower, view.upper)
+        return ReachBox(view.lower, view.upper)
     if view.region == "paper":
-        return Box(*PAPER_BOX)
+        return ReachBox(*PAPER_BOX)
     found = proposed(robot, view.region, view.A, view.B)
     if found is None:
         tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
@@ -65,7 +65,7 @@ def normals(robot: Robot) -> Mapping[str, str]:
     return NORMALS if axis is None else {"xyz"[axis]: NORMALS["xyz"[axis]]}
 
 
-def plane_at(robot: Robot, view: MapView, box: Box) -> tuple[str, float]:
+def plane_at(robot: Robot, view: MapView, box: ReachBox) -> tuple[str, float]:
     """(normal, coordinate m) of the plane in force: as chosen, else Z_M = 0 where that is inside, else the middle."""
     known = normals(robot)
     normal = view.normal if view.normal in known else next(iter(known))
@@ -78,7 +78,7 @@ def plane_at(robot: Robot, view: MapView, box: Box) -> tuple[str, float]:
     return normal, round(0.5 * (low + high), 3)
 
 
-def plane_step(robot: Robot, view: MapView, box: Box, normal: str) -> float:
+def plane_step(robot: Robot, view: MapView, box: ReachBox, normal: str) -> float:
     """Spacing of the cells, m: as typed, or about 1900 cells (fewer for arms solved numerically)."""
     if view.step is not None:
         return view.step
@@ -89,7 +89,7 @@ def plane_step(robot: Robot, view: MapView, box: Box, normal: str) -> float:
     return next((s for s in STEPS if s >= 0.97 * raw), STEPS[-1])
 
 
-def plane(robot: Robot, view: MapView, box: Box, normal: str, at: float) -> Grid:
+def plane(robot: Robot, view: MapView, box: ReachBox, normal: str, at: float) -> Grid:
     """The grid of the plane. Raises WorkspaceError where it has more cells than a picture takes."""
     step = plane_step(robot, view, box, normal)
     low, high = np.array(box.lower), np.array(box.upper)
@@ -105,7 +105,7 @@ def plane(robot: Robot, view: MapView, box: Box, normal: str, at: float) -> Grid
     return grid
 
 
-def solid(robot: Robot, box: Box, cells: int | None = None) -> Grid:
+def solid(robot: Robot, box: ReachBox, cells: int | None = None) -> Grid:
     """A coarse grid over the whole region, for voxels, boxes and scales that stay while the plane moves."""
     return coarse_grid(robot, box.lower, box.upper, cells)
 
@@ -116,7 +116,7 @@ def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
     return compliance_field(robot, grid, A, B)
 
 
-def overview(robot: Robot, view: MapView, box: Box) -> ComplianceField:
+def overview(robot: Robot, view: MapView, box: ReachBox) -> ComplianceField:
     """A coarse field over the whole region, for scales that stay while the plane moves."""
     grid = solid(robot, box, 700 if decoupled(robot) is not None else 150)
     return field(robot, grid, view.A, view.B)
@@ -137,13 +137,13 @@ def postures(robot: Robot, T_MT: FloatArray) -> FloatArray:
 
 
 @shared(lambda robot, box, z: (robot.digest(), box.lower, box.upper, z), "Lines")
-def lines(robot: Robot, box: Box, z: float) -> list[LineDeviation]:
+def lines(robot: Robot, box: ReachBox, z: float) -> list[LineDeviation]:
     """The six lines of Fig. 8 over the region's plane, from the cache."""
     points = 61 if decoupled(robot) is not None else 13
     return border_and_middle_lines(robot, box.lower[:2], box.upper[:2], z, points=points)
 
 
-def box_there(robot: Robot, A: float, B: float) -> tuple[Box | None, bool]:
+def box_there(robot: Robot, A: float, B: float) -> tuple[ReachBox | None, bool]:
     """The largest machining box, where it is known already, and whether it is."""
     found = commons.find(name_of(proposed, _by_tilt(robot, "largest", A, B)), NOTHING)
     return (None, False) if found is NOTHING else (found, True)
@@ -154,6 +154,6 @@ def _by_tilt(robot: Robot, kind: str, A: float, B: float) -> tuple[object, ...]:
 
 
 @shared(_by_tilt, "Looking for the largest box in reach")
-def proposed(robot: Robot, kind: str, A: float, B: float) -> Box | None:
+def proposed(robot: Robot, kind: str, A: float, B: float) -> ReachBox | None:
     """The largest machining box at this tilt, or with another ``kind`` the bounds of all that is reached."""
     return largest_region(robot, A, B) if kind == "largest" else reach_extent(robot, A, B)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
+ROW = 36  # pixels of a row of a table
 # What a file holds that is taken away, by the end of its name.
 MIME = {
     **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml"},
@@ -247,6 +248,11 @@ def _picked(key: str, take: Callable[[Mapping[str, Any]], None]) -> None:
         take(points[0])
 
 
+def rows_high(rows: int, most: int) -> int:
+    """Pixels that a table of so many rows needs with its head; at most ``most``, then it scrolls."""
+    return min(ROW * (rows + 1) + 2, most)
+
+
 def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "") -> None:
     """The numbers behind the figure ``key`` (default: its ``name``), to read and to take away as CSV; made when they
     are opened: figures are redrawn at every edit, their tables are not."""
@@ -260,7 +266,7 @@ def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "")
 
         frame = pd.DataFrame(dict(table()))
         shown = frame.head(SHOWN_ROWS)
-        st.dataframe(shown, hide_index=True, height=min(36 * (len(shown) + 1), 360), width=640)
+        st.dataframe(shown, hide_index=True, height=rows_high(len(shown), 360), width=640)
         if len(frame) > len(shown):
             note(f"Showing {len(shown)} of {len(frame)} rows; the file has all of them.")
         download("CSV", lambda: frame.to_csv(index=False), f"robomill-{name}.csv", f"csv:{name}")

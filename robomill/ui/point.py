@@ -1,17 +1,20 @@
-"""The point in hand of the maps and the lesson: which one it is, and the pose that is reached there."""
+"""The point in hand of the maps and the lesson: which one it is, the pose that is reached there, and its matrix C."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import streamlit as st
 
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.paper import SLOT, Point
 from robomill.robot.model import Robot
+from robomill.ui import pieces
 from robomill.ui.project import MapView
+from robomill.units import format_si, unit_label
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.reach import Box
+from robomill.workspace.reach import ReachBox
 
 FORCE = SLOT.force  # N
 
@@ -31,13 +34,19 @@ def in_hand(robot: Robot, point: Point, A: float, B: float) -> InHand:
     return InHand(point, at_pose(robot, found.theta), found.reason())
 
 
-def middle(box: Box) -> Point:
+def compliance_matrix(pose: PoseReport) -> None:
+    """C at a pose, under its heading."""
+    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
+    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in pose.C], list("XYZ"))
+
+
+def middle(box: ReachBox) -> Point:
     """The middle of a region, m."""
     x, y, z = (0.5 * (float(low) + float(high)) for low, high in zip(box.lower, box.upper, strict=True))
     return x, y, z
 
 
-def default_point(view: MapView, box: Box, known: ComplianceField) -> Point:
+def default_point(view: MapView, box: ReachBox, known: ComplianceField) -> Point:
     """The point in hand: as clicked, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:
         x, y, z = view.point.tolist()

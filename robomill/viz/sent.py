@@ -24,15 +24,15 @@ class Sent(BaseFigure):  # type: ignore[misc]
 
     def to_dict(self) -> dict[str, Any]:
         """Traces and layout in plotly's words, arrays as plotly.js reads them."""
-        return {"data": [packed(trace) for trace in self._chart.traces], "layout": packed(self._chart.layout)}
+        return {"data": [sendable(trace) for trace in self._chart.traces], "layout": sendable(self._chart.layout)}
 
 
-def packed(value: Any, name: str = "") -> Any:
+def sendable(value: Any, name: str = "") -> Any:
     """``value`` with its arrays packed; what is None in a dictionary is left out."""
     if isinstance(value, dict):
-        return {name: packed(item, name) for name, item in value.items() if item is not None}
+        return {name: sendable(item, name) for name, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
-        return [packed(item) for item in value]
+        return [sendable(item) for item in value]
     if isinstance(value, np.ndarray):
         return value.tolist() if name in LISTED else _packed(value)
     return value

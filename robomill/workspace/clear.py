@@ -16,14 +16,14 @@ from robomill.kinematics.transforms import pose_from_world
 from robomill.progress import checkpoint
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
-from robomill.workspace.reach import Box, largest_box
+from robomill.workspace.reach import ReachBox, largest_box
 
 SWING = np.pi / 2  # rad along an edge
 FINER = 3  # times finer is what a found box is looked through again with
 ROUNDS = 30
 
 
-def largest_clear_box(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> Box | None:
+def largest_clear_box(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ReachBox | None:
     """The largest box of cells of ``grid`` without a singular configuration at the tilt A, B rad; None without one.
 
     Each box found is looked through on a finer grid; cells that hold what the coarse one missed are taken out, and the
@@ -94,7 +94,7 @@ def _cells(parts: BoolArray, axes: list[int]) -> BoolArray:
     return parts.copy()
 
 
-def _largest_box_cells(clear: BoolArray, grid: Grid) -> Box | None:
+def _largest_box_cells(clear: BoolArray, grid: Grid) -> ReachBox | None:
     """The box of most volume all of whose cells are clear."""
     x, y, z = grid.x, grid.y, grid.z
     near = (x[:-1] if len(x) > 1 else x, y[:-1] if len(y) > 1 else y, z[:-1] if len(z) > 1 else z)
@@ -102,7 +102,7 @@ def _largest_box_cells(clear: BoolArray, grid: Grid) -> Box | None:
     return largest_box(clear, near, far)
 
 
-def _finer(grid: Grid, box: Box) -> Grid:
+def _finer(grid: Grid, box: ReachBox) -> Grid:
     """The part of a grid within a box of its cells, ``FINER`` times as fine."""
     axes = []
     for axis, low, high in zip((grid.x, grid.y, grid.z), box.lower, box.upper, strict=True):

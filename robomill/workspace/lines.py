@@ -12,7 +12,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics.inverse import IKResult, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.steadiness import hasty_turns, passages
-from robomill.kinematics.transforms import axis_from_tilt, pose_from_world
+from robomill.kinematics.transforms import pose_from_world
 from robomill.paper import SLOT
 from robomill.robot.model import Robot
 from robomill.units import format_si
@@ -71,13 +71,11 @@ def line_deviation(
     end: ArrayLike,
     force: float = SLOT.force,
     points: int = 61,
-    A: float = 0.0,
-    B: float = 0.0,
     name: str = "",
 ) -> LineDeviation:
     """Deviation along start (3,) to end (3,) m under ``force`` N on the tool, feed-normal: z_T x feed, to its left.
 
-    ``points`` equidistant points, tool tilt A, B rad.
+    ``points`` equidistant points, tool upright.
     """
     first = as_floats(start, "Line, start", (3,), error=WorkspaceError)
     last = as_floats(end, "Line, end", (3,), error=WorkspaceError)
@@ -86,14 +84,12 @@ def line_deviation(
     if length == 0.0 or points < 2:
         raise WorkspaceError("Line: it needs two different ends and at least two points.")
     feed = feed / length
-    normal = np.cross(axis_from_tilt(A, B), feed)
+    normal = np.cross([0.0, 0.0, 1.0], feed)
     if np.linalg.norm(normal) < 1e-9:
-        raise WorkspaceError(
-            "Line: the feed is along the tool axis, so it has no normal; tilt the tool or turn the line."
-        )
+        raise WorkspaceError("Line: the feed is along the tool axis, so it has no normal; turn the line.")
     normal /= np.linalg.norm(normal)
     p = first + np.linspace(0.0, length, points)[:, None] * feed
-    x_M = np.concatenate([p, np.broadcast_to([A, B], (points, 2))], axis=1)
+    x_M = np.concatenate([p, np.zeros((points, 2))], axis=1)
     found = inverse_kinematics(robot, pose_from_world(x_M), near="path")
     J_v = geometric_jacobian(robot, found.theta)[:, :3]
     F = force * normal

@@ -18,7 +18,7 @@ Axes = tuple[FloatArray, FloatArray, FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class ReachBox:
     """An axis-aligned box in {M}, m."""
 
     lower: FloatArray
@@ -56,7 +56,7 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
     return mask.reshape(grid.shape)
 
 
-def largest_box(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
+def largest_box(mask: BoolArray, low: Axes, high: Axes) -> ReachBox | None:
     """The largest box of things that are all True in ``mask`` (nx, ny, nz); None without one.
 
     Along each axis a thing reaches from ``low`` to ``high``. Largest by volume, exactly; an axis without length counts
@@ -92,10 +92,10 @@ def largest_box(mask: BoolArray, low: Axes, high: Axes) -> Box | None:
                         (high[0][i + w - 1], high[1][j_end], high[2][k + h - 1]),
                     ),
                 )
-    return None if corners is None else Box(frozen(corners[0]), frozen(corners[1]))
+    return None if corners is None else ReachBox(frozen(corners[0]), frozen(corners[1]))
 
 
-def against_paper(box: Box) -> dict[str, float | bool]:
+def against_paper(box: ReachBox) -> dict[str, float | bool]:
     """The box beside the paper's 1200 x 600 x 500 mm: whether that fits inside, and the ratio of the volumes."""
     return {"holds_paper_box": box.holds(PAPER_BOX_SIZE), "volume_ratio": box.volume / float(np.prod(PAPER_BOX_SIZE))}
 

@@ -8,7 +8,7 @@ from robomill.kinematics.forward import tool_pose
 from robomill.robot.model import Robot
 from robomill.workspace.clear import largest_clear_box
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
-from robomill.workspace.reach import Box, reach
+from robomill.workspace.reach import ReachBox, reach
 
 FLAT = 1e-6  # m: an arm that spans less than this along an axis moves in a plane
 SAMPLES = 20_000
@@ -25,12 +25,12 @@ def coarse_cells(robot: Robot) -> int:
     return 9000 if decoupled(robot) is not None else 700
 
 
-def reach_extent(robot: Robot, A: float = 0.0, B: float = 0.0) -> Box | None:
+def reach_extent(robot: Robot, A: float = 0.0, B: float = 0.0) -> ReachBox | None:
     """The bounding box of what is in reach at the tilt A, B (rad), to a coarse cell; None where nothing is."""
     tips = _tips(robot)
     low, high = tips.min(axis=0), tips.max(axis=0)
     if robot.n < 5:
-        return Box(frozen(low), frozen(high))
+        return ReachBox(frozen(low), frozen(high))
     grid = coarse_grid(robot, low, high)
     found = np.argwhere(reach(robot, grid, ((A, B),)))
     if len(found) == 0:
@@ -39,7 +39,7 @@ def reach_extent(robot: Robot, A: float = 0.0, B: float = 0.0) -> Box | None:
     axes = (grid.x, grid.y, grid.z)
     lower = [axes[i][max(first[i] - 1, 0)] for i in range(3)]
     upper = [axes[i][min(last[i] + 1, len(axes[i]) - 1)] for i in range(3)]
-    return Box(frozen(lower), frozen(upper))
+    return ReachBox(frozen(lower), frozen(upper))
 
 
 def coarse_grid(robot: Robot, lower: FloatArray, upper: FloatArray, cells: int | None = None) -> Grid:
@@ -60,7 +60,7 @@ def holds_paper_box(robot: Robot) -> bool:
     return float(reach(robot, box_grid(*PAPER_BOX, 0.1)).mean()) >= 0.95
 
 
-def largest_region(robot: Robot, A: float = 0.0, B: float = 0.0) -> Box | None:
+def largest_region(robot: Robot, A: float = 0.0, B: float = 0.0) -> ReachBox | None:
     """The largest machining box in reach that holds no singular configuration, on a coarse grid; None without one."""
     extent = reach_extent(robot, A, B)
     if extent is None:

@@ -103,23 +103,17 @@ def test_not_xml(tmp_path):
         read_urdf(path)
 
 
-def test_base_tip_and_name(tmp_path):
+def test_the_tip(tmp_path):
     body = LINKS + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "d")
     path = _write(tmp_path, body)
     assert read_urdf(path).n == 3
     assert read_urdf(path).name == "bad"
-    assert read_urdf(path, name="mine").title == "mine (from URDF)"
-    assert read_urdf(path, base="b", tip="d").n == 2
-    assert read_urdf(path, base="b").n == 2
+    assert read_urdf(path).title == "bad (from URDF)"
     assert read_urdf(path, tip="c").n == 2
     with pytest.raises(RobotError, match=r"bad.urdf: has no link 'x'; its links are a, b, c, d"):
         read_urdf(path, tip="x")
-    with pytest.raises(RobotError, match="has no link 'x'"):
-        read_urdf(path, base="x")
-    with pytest.raises(RobotError, match="no joints lead from link 'd' to link 'b'; one is missing"):
-        read_urdf(path, base="d", tip="b")
     with pytest.raises(RobotError, match="a robot needs 2 to 7"):
-        read_urdf(path, base="b", tip="b")
+        read_urdf(path, tip="a")
     with pytest.raises(RobotError, match=r"none.urdf: cannot be opened"):
         read_urdf(tmp_path / "none.urdf")
 

@@ -60,7 +60,7 @@ def test_what_points_that_go_one_after_the_other_say(seed):
     deep, count, after = by_points(moves, cutters, feed)
     for said, (depth, points) in (
         (found.early, (deep, count)),
-        (found.left, by_points(moves, cutters, feed, after)[:2]),
+        (found.never, by_points(moves, cutters, feed, after)[:2]),
     ):
         clear = ~feed & ((depth < -2 * FINE) | ((depth > 2 * FINE) & (points > 6)))
         assert clear.sum() >= 4

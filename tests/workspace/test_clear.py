@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 import robomill as rm
 from robomill.workspace.clear import _cell_of, _finer, _wrapped, clear_cells, largest_clear_box
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
-from robomill.workspace.reach import Box
+from robomill.workspace.reach import ReachBox
 from robomill.workspace.region import largest_region
 from tests.kinematics.oracles import numeric_jacobian, pose
 
@@ -187,7 +187,7 @@ def test_a_cell_is_clear_by_its_corners_edges_and_faces(monkeypatch, shape, seed
 
 def test_a_finer_grid_divides_every_step_in_three_and_knows_its_cells():
     grid = Grid([0.0, 1.0, 3.0, 6.0], [0.0, 2.0], [5.0])
-    fine = _finer(grid, Box(np.array([1.0, 0.0, 5.0]), np.array([6.0, 2.0, 5.0])))
+    fine = _finer(grid, ReachBox(np.array([1.0, 0.0, 5.0]), np.array([6.0, 2.0, 5.0])))
     np.testing.assert_allclose(fine.x, [1, 5 / 3, 7 / 3, 3, 4, 5, 6])
     np.testing.assert_allclose(fine.y, [0, 2 / 3, 4 / 3, 2])
     np.testing.assert_array_equal(fine.z, [5.0])

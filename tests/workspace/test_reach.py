@@ -10,7 +10,7 @@ from robomill.errors import WorkspaceError
 from robomill.workspace.fields import compliance_field
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
-from robomill.workspace.reach import Box, against_paper, largest_box, reach
+from robomill.workspace.reach import ReachBox, against_paper, largest_box, reach
 from tests.telling import told
 
 
@@ -105,20 +105,20 @@ def test_reach_is_every_tilt_at_every_point(robot):
 
 
 def test_boxes_hold_what_fits():
-    box = Box(np.array([0.0, 0.0, 0.0]), np.array([1.2, 0.6, 0.5]))
+    box = ReachBox(np.array([0.0, 0.0, 0.0]), np.array([1.2, 0.6, 0.5]))
     assert box.volume == pytest.approx(0.36)
     assert against_paper(box) == {"holds_paper_box": True, "volume_ratio": pytest.approx(1.0)}
     assert not box.holds(np.array([1.2, 0.6, 0.5001]))
     assert not box.holds(np.array([1.2001, 0.6, 0.5]))
-    assert against_paper(Box(box.lower, box.upper * [2, 1, 1]))["volume_ratio"] == pytest.approx(2.0)
+    assert against_paper(ReachBox(box.lower, box.upper * [2, 1, 1]))["volume_ratio"] == pytest.approx(2.0)
 
 
 def test_a_line_is_a_row_of_poses():
-    """Each point of a tilted line by itself: pose, force to the left of the feed, push times compliance."""
+    """Each point of a ramp by itself: pose, force to the left of the feed, push times compliance."""
     robot = rm.load_robot("slavkovic_5r")
-    start, end, A, B = np.array([-0.2, -1.4, 0.0]), np.array([0.3, -1.2, 0.05]), 0.1, 0.2
-    line = line_deviation(robot, start, end, 80.0, 5, A, B, name="tilted")
-    k = np.array([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)])
+    start, end = np.array([-0.2, -1.4, 0.0]), np.array([0.3, -1.2, 0.05])
+    line = line_deviation(robot, start, end, 80.0, 5, name="ramp")
+    k = np.array([0.0, 0.0, 1.0])
     feed = (end - start) / np.linalg.norm(end - start)
     left = np.cross(k, feed) / np.linalg.norm(np.cross(k, feed))
     np.testing.assert_allclose(line.feed, feed)

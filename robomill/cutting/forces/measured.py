@@ -101,6 +101,7 @@ class MeasuredForce(ForceModel):
     rank: ClassVar[int] = 5
     ends_with_material: ClassVar[bool] = False
     stated: ClassVar[bool] = False
+    of_milling: ClassVar[bool] = False
 
     record: ForceRecord
     cutoff: float | None = quantity(

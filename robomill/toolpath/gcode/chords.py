@@ -43,12 +43,11 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
         p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
             points
         )
-    cuts = program.is_kind("feed") | is_arc | is_tap
     return Toolpath(
         p=p,
         k=_axes(program, counts),
-        v_f=_spread(np.where(cuts, program.v_f, 0.0), counts, 0.0),
-        cutting=_spread(cuts, counts, False),
+        v_f=_spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0),
+        cutting=_spread(program.at_feed, counts, False),
         block=_spread(program.line, counts, program.line[0]),
         n_s=_spread(program.n_s, counts, program.n_s[0]),
         ccw=_spread(program.ccw, counts, program.ccw[0]),

@@ -335,21 +335,22 @@ def make_move(m, w, motion: int, end, row) -> int:
         refusal, u, v = arc_centre(m, w, motion, start, (end[first], end[second]))
         if refusal != 0:
             return refusal
+        m.motion = motion
         turn = turns_of(w, motion)
         if m.feed_mode == INVERSE_TIME:
             inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
         row.plane = m.plane
         write_arc(m, end, from_plane(m.plane, u, v, m.p[third]), turn, feed_speed(m), row)
     elif motion == LINE:
+        m.motion = motion
         if m.feed_mode == INVERSE_TIME:
             inverse_time(m, w, straight_length(m.p, end))
         write_straight(m, FEED, end, feed_speed(m), row)
     else:
+        m.motion = motion
         write_straight(m, TRAVERSE, end, 0.0, row)
-    row.thread = False  # the mode that was written down is the one before
     m.arc_not_allowed = False
     m.initial_level = math.nan
-    m.motion = motion
     for axis in range(6):
         m.p[axis] = end[axis]
     return 0

@@ -96,6 +96,11 @@ class Program:
         return arcs.Arcs(start, end, centre, self.plane[rows].astype(np.int64), self.sweep[rows])
 
     @cached_property
+    def at_feed(self) -> BoolArray:
+        """(m,) True for moves that cut: all but traverses and probes."""
+        return frozen((self.kind != TRAVERSE) & (self.kind != PROBE), bool)
+
+    @cached_property
     def length(self) -> FloatArray:
         """(m,) m: true length of each move, arcs by their arc length, taps there and back."""
         length = np.linalg.norm(self.end - self.start, axis=1)
@@ -107,7 +112,7 @@ class Program:
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray] | None:
         """Lowest and highest corner (3,) m of the tip at feed, arcs with their true extremes; None without any."""
-        at_feed = (self.kind != TRAVERSE) & (self.kind != PROBE)
+        at_feed = self.at_feed
         if not at_feed.any():
             return None
         lower, upper = np.full(3, np.inf), np.full(3, -np.inf)

@@ -16,7 +16,7 @@ from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import PROBE, TRAVERSE, Program
+from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
@@ -101,6 +101,7 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
             "it counts milliseconds (Fanuc, without a point) choose that dialect."
         )
         machine.findings.add("long-dwell", "suspicious", 0, text)
+    _doubt_length(machine, program)
     _doubt_spindle(machine, program)
     _doubt_size(machine, program)
     _doubt_spin(machine, program)
@@ -108,41 +109,44 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
 
 
 def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
-    """(m, 3) m: how far each move's tip stands from where it is told to go; cuts for which it does are warned of."""
+    """(m, 3) m: how far each move's tip stands from where it is told to go."""
     count = len(columns["line"])
     if not machine.lifts:
         return np.broadcast_to(np.zeros(3), (count, 3))
     lift = np.zeros((count, 3))
     for first, value in machine.lifts:
         lift[first:] = value
-    wrong = np.flatnonzero(lift.any(axis=1) & (columns["kind"] != TRAVERSE) & (columns["kind"] != PROBE))
-    for tool in np.unique(columns["tool"][wrong]):
-        row = int(wrong[columns["tool"][wrong] == tool][0])
-        lifted = float(lift[row, 2])
+    return frozen(lift)
+
+
+def _doubt_length(machine: Machine, program: Program) -> None:
+    """Warn of cuts with the length of another tool."""
+    wrong = np.flatnonzero(program.lift.any(axis=1) & program.at_feed) if machine.lifts else np.zeros(0, dtype=np.int64)
+    for tool in np.unique(program.tool[wrong]):
+        row = int(wrong[program.tool[wrong] == tool][0])
+        lifted = float(program.lift[row, 2])
         off = f"{format_si(abs(lifted), 'mm')} {'higher' if lifted > 0.0 else 'lower'}"
         message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {off} than is said"
-        machine.findings.add("wrong-length", "warning", int(columns["line"][row]), message)
-    return frozen(lift)
+        machine.findings.add("wrong-length", "warning", int(program.line[row]), message)
 
 
 def _doubt_spindle(machine: Machine, program: Program) -> None:
     """Note cuts with a spindle that stands still, and tools that are chosen and never changed to."""
-    cuts = program.is_kind("feed") | program.is_kind("arc")
-    still = np.flatnonzero(cuts & (program.n_s == 0.0))
+    still = np.flatnonzero(program.at_feed & (program.n_s == 0.0))
     if len(still) and program.n_s.any():
         message = "cuts with the spindle stopped; start it with S and M3 or M4 before"
         for line in program.line[still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
             machine.findings.add("spindle-stopped", "warning", int(line), message)
     elif len(still):
         machine.findings.add("no-spindle", "info", 0, "the spindle never turns: no S with M3 or M4")
-    if machine.selected and not program.tool.any() and cuts.any():
+    if machine.selected and not program.tool.any() and program.at_feed.any():
         message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
         machine.findings.add("no-change", "warning", 0, message)
 
 
 def _doubt_spin(machine: Machine, program: Program) -> None:
     """Say how C is read where a cut has one: a machine whose table or head swivels by C stands otherwise."""
-    spun = np.flatnonzero((program.kind != TRAVERSE) & (program.kind != PROBE) & (program.rotary[:, 2] != 0.0))
+    spun = np.flatnonzero(program.at_feed & (program.rotary[:, 2] != 0.0))
     leans = spun[program.rotary[spun, :2].any(axis=1)]
     if len(spun):
         message = (

@@ -282,7 +282,7 @@ def _readings(robot: Robot, tests: LoadTests | None) -> None:
             columns[f"F{axis}, N"] = tests.wrench[:, i]
         for i, axis in enumerate("xyz"):
             columns[f"d{axis}, mm"] = np.round(from_si(tests.displacement[:, i], "mm"), 4)
-        st.dataframe(columns, hide_index=True, height=min(36 * (len(tests) + 1) + 3, 320))
+        st.dataframe(columns, hide_index=True, height=pieces.rows_high(len(tests), 320))
         remark = "Readings of a virtual laboratory: synthetic, no measurement of a real robot."
         text = partial(load_tests_to_csv, tests, remark)
         pieces.download("CSV", text, "laboratory.csv", "identification.lab.csv")

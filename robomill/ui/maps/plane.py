@@ -21,7 +21,7 @@ class Region:
 
     robot: Robot
     view: MapView
-    box: reach.Box
+    box: reach.ReachBox
     unit: str
 
     @property

@@ -9,7 +9,7 @@ from robomill.compliance.components import COMPONENTS
 from robomill.paper import Point
 from robomill.ui import fields, pieces, shell
 from robomill.ui.arm import arm
-from robomill.ui.point import FORCE, InHand
+from robomill.ui.point import FORCE, InHand, compliance_matrix
 from robomill.units import (
     format_many,
     format_number,
@@ -152,8 +152,7 @@ def _joints(pose: PoseReport) -> None:
 
 
 def _matrix(pose: PoseReport, old: PoseReport) -> None:
-    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    pieces.matrix(_numbers(from_si(pose.C, "um/N")), list(AXES))
+    compliance_matrix(pose)
     change = from_si(pose.C - old.C, "um/N")
     if np.abs(change).max() > 5e-4:
         pieces.note("Change by the factors:")

@@ -133,7 +133,7 @@ def _nine(cut: Slice) -> None:
             k = COMPONENTS.index(c)
             shown = cut.slab(from_si(now.total[..., k], UM))
             change = shown - cut.slab(from_si(known.total[..., k], UM))
-            title = f"<b>C<sub>{'xyz'[i]}{'xyz'[j]}</sub></b><br>{span(shown)}" + _moved(change)
+            title = f"<b>C<sub>{'xyz'[i]}{'xyz'[j]}</sub></b><br>{extremes(shown)}" + _moved(change)
             row.append(Map(title, shown, "main" if view.common or i == j else "cross", unit_label(UM)))
         rows.append(row)
     about = (
@@ -152,7 +152,7 @@ def _nine(cut: Slice) -> None:
     )
 
 
-def span(values: FloatArray) -> str:
+def extremes(values: FloatArray) -> str:
     """The range of a map in words."""
     if not np.isfinite(values).any():
         return NOT_REACHED

@@ -34,10 +34,10 @@ from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
 from robomill.workspace.quantities import MapQuantity, map_quantities, map_quantity
-from robomill.workspace.reach import Box, against_paper
+from robomill.workspace.reach import ReachBox, against_paper
 
 
-def tiles(robot: Robot, view: MapView, box: Box, known: ComplianceField, unit: str) -> list[pieces.Tile]:
+def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceField, unit: str) -> list[pieces.Tile]:
     """Share in reach, least determinant, nearest limit, largest box."""
     share = float(known.reached.mean())
     det = np.abs(known.det_J[known.reached])
@@ -74,7 +74,7 @@ def box_size(size: FloatArray, unit: str) -> str:
     return format_many(sides, unit, 0, " × ", with_unit=False)
 
 
-def _against(box: Box, robot: Robot, unit: str) -> str:
+def _against(box: ReachBox, robot: Robot, unit: str) -> str:
     if fields.flat(robot) is not None:
         return "in the plane of the arm"
     ratio = against_paper(box)
@@ -130,7 +130,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     flat = fields.flat(robot) is not None
     for name, box, kind in (
         ("largest without a singularity", largest, "computed"),
-        ("the paper's", Box(*PAPER_BOX), "paper"),
+        ("the paper's", ReachBox(*PAPER_BOX), "paper"),
     ):
         if box is None or (flat and kind == "paper"):
             continue

@@ -9,10 +9,10 @@ from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, session
+from robomill.ui import inputs, pieces, point, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import Project
-from robomill.units import format_percent, format_si, from_si, to_si, unit_label
+from robomill.units import format_percent, format_si, from_si, to_si
 from robomill.viz.theme import joint_colours
 
 
@@ -91,17 +91,12 @@ def det_words(pose: PoseReport) -> str:
 
 
 def compliance_matrix(now: PoseReport, old: PoseReport | None) -> None:
-    """C at the pose in um/N, and how it changed."""
-    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    _matrix(now)
+    """C at the pose, and how it changed."""
+    point.compliance_matrix(now)
     pieces.note("Row: where the tip goes. Column: where you push.")
     if old is not None:
         st.markdown("**Before the last change**")
-        _matrix(old)
-
-
-def _matrix(pose: PoseReport) -> None:
-    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in pose.C], ["X", "Y", "Z"])
+        point.compliance_matrix(old)
 
 
 def share_bars(pose: PoseReport, dark: bool) -> None:

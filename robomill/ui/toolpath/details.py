@@ -43,11 +43,11 @@ def findings_list(findings: Sequence[Finding]) -> None:
     st.dataframe(
         frame,
         hide_index=True,
-        height=min(36 * (len(frame) + 1) + 2, 290),
+        height=pieces.rows_high(len(frame), 290),
         key="toolpath.findings",
         on_select=take,
         selection_mode="single-row",
-        row_height=36,
+        row_height=pieces.ROW,
         column_config={
             "level": st.column_config.TextColumn("level", width=86),
             "line": st.column_config.TextColumn("line", width=60),

@@ -24,7 +24,7 @@ def lines_inputs(source: LinesSource, view: View) -> None:
         inputs.Sheet(
             columns={c: st.column_config.NumberColumn(c, format="%.6g", width=50) for c in COLUMNS},
             dynamic=True,
-            height=min(36 * (len(source.start) + 2) + 2, 400),
+            height=pieces.rows_high(len(source.start) + 1, 400),
         ),
     )
     pieces.note(

@@ -9,6 +9,7 @@ from robomill.errors import RobomillError
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import beside, job, session
 from robomill.ui.job import Job
+from robomill.units import format_percent
 
 KEY = "toolpath.reading"
 BACKGROUND_CHARACTERS = 1_500_000
@@ -42,4 +43,4 @@ def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeS
 
 def _words(made: Job) -> str:
     size = len(made.about.text) / 1e6
-    return f"Reading {made.about.name}: {100 * made.progress.share:.0f} % of {size:.1f} MB{beside.left(made)}"
+    return f"Reading {made.about.name}: {format_percent(made.progress.share)} of {size:.1f} MB{beside.left(made)}"

@@ -93,7 +93,7 @@ def _table() -> None:
             },
             locked=("line",),
             dynamic=True,
-            height=min(36 * (len(sketch_source().sketch.elements) + 2) + 2, 330),
+            height=pieces.rows_high(len(sketch_source().sketch.elements) + 1, 330),
         ),
     )
     pieces.note(
@@ -103,15 +103,15 @@ def _table() -> None:
 
 
 def _export() -> None:
-    """The path as a G-code file."""
+    """The path as a G-code file, in the unit of the screen."""
     if not sketch_source().sketch.elements:
         return
     # Taken now: when the file is asked for, there is no session to ask for its project.
-    setup = session.project().setup
+    setup, unit = session.project().setup, session.project().view.length
 
     def text() -> str:
         from robomill.io.gcode_out import write_gcode
 
-        return write_gcode(setup.toolpath, title=f"sketch, {setup.name}")
+        return write_gcode(setup.toolpath, units=unit, title=f"sketch, {setup.name}")
 
     pieces.download("G-code of this sketch", text, "sketch.nc", "toolpath.export")
