@@ -62,6 +62,12 @@ def test_ball_is_settled_and_can_be_replaced():
     assert BALL.replace(flutes=4) == Cutter("ball", 8e-3, corner_radius=4e-3, flutes=4)
 
 
+def test_a_copy_keeps_the_corner_that_is_not_changed():
+    assert BULL.replace(diameter=6e-3) == Cutter("bull", 6e-3, corner_radius=1e-3)
+    assert CHAMFER.replace(flutes=3) == Cutter("chamfer", 8e-3, tip_angle=math.pi / 2, tip_diameter=2e-3, flutes=3)
+    assert BALL.replace(kind="bull", corner_radius=2e-3) == Cutter("bull", 8e-3, corner_radius=2e-3)
+
+
 def test_title():
     assert FLAT.title == "8.00 mm flat end mill, 3 flutes"
 

@@ -101,6 +101,20 @@ def test_outliers_are_beyond_what_chance_allows_once_in_a_hundred_data_sets():
     assert found[0].residual == pytest.approx(-0.2, rel=0.05), "the worse of a test's two readings"
 
 
+def test_an_equation_and_its_noise_in_another_unit_is_as_much_of_an_outlier():
+    """Each row multiplied by a number of its own, its noise with it: the same tests, as many times too far off."""
+    rng = np.random.default_rng(9)
+    A, unit = rng.normal(size=(60, 3)), 10.0 ** rng.uniform(-1.0, 1.0, 60)
+    b = A @ [1.0, 2.0, 3.0] + 1e-3 * rng.normal(size=60)
+    b[[4, 9]] += 0.05, -0.2
+    told = diagnostics.outliers(made(A, b), np.arange(60))
+    again = diagnostics.outliers(replace(made(A * unit[:, None], b * unit), noise=unit), np.arange(60))
+    assert [o.row for o in told] == [o.row for o in again] == [9, 4]
+    for one, other in zip(told, again, strict=True):
+        assert other.times == pytest.approx(one.times)
+        assert other.residual == pytest.approx(one.residual * unit[one.row])
+
+
 def test_exactly_three_equations_to_spare_are_enough():
     rng = np.random.default_rng(4)
     A = rng.normal(size=(6, 3))

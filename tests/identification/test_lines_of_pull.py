@@ -78,6 +78,42 @@ def test_rows_that_cannot_be_are_named_and_do_no_harm(rows):
     assert {"pull-suspect", "pull-load-point"} <= codes(found, tests)
 
 
+def aimed_at(tests, rows, places):
+    """The pulls of some rows turned towards places (k, 3) m in {M}, from the stated load point."""
+    T = tests.tool_poses(ROBOT)[rows]
+    way = places - T[:, :3, 3] - np.einsum("mij,mj->mi", T[:, :3, :3], tests.force_point[rows])
+    return changed(
+        tests,
+        rows,
+        lambda w: (
+            np.linalg.norm(w, axis=1)[:, None] * np.pad(way / np.linalg.norm(way, axis=1)[:, None], ((0, 0), (0, 3)))
+        ),
+    )
+
+
+def test_a_line_that_misses_by_more_than_chance_is_named_whichever_row_it_is():
+    """By 55 mm, where 1 N of noise on 400 N and a cable of 4 m make 10 mm: 4.1 times that is one chance in a hundred
+    for any of 43 rows."""
+    rig = Rig(force_noise=1.0, pull=(400.0, 400.0))
+    tests = read(make(ARM, rig, 43, seed=2), rig, 0 * OFF)
+    pulley = np.array(rig.pulleys[0])
+    for row in range(0, 43, 5):
+        u = tests.wrench[row, :3] / 400.0
+        beside = np.cross(u, [0.0, 0.0, 1.0])
+        missed = aimed_at(tests, [row], (pulley + 0.055 * beside / np.linalg.norm(beside))[None])
+        assert tests.row[row] in lines_of_pull(ROBOT, missed).suspects
+
+
+def test_rows_that_hardly_meet_make_no_pulley_of_their_own():
+    """Five of 43 rows aim within some 80 mm at another place; what the others know to 10 mm they do not share."""
+    rig, rows = Rig(force_noise=1.0, pull=(400.0, 400.0)), np.arange(3, 43, 8)
+    tests = read(make(ARM, rig, 43, seed=2), rig, 0 * OFF)
+    around = np.array(PULLEYS[1]) + 0.08 * np.random.default_rng(1).standard_normal((len(rows), 3))
+    found = lines_of_pull(ROBOT, aimed_at(tests, rows, around))
+    np.testing.assert_allclose(found.pulley, rig.pulleys, atol=0.02)
+    assert set(tests.row[rows]) <= set(found.suspects)
+
+
 @pytest.mark.slow
 def test_good_rows_are_rarely_called_suspect():
     alarms = 0

@@ -219,6 +219,15 @@ def test_points_that_are_off_are_offered(off_force, off_gauge, offered):
     assert taken.offer is None
 
 
+def test_an_arm_a_thousand_times_as_stiff_is_offered_the_same_points():
+    rig = Rig()
+    tests = read("kuka_kr500", make(ARMS["kuka_kr500"][0], rig, 43, seed=10), rig, OFF_FORCE, 0 * OFF_GAUGE)
+    stiff = rm.identify(ARMS["kuka_kr500"][1], replace(tests, displacement=1e-3 * tests.displacement))
+    assert stiff.offer is not None
+    assert stiff.offer.fit_points == "force"
+    assert stiff.offer.points[0].off == pytest.approx(0.150, abs=0.02)
+
+
 def test_right_points_are_not_offered_to_be_moved():
     arm, robot = ARMS["kuka_kr500"]
     rig = Rig()

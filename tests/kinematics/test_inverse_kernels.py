@@ -8,14 +8,16 @@ import pytest
 import robomill as rm
 from robomill.kinematics.choice import every
 from robomill.kinematics.decoupled import branch_names, decoupled
-from robomill.kinematics.transforms import rotation_z, transform
+from robomill.kinematics.transforms import rotation_y, rotation_z, transform
 from tests.kinematics.oracles import every_choice, pose
 
 WIDE = {5: np.tile([-3.2, 3.2], (5, 1)), 6: np.tile([-3.2, 3.2], (6, 1))}
 
 
 def arms():
-    return [rm.load_robot(name) for name in ("slavkovic_5r", "kuka_kr500", "fanuc_r2000ic")]
+    robots = [rm.load_robot(name) for name in ("slavkovic_5r", "kuka_kr500", "fanuc_r2000ic")]
+    on_a_wall = transform(rotation_y(1.2) @ rotation_z(-0.4), [0.3, -0.7, 1.1])
+    return [*robots, robots[1].replace(T_base=on_a_wall, name="kuka on a wall")]
 
 
 @pytest.mark.parametrize("robot", arms(), ids=lambda r: r.name)

@@ -77,6 +77,21 @@ def test_what_a_sensor_reads_in_the_air_is_no_cut(air, metal, suspected):
     assert ("force-pulls" in {note.code for note in run.notes}) == suspected
 
 
+@pytest.mark.parametrize(("air", "metal", "suspected"), [(80.0, -30.0, False), (-80.0, 30.0, True)])
+def test_what_a_sensor_reads_on_the_way_back_through_the_groove_is_no_cut(air, metal, suspected):
+    """Into the block for two seconds, and back over the floor just cut: the way back meets nothing."""
+    low = 1e3 * float(SETUP.stock_block.lower[0])
+    t = np.arange(0.0, 4.5, 0.01)
+    F = np.column_stack([np.where(t < 2.0, metal, air), np.full(len(t), 100.0), 0.0 * t])
+    there = GCodeSource(
+        f"G21 G90 S12000 M3\nG0 X{low - 5} Y0 Z5\nG0 Z-2\nG1 X{low + 35} F1200\nX{low - 5}\nG0 Z18\nM2\n"
+    )
+    force = MeasuredForce(ForceRecord(t, F), cutoff=None)
+    run = rm.simulate(SETUP.replace(source=there, force=force, engagement=True))
+    assert (run.judged & ~run.conditions.engaged).sum() >= 0.4 * run.judged.sum() > 0
+    assert ("force-pulls" in {note.code for note in run.notes}) == suspected
+
+
 @pytest.mark.parametrize("turns_with", ["robot", "part"])
 def test_columns_in_x_y_z_turn_with_the_sensor(turns_with):
     rows = "\n".join(f"{0.1 * n:.1f},-30,100,0" for n in range(80))

@@ -106,6 +106,26 @@ def test_columns_are_left_by_the_lowest_stamp_and_know_the_run_that_made_them(ki
     np.testing.assert_allclose(by_maker, dexels.heights[i, j, 0], atol=5e-6)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_columns_are_left_by_the_lowest_stamp_where_runs_begin_anew_and_tools_change(seed):
+    """Up, down and straight down; the next run begins where this one ends, or elsewhere, or with another cutter."""
+    rng = np.random.default_rng(seed)
+    moves, at, kind = [], None, "flat"
+    for _ in range(8):
+        here = rng.uniform([0, 0, -4], [24, 16, -1]) if at is None or rng.random() < 0.4 else at
+        there = rng.uniform([0, 0, -4], [24, 16, -1])
+        there = np.where([False, False, rng.random() < 0.6], here, there)
+        there[:2] = here[:2] if rng.random() < 0.15 else there[:2]
+        kind = str(rng.choice(list(CUTTERS))) if rng.random() < 0.25 else kind
+        moves, at = [*moves, (CUTTERS[kind], here, there, UP)], there
+    world = world_of(moves)
+    for r in range(len(moves)):
+        cut_run(world, r, False)
+    x, y = centres(world.dexels)
+    expected = np.minimum(np.min([stamped(move, x, y) for move in moves], axis=0), 0.0)
+    np.testing.assert_allclose(world.dexels.heights[..., 0], expected, atol=8e-6)
+
+
 @pytest.mark.parametrize("lean", [(0.4, 0.0), (0.0, -0.5), (-0.3, 0.35)])
 @pytest.mark.parametrize("kind", ["flat", "ball"])
 def test_a_leaning_run_takes_its_body_out_of_the_columns(kind, lean):

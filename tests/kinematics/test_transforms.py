@@ -1,0 +1,67 @@
+"""Rotations and poses against SciPy's rotations and NumPy's inverse."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from robomill.kinematics.transforms import (
+    axis_from_tilt,
+    invert,
+    pose_from_world,
+    rotation_about,
+    rotation_x,
+    rotation_y,
+    rotation_z,
+    tilt_from_axis,
+    transform,
+    translation,
+    turn_between,
+    world_from_pose,
+)
+
+RNG = np.random.default_rng(20261122)
+VECTORS = np.concatenate(
+    [RNG.normal(size=(40, 3)), [[0, 0, 0], [1e-9, 0, 0], [0, 2e-4, 0], [0, 0, 3.1], [0, -4.0, 1.0]]]
+)
+
+
+@pytest.mark.parametrize(("turn", "axis"), [(rotation_x, "x"), (rotation_y, "y"), (rotation_z, "z")])
+def test_turns_about_the_axes(turn, axis):
+    angles = np.linspace(-4.0, 4.0, 17)
+    np.testing.assert_allclose(turn(angles), Rotation.from_euler(axis, angles[:, None]).as_matrix(), atol=1e-15)
+
+
+def test_a_turn_about_a_vector_by_its_length():
+    np.testing.assert_allclose(rotation_about(VECTORS), Rotation.from_rotvec(VECTORS).as_matrix(), atol=1e-14)
+    np.testing.assert_array_equal(rotation_about(VECTORS[3]), rotation_about(VECTORS)[3])
+
+
+def test_the_inverse_of_a_pose_undoes_it():
+    T = transform(rotation_about(VECTORS), RNG.normal(size=(len(VECTORS), 3)))
+    np.testing.assert_allclose(invert(T), np.linalg.inv(T), atol=1e-12)
+    np.testing.assert_array_equal(translation([1.0, 2.0, 3.0]) @ [4.0, 5.0, 6.0, 1.0], [5.0, 7.0, 9.0, 1.0])
+
+
+def test_the_angle_between_two_turns_and_between_their_axes():
+    R, Q = Rotation.from_rotvec(VECTORS), Rotation.from_rotvec(VECTORS[::-1] * 1.1)
+    whole = turn_between(R.as_matrix(), Q.as_matrix(), True)
+    np.testing.assert_allclose(whole, (R.inv() * Q).magnitude(), atol=2e-8)
+    z, k = R.as_matrix()[..., 2], Q.as_matrix()[..., 2]
+    of_axes = np.arctan2(np.linalg.norm(np.cross(z, k), axis=1), (z * k).sum(axis=1))
+    np.testing.assert_allclose(turn_between(R.as_matrix(), Q.as_matrix(), False), of_axes, atol=1e-14)
+    small = Rotation.from_rotvec([0.0, 1e-9, 0.0]).as_matrix()
+    assert turn_between(np.eye(3), small, True) == pytest.approx(1e-9, rel=1e-6)
+
+
+def test_world_coordinates_are_a_point_and_turns_about_x_then_the_new_y():
+    x_M = np.column_stack([RNG.normal(size=(50, 3)), RNG.uniform(-3.1, 3.1, 50), RNG.uniform(-1.5, 1.5, 50)])
+    T = pose_from_world(x_M)
+    np.testing.assert_allclose(T[..., :3, :3], Rotation.from_euler("XY", x_M[:, 3:]).as_matrix(), atol=1e-15)
+    np.testing.assert_array_equal(T[..., :3, 3], x_M[:, :3])
+    spun = T @ transform(rotation_z(0.7), np.zeros(3))
+    np.testing.assert_allclose(world_from_pose(spun), x_M, atol=1e-14)
+    np.testing.assert_allclose(axis_from_tilt(*x_M.T[3:]), T[..., :3, 2], atol=1e-15)
+    along_x = tilt_from_axis([[1.0, 0.0, 0.0], [-1.0, 1e-13, 0.0]])
+    np.testing.assert_allclose(along_x, [[0.0, np.pi / 2], [0.0, -np.pi / 2]], atol=1e-12)
