@@ -64,6 +64,20 @@ def test_bounds_are_those_of_a_general_solver(seed):
     np.testing.assert_allclose(fit.free, np.linalg.lstsq(A, b, rcond=None)[0], atol=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_readings_that_a_bounded_solution_made_are_met_where_columns_all_but_make_up_for_one_another(seed):
+    """A column that is the sum of two others to the eleventh digit, and one without a bound that is below zero."""
+    rng = np.random.default_rng(seed)
+    A = rng.normal(size=(8, 4))
+    A[:, 1] = A[:, 0] + A[:, 3] + 1e-11 * rng.normal(size=8)
+    b = A @ [3.0, 0.02, -2.0, 0.01]
+    signed = np.array([False, False, True, False])
+    fit = fitted(A, b, signed)
+    np.testing.assert_allclose(A @ fit.x, b, atol=1e-9)
+    assert fit.x[2] == pytest.approx(-2.0)
+    assert (fit.x[~signed] >= 0.0).all()
+
+
 def test_intervals_are_student_t_and_cut_at_zero():
     A, b = problem(e=12, noise=3.0)
     b = -b

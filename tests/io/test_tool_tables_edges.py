@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robomill.io.tool_tables import SMALL, read_tool_table
+from robomill.errors import CuttingError
+from robomill.io.tool_tables import LONGEST_LINE, SMALL, read_tool_table
 
 
 def test_a_table_without_diameters_is_not_doubted() -> None:
@@ -26,3 +27,14 @@ def test_a_diameter_of_nothing_is_none_and_one_below_it_compensates_to_the_other
     assert table[1].cutter is None
     assert table[2].cutter is not None
     assert table[2].cutter.diameter == pytest.approx(6e-3)
+
+
+@pytest.mark.parametrize("longer", [0, 1])
+def test_a_tool_fills_a_line_of_the_longest_and_no_longer_one_save_with_words_for_people(longer: int) -> None:
+    tool = "T1 D6 Z2"
+    line = tool + " " * (LONGEST_LINE - len(tool) + longer) + ";" + 600 * "a"
+    if longer:
+        with pytest.raises(CuttingError, match=rf"line 1: it has {LONGEST_LINE + 1} characters"):
+            read_tool_table(line + "\n")
+    else:
+        assert read_tool_table(line + "\n")[1].diameter == pytest.approx(6e-3)
