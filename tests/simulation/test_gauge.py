@@ -12,7 +12,7 @@ import robomill as rm
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
-from robomill.simulation.gauge import Readings
+from robomill.simulation.gauge import Readings, gauge
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -214,6 +214,15 @@ def test_walls_count_by_their_length():
     assert bent.verdict.level == "out"
     half = pushed(run(*PARTS["slot"]), left=np.where(run(*PARTS["slot"]).path.p[:, 0] > -5e-3, 0.4e-3, 0.1e-3))
     assert half.verdict.wall.share_out == pytest.approx(0.5, abs=0.03)
+
+
+@pytest.mark.parametrize("corner", [0.5e-3, 1.5e-3])
+def test_a_slot_has_as_much_wall_whatever_the_corner_of_its_cutter(corner):
+    """Both sides from the edge of the block to where the cutter's axis stops."""
+    bull = Cutter("bull", 2 * R, corner_radius=corner)
+    walls = gauge(pushed(run(*PARTS["slot"], cutter=bull), left=0.1e-3)).walls
+    assert walls.length.sum() == pytest.approx(2 * 50e-3, abs=2.5e-3)
+    assert walls.length[walls.error > 0.09e-3].sum() == pytest.approx(walls.length.sum())
 
 
 def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -73,6 +74,18 @@ def test_an_axis_turns_in_steps_of_two_degrees_on_its_way() -> None:
     np.testing.assert_allclose(path.k, expected, atol=1e-12)
     np.testing.assert_allclose(np.diff(path.p[:16, 0]), 10e-3 / 15)
     np.testing.assert_allclose(path.p[15], [10e-3, 0, 0])
+
+
+@pytest.mark.parametrize("since", [0, 3])
+def test_the_path_is_the_tips_which_stands_off_the_told_points(since: int) -> None:
+    """From a move on another tool is in the spindle: lines, arcs, taps and turns are where its tip goes."""
+    program = interpret(WALK.replace("G0 Z9", "G1 X30 A20\nG0 Z9"))
+    lift = np.where(np.arange(len(program))[:, None] >= since, [1e-3, -2e-3, 7e-3], 0.0)
+    told, path = to_toolpath(program, 1e-5), to_toolpath(replace(program, lift=lift), 1e-5)
+    np.testing.assert_array_equal(path.block, told.block)
+    moved = np.where(np.isin(path.block, program.line[since:])[:, None], [1e-3, -2e-3, 7e-3], 0.0)
+    moved[0] = lift[0]
+    np.testing.assert_allclose(path.p, told.p + moved, atol=1e-12)
 
 
 def test_the_tool_axis_is_that_of_the_rotations() -> None:

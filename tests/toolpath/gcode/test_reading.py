@@ -153,7 +153,11 @@ def test_report_and_moves(tmp_path: Path) -> None:
 
 def test_progress_and_cancel() -> None:
     text = "G21 F100\n" + "G1 X1\nX2\n" * 100_000
-    assert len(told(lambda: interpret(text))["Reading the program"]) > 2
+    shares = told(lambda: interpret(text))["Reading the program"]
+    lines = np.array(shares) * (text.count("\n") + 1)
+    np.testing.assert_allclose(np.diff(lines)[:-1], lines[0], rtol=0.01)  # as often, all the way
+    assert len(shares) > 2
+    assert shares[0] < 0.5 < shares[-1]
     with pytest.raises(Cancelled), watched(Progress(stop=lambda: True)):
         interpret(text)
 
