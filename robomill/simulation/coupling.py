@@ -46,8 +46,8 @@ class Settled:
 def settle(g: Callable[[FloatArray], FloatArray], start: FloatArray, free: FloatArray) -> Settled:
     """Solve g(x) = x near ``start`` (3,) m, to ``TOLERANCE`` in every component; ``free`` (3,) m is x without a force.
 
-    Broyden's method on g(x) - x, whose first step is x <- g(x); where it does not close in, a bracket on the way from
-    ``free`` to where the force there would bend the tool. A g that is not a number ends it.
+    Broyden's method on g(x) - x, whose first step is x <- g(x); where it does not close in, a bracket between
+    where the force bends the tool from ``free`` and from there. A g that is not a number ends it.
     """
     found = _by_broyden(g, start)
     if found.agreed or not np.isfinite(found.rest):
@@ -82,41 +82,45 @@ def _by_broyden(g: Callable[[FloatArray], FloatArray], start: FloatArray) -> Set
 
 
 def _by_bracket(g: Callable[[FloatArray], FloatArray], free: FloatArray) -> Settled:
-    """Halve the way from ``free`` to where the force would bend the tool until its ends are one place; they may push
-    differently. Where both together push another way than that, go that way."""
-    way = g(free) - free
-    found = Settled(free, float("nan"), 1, float("nan"), ((free, 1.0),))
+    """Halve the way between two places that bend the tool to each other: where it is bent to from ``free``, and where
+    from there. Its ends become one place, which may push differently on its two sides; then comes the way between what
+    the sides push to, on which the place lies where both together hold the tool."""
+    start = g(free)
+    way, found = g(start) - start, Settled(free, float("nan"), 2, float("nan"), ((free, 1.0),))
     for _ in range(TURNS):
-        length = float(np.linalg.norm(way))
-        if not (np.isfinite(length) and length > 0.0):
+        if not (np.isfinite(way).all() and way.any()):
             break
-        after, pushed = _halved(g, free, way)
-        found = replace(after, evaluations=found.evaluations + after.evaluations)
-        if found.agreed or not np.isfinite(found.rest):
+        after, at_low, at_high = _halved(g, start, way)
+        better = found if after.rest >= found.rest else after
+        found = replace(better, evaluations=found.evaluations + after.evaluations)
+        if found.agreed or not np.isfinite(after.rest):
             break
-        way = (pushed - free) * (length / max(float(np.linalg.norm(pushed - free)), 1e-12))
+        apart = at_high - at_low
+        start, way = (at_low, apart) if np.abs(apart).max() > TOLERANCE else (after.x, at_low - after.x)
     return found
 
 
-def _halved(g: Callable[[FloatArray], FloatArray], free: FloatArray, way: FloatArray) -> tuple[Settled, FloatArray]:
-    """The place on a straight way (3,) m from ``free`` where g falls behind, and g there, of both sides together."""
+def _halved(
+    g: Callable[[FloatArray], FloatArray], start: FloatArray, way: FloatArray
+) -> tuple[Settled, FloatArray, FloatArray]:
+    """The place on a straight way (3,) m from ``start`` where g falls behind, and where its two sides push to."""
     length = float(np.linalg.norm(way))
     along, low, high = way / length, 0.0, 1.0
-    at_low, at_high, count = g(free), g(free + way), 2
+    at_low, at_high, count = g(start), g(start + way), 2
     while (high - low) * length > 0.1 * TOLERANCE and count < MOST:
         middle = 0.5 * (low + high)
-        there = g(free + middle * way)
+        there = g(start + middle * way)
         count += 1
-        if (there - free) @ along > middle * length:
+        if (there - start) @ along > middle * length:
             low, at_low = middle, there
         else:
             high, at_high = middle, there
-    x = free + 0.5 * (low + high) * way
+    x = start + 0.5 * (low + high) * way
     apart = float((at_low - at_high) @ along)
     weight = float(np.clip((x - at_high) @ along / apart, 0.0, 1.0)) if apart > 0.0 else 1.0
     pushed = weight * at_low + (1.0 - weight) * at_high
-    mix = ((free + low * way, weight), (free + high * way, 1.0 - weight))
-    return Settled(x, float(np.abs(pushed - x).max()), count, float("nan"), mix), pushed
+    mix = ((start + low * way, weight), (start + high * way, 1.0 - weight))
+    return Settled(x, float(np.abs(pushed - x).max()), count, float("nan"), mix), at_low, at_high
 
 
 @dataclass(frozen=True, eq=False)

@@ -188,6 +188,23 @@ def test_a_force_that_jumps_is_held_at_the_jump():
     assert len(found.mix) == 2
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_a_wall_that_pushes_sideways_too_holds_the_tool(seed):
+    """Free push a, a plane n . x = at, and behind it a + b: so much w of b acts that n . (a + w b) = at."""
+    rng = np.random.default_rng(seed)
+    a, b, n, at = np.array([50e-6, 10e-6, -20e-6]), np.array([-200e-6, 30e-6, -15e-6]), np.array([1.0, 0.0, 0.0]), 30e-6
+    if seed:
+        n, across = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+        a = rng.uniform(30e-6, 200e-6) * n + rng.normal(size=3) * 50e-6
+        at = rng.uniform(0.2, 0.9) * (a @ n)
+        b = rng.uniform(1.2, 6.0) * (a @ n - at) * (-n + rng.uniform(0.0, 0.6) * across)
+    root = a + (at - a @ n) / (b @ n) * b
+
+    found = settle(lambda x: a + (b if x @ n > at else 0.0), np.zeros(3), np.zeros(3))
+    assert found.agreed
+    np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
+
+
 def test_what_is_not_a_number_ends_it():
     found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3))
     assert not found.agreed
@@ -212,8 +229,9 @@ def test_how_often_the_force_was_asked_for_is_counted(seed):
     assert found.agreed
     np.testing.assert_allclose(found.x, wall * push * along, atol=TOLERANCE)
     assert found.evaluations == len(asked)
-    halvings = np.ceil(np.log2(push / (0.1 * TOLERANCE)))
-    assert found.evaluations <= MOST + 1 + 2 + halvings
-    ((_, low), (_, high)) = found.mix
+    halvings = np.ceil(np.log2(back * push / (0.1 * TOLERANCE)))
+    assert found.evaluations <= MOST + 2 + 2 + halvings
+    ((there, low), (here, high)) = found.mix
     assert low + high == pytest.approx(1.0)
-    assert low * 1.0 + high * (1.0 - back) == pytest.approx(wall, abs=2e-3)
+    both = (low * bends(there) + high * bends(here)) @ along / push
+    assert both == pytest.approx(wall, abs=2e-3)
