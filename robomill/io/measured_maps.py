@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arrays import FloatArray
 from robomill.files import TABLE
 from robomill.identification.measured_field import MeasuredField
 from robomill.io.beside import Beside
 from robomill.io.load_tests import read_measured_map
-from robomill.io.tables import Table, shown
+from robomill.io.tables import Table
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 
@@ -19,15 +20,21 @@ def map_from_table(table: Table, robot: Robot, beside: Beside) -> MeasuredField:
         data, name = beside.read(table, "file", TABLE)
         field = read_measured_map(data, robot, name)
     else:
-        p = table.rows("p_mm", 3, "mm")
+        p = _rows(table, "p", 3, ("m", "mm"))
         C = table.rows("C_m_N", 9, "m/N", len(p)).reshape(-1, 3, 3)
-        AB = table.rows("tilt_deg", 2, "deg", len(p))
+        AB = _rows(table, "tilt", 2, ("rad", "deg"), len(p))
         reach, made = table.number("reach_m", "m", 0.0), _provenance(table)
         given = table.has("stderr_m_N")
         stderr = table.rows("stderr_m_N", 9, "m/N", len(p)).reshape(-1, 3, 3) if given else None
         field = MeasuredField(p, C, AB, reach, made, stderr)  # type: ignore[arg-type]
     table.finish()
     return field
+
+
+def _rows(table: Table, stem: str, count: int, units: tuple[str, str], many: int | None = None) -> FloatArray:
+    """Rows in SI as they are written, or in the unit of people's and older files."""
+    unit = next((unit for unit in units if table.has(f"{stem}_{unit}")), units[1])
+    return table.rows(f"{stem}_{unit}", count, unit, many)
 
 
 def _provenance(table: Table) -> Provenance:
@@ -38,18 +45,15 @@ def _provenance(table: Table) -> Provenance:
 
 
 def map_to_table(field: MeasuredField) -> dict[str, Any]:
-    """The table that ``map_from_table`` reads back to the same map."""
-
-    def rows(values: Any, unit: str) -> list[list[float]]:
-        return [[shown(v, unit) for v in row] for row in np.asarray(values)]
-
-    data = {
-        "p_mm": rows(field.p, "mm"),
-        "C_m_N": rows(field.C.reshape(-1, 9), "m/N"),
-        "tilt_deg": rows(field.AB, "deg"),
-        "reach_m": shown(field.reach, "m"),
+    """The table that ``map_from_table`` reads back to the same map: in SI, since not every number has one in mm or
+    degrees that reads back to it."""
+    data: dict[str, Any] = {
+        "p_m": field.p.tolist(),
+        "C_m_N": field.C.reshape(-1, 9).tolist(),
+        "tilt_rad": field.AB.tolist(),
+        "reach_m": field.reach,
         "provenance": {"kind": field.provenance.kind, "source": field.provenance.source},
     }
     if np.isfinite(field.stderr).all():
-        data["stderr_m_N"] = rows(field.stderr.reshape(-1, 9), "m/N")
+        data["stderr_m_N"] = field.stderr.reshape(-1, 9).tolist()
     return data
