@@ -19,6 +19,11 @@ from robomill.units import to_si
 PUBLISHED = {"radial": (0.2, 0.95), "axial": (0.04, 0.42)}
 """Lowest and highest share of the tangential force that the six rows for aluminium of doi 10.1186/s10033-021-00536-9,
 Table 5, have at chips of 0.02 to 0.2 mm."""
+CALIBRATED = (to_si(0.01, "mm"), to_si(0.5, "mm"))
+"""Feeds per tooth, m, within which rows are relied on; cutting tests lie at 0.02 to 0.3 mm. Assumed of all rows alike:
+their sources do not state theirs."""
+RUBS = to_si(1.0, "um")
+"""A tooth that is fed less has no chip, m: the edge of a sharp carbide tooth is rounded by some 5 um (assumed)."""
 
 
 def per_area(label: str, *, leads: bool = False, optional: bool = False) -> Any:

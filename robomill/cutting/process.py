@@ -13,7 +13,7 @@ from robomill.cutting.course import CASES, Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
-from robomill.cutting.materials import PUBLISHED, Material
+from robomill.cutting.materials import CALIBRATED, PUBLISHED, RUBS, Material
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
@@ -21,6 +21,7 @@ from robomill.errors import CuttingError
 from robomill.progress import checkpoint, slices
 from robomill.provenance import Finding, Provenance
 from robomill.quantities import quantity, switch
+from robomill.units import format_short, format_si
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
 DRILL_THRUST = 0.5
@@ -96,12 +97,11 @@ class ProcessForce(ForceModel):
         return Provenance("computed" if row is self.material else "assumed", source)
 
     def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
-        """What is assumed of the material; the law of a drill's thrust has none of it."""
-        engaged = conditions.engaged
-        if engaged.any() and self._tooling(conditions).drills[engaged].all():
-            return ()
-        found = []
-        for part in self.material.unknown:
+        """What is assumed of the material (the law of a drill's thrust has none of it), and where its law is only
+        carried on: feeds per tooth outside of where coefficients are measured."""
+        engaged, found = conditions.engaged, []
+        drilled = engaged.any() and self._tooling(conditions).drills[engaged].all()
+        for part in () if drilled else self.material.unknown:
             if self._shares[part] is not None:
                 low, high = PUBLISHED[part]
                 text = (
@@ -109,7 +109,19 @@ class ProcessForce(ForceModel):
                     f"tangential one (published for aluminium: {low:g} to {high:g}, and that is the range shown)."
                 )
                 found.append(Finding("warning", text, code=f"assumed-{part}-share"))
+        c, (low, high) = self._fed(conditions), CALIBRATED
+        usual = f"{format_si(low, 'mm', 2)} to {format_si(high, 'mm', 2)}"
+        for i in (int(np.argmin(np.nan_to_num(c, nan=low))), int(np.argmax(np.nan_to_num(c, nan=high)))):
+            if c[i] < low or c[i] > high:
+                text = f"each tooth is fed {format_short(c[i], 'mm')}; the material's coefficients are measured at about "
+                text += f"{usual}, and carried on from there."
+                found.append(Finding("warning", text, int(conditions.block[i]), code="feed-per-tooth"))
         return tuple(found)
+
+    def _fed(self, conditions: CutConditions) -> FloatArray:
+        """(m,) m: feed per tooth in the material, NaN elsewhere and where it is not known."""
+        c = conditions.f_z(self._tooling(conditions).each("flutes"))
+        return np.asarray(np.where(conditions.engaged, c, np.nan))
 
     @property
     def numbers(self) -> str:
@@ -128,7 +140,7 @@ class ProcessForce(ForceModel):
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, forces unknown."""
         tooling, engaged = self._tooling(conditions), conditions.engaged
-        drill = tooling.drills
+        drill, c = tooling.drills, self._fed(conditions)
         reasons = [
             (
                 "spindle_speed",
@@ -136,6 +148,8 @@ class ProcessForce(ForceModel):
                 "the spindle's speed follows the diameter (G96) and is not read, so the chip is not known",
             ),
             ("shank", beyond_flutes(conditions, tooling), "a shank that rubs above the flutes has no force model"),
+            ("chip", c < RUBS, f"a tooth that is fed less than {format_si(RUBS, 'um', 0)} rubs and has no chip"),
+            ("feed_per_tooth", c > tooling.each("radius"), "teeth fed farther than their radius have no force model"),
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
             self._unknown(conditions, tooling),
         ]

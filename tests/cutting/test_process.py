@@ -93,3 +93,26 @@ def test_an_assumption_is_said_with_its_range():
     assert set(rows[1:]) == ends
     assert len({row.title for row, _ in force.by_material(SLOT)}) == 5
     assert len(KienzleForce(MILL, TURNED, radial_share=0.4).by_material(SLOT)) == 3
+
+
+@pytest.mark.parametrize("cutter", [MILL, DRILL], ids=["mill", "drill"])
+@pytest.mark.parametrize(
+    ("fed_mm", "said", "judged"),
+    [
+        (5e-4, True, False),
+        (2e-3, True, True),
+        (0.02, False, True),
+        (0.3, False, True),
+        (2.0, True, True),
+        (12.0, True, False),
+    ],
+)
+def test_a_feed_per_tooth_far_from_any_test_is_said_and_beyond_sense_not_judged(cutter, fed_mm, said, judged):
+    """Half a micrometre is a tenth of an edge's rounding, 12 mm are more than the tool is wide; air counts nowhere."""
+    row = load_material("al7075_t6_carbide_ref190")
+    v_f, across = np.array([0.05, fed_mm, 50.0]) * 1e-3 * 100.0 * cutter.flutes, 0.0 if cutter.kind == "drill" else 1.0
+    conditions = CutConditions.steady(v_f, 100.0, [2e-3, 2e-3, 0.0], across=across, along=across - 1.0, block=[4, 5, 6])
+    force = MechanisticForce(cutter, row)
+    assert [(each.code, each.line) for each in force.findings(conditions)] == [("feed-per-tooth", 5)] * said
+    not_judged = [each.where.tolist() for each in force.unjudged(conditions)]
+    assert not_judged == [[False, True, False]] * (not judged)
