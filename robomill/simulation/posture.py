@@ -1,10 +1,12 @@
-"""What a run says of an arm with more axes than its pose needs: one posture of many was taken."""
+"""What a run says of how the arm holds the tool: one posture of many was taken, or the tool's axis is turned round."""
 
 import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import displacement
 from robomill.compliance.posture import over_posture
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import rotation_x, transform
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import format_many
@@ -23,3 +25,16 @@ def posture_notes(robot: Robot, T_MT: FloatArray, F: FloatArray) -> tuple[Findin
         f"ranges over {format_many((size.min(), size.max()), 'mm', 3, ' to ')} ({len(found)} postures looked at)."
     )
     return (Finding("info", text, code="posture"),)
+
+
+def turned_notes(robot: Robot, T_MT: FloatArray) -> tuple[Finding, ...]:
+    """Whether a pose (4, 4) that is not reached would be with the tool turned round: {T} of a robot description often
+    points away from the flange, z_T of a cut to the spindle."""
+    turned = robot.replace(T_tool=robot.T_tool @ transform(rotation_x(np.pi), np.zeros(3)))
+    if not inverse_kinematics(turned, T_MT).reached:
+        return ()
+    text = (
+        "The cut would be reached with the tool's axis turned round: z_T points from the tip to the spindle, that of a "
+        "URDF's flange often the other way; turn the robot's tool frame about its x by 180°."
+    )
+    return (Finding("suspicious", text, code="tool-turned"),)

@@ -17,7 +17,7 @@ from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
-from robomill.simulation.posture import posture_notes
+from robomill.simulation.posture import posture_notes, turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
@@ -171,6 +171,9 @@ class SimulationResult:
         found += self.steadiness
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
+        at_feed = np.flatnonzero(self.path.cutting)
+        if not self.reached[at_feed].any():
+            found += turned_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
         return tuple(found)
 
     @cached_property
