@@ -154,10 +154,10 @@ class CutConditions:
 
 
 def beyond_flutes(conditions: CutConditions, tooling: Tooling) -> BoolArray:
-    """(m,) whether a step is engaged above the cutter's flutes; a cutter without a stated length has enough."""
+    """(m,) whether a step is engaged above the cutter's edges."""
     highest = conditions.a_p if conditions.reach is None else conditions.reach
-    flutes = np.array([np.inf if each.flute_length is None else each.flute_length for each in tooling.cutters])
-    return np.asarray(conditions.engaged & (highest > flutes[tooling.of_step] * (1.0 + 1e-9)))
+    edges = np.array([each.edge_height for each in tooling.cutters])
+    return np.asarray(conditions.engaged & (highest > edges[tooling.of_step] * (1.0 + 1e-9)))
 
 
 THRUSTS = {
@@ -177,11 +177,12 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
     beyond = beyond_flutes(conditions, tooling)
     for each, made in tooling.steps_of_each():
         deep = np.flatnonzero(beyond & made)
-        if deep.size and each.flute_length is not None:
+        if deep.size:
             worst = deep[np.argmax(highest[deep])]
+            end, rubs = ("stick-out", "holder") if each.flute_length is None else ("flute length", "shank")
             text = (
-                f"depth {format_si(highest[worst], 'mm')} is beyond the flute length "
-                f"{format_si(each.flute_length, 'mm')}; the shank would rub ({format_count(deep.size, 'step')})."
+                f"depth {format_si(highest[worst], 'mm')} is beyond the {end} {format_si(each.edge_height, 'mm')}; "
+                f"the {rubs} would rub ({format_count(deep.size, 'step')})."
             )
             found.append(Finding("warning", text, int(conditions.block[worst]), code="beyond-flutes"))
     down = engaged & (conditions.along < -DISH) & computed

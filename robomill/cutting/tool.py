@@ -195,6 +195,12 @@ class Cutter:
         return profile(self.solid, self.radius)
 
     @property
+    def edge_height(self) -> float:
+        """How high above the tip its edges may reach, m: its flutes, at most to the holder; inf where neither is
+        stated."""
+        return min((each for each in (self.flute_length, self.stick_out) if each is not None), default=math.inf)
+
+    @property
     def pull(self) -> int:
         """Which way the helix drives the cutter: +1 out of its holder (force on the tool along -z_T), -1 into it.
 

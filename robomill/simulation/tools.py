@@ -11,6 +11,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.spring import Spring
+from robomill.cutting.tool import DISH
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SetupError
 from robomill.provenance import Finding
@@ -96,7 +97,7 @@ def _reaching(robot: Robot, farther: float) -> Robot:
 def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     """What a reader must know of the tools."""
     if not setup.tools:
-        return ()
+        return _holders(setup, path)
     numbers = [int(n) for n in cutting_numbers(path)]
     found = [*setup.tools.findings, *setup.tools.notes(numbers)]
     if farther(setup, path).any():
@@ -106,4 +107,20 @@ def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
             "tips of the others stand as much farther as they are longer."
         )
         found.append(Finding("info", text, code="tool-frame"))
+    return (*found, *_holders(setup, path))
+
+
+def _holders(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
+    """Tools whose tips go farther under the top of the stock than they stick out of their holders, once a tool."""
+    stock, found = setup.stock_block, []
+    inside = path.cutting & ((path.p[:, :2] >= stock.lower[:2]) & (path.p[:, :2] <= stock.upper[:2])).all(axis=1)
+    under = np.where(inside, (stock.upper[2] - path.p[:, 2]) / np.maximum(path.k[:, 2], DISH), 0.0)
+    for cutter, made in tooling(setup, path).steps_of_each():
+        i = int(np.argmax(np.where(made, under, 0.0)))
+        if cutter.stick_out is not None and made[i] and under[i] > cutter.stick_out:
+            text = (
+                f"the tip goes {format_si(under[i], 'mm')} under the top of the stock and the tool sticks out "
+                f"{format_si(cutter.stick_out, 'mm')}: its holder meets the part where that is not cut wider before."
+            )
+            found.append(Finding("warning", text, int(path.block[i]), code="holder"))
     return tuple(found)

@@ -153,3 +153,27 @@ def test_springs_are_those_of_the_first_tool_as_they_are_stated():
     assert first.springs == (slim,)
     assert second.springs == (ToolBending(LARGE.diameter, 30e-3 + 35e-3),)
     assert first.robot is setup.robot
+
+
+def test_no_tool_cuts_higher_than_it_sticks_out():
+    """Where nobody states its flutes they end at its holder, which rubs on what stands higher; and a holder that goes
+    under the top of the part is named though the cut itself is shallow."""
+    short = SMALL.replace(stick_out=5e-3, flute_length=None)
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=5e-4, step=4e-3)
+
+    def run(cutter, *depths):
+        lines = "".join(f"G0 X-80 Y0\nG0 Z{z}\nG1 X80 F1800\nG0 Z5\n" for z in depths)
+        return simulate(setup.replace(source=GCodeSource(f"G21 G90 S12000 M3\nG0 Z5\n{lines}M2\n"), cutter=cutter))
+
+    def codes(result):
+        return {each.code for each in result.notes} & {"beyond-flutes", "holder"}
+
+    deep = run(short, -6)
+    assert deep.not_judged[deep.conditions.engaged].all()
+    assert codes(deep) == {"beyond-flutes", "holder"}
+    shallow = run(short, -3, -6)
+    assert not shallow.not_judged.any()
+    assert codes(shallow) == {"holder"}
+    for fits in (run(short, -4), run(SMALL.replace(stick_out=7e-3), -6), run(SMALL.replace(stick_out=None), -6)):
+        assert not fits.not_judged.any()
+        assert codes(fits) == set()
