@@ -8,6 +8,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions, cut_warnings
 from robomill.cutting.force import feed_along, feed_share
+from robomill.cutting.tool import DISH
 from robomill.cutting.unjudged import Unjudged
 from robomill.errors import SetupError
 from robomill.progress import gathered
@@ -22,6 +23,20 @@ from robomill.toolpath.path import Toolpath
 from robomill.units import format_short
 
 SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
+SEEN = 4.0  # steps a tool's width: what the tool is in for half its width is met twice
+
+
+def steps_in_stock(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+    """(m,) m: how long the steps of a move may be at most so that no material is passed over: a share of the tool's
+    width where its body comes near the stock, any length elsewhere."""
+    width, stock = tooling(setup, path).each("diameter"), setup.stock_block
+    before = np.roll(path.p, 1, axis=0)
+    low, high = np.minimum(path.p, before), np.maximum(path.p, before)
+    lean = np.linalg.norm(path.k[:, :2], axis=1) / np.maximum(path.k[:, 2], DISH)
+    reach = (width + np.maximum(stock.upper[2] - low[:, 2], 0.0) * lean)[:, None]
+    beside = (high[:, :2] + reach < stock.lower[:2]) | (low[:, :2] - reach > stock.upper[:2])
+    near = ~beside.any(axis=1) & (low[:, 2] - width < stock.upper[2])
+    return np.where(near, width / SEEN, np.inf)
 
 
 def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> CutConditions:

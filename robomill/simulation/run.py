@@ -1,6 +1,7 @@
 """One run, end to end: path -> poses -> joints -> compliance -> force -> deflection -> surfaces."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import cut_conditions, told_conditions, unknown_material
+from robomill.simulation.cut import cut_conditions, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
@@ -40,7 +41,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     Points that cannot be reached are NaN in theta, C and delta, and counted in ``reached``.
     Raises RobomillError children naming what cannot be run.
     """
-    path = sampled(setup.toolpath, setup.step)
+    path = sampled(setup.toolpath, setup.step, partial(steps_in_stock, setup) if setup.engagement else None)
     if setup.engagement:
         check_samples(setup.toolpath, setup.step, len(path), budgets.samples(marched=True))
     if not path.cutting.any():

@@ -1,5 +1,6 @@
 """The path as a run evaluates it: what does not move left out, feed moves in short steps, the way at every sample."""
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
@@ -14,9 +15,11 @@ from robomill.toolpath.sampling import CORNER, resample
 STILL = 1e-7  # m: a block that goes no further, and does not turn the tool, is none
 
 
-def sampled(path: Toolpath, step: float) -> Toolpath:
-    """``path`` in steps no longer than ``step`` (m), see ``resample``; a block that stands still changes nothing."""
-    return resample(moving(path), step)
+def sampled(path: Toolpath, step: float, seen: Callable[[Toolpath], FloatArray] | None = None) -> Toolpath:
+    """``path`` in steps no longer than ``step`` (m), see ``resample``; a block that stands still changes nothing.
+    ``seen`` says of every move (m,) how long its steps may be at most, m."""
+    moves = moving(path)
+    return resample(moves, step if seen is None else np.minimum(seen(moves), step))
 
 
 def moving(path: Toolpath) -> Toolpath:

@@ -1,7 +1,6 @@
 """Cutting a path into short steps, so that forces and deflections are known all along it."""
 
 import dataclasses
-import math
 
 import numpy as np
 
@@ -16,20 +15,21 @@ from robomill.vectors import angle_between
 CORNER = to_si(10.0, "deg")
 
 
-def resample(path: Toolpath, step: float) -> Toolpath:
-    """``path`` with every feed move cut into equal pieces no longer than ``step`` (m); corners are kept.
+def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
+    """``path`` with every feed move cut into equal pieces no longer than ``step`` (m, one for all moves or one each);
+    corners are kept.
 
     A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
     no length): there the force already has the new direction. Rapids stay whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
     would give more points than the memory holds.
     """
-    if not (math.isfinite(step) and step > 0):
+    if not (np.isfinite(step).all() and np.all(np.asarray(step) > 0)):
         raise ToolpathError(f"Step along the path: found {step}; expected a length above 0.")
     pieces = np.where(path.cutting, np.ceil(path.step_length / step - 1e-9), 1.0)
     starts = _begins(path)
     total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
-    check_samples(path, step, total, budgets.samples())
+    check_samples(path, float(np.min(step)), total, budgets.samples())
     checkpoint(0.0, "Samples")
     counts = np.maximum(pieces, 1.0).astype(np.int64)
     samples = counts + starts

@@ -8,6 +8,7 @@ import pytest
 import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.simulation.samples import STILL, clock, moving, sampled, ways
+from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 
@@ -142,3 +143,24 @@ def test_the_clock_adds_up_block_by_block(seed):
             took += dwell[i] if i > first else 0.0
             expected.append(took)
         np.testing.assert_allclose(clock(path, known), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("step", [1e-3, 5e-3])
+@pytest.mark.parametrize("thick", [0.4e-3, 2e-3])
+def test_material_shorter_than_a_step_is_met(step, thick):
+    """A cutter of 1 mm through a thin plate, against the tooth's law summed by hand over the part of the arc that is in
+    the plate, as the tip comes by; the plate lies between the samples that the steps would have."""
+    low, R, a_p, c = 0.7e-3, 0.5e-3, 2e-3, 50e-6
+    mill = SLOT.cutter.replace(diameter=2 * R, flutes=2)
+    stock = Stock(np.array([low, -0.01, -0.005]), np.array([low + thick, 0.01, 0.0]))
+    lines = ("G0 X-20 Y0 Z5", "G0 Z-2", "G1 X20.5 F1200")
+    result = run(*lines, cutter=mill, stock=stock, step=step, cell=1e-4)
+    phi = (np.arange(4000) + 0.5) * np.pi / 4000
+    x = np.linspace(low - R, low + thick, 400)[:, None] + R * np.sin(phi)
+    row, inside = result.setup.force.row, (x > low) & (x < low + thick)
+    t, r = row.Ktc * c * np.sin(phi) + row.Kte, row.Krc * c * np.sin(phi) + row.Kre
+    feed, left = -(t * np.cos(phi) + r * np.sin(phi)), t * np.sin(phi) - r * np.cos(phi)
+    truth = np.hypot(*(np.sum(each * inside, axis=1) * mill.flutes * a_p / 2 / 4000 for each in (feed, left))).max()
+    assert np.linalg.norm(result.F[:, :2], axis=1).max() == pytest.approx(truth, rel=0.08)
+    far = run("G0 X-20 Y200 Z5", "G0 Z-2", "G1 X20.5 F1200", cutter=mill, stock=stock, step=step, cell=1e-4)
+    assert len(far.path) < 60  # away from the part the steps stay as they are told
