@@ -173,13 +173,13 @@ class SimulationSetup(Replaceable):
 
     @cached_property
     def stock_block(self) -> Stock:
-        """The stock as given, or the path's bounds with a margin."""
+        """The stock as given, or a block around what the path cuts."""
         if self.stock is not None:
             return self.stock
         path = self.toolpath
         used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
-        return Stock.from_path(path.p, widest)
+        return Stock.around(*path.extents, widest)
 
     def in_base(self, p: FloatArray) -> FloatArray:
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""

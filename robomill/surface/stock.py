@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, digest, frozen
@@ -17,6 +16,7 @@ from robomill.quantities import quantity, settle
 from robomill.units import format_si
 
 AXES = "XYZ"
+BESIDE, BENEATH, ABOVE = 2e-3, 5e-3, 1e-3  # m: what a block round a path has beyond what is cut
 SMALLEST, LARGEST = 2e-3, 5.0  # m: a part outside these was probably given in another unit
 
 
@@ -43,34 +43,14 @@ class Stock:
             object.__setattr__(self, "triangles", frozen(triangles))
 
     @classmethod
-    def from_path(
-        cls,
-        p: ArrayLike,
-        cutter: Cutter,
-        cutting: ArrayLike | None = None,
-        *,
-        margin: float = 2e-3,
-        top: float | None = None,
-        below: float = 5e-3,
-    ) -> Stock:
-        """The block around the feed moves of a path: cutter radius and ``margin`` beside it, ``below`` under it.
+    def around(cls, low: FloatArray, high: FloatArray, cutter: Cutter) -> Stock:
+        """The block around what a path cuts, whose tip stays between the corners ``low`` and ``high`` (3,) m.
 
-        p (m, 3) m, cutting (m,) bool (entry i is the move that ends at p[i]). ``top`` (m) is the block's upper
-        face; without it, z = 0 if the path cuts below zero (part zero on the top face), else its highest point.
+        Its top is z = 0 if the path goes below (part zero on the top face), else above the highest point.
         """
-        points = as_floats(p, "toolpath points", (None, 3), error=SurfaceError)
-        used = np.ones(len(points), dtype=bool) if cutting is None else np.asarray(cutting, dtype=bool)
-        ends = points[used | np.append(used[1:], False)]
-        if len(ends) == 0:
-            raise SurfaceError("Stock from the path: found no feed move to put a block around; give its corners.")
-        reach = cutter.radius + margin
-        low, high = ends.min(axis=0), ends.max(axis=0)
-        if top is None:
-            top = 0.0 if low[2] < -1e-9 else float(high[2]) + 1e-3
-        return cls(
-            lower=np.array([low[0] - reach, low[1] - reach, low[2] - below]),
-            upper=np.array([high[0] + reach, high[1] + reach, max(top, low[2] + 1e-6)]),
-        )
+        reach = cutter.radius + BESIDE
+        top = 0.0 if low[2] < -1e-9 else float(high[2]) + ABOVE
+        return cls(np.array([*(low[:2] - reach), low[2] - BENEATH]), np.array([*(high[:2] + reach), top]))
 
     @property
     def size(self) -> FloatArray:

@@ -14,7 +14,7 @@ from robomill.identification.comparison import Comparison, _rank, compare_models
 from robomill.identification.estimate import identify
 from robomill.identification.models import Model
 from robomill.identification.plan import box_candidates
-from robomill.identification.synthesis import simulated_tests
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 BOX = np.array([-0.6, -1.6, -0.4]), np.array([0.6, -1.0, 0.1])

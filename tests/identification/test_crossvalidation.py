@@ -11,8 +11,9 @@ from robomill.identification.crossvalidation import Folded, headline, leave_out,
 from robomill.identification.folds import fold_of_pose
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import Model
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.identification.system import build_system
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 

@@ -14,8 +14,9 @@ from robomill.identification import diagnostics
 from robomill.identification.least_squares import robust_fit
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model, Parameter
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.identification.system import System, build_system
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 THETA = np.random.default_rng(0).uniform(ROBOT.limits[:, 0], ROBOT.limits[:, 1], (9, 5))

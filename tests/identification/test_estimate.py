@@ -20,9 +20,10 @@ from robomill.identification.least_squares import solve_triangle, triangle
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.models import MODELS, Model
 from robomill.identification.record import identification_report
-from robomill.identification.synthesis import simulated_tests, three_directions, true_parameters
+from robomill.identification.synthesis import three_directions
 from robomill.identification.system import build_system
 from robomill.kinematics.forward import joint_frames, tool_pose
+from tests.identification.synthetic import simulated_tests, true_parameters
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 EXTRA = {"tool across": 4e-8, "tool along": 1e-8, "bending x at joint 2": 6e-7, "bending y at joint 3": 8e-7}

@@ -9,10 +9,11 @@ import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.measured_field import MeasuredField
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.io.load_tests import read_measured_map
 from robomill.io.samples import samples_dir
 from robomill.provenance import Provenance
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 FILES = samples_dir() / "load_tests"

@@ -12,10 +12,11 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import LoadTests
 from robomill.identification.model_error import Errors, ModelError, held, model_error
 from robomill.identification.propagation import uncertain_deflection
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
 from robomill.io.tables import Table
 from tests.identification.cables import Arm, Rig, as_csv, make
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 

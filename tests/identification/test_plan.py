@@ -12,9 +12,9 @@ import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
 from robomill.identification.plan import MARGIN, Loads, _best, box_candidates, candidates_around, next_best
-from robomill.identification.synthesis import simulated_tests
 from robomill.io.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 BOX = np.array([-0.6, -1.6, -0.4]), np.array([0.6, -1.0, 0.1])

@@ -12,9 +12,9 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.models import Model
 from robomill.identification.propagation import length_derivative, uncertain_by_map, uncertain_deflection
-from robomill.identification.synthesis import simulated_tests
 from robomill.io.samples import samples_dir
 from tests.identification.oracles import guessed, monte_carlo
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r")
 PATH = np.stack([np.linspace(-0.12, 0.12, 5), np.full(5, -1.3), *np.zeros((3, 5))], axis=-1)

@@ -10,7 +10,8 @@ import pytest
 import robomill as rm
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.suspicion import suspicions
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
 PLAUSIBLE = (5e-8, 1e-4)  # m/N

@@ -10,9 +10,10 @@ from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
 from robomill.identification.load_test import LoadTests
 from robomill.identification.plan import box_candidates, next_best
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.io.load_test_sheets import load_test_template, load_tests_to_csv, measuring_sheet
 from robomill.io.load_tests import read_load_tests
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r")
 

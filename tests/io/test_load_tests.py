@@ -12,9 +12,10 @@ import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
 from robomill.identification.load_test import JointTests
-from robomill.identification.synthesis import simulated_tests, three_directions
+from robomill.identification.synthesis import three_directions
 from robomill.io.load_test_sheets import load_tests_to_csv
 from robomill.io.load_tests import read_findings, read_load_tests, read_measured_map
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r")
 JOINTS = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg"

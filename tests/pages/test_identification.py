@@ -18,7 +18,6 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.laboratory import MAX_LOAD
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
-from robomill.identification.synthesis import simulated_tests
 from robomill.io.load_test_sheets import load_test_template, load_tests_to_csv
 from robomill.io.load_tests import read_load_tests
 from robomill.io.projects import load_setup
@@ -36,6 +35,7 @@ from robomill.ui.project import Project, project_from_toml, project_to_toml
 from robomill.ui.session import KEY as PROJECT
 from robomill.ui.session import Store
 from tests.identification.cables import Arm, Rig, as_csv, make
+from tests.identification.synthetic import simulated_tests
 
 PAGE = Path(__file__).resolve().parents[2] / "pages" / "4_Identification.py"
 HEADER = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm"

@@ -173,7 +173,7 @@ def test_bending_and_weight_tables_to_springs_and_back() -> None:
     assert links.mass[2] == 40.0
     assert links.centre[2, 0] == pytest.approx(0.25)
     weight.loc[3, "y mm"] = np.nan
-    with pytest.raises(RobotError, match="joint 4: y mm is empty"):
+    with pytest.raises(RobotError, match="joint 4: y mm is missing"):
         springs_panel.weight_from(weight)
 
 

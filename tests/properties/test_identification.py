@@ -10,8 +10,8 @@ import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.estimate import identify
 from robomill.identification.load_test import LoadTests
-from robomill.identification.synthesis import simulated_tests
 from robomill.io.load_tests import read_load_tests
+from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r")
 HEADER = "theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm\n"

@@ -52,12 +52,10 @@ def test_a_line_over_the_stock():
 
 
 def test_a_stock_round_a_path():
-    p = np.array([[0.5, 0.5, 0.05], [0.0, 0.0, 0.01], [0.05, -0.02, 0.002], [9.0, 9.0, 0.05]])
-    stock = Stock.from_path(p, CUTTER, [False, False, True, False])
+    """The cutter's radius and 2 mm beside it, 5 mm beneath and, above zero, 1 mm on top."""
+    stock = Stock.around(np.array([0.0, -0.02, 0.002]), np.array([0.05, 0.0, 0.01]), CUTTER)
     np.testing.assert_allclose(stock.lower, [-0.006, -0.026, -0.003], atol=1e-15)
     np.testing.assert_allclose(stock.upper, [0.056, 0.006, 0.011], atol=1e-15)
-    np.testing.assert_allclose(Stock.from_path(p[1:3], CUTTER).upper[2], 0.011)
-    np.testing.assert_allclose(Stock.from_path(p[1:3], CUTTER, top=0.02).upper[2], 0.02)
     np.testing.assert_allclose(stock.size, [0.062, 0.032, 0.014], atol=1e-15)
 
 
@@ -95,10 +93,6 @@ def test_stock_refusals_and_defaults():
         Stock((0, 1, 0), (1, 1, 1))
     with pytest.raises(SurfaceError, match="finite"):
         Stock((0, np.nan, 0), (1, 1, 1))
-    p = np.array([[0.0, 0.0, 0.01], [0.0, 0.0, -0.002], [0.05, 0.0, -0.002], [0.05, 0.0, 0.01]])
-    stock = Stock.from_path(p, CUTTER, [False, True, True, False], margin=0.001, below=0.004)
-    np.testing.assert_allclose(stock.lower, [-0.005, -0.005, -0.006])
-    np.testing.assert_allclose(stock.upper, [0.055, 0.005, 0.0])
     assert Stock((0, 0, 0), (1, 0.005, 1)).warnings(CUTTER)[0].code == "wide-cutter"
     assert not STOCK.warnings(CUTTER)
 
@@ -117,17 +111,12 @@ def test_odd_sizes_are_said_from_two_millimetres_and_five_metres_on():
 
 
 def test_part_zero_is_on_top_where_the_path_cuts_below_zero():
-    """By more than a nanometre; else the top is a millimetre above the highest point, or where it is said."""
+    """By more than a nanometre; else the top is a millimetre above the highest point."""
     for z, top in ((-1e-3, 0.0), (-2e-9, 0.0), (-0.5e-9, 1e-3), (0.0, 1e-3), (2e-3, 3e-3)):
-        path = np.array([[0.0, 0.0, z], [0.01, 0.0, z]])
-        stock = Stock.from_path(path, CUTTER)
+        stock = Stock.around(np.array([0.0, 0.0, z]), np.array([0.01, 0.0, z]), CUTTER)
         assert stock.upper[2] == pytest.approx(top, abs=2e-6)
         assert stock.lower[2] == pytest.approx(z - 5e-3)
         np.testing.assert_allclose(stock.lower[:2], [-6e-3, -6e-3])
-    flat = Stock.from_path(path, CUTTER, top=-1.0, below=0.0)
-    assert flat.upper[2] - flat.lower[2] == pytest.approx(1e-6)
-    with pytest.raises(SurfaceError, match="found no feed move"):
-        Stock.from_path(path, CUTTER, [False, False])
 
 
 @pytest.mark.parametrize("cell", [1e-300, 5e-324, 1e-12])

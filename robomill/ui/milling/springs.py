@@ -16,9 +16,10 @@ from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
 from robomill.ui import declared, inputs, pieces, session
+from robomill.ui.cells import Cells
 from robomill.units import format_si, from_si, to_si, unit_label
 
-WEIGHT_COLUMNS = ("kg", "x mm", "y mm", "z mm")
+WEIGHT = Cells(("kg", "x mm", "y mm", "z mm"), ["kg", "mm", "mm", "mm"], RobotError)
 
 
 def inputs_panel() -> None:
@@ -155,10 +156,7 @@ def _weight() -> None:
         lambda: weight_frame(setup.robot.n, links),
         _take_weight,
         inputs.Sheet(
-            columns=(
-                {"joint": st.column_config.TextColumn("joint", width=44)}
-                | {c: st.column_config.NumberColumn(c, format="%.6g", width=56) for c in WEIGHT_COLUMNS}
-            ),
+            columns={"joint": st.column_config.TextColumn("joint", width=44)} | WEIGHT.columns(56),
             locked=("joint",),
         ),
     )
@@ -176,20 +174,14 @@ def _take_weight(frame: pd.DataFrame) -> None:
 
 def weight_frame(n: int, links: LinkMasses | None) -> pd.DataFrame:
     """One row a joint: what moves with it, and where its centre of mass is."""
-    mass, centre = (np.zeros(n), np.zeros((n, 3))) if links is None else (links.mass, from_si(links.centre, "mm"))
-    columns = {c: centre[:, i] for i, c in enumerate(WEIGHT_COLUMNS[1:])}
-    return pd.DataFrame({"joint": [str(i + 1) for i in range(n)], "kg": mass, **columns})
+    values = np.zeros((n, 4)) if links is None else np.column_stack([links.mass, links.centre])
+    return WEIGHT.frame(values, joint=[str(i + 1) for i in range(n)])
 
 
 def weight_from(frame: pd.DataFrame) -> LinkMasses | None:
     """The masses of a table; None where every mass is 0. Raises RobotError for a cell that is empty or negative."""
-    numbers = frame[list(WEIGHT_COLUMNS)].to_numpy(dtype=float, na_value=np.nan)
-    if not np.isfinite(numbers).all():
-        row, column = np.argwhere(~np.isfinite(numbers))[0]
-        raise RobotError(f"Weight, joint {row + 1}: {WEIGHT_COLUMNS[column]} is empty; type a number, 0 for none.")
-    if not numbers[:, 0].any():
-        return None
-    return LinkMasses(numbers[:, 0], to_si(numbers[:, 1:], "mm"), TYPED)
+    values = WEIGHT.read(frame, lambda row: f"Weight, joint {row + 1}")
+    return LinkMasses(values[:, 0], values[:, 1:], TYPED) if values[:, 0].any() else None
 
 
 def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, bool]]:

@@ -1,28 +1,25 @@
 """The robot's tables as they are edited on the screen, to the model and back: pure functions, in display units."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.provenance import Provenance
-from robomill.quantities import Quantity, quantities
+from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import is_stiffness, meant, of_joint, shown
+from robomill.ui.cells import Cells
 from robomill.ui.inputs import empty
-from robomill.units import from_si, parse_number, to_si, unit_label
+from robomill.units import parse_number, unit_label
 
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
 DECLARED = quantities(Robot)
 GEOMETRY = {name: DECLARED[name] for name in ("alpha", "a", "d", "theta_offset", "sign")}
 HEADINGS = {name: ", ".join(filter(None, (said.label, unit_label(said.unit)))) for name, said in GEOMETRY.items()}
+LENGTHS = Cells(tuple(HEADINGS.values()), [said.unit for said in GEOMETRY.values()], RobotError)
 LIMIT = DECLARED["limits_all"]
 RIGID = "∞"
 SI_BELOW = 1e-3
@@ -104,35 +101,30 @@ def is_si_text(typed: Any) -> bool:
 
 def geometry_frame(robot: Robot) -> pd.DataFrame:
     """The D-H table in mm and degrees, one row a joint."""
-    columns: dict[str, Any] = {"joint": _names(robot)}
-    for name, declared in GEOMETRY.items():
-        columns[HEADINGS[name]] = _clean(getattr(robot, name), declared.unit)
-    return pd.DataFrame(columns)
+    return LENGTHS.frame(np.column_stack([getattr(robot, name) for name in GEOMETRY]), joint=_names(robot))
 
 
 def with_geometry(robot: Robot, frame: pd.DataFrame) -> Robot:
     """``robot`` with the table's D-H constants. Raises RobotError naming joint and column."""
-    columns = {name: _column(frame[HEADINGS[name]], [declared] * robot.rows) for name, declared in GEOMETRY.items()}
-    return robot.replace(**columns)
+    return robot.replace(**dict(zip(GEOMETRY, LENGTHS.read(frame, _joint).T, strict=True)))
 
 
 def limits_frame(robot: Robot) -> pd.DataFrame:
     """Joint limits in degrees (mm where prismatic)."""
-    units = [declared.unit for declared in _of_joints(robot, LIMIT)]
-    columns = {
-        side: [float(_clean(v, u)) for v, u in zip(robot.limits_all[:, i], units, strict=True)]
-        for i, side in enumerate(LIMIT.axes)
-    }
-    return pd.DataFrame({"joint": _names(robot), **columns})
+    return _limits(robot).frame(robot.limits_all, joint=_names(robot))
 
 
 def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
     """``robot`` with the table's limits. Raises RobotError naming the joint."""
-    limits = [
-        _column(frame[side], _of_joints(robot, replace(LIMIT, label=f"the {side} {LIMIT.label}")))
-        for side in LIMIT.axes
-    ]
-    return robot.replace(limits_all=np.transpose(limits))
+    return robot.replace(limits_all=_limits(robot).read(frame, _joint))
+
+
+def _limits(robot: Robot) -> Cells:
+    return Cells(LIMIT.axes, [[LIMIT.of_joint(bool(slides)).unit] for slides in robot.prismatic], RobotError)
+
+
+def _joint(row: int) -> str:
+    return f"Joint {row + 1}"
 
 
 def _names(robot: Robot) -> list[str]:
@@ -141,22 +133,3 @@ def _names(robot: Robot) -> list[str]:
 
 def _joint_units(robot: Robot, unit: str) -> list[str]:
     return [of_joint(unit, bool(slides)) for slides in robot.prismatic]
-
-
-def _of_joints(robot: Robot, declared: Quantity) -> list[Quantity]:
-    """As declared for each joint, in its unit."""
-    return [declared.of_joint(bool(slides)) for slides in robot.prismatic]
-
-
-def _clean(values: Any, unit: str) -> Any:
-    """In ``unit``, without the last bits of the conversion."""
-    return np.round(from_si(np.asarray(values, dtype=float), unit), 9)
-
-
-def _column(typed: pd.Series[Any], declared: Sequence[Quantity]) -> FloatArray:
-    numbers = np.empty(len(declared))
-    for i, (value, each) in enumerate(zip(typed, declared, strict=True)):
-        if empty(value):
-            raise RobotError(f"Joint {i + 1}: {each.label} is missing; type a number.")
-        numbers[i] = to_si(float(value), each.unit)
-    return numbers

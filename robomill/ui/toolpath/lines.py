@@ -2,15 +2,14 @@
 
 import numpy as np
 import pandas as pd
-import streamlit as st
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.source import LinesSource
 from robomill.ui import declared, inputs, pieces, session
-from robomill.ui.inputs import empty
+from robomill.ui.cells import Cells
 from robomill.ui.project import View
 from robomill.ui.toolpath.sources import put
-from robomill.units import from_si, to_si, unit_label
+from robomill.units import unit_label
 
 COLUMNS = ("x₀", "y₀", "z₀", "x₁", "y₁", "z₁", "feed")
 
@@ -22,7 +21,7 @@ def lines_inputs(source: LinesSource, view: View) -> None:
         lambda: lines_frame(_source(), view.length, view.feed),
         lambda frame: _take(frame, view),
         inputs.Sheet(
-            columns={c: st.column_config.NumberColumn(c, format="%.6g", width=50) for c in COLUMNS},
+            columns=_cells(view.length, view.feed).columns(50),
             dynamic=True,
             height=pieces.rows_high(len(source.start) + 1, 400),
         ),
@@ -48,11 +47,7 @@ def _take(frame: pd.DataFrame, view: View) -> None:
 
 def lines_frame(source: LinesSource, unit: str, feed_unit: str) -> pd.DataFrame:
     """Straight cuts as a table in display units."""
-    # Rounded: the last bits are what the conversion leaves behind.
-    values = np.hstack(
-        [from_si(source.start, unit), from_si(source.end, unit), from_si(source.v_f, feed_unit)[:, None]]
-    )
-    return pd.DataFrame(np.round(values, 9), columns=list(COLUMNS))
+    return _cells(unit, feed_unit).frame(np.column_stack([source.start, source.end, source.v_f]))
 
 
 def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float = 0.0) -> LinesSource:
@@ -60,9 +55,9 @@ def lines_from_frame(frame: pd.DataFrame, unit: str, feed_unit: str, n_s: float 
     kept = frame.dropna(how="all")
     if len(kept) == 0:
         raise ToolpathError("Table of lines: found no rows; add at least one line.")
-    for row in range(len(kept)):
-        for label in COLUMNS:
-            if empty(kept[label].iloc[row]):
-                raise ToolpathError(f"Row {row + 1}: {label} is missing; type a number.")
-    numbers = kept[list(COLUMNS)].to_numpy(dtype=float)
-    return LinesSource(to_si(numbers[:, :3], unit), to_si(numbers[:, 3:6], unit), to_si(numbers[:, 6], feed_unit), n_s)
+    values = _cells(unit, feed_unit).read(kept, lambda row: f"Row {row + 1}")
+    return LinesSource(values[:, :3], values[:, 3:6], values[:, 6], n_s)
+
+
+def _cells(unit: str, feed_unit: str) -> Cells:
+    return Cells(COLUMNS, [unit] * 6 + [feed_unit], ToolpathError)

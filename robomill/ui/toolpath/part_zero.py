@@ -11,7 +11,8 @@ from robomill.kinematics.transforms import transform
 from robomill.simulation.setup import PART_TURN, PART_ZERO
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import declared, inputs, pieces, session
-from robomill.units import format_si, from_si, to_si, unit_label
+from robomill.ui.cells import Cells
+from robomill.units import format_si, unit_label
 from robomill.vectors import angle_between
 
 TOUCHED = "toolpath.touched"
@@ -60,9 +61,7 @@ def _by_points() -> None:
         f"toolpath.points:{unit}",
         lambda: points_frame(session.project().setup.T_MW, unit),
         lambda frame: _take(frame, unit),
-        inputs.Sheet(
-            columns={axis: st.column_config.NumberColumn(axis, format="%.6g") for axis in "XYZ"}, locked=("point",)
-        ),
+        inputs.Sheet(columns=Cells("XYZ", unit, ToolpathError).columns(), locked=("point",)),
     )
     touched = session.kept(TOUCHED)
     words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
@@ -79,20 +78,12 @@ def _by_points() -> None:
 
 def points_frame(T_MW: FloatArray, unit: str) -> pd.DataFrame:
     """Three points that give the frame in force, in display units."""
-    points = np.round(from_si(points_of_frame(T_MW), unit), 6) + 0.0
-    return pd.DataFrame({"point": NAMES, **{axis: points[:, i] for i, axis in enumerate("XYZ")}})
+    return Cells("XYZ", unit, ToolpathError).frame(points_of_frame(T_MW), point=NAMES)
 
 
 def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
     """Points (3, 3) m of the table. Raises ToolpathError naming an empty cell."""
-    values = np.empty((3, 3))
-    for row in range(3):
-        for column, axis in enumerate("XYZ"):
-            typed = frame[axis].iloc[row]
-            if inputs.empty(typed):
-                raise ToolpathError(f"Part zero, {NAMES[row]}: {axis} is missing; type a number.")
-            values[row, column] = to_si(float(typed), unit)
-    return values
+    return Cells("XYZ", unit, ToolpathError).read(frame, lambda row: f"Part zero, {NAMES[row]}")
 
 
 def _take(frame: pd.DataFrame, unit: str) -> None:
