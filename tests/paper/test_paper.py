@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import nnls
 
 import robomill as rm
+from robomill.cutting.forces.mechanistic import MechanisticRow
 from robomill.io.materials import sample_materials
 from robomill.io.samples import samples_dir
 from robomill.paper import BOX_SIZE, SLOT
@@ -197,7 +198,7 @@ def figure_13(found, evidence):
 
 
 def force(found, evidence):
-    forces = [arm.slot_force(m.Ktc, m.Kte) for m in sample_materials() if m.Ktc]
+    forces = [arm.slot_force(m.Ktc, m.Kte) for m in sample_materials() if isinstance(m, MechanisticRow)]
     assert found["rows"] == len(forces)
     np.testing.assert_allclose(
         [found["used"], found["low"], found["high"]], [SLOT.force, min(forces), max(forces)], rtol=1e-6
