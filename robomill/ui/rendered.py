@@ -67,7 +67,7 @@ def _picture(
             return
         commons.put(("png", *key), png)
     queue().drop(_owner(place))
-    session.keep(f"{place}.png", png)
+    session.hold(f"{place}.png", png)
     session.drop(f"{place}.order")
     with st.container(key=f"rendered-{place}"):
         st.image(png, width="stretch", alt=alt)
@@ -104,7 +104,7 @@ def _ordered(place: str, key: tuple[object, ...], make: Callable[[], SurfacePict
             queue().drop(_owner(place))
             return refusal
         kept = queue().order(_owner(place), key, make)
-        session.keep(f"{place}.order", kept)
+        session.hold(f"{place}.order", kept)
     if kept.done.is_set():
         try:
             _result(kept)

@@ -29,7 +29,7 @@ def result(setup: SimulationSetup) -> SimulationResult | None:
             st.html(GREYED)
             return _before(setup)
     job.give_up(PLACE)
-    session.keep(LAST, found)
+    session.hold(LAST, found)
     return found
 
 

@@ -23,6 +23,7 @@ from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
+from robomill.ui.closing import while_open
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
 
 KEY = "robomill"
@@ -57,7 +58,7 @@ class Store:
     with its page has lost it. ``older`` are project files of an earlier session, to be gone back to after ``past``.
     ``keeper`` is called after every change. ``returned``: the page was open before this session was (its server had
     forgotten it), and what its widgets hold beside the project is the edit of that moment. ``runs`` counts the
-    runs of pages.
+    runs of pages. ``heavy`` are names of what is kept only while a browser is there.
     """
 
     project: Project
@@ -72,9 +73,15 @@ class Store:
     page: str = ""
     runs: int = 0
     seeded: set[str] = field(default_factory=set)
+    heavy: set[str] = field(default_factory=set)
     older: list[str] = field(default_factory=list)
     keeper: Callable[[Store], None] | None = None
     returned: bool = False
+
+    def let_go(self) -> None:
+        """Let go of what is heavy."""
+        while self.heavy:
+            self.values.pop(self.heavy.pop(), None)
 
     def put(self, project: Project) -> None:
         """Put ``project`` in force, and have it kept."""
@@ -94,6 +101,7 @@ def enter(page: str) -> None:
     """Say which page is running, so that widgets shared by pages are seeded again after a page change."""
     held = store()
     held.runs += 1
+    while_open(held)
     if held.page != page:
         held.returned = held.returned and not held.page
         held.page = page
@@ -108,6 +116,15 @@ def kept(name: str, otherwise: Any = None) -> Any:
 def keep(name: str, value: Any) -> None:
     """Keep ``value`` under ``name``; it outlives a visit to another page."""
     store().values[name] = value
+
+
+def hold(name: str, value: Any) -> None:
+    """Keep ``value`` under ``name`` for as long as a browser is there: results and pictures, which can be had again.
+
+    A page that was closed, or cut off, is remembered for some minutes, with its project but without these.
+    """
+    store().heavy.add(name)
+    keep(name, value)
 
 
 def drop(name: str) -> Any:

@@ -416,6 +416,14 @@ def test_a_server_for_others_shows_no_code_and_listens_on_this_machine_unless_to
     assert Settings.of(environment) == Settings.of(dict(os.environ))
 
 
+def test_a_server_keeps_few_heaps_unless_its_owner_says_otherwise(served, monkeypatch) -> None:
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "7")
+    assert main(["serve"]) == 0
+    ((_, environment),) = served
+    assert environment["MALLOC_ARENA_MAX"] == "7"
+    assert environment["MALLOC_MMAP_THRESHOLD_"] == "1048576"
+
+
 def test_every_setting_of_a_server_reaches_it(served) -> None:
     said = "--address 0.0.0.0 --port 80 --host-name robomill.example.org --base-path /robomill/ --max-upload-mb 5"
     kept = "--autosave off --autosave-folder /srv/work --autosave-mb 50 --autosave-days 7"

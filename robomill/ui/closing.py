@@ -1,0 +1,44 @@
+"""A browser has gone: what is left of its session.
+
+Streamlit remembers a session for two minutes, up to 128 of them, in case the browser comes back. The project stays so
+long; what can be had again is let go of at once. A session is a ring of objects that point at each other, which Python
+finds when it looks for such rings: too seldom where each holds megabytes, so it is made to look, now and then, and what
+the allocator has free goes back to the system.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import time
+from contextlib import suppress
+from typing import Protocol
+
+import streamlit as st
+
+COLLECT_S = 30.0  # at least so long between two looks, which take a twentieth of a second
+
+_collected = time.monotonic()
+
+
+class Held(Protocol):
+    """What a session holds."""
+
+    def let_go(self) -> None:
+        """Let go of what is heavy."""
+
+
+def _gone(held: Held) -> None:
+    global _collected
+    held.let_go()
+    if time.monotonic() - _collected > COLLECT_S:
+        gc.collect()
+        with suppress(OSError, TypeError, AttributeError):  # glibc only
+            ctypes.CDLL(None).malloc_trim(0)
+        _collected = time.monotonic()
+
+
+@st.cache_resource(scope="session", show_spinner=False, on_release=_gone)
+def while_open(_held: Held) -> Held:
+    """What a session holds, which lets go of what is heavy once the browser has gone."""
+    return _held
