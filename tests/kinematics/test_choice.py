@@ -5,6 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import KinematicsError
+from robomill.kinematics.choice import SPIN_STEPS
 from robomill.kinematics.transforms import rotation_z, transform
 
 
@@ -108,3 +109,15 @@ def test_refusals():
         rm.inverse_kinematics(rm.load_robot("planar_2r"), T_MT, branch="elbow up")
     with pytest.raises(KinematicsError, match="one entry a free joint"):
         rm.tool_pose(robot, np.zeros(6))
+
+
+@pytest.mark.parametrize("steps", [0, 1, 7, -5])
+def test_along_a_path_the_tool_is_turned_back_to_where_the_joints_need_not_move(steps):
+    """Poses around home, told as if the tool had been turned about its axis by some of the steps that are tried."""
+    robot = rm.load_robot("fanuc_r2000ic")
+    theta = robot.home + np.linspace(0.0, 0.02, 9)[:, None] * [1.0, -0.5, 0.5, 0.3, 0.7, -0.4]
+    turned = steps * 2.0 * np.pi / SPIN_STEPS
+    T_MT = rm.tool_pose(robot, theta) @ transform(rotation_z(-turned), np.zeros(3))
+    result = rm.inverse_kinematics(robot, T_MT, near="path")
+    np.testing.assert_allclose(result.theta, theta, atol=1e-8)
+    np.testing.assert_allclose(np.exp(1j * result.spin), np.exp(1j * turned), atol=1e-12)

@@ -17,7 +17,9 @@ WIDE = {5: np.tile([-3.2, 3.2], (5, 1)), 6: np.tile([-3.2, 3.2], (6, 1))}
 def arms():
     robots = [rm.load_robot(name) for name in ("slavkovic_5r", "kuka_kr500", "fanuc_r2000ic")]
     on_a_wall = transform(rotation_y(1.2) @ rotation_z(-0.4), [0.3, -0.7, 1.1])
-    return [*robots, robots[1].replace(T_base=on_a_wall, name="kuka on a wall")]
+    on_a_wall = robots[1].replace(T_base=on_a_wall, name="kuka on a wall")
+    aside = robots[1].replace(d=robots[1].d + 0.15 * np.eye(6)[1], name="kuka with its arm beside its foot")
+    return [*robots, on_a_wall, aside]
 
 
 @pytest.mark.parametrize("robot", arms(), ids=lambda r: r.name)

@@ -7,6 +7,7 @@ import robomill as rm
 from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.steadiness import hasty_turns, passages
+from robomill.units import format_si
 
 ROBOT = rm.load_robot("slavkovic_5r")
 
@@ -29,6 +30,15 @@ def test_a_wrist_that_flips_is_one_haste_with_its_joint_place_and_rate():
     assert haste.turn == pytest.approx(np.pi, abs=1e-6)
     assert haste.way == pytest.approx(way)
     assert haste.rate == pytest.approx(turn[step, joint] / way)
+
+
+def test_the_speed_of_a_joint_is_said_where_the_feed_is_known():
+    (haste,) = hasty_turns(line(*FLIP, branch="wrist -"))
+    assert haste.sentence() == haste.sentence(0.0) == haste.sentence(float("nan"))
+    assert format_si(haste.rate * 0.02, "deg/s") in haste.sentence(0.02)
+    assert haste.sentence(0.02).replace(f" ({format_si(haste.rate * 0.02, 'deg/s')} at the feed there)", "") == (
+        haste.sentence()
+    )
 
 
 def test_the_smooth_way_has_no_haste_but_says_that_it_passes_a_singular_wrist():

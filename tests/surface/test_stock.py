@@ -51,6 +51,14 @@ def test_a_line_over_the_stock():
             assert (low, high) == pytest.approx((w.min(), w.max()), abs=1e-12)
 
 
+@pytest.mark.parametrize("side", [0.0, 1.0])
+def test_a_line_along_the_border_is_over_the_stock(side):
+    y, along = 0.02 * side, np.array([1.0, 0.0, 0.0])
+    assert stock_span(STOCK, np.array([0.01, y, 0.0]), along) == pytest.approx((-0.01, 0.02))
+    low, high = stock_span(STOCK, np.array([0.01, y + (2 * side - 1) * 1e-9, 0.0]), along)
+    assert low > high
+
+
 def test_a_stock_round_a_path():
     """The cutter's radius and 2 mm beside it, 5 mm beneath and, above zero, 1 mm on top."""
     stock = Stock.around(np.array([0.0, -0.02, 0.002]), np.array([0.05, 0.0, 0.01]), CUTTER)

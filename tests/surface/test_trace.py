@@ -31,12 +31,13 @@ def leaning(at, lean):
     return lambda z: at + lean * z
 
 
-@pytest.mark.parametrize(("lean_left", "lean_right"), [(0.1, 0.3), (0.02, 0.5)])
-def test_walls_that_lean_outwards(lean_left, lean_right):
-    height = section(leaning(4e-3, lean_left), leaning(5e-3, lean_right))
-    found = trace_groove(height, 0.0, -9e-3, 9e-3, RADIUS, flat)
-    assert found.left == pytest.approx(4e-3, abs=1e-9)
-    assert found.right == pytest.approx(-5e-3, abs=1e-9)
+@pytest.mark.parametrize("at", [4e-3, 6.3e-3, 12.3e-3])
+@pytest.mark.parametrize(("lean_left", "lean_right"), [(0.1, 0.3), (0.02, 0.5), (0.5, 0.02)])
+def test_walls_that_lean_outwards_however_far_they_stand(at, lean_left, lean_right):
+    height = section(leaning(at, lean_left), leaning(at + 0.1e-3, lean_right))
+    found = trace_groove(height, 0.0, -15e-3, 15e-3, RADIUS, flat)
+    assert found.left == pytest.approx(at, abs=1e-9)
+    assert found.right == pytest.approx(-at - 0.1e-3, abs=1e-9)
     assert found.left_angle == pytest.approx(np.pi / 2 + np.arctan(lean_left), abs=1e-6)
     assert found.right_angle == pytest.approx(np.pi / 2 + np.arctan(lean_right), abs=1e-6)
     assert found.left_straightness == pytest.approx(0.0, abs=1e-9)
