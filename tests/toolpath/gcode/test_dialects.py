@@ -9,6 +9,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.dialects import LONGEST, NAMES, choose_dialect
 from robomill.toolpath.gcode.stretches import Lines
+from robomill.toolpath.gcode.words import Block
 
 TOLD = [
     ("G21\nG0 X1\n", "linuxcnc"),
@@ -115,6 +116,11 @@ def test_words_without_use_are_refused_by_linuxcnc_and_counted_elsewhere(letter:
 def test_subprograms_are_called_as_often_as_it_is_said(call: str, dialect: str, repeats: int) -> None:
     text = f"G21 G91\n{call}\nM2\nO1234\nG0 X1\nM99\n"
     assert interpret(text, dialect=dialect).end[-1, 0] * 1e3 == pytest.approx(repeats)
+
+
+def test_a_million_repeats_may_be_asked_for() -> None:
+    called = Block(3, words={"p": 7.0, "l": 1_000_000.0})
+    assert choose_dialect("", "fanuc").subprogram(called) == (7, 1_000_000)
 
 
 def test_subprograms_that_cannot_be_are_refused() -> None:
