@@ -1,12 +1,13 @@
 """What stands on a number box, and what a number typed into it means: no screen is needed for either."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import ProjectError
 from robomill.quantities import Quantity, quantities
 from robomill.ui.project import read_field
-from robomill.units import UNITS, from_si, to_si, unit_label
+from robomill.units import UNITS, from_si, parse_number, to_si, unit_label
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,24 @@ class NumberBox:
         if value is None or self.whole:
             return None if value is None else int(value)
         return float(f"{from_si(float(value), self.unit):.12g}")
+
+    def written(self, value: float | None) -> str:
+        """A value in SI as a line of text, with the digits of the box or all it has; "" is None."""
+        shown = self.shown(value)
+        said = "" if shown is None else str(shown) if self.form is None else self.form % shown
+        return said if shown is None or float(said) == shown else f"{shown:.12g}"
+
+    def read(self, text: str) -> float | None:
+        """What was typed as a line of text, in SI; None where it is empty. Raises ProjectError naming the box."""
+        if not text.strip():
+            return self.typed(None)
+        try:
+            shown = parse_number(text)
+        except ValueError:
+            shown = math.nan
+        if not math.isfinite(shown) or (self.whole and shown % 1.0):
+            raise ProjectError(f"{self.label}: found {text.strip()!r}, expected a {'whole ' * self.whole}number.")
+        return self.typed(shown)
 
     def typed(self, shown: float | None) -> float | None:
         """What was typed, in SI. Raises ProjectError naming the box where it is empty or beyond its bounds."""

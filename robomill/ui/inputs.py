@@ -20,7 +20,7 @@ from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import read_field, with_field
-from robomill.ui.typed import accept, elsewhere, heard, seed, sentence, submit, unheard
+from robomill.ui.typed import accept, heard, seed, sentence, submit
 
 
 @dataclass(frozen=True)
@@ -91,27 +91,41 @@ def into_setup(path: str, label: str) -> Callable[[Any], None]:
 def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
     """A number box for any value in SI; ``write`` gets what was typed, in SI."""
     key = _key(name, box)
+    if box.optional:
+        _optional(key, box, current, write)
+        return
     shown = seed(key, box.shown(current))
 
     def take() -> None:
         typed = st.session_state[key]
-        if typed is not None or not elsewhere():
-            submit(key, typed, lambda: write(box.typed(typed)))
+        submit(key, typed, lambda: write(box.typed(typed)))
 
-    # Only a box without a default can be emptied. It comes up empty, and nobody has emptied it then.
     st.number_input(
         box.title,
-        value=None if box.optional and not unheard(key) else shown,
+        value=shown,
         key=key,
         step=1 if box.whole else box.step,
         format=box.form,
         on_change=take,
         help=box.hint,
         disabled=box.disabled,
-        placeholder=box.placeholder,
         label_visibility="collapsed" if box.hidden else "visible",
     )
     heard(key, shown, take)
+
+
+def _optional(key: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
+    """A number that may be left out, as a line of text: a number box that has a default cannot be emptied."""
+    text(
+        box.title,
+        key,
+        box.written(current),
+        lambda typed: write(box.read(typed)),
+        help=box.hint,
+        disabled=box.disabled,
+        placeholder=box.placeholder,
+        label_visibility="collapsed" if box.hidden else "visible",
+    )
 
 
 def _key(name: str, box: NumberBox) -> str:

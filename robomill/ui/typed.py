@@ -4,8 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 import streamlit as st
-from streamlit.runtime.scriptrunner import get_script_run_ctx
-from streamlit.runtime.scriptrunner_utils.script_run_context import ThreadState
 
 from robomill.errors import RobomillError
 from robomill.ui import session
@@ -33,16 +31,6 @@ def unheard(key: str) -> bool:
     """Whether the page was open before its session, and the browser may hold an edit here that no server took."""
     held = session.store()
     return held.returned and key not in held.seeded
-
-
-def elsewhere() -> bool:
-    """In a callback: whether what is heard came with a word of another part of the page, as a tick of progress.
-
-    What a person does to an input comes with a run of the whole page, or of the fragment that the input is in.
-    """
-    run = get_script_run_ctx(suppress_warning=True)
-    parts = (run and run.fragment_ids_this_run) or []
-    return bool(parts) and ThreadState.get().fragment_id not in parts
 
 
 def heard(key: str, shown: Any, take: Callable[[], None]) -> None:

@@ -28,3 +28,5 @@ def test_an_untouched_input_takes_nothing(page: Any, url: str) -> None:
         page.wait_for_selector("text=done; taken")
         page.wait_for_timeout(300)
         assert "taken: nothing" in page.locator("text=done; taken").inner_text()
+        shown = [box.input_value() for name in ("box", "optional") for box in page.get_by_label(name, exact=True).all()]
+        assert [float(text) for text in shown] == [7.0] * 8

@@ -87,7 +87,7 @@ def test_kienzle_row_and_back(app: AppTest) -> None:
     assert "gives no radial and no axial force" in words(app)
     assert "rm-tile ok" not in words(app)
     for part in ("radial", "axial"):  # the boxes stand where the row does not give it
-        app.number_input(key=f"force.{part}_share").set_value(0.3).run()
+        app.text_input(key=f"force.{part}_share").set_value("0,3").run()
     assert not app.exception
     assert store(app).project.setup.force.row.unknown == ()
     assert "assumed 0.3 of the tangential one" in words(app)
@@ -179,12 +179,12 @@ def test_bending_and_weight_tables_to_springs_and_back() -> None:
 
 def test_cutter_lengths_warn_and_may_be_left_out(app: AppTest) -> None:
     milling(app, "force")
-    app.number_input(key="cutter.flute_length:mm").set_value(1.0).run()
+    app.text_input(key="cutter.flute_length:mm").set_value("1").run()
     assert not app.exception
     assert any("beyond the flute length" in w.value for w in app.warning)
-    app.number_input(key="cutter.stick_out:mm").set_value(0.5).run()
+    app.text_input(key="cutter.stick_out:mm").set_value("0.5").run()
     assert "longer than the stick-out" in errors(app)[0]
-    app.number_input(key="cutter.stick_out:mm").set_value(None).run()
+    app.text_input(key="cutter.stick_out:mm").set_value("").run()
     assert errors(app) == []
     assert store(app).project.setup.cutter.stick_out is None
 

@@ -40,8 +40,8 @@ def test_two_tools_without_a_table_are_asked_for_by_number(two_tools: AppTest) -
     assert not app.exception
     assert [number for number in (1, 2, 3) if f"Tool {number} cuts" in words(app)] == [1, 2]
     assert any("T1, T2" in text for text in errors(app))
-    app.number_input(key="milling.tools.ask.1:mm").set_value(8.0).run()
-    app.number_input(key="milling.tools.ask.2:mm").set_value(12.0).run()
+    app.text_input(key="milling.tools.ask.1:mm").set_value("8").run()
+    app.text_input(key="milling.tools.ask.2:mm").set_value("12").run()
     assert not app.exception
     tools = store(app).project.setup.tools
     assert {number: tool.cutter.diameter for number, tool in tools.items() if tool.cutter} == {1: 8e-3, 2: 12e-3}

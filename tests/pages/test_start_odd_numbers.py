@@ -26,17 +26,22 @@ PAGES = (
 
 
 def each_box(app: AppTest, page: str, odd: tuple[Any, ...]) -> list[str]:
-    """What crashes where a box of the page is given an odd number; a rule of thumb: ``odd`` in turn."""
+    """What crashes where a box of the page is given an odd number; a rule of thumb: ``odd`` in turn.
+
+    A number that may be left out is a line of text; lines of text take the numbers as they are typed, and words.
+    """
     held, crashed = store(app), []
     good = held.project
-    boxes = [box.key for box in go(app, page).number_input if not box.disabled]
-    for k, key in enumerate(boxes):
-        for value in odd if len(odd) == len(ODD) else (odd[k % len(odd)],):
+    go(app, page)
+    kinds = {box.key: kind for kind in ("number_input", "text_input") for box in app.get(kind) if not box.disabled}
+    for k, (key, kind) in enumerate(kinds.items()):
+        some = odd if len(odd) == len(ODD) else (odd[k % len(odd)],)
+        for value in some if kind == "number_input" else (*("" if v is None else str(v) for v in some), "words"):
             try:
-                box = app.number_input(key=key)
+                box = getattr(app, kind)(key=key)
             except KeyError:
                 continue  # the page shows other boxes now
-            if box.proto.data_type == box.proto.INT:
+            if kind == "number_input" and box.proto.data_type == box.proto.INT:
                 value = (
                     None if value is None else 10**15 if not math.isfinite(value) or abs(value) > 1e15 else int(value)
                 )
@@ -44,7 +49,7 @@ def each_box(app: AppTest, page: str, odd: tuple[Any, ...]) -> list[str]:
             crashed += [f"{page}, {key} = {value!r}: {e.message[:200]}" for e in app.exception]
         held.project, held.refused = good, {}
         app.run()
-    assert boxes or page in ("7_Improve", "8_Learn", "2_Workspace", "4_Identification")
+    assert kinds or page in ("7_Improve", "8_Learn", "2_Workspace", "4_Identification")
     return crashed
 
 

@@ -68,6 +68,29 @@ def test_an_empty_box_is_none_only_where_it_may_be() -> None:
         NumberBox("Radius").typed(None)
 
 
+def test_what_may_be_left_out_is_a_line_of_text_that_comes_back_as_it_was() -> None:
+    box = NumberBox("Depth", "mm", optional=True, digits=2)
+    assert [box.written(value) for value in (None, 4e-4, 0.123456e-3, -3e-3)] == ["", "0.40", "0.123456", "-3.00"]
+    for value in (None, 4e-4, 0.123456e-3, -3e-3, 1e-13):
+        assert box.read(box.written(value)) == (None if value is None else pytest.approx(value, rel=1e-11))
+    assert box.read(" 0,4 ") == box.read("0.4") == box.read("4e-1") == pytest.approx(4e-4)
+    assert box.read("−2") == pytest.approx(-2e-3)
+    assert box.read("  ") is None
+
+
+@pytest.mark.parametrize("text", ["abc", "nan", "inf", "1e400", "1.2.3", "1 000"])
+def test_a_line_that_is_no_number_is_refused_with_its_box(text: str) -> None:
+    with pytest.raises(ProjectError, match=f"Depth: found {text!r}, expected a number"):
+        NumberBox("Depth", "mm", optional=True).read(text)
+
+
+def test_a_whole_number_that_may_be_left_out_is_whole() -> None:
+    box = NumberBox("Flutes", whole=True, optional=True)
+    assert (box.written(3), box.read("3"), box.read("")) == ("3", 3, None)
+    with pytest.raises(ProjectError, match=r"found '3.5', expected a whole number"):
+        box.read("3.5")
+
+
 @pytest.mark.parametrize(
     ("low", "high", "expected"), [(1.0, None, "1 or more"), (None, 5.0, "5 or less"), (1.0, 5.0, "1 to 5")]
 )
