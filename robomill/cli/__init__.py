@@ -125,8 +125,9 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     fit.add_argument(
         "--bending",
         "--bending-joints",
-        default="2,3",
-        help="joints with bending springs (default 2,3), or auto: none or those that cross-validation chooses",
+        default=None,
+        help="joints with bending springs (2,3 in models with bending), or auto: none or those that cross-validation "
+        "chooses",
     )
     fit.add_argument("--fit-points", default="none", help="points to fit too: none (default), force, gauge or both")
     fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")

@@ -95,9 +95,10 @@ def run_identify(arguments: Any) -> int:
     import tomli_w
 
     from robomill.identification.estimate import identify
+    from robomill.identification.models import Model
     from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
-    from robomill.identification.treatment import Treatment
+    from robomill.identification.treatment import AUTO, BENDING_JOINTS, Treatment
     from robomill.io.load_test_sheets import measuring_sheet
     from robomill.io.load_tests import read_load_tests
     from robomill.io.results import write_file
@@ -107,16 +108,20 @@ def run_identify(arguments: Any) -> int:
 
     robot = load_robot(arguments.robot)
     tests = read_load_tests(Path(arguments.tests), robot)
-    joints = arguments.bending if arguments.bending == "auto" else options.wholes(arguments.bending, "--bending")
+    bending: Any = BENDING_JOINTS if arguments.bending is None else arguments.bending
+    model = Model(arguments.model)
+    if arguments.bending not in (None, AUTO):
+        bending = options.wholes(arguments.bending, "--bending")
+        model = model.bending_at(bending, turned=False) if model.has("joint") else model
     treatment = Treatment(
-        joints,
+        bending,
         arguments.fit_points,
         arguments.robust,
         options.wholes(arguments.exclude, "--exclude") if arguments.exclude else (),
         arguments.weights,
         arguments.leave_out,
     )
-    result = identify(robot, tests, arguments.model, treatment)
+    result = identify(robot, tests, model.name, treatment)
     record, findings = identification_record(robot, tests, result)
     record["findings"] = [finding.record() for finding in findings]
     record["springs"] = [spring_to_table(spring) for spring in result.springs(robot)]

@@ -1,6 +1,7 @@
 """At which joints links bend, as cross-validation says: none, one or two, each only if it pays on poses left out.
 
-Whether the axes stay with the link before those joints or with the link after them is chosen with them.
+Whether the axes stay with the link before those joints or with the link after them is chosen with them, and of joints
+that a person names, too.
 """
 
 from dataclasses import dataclass, field
@@ -43,7 +44,7 @@ class Candidates:
         """The model with links that bend there, its fit and its folds. Raises LoadTestError: too few tests."""
         if bend not in self.kept:
             model, (joints, turned) = self.model, bend
-            if self._open:
+            if self._open or joints:
                 model = model.bending_at(joints, turned)
             by_size = self.treatment.weights == "size"
             system = build_system(self.robot, self.tests, model, self.treatment.freed, by_size)
@@ -55,7 +56,7 @@ class Candidates:
     def bends(self, left: frozenset[int]) -> Bend:
         """Where links bend, as the folds but ``left`` say."""
         if not self._open:
-            return NONE
+            return self._named(left) if self.model.has("bending") else NONE
         if left not in self.chosen:
             best, error = NONE, self.of(NONE)[2].score(left)
             for _ in range(MOST):
@@ -67,6 +68,15 @@ class Candidates:
                 best, error = bend, found[bend]
             self.chosen[left] = best
         return self.chosen[left]
+
+    def _named(self, left: frozenset[int]) -> Bend:
+        """The joints that are named, their axes with the link before them unless it pays that they turn."""
+        still, turned = (self.model.bending_joints, False), (self.model.bending_joints, True)
+        if self.robot.joint_numbers[-1] in still[0]:
+            return still
+        scores = [self._score(bend, left) for bend in (still, turned)]
+        pays = scores[0] is not None and scores[1] is not None and scores[1] < PAYS * scores[0]
+        return turned if pays else still
 
     def _next(self, bend: Bend) -> list[Bend]:
         """The same with one joint more; the last joint moves the tool alone, where a turned axis has no next frame."""

@@ -515,3 +515,16 @@ def test_bending_joints_have_to_be_numbers(capsys) -> None:
     code, _, err = run(capsys, "identify", "slavkovic_5r", tests, "--bending-joints", "")
     assert code == 2
     assert "--bending: expected one or more numbers" in err
+
+
+def test_named_bending_joints_bend_without_a_word_of_the_model(capsys) -> None:
+    """They were left out in silence where --model was not given too."""
+    tests = str(samples_dir() / "load_tests" / "tilted_bending_tool.csv")
+    found = [
+        record(capsys, "identify", "slavkovic_5r", tests, *words)
+        for words in ((), ("--bending", "2"), ("--bending", "2", "--model", "joints+bending"), ("--bending", "auto"))
+    ]
+    assert [each["model"] for each in found][:3] == ["joints", "joints+bending", "joints+bending"]
+    assert found[1]["C_theta"] == found[2]["C_theta"]
+    assert found[1]["bending_joints"] == [2]
+    assert found[1]["C_theta"] != found[0]["C_theta"]

@@ -64,7 +64,7 @@ def test_the_first_row_that_is_not_reached_is_named_with_the_unit_that_was_meant
     assert refused.value.where == "row 5"
     assert "read as" not in str(refused.value)
     for said, size in (("in", 25.4), ("m", 1e3)):
-        for of_six, share in ((6, "100%"), (4, "67%")):  # the others stand farther off still
+        for of_six, share in ((6, "100 %"), (4, "67 %")):  # the others stand farther off still
             lengths = x_M[:, :3] * size * np.where(np.arange(6) < of_six, 1.0, 50.0)[:, None]
             with pytest.raises(LoadTestError, match=f"read as mm under a header in {said}, {share}"):
                 solved(FIVE, np.concatenate([lengths, x_M[:, 3:]], axis=1), np.arange(2, 8))
