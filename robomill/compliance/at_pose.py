@@ -84,11 +84,6 @@ class PoseReport:
         return float(dexterity.manipulability(self.robot, self.theta))
 
     @cached_property
-    def singular_values(self) -> FloatArray:
-        """(r,) falling, of the task Jacobian."""
-        return dexterity.singular_values(self.robot, self.theta)
-
-    @cached_property
     def limit_distance(self) -> float:
         """Room of the joint nearest to a limit, as a share of its half range."""
         return float(dexterity.limit_distance(self.robot, self.theta))

@@ -16,10 +16,8 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
-from robomill.kinematics.forward import joint_frames
 from robomill.provenance import Provenance
 from robomill.quantities import settle
-from robomill.robot.model import Robot
 
 ASSUMED = Provenance("assumed", "entered without a source")
 TYPED = Provenance("user", "entered in the app")
@@ -88,10 +86,6 @@ class Spring:
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M} from joint frames (..., n + 1, 4, 4) in {M}; the last frame is {T}."""
         raise NotImplementedError
-
-    def compliance(self, robot: Robot, theta: ArrayLike) -> FloatArray:
-        """C (..., 3, 3) m/N in {M} at the configurations theta (..., n)."""
-        return self.contribution(joint_frames(robot, theta))
 
 
 def extra_contributions(springs: Sequence[Spring], frames: ArrayLike) -> FloatArray:

@@ -125,11 +125,6 @@ class IdentificationResult:
         return self.treatment.exclude
 
     @property
-    def robust(self) -> bool:
-        """Whether tests that do not fit weighed less."""
-        return self.treatment.robust
-
-    @property
     def model(self) -> str:
         """The name of the model that was fitted."""
         return self.choice.name

@@ -16,9 +16,8 @@ from robomill.units import format_si
 class Deviation:
     """Error of a machined surface against the ideal one on the same grid.
 
-    height_error (nx, ny) m  machined minus ideal height at each cell centre; at a displaced wall the full depth
-    error (nx, ny) m         signed distance to the ideal surface: the height error, or the way sideways to the ideal
-                             wall where that is shorter (to one cell); NaN where neither surface was cut
+    error (nx, ny) m         signed distance to the ideal surface: machined minus ideal height, or the way sideways to
+                             the ideal wall where that is shorter (to one cell); NaN where neither surface was cut
     cut (nx, ny) bool        cells cut in either
     excess_volume, gouge_volume  m^3, from the mean heights of the cells; their difference knows sub-cell walls, and
                              each by itself is right to first order in the cell size
@@ -26,7 +25,6 @@ class Deviation:
 
     x: FloatArray
     y: FloatArray
-    height_error: FloatArray
     error: FloatArray
     cut: BoolArray
     cell_area: float
@@ -88,10 +86,10 @@ def deviation(ideal: ZMap, machined: ZMap, *, reach: float = 1e-3) -> Deviation:
     was_cut = ideal.cut_mask | machined.cut_mask
     error = surface_error(ideal, machined, reach)
     error[~was_cut] = np.nan
-    for array in (height_error, error, was_cut):  # large, and nobody else's: no copy
+    for array in (error, was_cut):  # large, and nobody else's: no copy
         array.flags.writeable = False
     excess, gouge = _volumes(height_error, ideal, machined)
-    return Deviation(ideal.x, ideal.y, height_error, error, was_cut, ideal.dx * ideal.dy, excess, gouge)
+    return Deviation(ideal.x, ideal.y, error, was_cut, ideal.dx * ideal.dy, excess, gouge)
 
 
 def _volumes(height_error: FloatArray, ideal: ZMap, machined: ZMap) -> tuple[float, float]:

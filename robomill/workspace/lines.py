@@ -35,11 +35,6 @@ class LineDeviation:
     delta_joint: FloatArray
 
     @property
-    def theta(self) -> FloatArray:
-        """(m, n) rad."""
-        return self.ik.theta
-
-    @property
     def reached(self) -> BoolArray:
         """(m,)."""
         return self.ik.reached

@@ -34,7 +34,7 @@ FORCE = np.array([-63.0, 110.0, -23.0])
 def test_cantilever_closed_form():
     tool = ToolBending(8e-3, 40e-3, core=1.0)
     by_hand = 0.04**3 / (3 * 600e9 * math.pi * 8e-3**4 / 64)
-    delta = tool.compliance(ROBOT, THETA) @ FORCE
+    delta = tool.contribution(joint_frames(ROBOT, THETA)) @ FORCE
     z = tool_pose(ROBOT, THETA)[:, :3, 2]
     across = FORCE - (z @ FORCE)[:, None] * z
     np.testing.assert_allclose(delta, by_hand * across, rtol=1e-12, atol=1e-18)
@@ -45,7 +45,7 @@ def test_spindle_is_soft_across_and_along_its_axis():
     spindle = SpindleSpring(0.05e-6, 0.02e-6)
     T_MT = tool_pose(ROBOT, THETA)
     expected = T_MT[:, :3, :3] @ np.diag([0.05e-6, 0.05e-6, 0.02e-6]) @ np.swapaxes(T_MT[:, :3, :3], 1, 2)
-    np.testing.assert_allclose(spindle.compliance(ROBOT, THETA), expected, atol=1e-20)
+    np.testing.assert_allclose(spindle.contribution(joint_frames(ROBOT, THETA)), expected, atol=1e-20)
 
 
 def chain_under(F, scale):
@@ -121,7 +121,9 @@ def test_batch_equals_loop_and_unreached_stays_nan():
     assert batch.shape == (2, 3, len(SPRINGS), 3, 3)
     for i, theta in enumerate(THETA):
         for j, spring in enumerate(SPRINGS):
-            np.testing.assert_allclose(batch[i // 3, i % 3, j], spring.compliance(ROBOT, theta), rtol=1e-12, atol=1e-24)
+            np.testing.assert_allclose(
+                batch[i // 3, i % 3, j], spring.contribution(joint_frames(ROBOT, theta)), rtol=1e-12, atol=1e-24
+            )
     assert np.isnan(extra_contributions(SPRINGS, joint_frames(ROBOT, np.full(ROBOT.n, np.nan)))).all()
     assert extra_contributions([], frames).shape == (6, 0, 3, 3)
 
@@ -146,7 +148,7 @@ def test_names_are_lines_of_the_result():
         (lambda: SpindleSpring(-1e-6), "Spindle and holder, Across: found −1 µm/N; expected 0 µm/N or more."),
         (lambda: JointBending(0), "Joint: found 0; expected 1 or more."),
         (lambda: JointBending(2, C_y=-1e-7), "Joint 2 bending, about y: found −1 ×10⁻⁷ rad/(N m)"),
-        (lambda: JointBending(9).compliance(ROBOT, THETA), "there is no joint 9; the robot has 5"),
+        (lambda: JointBending(9).contribution(joint_frames(ROBOT, THETA)), "there is no joint 9; the robot has 5"),
     ],
 )
 def test_refusals(build, sentence):
@@ -232,7 +234,7 @@ def test_the_last_joint_bends_about_axes_that_turn_with_the_tool():
             arm = frames[-1, :3, 3] - frames[-2, :3, 3]
             turn = 1e3 * give * (np.cross(arm, FORCE) @ axis) * axis  # enlarged, for the digits
             moved.append((Rotation.from_rotvec(turn).apply(arm) - Rotation.from_rotvec(-turn).apply(arm)) / 2e3)
-        C = JointBending(robot.n, 3e-7, 5e-7, turned=True).compliance(robot, theta)
+        C = JointBending(robot.n, 3e-7, 5e-7, turned=True).contribution(joint_frames(robot, theta))
         np.testing.assert_allclose(C @ FORCE, np.sum(moved, axis=0), rtol=1e-3, atol=1e-12)
 
 

@@ -15,6 +15,7 @@ from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
 from robomill.io.workpiece import part_frame
 from robomill.report.simulation_record import simulation_record
+from robomill.surface.deviation import deviation
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=4e-4)
@@ -223,8 +224,9 @@ def test_notes_say_what_the_numbers_rest_on():
 
 
 def test_the_error_is_that_of_both_surfaces(bent):
-    np.testing.assert_array_equal(bent.error.height_error, bent.machined.z - bent.ideal.z)
-    assert bent.error.excess_volume > 0
+    again = deviation(bent.ideal, bent.machined)
+    np.testing.assert_array_equal(bent.error.error, again.error)
+    assert bent.error.excess_volume == again.excess_volume > 0
 
 
 def test_rapids_through_material_are_named_once_in_order():

@@ -128,10 +128,10 @@ def test_a_line_is_a_row_of_poses():
     for i, t in enumerate(np.linspace(0, 1, 5)):
         p = start + t * (end - start)
         np.testing.assert_allclose(line.p[i], p, atol=1e-15)
-        T = rm.tool_pose(robot, line.theta[i])
+        T = rm.tool_pose(robot, line.ik.theta[i])
         np.testing.assert_allclose(T[:3, 3], p, atol=1e-9)
         np.testing.assert_allclose(T[:3, 2], k, atol=1e-9)
-        delta = rm.cartesian_compliance(robot, line.theta[i]) @ (80.0 * left)
+        delta = rm.cartesian_compliance(robot, line.ik.theta[i]) @ (80.0 * left)
         np.testing.assert_allclose(line.delta[i], delta, atol=1e-12)
         assert line.along_normal()[i].sum() == pytest.approx(delta @ left)
     assert len(line_deviation(robot, start, end, points=2).p) == 2
