@@ -7,6 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.forward import joint_frames
 from tests.robot.written_otherwise import with_blocked
 
 
@@ -34,3 +35,17 @@ def test_structures_recognised_from_the_table():
     assert decoupled(rm.load_robot("planar_3r")) is None
     # The paper's machine: a six-axis robot with axis 6 blocked.
     assert decoupled(with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)).n == 5
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
+def test_an_elbow_that_is_up_stands_higher_than_one_that_is_down(name):
+    """At poses that an arm on the floor meets both ways, from the front."""
+    robot = rm.load_robot(name)
+    robot = robot.replace(limits=np.tile([-np.pi, np.pi], (robot.n, 1)))
+    theta = rm.load_robot(name).home + np.random.default_rng(6).uniform(-0.3, 0.3, (40, robot.n))
+    T_MT = rm.tool_pose(robot, theta)
+    up, down = (rm.inverse_kinematics(robot, T_MT, branch=f"front, elbow {b}", spin="fixed") for b in ("up", "down"))
+    both = up.reached & down.reached
+    assert both.sum() > 20
+    height = [joint_frames(robot, each.theta[both])[:, 2, 2, 3] for each in (up, down)]
+    assert (height[0] > height[1]).all()

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from robomill.kinematics.jacobian import task_rows, tilt_axes
+from robomill.kinematics.jacobian import task_rows, tilt_axes, twists
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -38,3 +38,20 @@ def test_rows_of_the_task_are_velocity_and_the_turn_about_the_two_axes():
         np.testing.assert_array_equal(rows[n, :3], J[n, :3])
         np.testing.assert_allclose(rows[n, 3], [x @ J[n, 3:, j] for j in range(5)])
         np.testing.assert_allclose(rows[n, 4], [y @ J[n, 3:, j] for j in range(5)])
+
+
+def test_twists_of_batches_are_those_one_by_one():
+    """z x r and z where a joint turns, z alone where it slides; axes, reaches and kinds of joint broadcast."""
+    rng = np.random.default_rng(5)
+    axis, reach, slides = (
+        rng.normal(size=(2, 4, 3)),
+        rng.normal(size=(6, 1, 4, 3)),
+        np.array([True, False, True, False]),
+    )
+    found = twists(axis, reach, slides)
+    assert found.shape == (6, 2, 4, 6)
+    for i, j, k in itertools.product(range(6), range(2), range(4)):
+        z, r = axis[j, k], reach[i, 0, k]
+        expected = [*z, 0, 0, 0] if slides[k] else [*np.cross(z, r), *z]
+        np.testing.assert_allclose(found[i, j, k], expected, atol=1e-15)
+    assert twists(reach, axis).shape == (6, 2, 4, 6)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import robomill as rm
+from robomill.io.samples import samples_dir
 from robomill.kinematics.transforms import translation
-from robomill.simulation.reach import plane_reach
+from robomill.simulation.reach import path_reach, plane_reach
+from robomill.toolpath.source import GCodeSource
 
 
 def test_a_plane_is_reached_where_each_of_its_points_is() -> None:
@@ -18,3 +20,20 @@ def test_a_plane_is_reached_where_each_of_its_points_is() -> None:
     np.testing.assert_array_equal(found, alone)
     assert found.any()
     assert not found.all()
+
+
+def test_a_path_is_missed_where_a_point_at_feed_is_not_reached_and_the_first_of_them_says_why() -> None:
+    """Out of reach on a rapid to one side, at feed beyond the arm's end on the other."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=20e-3)
+    text = "G21 G90 S9000 M3\nG0 Y5000 Z5\nG0 Y0\nG1 Z-1 F900\nG1 X-4000\nM2\n"
+    found = path_reach(setup.replace(source=GCodeSource(text)))
+    at = [setup.T_MW @ translation(p) for p in found.path.p]
+    alone = np.array([bool(rm.inverse_kinematics(setup.robot, T).reached) for T in at])
+    np.testing.assert_array_equal(found.reached, alone)
+    np.testing.assert_array_equal(found.missed, [on and not there for on, there in zip(found.path.cutting, alone)])
+    assert 0 < found.missed.sum() < (~alone).sum()
+    np.testing.assert_array_equal(np.isfinite(found.room), alone)
+    first = rm.inverse_kinematics(setup.robot, np.array(at)[found.missed][:1])
+    assert found.reason == first.reason(0) != ""
+    near = "G21 G90 S9000 M3\nG0 Y5000 Z5\nG0 Y0\nG1 Z-1 F900\nG1 X-40\nM2\n"
+    assert path_reach(setup.replace(source=GCodeSource(near))).reason == ""

@@ -121,6 +121,13 @@ def test_the_clock_starts_with_the_first_cut():
     np.testing.assert_allclose(clock(path, None), [0, 0, 0, 0.3, 1.55, np.nan, np.nan])
 
 
+def test_a_cut_without_a_feed_adds_nothing_to_the_clock_as_to_the_time_of_the_path():
+    x = np.array([0, 1, 3]) * 1e-3
+    given = {"k": (0.0, 0, 1), "block": np.arange(3), "n_s": 200.0, "tool": 0, "dwell": np.zeros(3)}
+    path = Toolpath(p=np.outer(x, [1, 0, 0]), v_f=np.array([0, 0.01, 0.0]), cutting=np.array([0, 1, 1], bool), **given)
+    np.testing.assert_allclose(clock(path, None), [0.0, 0.1, 0.1])
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_the_clock_adds_up_block_by_block(seed):
     """Blocks at random, some that stay where they are; added up one by one. A rapid that goes nowhere takes no time,

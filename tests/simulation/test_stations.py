@@ -7,18 +7,21 @@ import dataclasses
 import numpy as np
 import pytest
 
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.io.materials import sample_materials
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.simulation import stations
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
-from robomill.simulation.spread import AlloySpread
+from robomill.simulation.spread import AlloySpread, alloy_spread
 from robomill.simulation.stations import (
     force_components,
     largest_deviations,
     nearest_judged,
     offset_band,
     place_at,
+    sideways,
 )
 from robomill.surface.metrology import groove_profile
 from robomill.toolpath.path import Toolpath
@@ -83,3 +86,31 @@ def test_the_alloys_rows_by_sample_and_row(result: SimulationResult) -> None:
         i = int(np.argmin(np.where(result.path.cutting, np.abs(result.path.s - station), np.inf)))
         every = [profile.centre_offset[k] + (delta[r, i] - result.delta[i]) @ (R @ normal) for r in range(3)]
         assert (low[k], high[k]) == pytest.approx((min(every), max(every)))
+
+
+def test_sideways_at_mid_cut_over_the_alloys_rows_is_that_of_runs_with_them(result: SimulationResult) -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4, coupling=False)
+    force = setup.force
+    assert isinstance(force, MechanisticForce)
+    run = simulate(setup)
+    offset, low, high = sideways(run)
+    assert offset == run.groove(0.5 * float(run.path.s[-1])).centre_offset
+    spread = alloy_spread(run)
+    assert spread is not None
+    others = [
+        sideways(simulate(setup.replace(force=dataclasses.replace(force, material=row))))[0]
+        for row in spread.materials
+        if not row.unknown
+    ]
+    assert max(others) == pytest.approx(high, abs=5e-6)
+    assert low - 5e-6 <= min(others)  # one row leaves the axial force open: it has the axial force of the one in force
+    assert high - low > 5e-5
+    stated = sideways(result)
+    assert stated[0] == result.groove(0.5 * float(result.path.s[-1])).centre_offset
+    assert np.isnan(stated[1:]).all()
+
+
+def test_an_alloy_of_one_row_has_no_range(monkeypatch: pytest.MonkeyPatch, result: SimulationResult) -> None:
+    one = AlloySpread(tuple(sample_materials()[:1]), result.F[None], result.delta[None])
+    monkeypatch.setattr(stations, "alloy_spread", lambda _: one)
+    assert np.isnan(sideways(result)[1:]).all()

@@ -56,6 +56,14 @@ def test_each_step_has_the_tool_of_its_block():
     assert not beyond[path.tool == 1].any()
 
 
+def test_no_tool_is_farther_than_a_first_one_whose_length_is_not_told():
+    first_by_hand = GCodeSource(PROGRAM.text.replace("T1 M6\n", ""))
+    setup = SETUP.replace(source=first_by_hand, tools=TABLE)
+    path = setup.toolpath
+    assert cutting_numbers(path).tolist() == [0, 2]
+    assert not farther(setup, path).any()
+
+
 def test_a_set_up_with_tools_comes_back_from_its_file():
     setup = SETUP.replace(source=PROGRAM, tools=TABLE)
     again = setup_from_toml(setup_to_toml(setup))
