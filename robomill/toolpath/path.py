@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
-from robomill.units import format_si
+from robomill.units import format_si, format_significant
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
 ON_LINE = 1e-6  # m: cuts this close to a line lie on it
@@ -25,6 +25,7 @@ PER_MOVE: dict[str, type] = {
     "dwell": float,
 }
 """Arrays of a path with one value a move, and their types."""
+FARTHEST = 1e4  # m from part zero: beyond any machine, and far below where lengths overflow
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +75,13 @@ class Toolpath:
             values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)
         if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():
             raise ToolpathError("Toolpath: a feed rate is negative or not a number; feeds must be 0 or more.")
+        far = np.flatnonzero(~(np.abs(p) <= FARTHEST).all(axis=1))
+        if len(far):
+            found = format_significant(float(np.abs(p[far[0]]).max()))
+            raise ToolpathError(
+                f"Line {values['block'][far[0]]}: a point lies {found} m from part zero, expected at most "
+                f"{format_si(FARTHEST, 'm', 0)}; mend the number, or the unit it is in."
+            )
         for name, value in values.items():
             object.__setattr__(self, name, value)
 

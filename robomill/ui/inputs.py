@@ -356,6 +356,8 @@ def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
     frame = base.copy()
     for row, cells in changes.get("edited_rows", {}).items():
         for column, new in cells.items():
+            if pd.api.types.is_integer_dtype(frame[column]) and not isinstance(new, int):
+                frame = frame.astype({column: float})  # emptied, or larger than any whole number
             frame.loc[frame.index[int(row)], column] = new
     frame = frame.drop(index=[frame.index[i] for i in changes.get("deleted_rows", [])])
     added = [{c: r.get(c) for c in frame.columns} for r in changes.get("added_rows", [])]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
-from robomill.toolpath.path import toolpath_from_lines
+from robomill.toolpath.path import Toolpath, toolpath_from_lines
 
 
 def two_lines():
@@ -75,3 +75,13 @@ def test_axes_are_unit_vectors_to_rounding() -> None:
         else:
             with pytest.raises(ToolpathError, match="found a length that is not 1"):
                 toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], 0.03, k=[0.0, 0.6 * size, 0.8 * size])
+
+
+@pytest.mark.parametrize("far", [1.001e4, -1e57, 1e305])
+def test_a_point_beyond_any_machine_is_refused_by_its_row(far: float) -> None:
+    def line(end: float) -> Toolpath:
+        return toolpath_from_lines([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, end, 0.0]], 0.01)
+
+    with pytest.raises(ToolpathError, match="Line 2"):
+        line(far)
+    assert line(1e4).s[-1] == 1e4

@@ -76,10 +76,15 @@ def _range(values: FloatArray) -> tuple[float, float] | None:
     return (float(values.min()), float(values.max())) if len(values) else None
 
 
+LONGEST_S = 1e8  # what takes longer is no time that a machine has
+
+
 def duration(seconds: float) -> str:
     """A time as people say it."""
     if seconds < 120:
         return format_si(seconds, "s", 1)
+    if not seconds < LONGEST_S:
+        return "more than three years"
     minutes = round(from_si(seconds, "min"))
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
 

@@ -7,7 +7,15 @@ import pytest
 
 from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.toolpath.summary import distinct, finding_words, move_words, path_summary, worst_first, written_in
+from robomill.ui.toolpath.summary import (
+    distinct,
+    duration,
+    finding_words,
+    move_words,
+    path_summary,
+    worst_first,
+    written_in,
+)
 
 CUTS = """G21 G90
 S1000 M3
@@ -85,3 +93,9 @@ def test_distinct_values_by_counting_are_those_by_sorting() -> None:
         np.empty(0, dtype=np.int64),
     ):
         np.testing.assert_array_equal(distinct(values), np.unique(values))
+
+
+@pytest.mark.parametrize("seconds", [1e9, 1e303, float("inf")])
+def test_a_time_that_no_machine_has_is_said_so(seconds: float) -> None:
+    assert duration(seconds) == "more than three years"
+    assert duration(3.0 * 3600.0) == "3 h 00 min"
