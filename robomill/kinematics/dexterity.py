@@ -104,14 +104,6 @@ def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:
     return np.abs(determinant(robot, theta))
 
 
-def singular_values(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """Singular values (..., r), falling, of the task Jacobian; rows in m/rad and rad/rad as they stand."""
-    J = task_matrix(robot, theta)
-    finite = np.all(np.isfinite(J), axis=(-1, -2), keepdims=True)
-    values: FloatArray = np.linalg.svd(np.where(finite, J, 0.0), compute_uv=False)
-    return np.where(finite[..., 0], values, np.nan)
-
-
 def limit_distance(robot: Robot, theta: ArrayLike) -> FloatArray:
     """(...,) distance of the nearest joint to its limit as a share of its half range: 1 mid-range, 0 at a limit.
 

@@ -7,7 +7,6 @@ import robomill as rm
 from robomill.compliance.at_pose import at_pose
 from robomill.compliance.deflection import deflection
 from robomill.errors import KinematicsError
-from robomill.kinematics.dexterity import singular_values
 from tests.robot.written_otherwise import with_blocked
 
 NAMES = ("slavkovic_5r", "kuka_kr500", "planar_2r", "planar_3r")
@@ -53,7 +52,6 @@ def test_numbers_by_numeric_derivatives(name):
         task = np.vstack([J[:3], across.T @ J[3:]])
     assert here.det_J == pytest.approx(np.linalg.det(task), rel=1e-6, abs=1e-9)
     assert here.manipulability == pytest.approx(abs(np.linalg.det(task)), rel=1e-6, abs=1e-7)
-    np.testing.assert_allclose(singular_values(robot, theta) ** 2, np.linalg.eigvalsh(task @ task.T)[::-1], atol=1e-7)
     assert here.det_J_unit == {2: "m2", 3: "m2"}.get(robot.n, "m3")
     low, high = robot.limits.T
     room = [min(t - a, b - t) / ((b - a) / 2) for t, a, b in zip(theta, low, high, strict=True)]

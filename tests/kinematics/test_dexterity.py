@@ -52,8 +52,6 @@ def test_measures_are_those_of_the_square_jacobian(name):
     gram = task @ np.swapaxes(task, -1, -2)
     # A root of a determinant of squares: half the digits.
     np.testing.assert_allclose(dexterity.manipulability(robot, theta) ** 2, np.linalg.det(gram), atol=1e-11)
-    values = np.sqrt(np.abs(np.linalg.eigvalsh(gram)[..., ::-1]))
-    np.testing.assert_allclose(dexterity.singular_values(robot, theta), values, atol=1e-7)
 
 
 def test_six_axes_are_asked_for_all_six_rows_even_where_they_move_in_a_plane_only():
@@ -94,7 +92,6 @@ def test_singular_configurations_show():
     straight = [0.3, 0.0]
     robot = rm.load_robot("planar_2r")
     assert dexterity.determinant(robot, straight) == pytest.approx(0, abs=1e-15)
-    assert dexterity.singular_values(robot, straight)[-1] == pytest.approx(0, abs=1e-15)
 
 
 def test_limit_distance():
@@ -123,7 +120,6 @@ def test_what_is_not_reached_is_nan_in_every_law():
         rm.cartesian_compliance,
         dexterity.determinant,
         dexterity.manipulability,
-        dexterity.singular_values,
         dexterity.limit_distance,
     )
     for law in laws:

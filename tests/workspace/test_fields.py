@@ -13,11 +13,18 @@ from robomill.workspace.grid import PAPER_BOX, Grid, axis_points, box_grid, plan
 from robomill.workspace.quantities import map_quantities, map_quantity
 from robomill.workspace.reach import reach
 
+
+def singular_values(robot, theta):
+    """Falling, from the eigenvalues of the task Jacobian times its transpose."""
+    J = dexterity.task_matrix(robot, theta)
+    return np.sqrt(np.maximum(np.linalg.eigvalsh(J @ J.T)[::-1], 0.0))
+
+
 MEASURES = {
     "det_J": dexterity.determinant,
     "manipulability": dexterity.manipulability,
-    "inverse_condition": lambda robot, theta: np.divide(*dexterity.singular_values(robot, theta)[[-1, 0]]),
-    "smallest_singular_value": lambda robot, theta: dexterity.singular_values(robot, theta)[-1],
+    "inverse_condition": lambda robot, theta: np.divide(*singular_values(robot, theta)[[-1, 0]]),
+    "smallest_singular_value": lambda robot, theta: singular_values(robot, theta)[-1],
     "limit_distance": dexterity.limit_distance,
 }
 
