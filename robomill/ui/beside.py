@@ -38,6 +38,7 @@ def made(place: str, name: Any, make: Callable[[], Any], doing: str, seconds: fl
         _supersede(group)
         now = Job(make, name, group)
         job.begin(place, now)
+        session.hold(place, now)  # what it makes is kept for everyone, too
     now.run = session.store().runs
     ended = job.finished(place, FIRST_S)
     if ended is None:

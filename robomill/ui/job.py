@@ -56,6 +56,11 @@ class Job:
         """Begin."""
         threading.Thread(target=self._run, daemon=True).start()
 
+    @property
+    def under_way(self) -> bool:
+        """Whether it goes on."""
+        return not self.done.is_set()
+
     def _unwanted(self) -> bool:
         return self.stop.is_set() or time.monotonic() - self.seen > ABANDONED_S
 

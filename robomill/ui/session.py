@@ -79,9 +79,11 @@ class Store:
     returned: bool = False
 
     def let_go(self) -> None:
-        """Let go of what is heavy."""
+        """Let go of what is heavy, save for work under way: the browser may come back for it."""
         while self.heavy:
-            self.values.pop(self.heavy.pop(), None)
+            name = self.heavy.pop()
+            if not getattr(self.values.get(name), "under_way", False):
+                self.values.pop(name, None)
 
     def put(self, project: Project) -> None:
         """Put ``project`` in force, and have it kept."""

@@ -10,6 +10,7 @@ from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.testing.v1 import AppTest
 
 from robomill.ui import closing
+from robomill.ui.job import Job
 from robomill.ui.session import KEY, Store
 
 
@@ -48,6 +49,20 @@ def test_what_is_held_goes_with_the_browser_and_comes_back_with_it(app: AppTest)
     assert held.values["run"] == "heavy"
     leave()
     assert "run" not in held.values
+
+
+def test_work_under_way_stays_for_a_browser_that_comes_back(app: AppTest) -> None:
+    held: Store = app.session_state[KEY]
+    work = Job(lambda: "made", "about")
+    held.values["work"] = work
+    held.heavy.add("work")
+    leave()
+    assert held.values["work"] is work
+    app.run()
+    work.done.set()
+    held.heavy.add("work")
+    leave()
+    assert "work" not in held.values
 
 
 def test_rings_are_looked_for_now_and_then(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
