@@ -119,6 +119,12 @@ def test_the_simplest_good_model_is_within_a_twentieth_of_the_best(joints, simpl
     assert comparison.simplest_good.model == simplest
 
 
+def test_of_models_without_any_error_the_simplest_is_as_good_as_the_best():
+    comparison = compared(joints_bending=0.0, joints=0.0)
+    assert comparison.best.model == "joints+bending"
+    assert comparison.simplest_good.model == "joints"
+
+
 def test_parameters_are_counted_without_what_is_counted_with_another():
     """Nine springs of which one is lumped are eight; the tool's model has seven."""
     assert RESULT["joints+bending"].lumped

@@ -219,10 +219,12 @@ def test_points_that_are_off_are_offered(off_force, off_gauge, offered):
     assert taken.offer is None
 
 
-def test_an_arm_a_thousand_times_as_stiff_is_offered_the_same_points():
+@pytest.mark.parametrize(("yields", "pulled"), [(1e-3, 1.0), (1.0, 1e8)])
+def test_a_stiffer_arm_is_offered_the_same_points_whether_it_yields_less_or_is_pulled_harder(yields, pulled):
     rig = Rig()
     tests = read("kuka_kr500", make(ARMS["kuka_kr500"][0], rig, 43, seed=10), rig, OFF_FORCE, 0 * OFF_GAUGE)
-    stiff = rm.identify(ARMS["kuka_kr500"][1], replace(tests, displacement=1e-3 * tests.displacement))
+    harder = replace(tests, displacement=yields * tests.displacement, wrench=pulled * tests.wrench)
+    stiff = rm.identify(ARMS["kuka_kr500"][1], harder)
     assert stiff.offer is not None
     assert stiff.offer.fit_points == "force"
     assert stiff.offer.points[0].off == pytest.approx(0.150, abs=0.02)
