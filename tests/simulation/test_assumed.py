@@ -1,6 +1,7 @@
 """What is assumed of a force: the verdict against whole runs with the force at the ends of what is assumed."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,12 +11,13 @@ from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import PUBLISHED
 from robomill.io.materials import load_material
 from robomill.simulation.result import SimulationResult
+from robomill.surface.stock import Stock
 from tests.simulation.cuts import FLAT, CutCase, along_x, shoulder
 
 SLOT = CutCase("slot", FLAT, (along_x(0, -2),))
 
 
-def run(case: CutCase, share: float | None, **changes: float) -> SimulationResult:
+def run(case: CutCase, share: float | None, **changes: Any) -> SimulationResult:
     row = load_material("al7075_t6_carbide_ref160")  # gives no axial coefficients
     setup = case.setup(step=1.0, cell=0.2).replace(force=MechanisticForce(FLAT, row, axial_share=share), **changes)
     return rm.simulate(setup)
@@ -35,6 +37,16 @@ def test_a_verdict_is_not_green_where_the_far_end_of_an_assumed_share_is_out(cas
     roomy = run(case, share, floor_tolerance=2 * worst, tolerance=wide).verdict
     assert (roomy.level, roomy.far) == ("ok", pytest.approx(0.5, rel=1e-3))
     assert run(case, share, floor_tolerance=0.9 * reads, tolerance=wide).verdict.level == "out"
+
+
+def test_where_nothing_of_the_part_is_left_the_tips_own_deviation_is_taken_at_the_ends() -> None:
+    """A bar narrower than the cutter, milled away to below its bottom."""
+    bar = Stock((-8e-3, -2e-3, -1.5e-3), (8e-3, 2e-3, 0.0))
+    low, high = (run(SLOT, share, stock=bar).max_deviation for share in PUBLISHED["axial"])
+    found = run(SLOT, PUBLISHED["axial"][0], stock=bar, tolerance=1e-3).verdict
+    assert not found.wall.decides
+    assert not found.floor.decides
+    assert found.far == pytest.approx(max(low, high) / 1e-3, rel=1e-3)
 
 
 def test_nothing_is_assumed_where_the_row_gives_all() -> None:
