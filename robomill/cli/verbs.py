@@ -99,11 +99,11 @@ def run_identify(arguments: Any) -> int:
     from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
     from robomill.identification.treatment import AUTO, BENDING_JOINTS, Treatment
+    from robomill.io.declared import kind_to_table
     from robomill.io.load_test_sheets import measuring_sheet
     from robomill.io.load_tests import read_load_tests
     from robomill.io.results import write_file
     from robomill.io.robots import load_robot, robot_to_toml
-    from robomill.io.springs import spring_to_table
     from robomill.report.plain import identification_lines
 
     robot = load_robot(arguments.robot)
@@ -124,7 +124,7 @@ def run_identify(arguments: Any) -> int:
     result = identify(robot, tests, model.name, treatment)
     record, findings = identification_record(robot, tests, result)
     record["findings"] = [finding.record() for finding in findings]
-    record["springs"] = [spring_to_table(spring) for spring in result.springs(robot)]
+    record["springs"] = [kind_to_table(spring) for spring in result.springs(robot)]
     lines = identification_lines(record)
     if arguments.out:
         write_file(arguments.out, robot_to_toml(result.adopted(robot, Path(arguments.tests).name, robot, ())[0]))

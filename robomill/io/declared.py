@@ -110,6 +110,16 @@ def to_table(value: Any, codecs: Mapping[Any, Codec] = CODECS) -> dict[str, Any]
     return out
 
 
+def kind_from_table(table: Table, kinds: Mapping[str, type[T]]) -> T:
+    """A value of the class that ``kind`` names."""
+    return from_table(table, kinds[table.choice("kind", tuple(kinds))])
+
+
+def kind_to_table(value: Any, codecs: Mapping[Any, Codec] = CODECS) -> dict[str, Any]:
+    """The table that reads back to an equal value of its kind."""
+    return {"kind": value.kind, **to_table(value, codecs)}
+
+
 def read_quantity(table: Table, declared: Quantity) -> Any:
     """The declared number in SI (array, flag, code), or its default where it may be left out."""
     key = declared.key

@@ -11,7 +11,7 @@ from robomill.cutting.materials import Material, alternatives
 from robomill.cutting.tool import Cutter
 from robomill.files import MATERIAL, TABLE
 from robomill.io.beside import ALONE, Beside
-from robomill.io.declared import CODECS, Around, Codec, from_table, to_table
+from robomill.io.declared import CODECS, Around, Codec, from_table, kind_to_table
 from robomill.io.forces import read_forces
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
 from robomill.io.tables import Table
@@ -28,7 +28,7 @@ def force_from_table(table: Table, cutter: Cutter, beside: Beside = ALONE) -> Fo
 
 def force_to_table(force: ForceModel) -> dict[str, Any]:
     """The model as a table that ``force_from_table`` reads back to an equal one."""
-    return {"kind": force.kind, **to_table(force, FORCE_CODECS)}
+    return kind_to_table(force, FORCE_CODECS)
 
 
 def _read_material(table: Table, name: str, around: Around) -> Material:

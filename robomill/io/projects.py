@@ -7,19 +7,19 @@ import numpy as np
 import tomli_w
 
 from robomill.compliance.gravity import LinkMasses
+from robomill.compliance.springs import SPRINGS
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import PROGRAM, ROBOT, SETUP
 from robomill.io.beside import ALONE, Beside
-from robomill.io.declared import from_table, read_quantity, to_table, write_quantity
+from robomill.io.declared import from_table, kind_from_table, kind_to_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot_reader import ANGLE
 from robomill.io.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
 from robomill.io.sketches import sketch_from_table, sketch_to_table
-from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.texts import read_text
 from robomill.io.tool_tables import tools_from_table, tools_to_tables
@@ -90,7 +90,7 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
         stock=stock_from_table(top.table("stock"), beside) if top.has("stock") else None,
         force=force_from_table(top.table("force"), cutter, beside),
         provenance=_provenance(top.table("provenance", {})),
-        springs=tuple(spring_from_table(entry) for entry in top.tables("springs")),
+        springs=tuple(kind_from_table(entry, SPRINGS) for entry in top.tables("springs")),
         measured_map=map_from_table(top.table("measured_map"), robot, beside) if top.has("measured_map") else None,
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
@@ -218,7 +218,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
     if setup.spin != LEAST_MOTION:
         data["spin" if isinstance(setup.spin, str) else "spin_rad"] = setup.spin
     if setup.springs:
-        data["springs"] = [spring_to_table(spring) for spring in setup.springs]
+        data["springs"] = [kind_to_table(spring) for spring in setup.springs]
     if setup.measured_map is not None:
         data["measured_map"] = map_to_table(setup.measured_map)
     if setup.links is not None:

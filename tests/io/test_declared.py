@@ -21,10 +21,9 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError
-from robomill.io.declared import from_table, to_table
+from robomill.io.declared import from_table, kind_from_table, kind_to_table, to_table
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.materials import load_material
-from robomill.io.springs import spring_from_table, spring_to_table
 from robomill.io.tables import Table
 from robomill.provenance import Provenance
 from robomill.surface.stock import Stock
@@ -80,15 +79,15 @@ def test_a_material_brings_the_other_rows_of_its_alloy() -> None:
     ],
 )
 def test_springs_are_read_back(spring) -> None:
-    assert spring_from_table(through_toml(spring_to_table(spring))) == spring
+    assert kind_from_table(through_toml(kind_to_table(spring)), SPRINGS) == spring
 
 
 def test_keys_and_units_are_those_of_files_written_before() -> None:
     tool = {"kind": "tool_bending", "diameter_mm": 8.0, "stick_out_mm": 40.0, "E_N_mm2": 600000.0, "core": 0.8}
-    assert spring_to_table(ToolBending(8e-3, 40e-3)) == tool
+    assert kind_to_table(ToolBending(8e-3, 40e-3)) == tool
     joint = {"kind": "joint_bending", "joint": 2, "C_x_1e-7_rad_per_Nm": 1.0, "C_y_1e-7_rad_per_Nm": 3.0}
-    assert spring_from_table(Table(joint, "x")) == JointBending(2, 1e-7, to_si_7(3.0))
-    assert spring_from_table(Table({"kind": "spindle", "lateral_um_N": 0.05}, "x")) == SpindleSpring(0.05e-6)
+    assert kind_from_table(Table(joint, "x"), SPRINGS) == JointBending(2, 1e-7, to_si_7(3.0))
+    assert kind_from_table(Table({"kind": "spindle", "lateral_um_N": 0.05}, "x"), SPRINGS) == SpindleSpring(0.05e-6)
     old = {"kind": "path", "feed_N": 1.0, "feed_normal_N": 2.0, "axial_N": 3.0}
     assert force_from_table(Table(old, "x"), MILL) == PathForce(1.0, 2.0, 3.0)
     assert force_to_table(PathForce(1.0, 2.0, 3.0)) == old
@@ -123,7 +122,7 @@ def to_si_7(value: float) -> float:
 )
 def test_refusals_name_the_key(data: dict, sentence: str) -> None:
     with pytest.raises(ProjectError, match=r"^a.toml, \[x\], ") as refused:
-        spring_from_table(through_toml(data))
+        kind_from_table(through_toml(data), SPRINGS)
     assert sentence in str(refused.value)
 
 
