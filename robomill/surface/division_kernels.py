@@ -28,7 +28,7 @@ from robomill.surface.engagement_kernels import (
     measure,
 )
 from robomill.surface.material_kernels import World
-from robomill.surface.rib_kernels import Walk, alternates, fine_pitch, next_change, walk_on
+from robomill.surface.rib_kernels import Walk, alternates, fine_pitch, look_about, next_change, walk_on
 from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, PHI, SINE, gap_end, jumps, panel_end
 
@@ -74,7 +74,7 @@ def divide(
                 rough = rough or jumps(rows[left, LENGTH], rows[between, LENGTH])
                 gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
                 left, a = between, phi
-                changed, phi = next_change(world, step, walk, rows, (changed, between, left, every))
+                changed, phi = next_change(world, step, walk, rows, (changed, between, every))
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         for n in range(first, first + 4, 3):
@@ -199,12 +199,13 @@ def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) 
     walk, every = walk_on(world, shape, step, room.stretches, room.circles), HALF * halves
     if walk.used == 0:
         return (every, 0.0, every), walk
-    changed, phi = next_change(world, step, walk, room.rows, (0, 0, 0, every))
+    look_about(world, step, walk, room.rows, halves)
+    changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
     if not walk.plain and (changed < every or alternates(world, step, walk, room.rows, ANGLES * halves)):
         room.fine[0] = fine_pitch(world)
         measure(room, world, shape, step, 0, ANGLES * halves)
-        walk = Walk(walk.circles, walk.used, walk.pitch, walk.fine, walk.plain, CLOSE, walk.rim)
-        changed, phi = next_change(world, step, walk, room.rows, (0, 0, 0, every))
+        walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, CLOSE, walk.rim)
+        changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
     return (changed, phi, every), walk
 
 

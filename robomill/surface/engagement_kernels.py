@@ -51,6 +51,9 @@ UNSEEN = -math.inf  # where an angle begins at which nothing was looked at yet
 BEGIN, STOP, PIECES, FIRST = range(4)  # of a stretch of the profile: where, in how many pieces, its first place
 
 
+Place = tuple[float, float, float, float]  # of the profile: radius, height, sine and cosine of its normal
+
+
 class Ray(NamedTuple):
     """An angle of the cutter: its sine, and the unit vector e(phi) out of the axis, in {W}."""
 
@@ -82,14 +85,14 @@ class Room(NamedTuple):
 
 
 @part
-def point_at(step: Step, ray: Ray, at: tuple[float, float, float, float]) -> tuple[float, float, float]:
+def point_at(step: Step, ray: Ray, at: Place) -> tuple[float, float, float]:
     """A place of the profile (radius, height, ...) at the angle of a ray, in {W}, m."""
     r, t = at[0], at[1]
     return step.x + r * ray.x + t * step.kx, step.y + r * ray.y + t * step.ky, step.z + r * ray.z + t * step.kz
 
 
 @part
-def engaged_at(world: World, step: Step, ray: Ray, at: tuple[float, float, float, float]) -> float:
+def engaged_at(world: World, step: Step, ray: Ray, at: Place) -> float:
     """How deep in the material the cutter cuts at a place of its profile (radius, height, sine, cosine) at the angle of
     a ray, m: > 0 where it does (see ``standing``)."""
     sine, cosine = at[2], at[3]
@@ -181,7 +184,7 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
 
 
 @part
-def place_of(room: Room, first: int, n: int) -> tuple[float, float, float, float]:
+def place_of(room: Room, first: int, n: int) -> Place:
     """A place that is looked at on the profile, of those of a stretch, the first of which is so far on."""
     place = room.places[first + n]
     return place[0], place[1], place[2], place[3]
@@ -195,16 +198,19 @@ def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape
     whole = room.stretches[stretch]
     pieces, first = int(whole[PIECES]), int(whole[FIRST])
     width = (whole[STOP] - whole[BEGIN]) / pieces
-    low, deep_low = whole[BEGIN], engaged_at(world, step, ray, place_of(room, first, 0))
+    low, at_low = whole[BEGIN], place_of(room, first, 0)
+    deep_low = engaged_at(world, step, ray, at_low)
     begin, n, shut = low, 1, room.fine[0] == 0.0
-    deep_end = 0.0
+    at_end, deep_end = at_low, 0.0
     while n <= pieces:
         high = whole[BEGIN] + n * width
         if low == whole[BEGIN] + (n - 1) * width:
-            deep_end = engaged_at(world, step, ray, place_of(room, first, n))
-        deep_high = deep_end
+            at_end = place_of(room, first, n)
+            deep_end = engaged_at(world, step, ray, at_end)
+        at_high, deep_high = at_end, deep_end
         if not shut and (deep_low > 0.0) == (deep_high > 0.0):
-            high, deep_high = hidden_place(world, seen, stretch, (low, high), (deep_low, deep_high))
+            gap = (low, high), (deep_low, deep_high), (at_low, at_high)
+            high, deep_high, at_high = hidden_place(world, seen, stretch, gap)
         if (deep_low > 0.0) != (deep_high > 0.0):
             ends = end_between(world, seen, stretch, (low, high), (deep_low, deep_high))
             if deep_low > 0.0:
@@ -212,7 +218,7 @@ def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape
             begin = ends[1]
         if high == whole[BEGIN] + n * width:
             n += 1
-        low, deep_low = high, deep_high
+        low, deep_low, at_low = high, deep_high, at_high
     if deep_low > 0.0:
         add_edge(room, row, seen[0], step, stretch, (begin, whole[STOP]))
 
@@ -245,18 +251,18 @@ def hidden_place(
     world: World,
     seen: tuple[Shape, Step, Ray],
     stretch: int,
-    ends: tuple[float, float],
-    deeps: tuple[float, float],
-) -> tuple[float, float]:
-    """A place between two of a stretch, m, at which it is otherwise than at both, and how deep it is; the second of
-    them where there is none."""
-    (shape, step, ray), (low, high), share = seen, ends, 0.0
-    a, b = point_at(step, ray, on_profile(shape, stretch, low)), point_at(step, ray, on_profile(shape, stretch, high))
+    gap: tuple[tuple[float, float], tuple[float, float], tuple[Place, Place]],
+) -> tuple[float, float, Place]:
+    """A place between two of a stretch at which it is otherwise than at both: where, m, how deep, and itself; the
+    second of them where there is none. ``gap``: where the two are, m, how deep, and themselves."""
+    (shape, step, ray), ((low, high), deeps, places), share = seen, gap, 0.0
+    a, b = point_at(step, ray, places[0]), point_at(step, ray, places[1])
     while share < 1.0:
         share = change_between(world, step.run, (a, b), share, deeps[0] > 0.0)
         if share < 1.0:
             s = low + share * (high - low)
-            deep = engaged_at(world, step, ray, on_profile(shape, stretch, s))
+            at = on_profile(shape, stretch, s)
+            deep = engaged_at(world, step, ray, at)
             if (deep > 0.0) != (deeps[0] > 0.0):
-                return s, deep
-    return high, deeps[1]
+                return s, deep, at
+    return high, deeps[1], places[1]

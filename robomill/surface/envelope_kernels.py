@@ -86,5 +86,6 @@ def between(start: float, slope: float, low: float, high: float) -> tuple[float,
     """Where low <= start + slope * y <= high: (from, to), from > to if nowhere."""
     if slope == 0.0:
         return (-math.inf, math.inf) if low <= start <= high else (math.inf, -math.inf)
-    a, b = (low - start) / slope, (high - start) / slope
+    per = 1.0 / slope
+    a, b = (low - start) * per, (high - start) * per
     return min(a, b), max(a, b)

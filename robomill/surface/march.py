@@ -17,7 +17,7 @@ from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.progress import checkpoint
 from robomill.surface.passes import STRAIGHT, bends, check_rise, leaning, moves_at_feed, moves_of, tool_axes
-from robomill.surface.raster import stock_layers
+from robomill.surface.raster import relief_of, stock_layers
 from robomill.surface.stock import Cells, Stock, stock_grid
 from robomill.toolpath.sampling import CORNER
 
@@ -166,13 +166,14 @@ class March:
         runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
         runs[:, ENDS:AXIS] = self._ends[first]
         runs[:, AXIS:MOVE] = self._axes[1][first]
-        world = World(dexels, runs, Bounds(*map(float, (*self.stock.lower, *self.stock.upper))), facets)
-        return world, self._room()
+        bounds = Bounds(*map(float, (*self.stock.lower, *self.stock.upper)))
+        relief = relief_of(self.stock, max(cutter.radius for cutter in self.tooling.cutters))
+        return World(dexels, runs, bounds, facets, relief), self._room()
 
     def _room(self) -> Any:
         from robomill.surface import division_kernels as division
         from robomill.surface import engagement_kernels as kernels
-        from robomill.surface.rib_kernels import CIRCLES
+        from robomill.surface.rib_kernels import CIRCLES, COLUMNS
         from robomill.surface.turn_kernels import ANGLES, half_turn
 
         places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
@@ -190,7 +191,7 @@ class March:
             np.zeros((division.GAPS, 7)),
             np.zeros((division.GAPS * (2 * division.HALVINGS + 2), 4)),
             np.zeros((4 * PANELS * (2 if down else 1), 5)),
-            np.zeros((3 * CIRCLES, 4)),
+            np.zeros((3 * CIRCLES, COLUMNS)),
             np.zeros(1),
         )
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
-from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, radius_at, shape_of
+from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, shape_of
 from robomill.surface.cells_kernels import cells_between
 from robomill.surface.division_kernels import add_part
 from robomill.surface.engagement_kernels import Room
-from robomill.surface.envelope_kernels import POINT, Move, nearest, row_interval, swept_height
+from robomill.surface.envelope_kernels import Move, nearest, swept_height
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -24,14 +24,17 @@ from robomill.surface.material_kernels import (
     SKIN,
     Dexels,
     World,
+    beside,
     cell_of,
     height_of_run,
     is_upright,
     see_move,
 )
+from robomill.surface.relief_kernels import Relief, covered, half_of, lower_tops, tell_nothing, tops_about
 from robomill.surface.soon import soon
 from robomill.surface.step_kernels import step_at
 from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
+from robomill.surface.track_kernels import Track, row_of, track_of
 
 Singles1 = Annotated[NDArray[np.float32], Axes("float32", 1)]
 Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
@@ -80,89 +83,56 @@ def cut_run(world: World, r: int, stops: bool) -> None:
 
 
 @part
-def goes_on(runs: FloatArray, r: int) -> bool:
-    """Whether a run begins where the one before left off, with the same tool and axis."""
-    same = r > 0
-    if same:
-        for n in range(MOVE):
-            before = n + 3 if ENDS <= n < ENDS + 3 else n
-            same = same and (ENDS + 3 <= n < AXIS or runs[r - 1, before] == runs[r, n])
-    return same
-
-
-@part
-def follows(runs: FloatArray, r: int) -> bool:
-    """Whether a run has nothing to cut behind its start: it goes on from another and does not go down."""
-    return goes_on(runs, r) and runs[r, ENDS + 5] >= runs[r, ENDS + 2]
-
-
-@part
-def leaves(runs: FloatArray, r: int) -> bool:
-    """Whether a run leaves what lies ahead of its end to the next one, which begins with the tool there: it does not
-    go up, and not straight down."""
-    if r + 1 == len(runs) or runs[r, ENDS + 5] > runs[r, ENDS + 2] or not goes_on(runs, r + 1):
-        return False
-    ux, uy = way_in_plan(runs, r)
-    return ux != 0.0 or uy != 0.0
-
-
-@part
-def way_in_plan(runs: FloatArray, r: int) -> tuple[float, float]:
-    """Unit vector of a run in plan, from its start to its end; (0, 0) straight up or down."""
-    vx, vy = runs[r, ENDS + 3] - runs[r, ENDS], runs[r, ENDS + 4] - runs[r, ENDS + 1]
-    length = math.hypot(vx, vy)
-    return (vx / length, vy / length) if length > POINT else (0.0, 0.0)
-
-
-@part
-def ahead_of(place: FloatArray, way: tuple[float, float], x: float) -> tuple[float, float]:
-    """Where the line at ``x`` parallel to y lies ahead of a place (x, y), or abreast of it: (low, high) m; everywhere
-    if there is no way."""
-    if way[1] == 0.0:
-        return (-math.inf, math.inf) if (x - place[0]) * way[0] >= -SKIN else (math.inf, -math.inf)
-    y = place[1] - ((x - place[0]) * way[0] + SKIN) / way[1]
-    return (y, math.inf) if way[1] > 0.0 else (-math.inf, y)
-
-
-@part
 def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
-    """Cut a run of an upright cutter: ahead of its start, where it follows another, and of where that one stopped; up
-    to its end, where it leaves what lies ahead."""
-    dexels, runs, height = world.dexels, world.runs, world.bounds.z_high - move.az
-    if height <= 0.0:
+    """Cut a run of an upright cutter."""
+    dexels = world.dexels
+    if world.bounds.z_high <= move.az:
         return
-    radius, follow, leave = radius_at(shape, height), follows(runs, r), leaves(runs, r)
-    a, b, way = runs[r, ENDS : ENDS + 3], runs[r, ENDS + 3 : AXIS], way_in_plan(runs, r)
-    before, back = way_in_plan(runs, r - 1) if follow else way, (-way[0], -way[1])
-    turn = 2.0 * math.hypot(way[0] - before[0], way[1] - before[1])  # at least the angle between both ways
-    side = radius * abs(way[1])  # how far its sides stand off in x; the tool at either end reaches further
-    start, stop = min(radius, side + turn * radius) if follow else radius, side if leave else radius
-    low, high = min(a[0] - start, b[0] - stop), max(a[0] + start, b[0] + stop)
+    track = track_of(world, shape, move, r)
+    turn = 2.0 * math.hypot(track.way[0] - track.before[0], track.way[1] - track.before[1])  # at least that of the ways
+    side = track.radius * abs(track.way[1])  # how far its sides stand off in x; the tool at either end reaches further
+    start = min(track.radius, side + turn * track.radius) if track.follow else track.radius
+    stop = side if track.leave else track.radius
+    low, high = min(track.a[0] - start, track.b[0] - stop), max(track.a[0] + start, track.b[0] + stop)
     first, end = cells_between(low, high, dexels.x0, dexels.dx, dexels.heights.shape[0])
     for i in range(first, end):
-        x = dexels.x0 + i * dexels.dx
-        y_low, y_high = row_interval(move, radius, x)
-        if follow:
-            own, others = ahead_of(a, way, x), ahead_of(a, before, x)
-            y_low, y_high = max(y_low, min(own[0], others[0])), min(y_high, max(own[1], others[1]))
-        if leave:
-            behind = ahead_of(b, back, x)
-            y_low, y_high = max(y_low, behind[0]), min(y_high, behind[1])
+        y_low, y_high = row_of(track, dexels.x0 + i * dexels.dx, 0.0)
         if y_low <= y_high:
             j, j_end = cells_between(y_low, y_high, dexels.y0, dexels.dy, dexels.heights.shape[1])
             for n in range(j, j_end, LINE):
                 soon(dexels.heights, i + ROWS_AHEAD, n)
                 soon(dexels.names, i + ROWS_AHEAD, n)
-            open_row(dexels, shape, move, r, (i, j, j_end))
+            open_row(world, shape, move, r, (i, j, j_end))
+    lower_relief(world.relief, shape, track)
 
 
 @part
-def open_row(dexels: Dexels, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
-    """Open columns within the track from above down to what a move of run ``r`` leaves; ``row``: i, first j, end."""
+def lower_relief(relief: Relief, shape: Shape, track: Track) -> None:
+    """Lower the bounds of the squares that a run's track touches."""
+    half, (dx, dy), reach = half_of(relief), (1.0 / relief.per_x, 1.0 / relief.per_y), track.radius
+    low, high = min(track.a[0], track.b[0]) - reach - half, max(track.a[0], track.b[0]) + reach + half
+    first, end = cells_between(low, high, relief.x0 + 0.5 * dx, dx, relief.tops.shape[0])
+    for i in range(first, end):
+        x = relief.x0 + (i + 0.5) * dx
+        y_low, y_high = row_of(track, x, half)
+        if y_low <= y_high:
+            j_first, j_end = cells_between(y_low, y_high, relief.y0 + 0.5 * dy, dy, relief.tops.shape[1])
+            for j in range(j_first, j_end):
+                tops = relief.tops[i, j]
+                lower_tops(tops, (x, relief.y0 + (j + 0.5) * dy, half), shape, track.move, reach)
+
+
+@part
+def open_row(world: World, shape: Shape, move: Move, r: int, row: tuple[int, int, int]) -> None:
+    """Open columns within the track from above down to what a move of run ``r`` leaves; ``row``: i, first j, end. What
+    it leaves nothing of is no side any more."""
     i, first, end = row
+    dexels = world.dexels
     x, single = dexels.x0 + i * dexels.dx, dexels.heights.shape[2] == 1
     for j in range(first, end):
         height, top = move.az, dexels.heights[i, j, 0]
+        if dexels.names[i, j, 0] != NOBODY and swallows(world, shape, move, i, j):
+            dexels.names[i, j, 0] = NOBODY
         if top <= height + SKIN:
             continue
         if shape.kind != FLAT or move.m != 0.0:
@@ -180,25 +150,29 @@ def open_row(dexels: Dexels, shape: Shape, move: Move, r: int, row: tuple[int, i
 
 
 @part
+def swallows(world: World, shape: Shape, move: Move, i: int, j: int) -> bool:
+    """Whether a move of an upright cutter leaves nothing in a cell of the side noted there."""
+    dexels = world.dexels
+    other = world.runs[dexels.names[i, j, 0]]
+    if not is_upright(other):
+        return False
+    half, side = 0.5 * math.sqrt(dexels.dx**2 + dexels.dy**2), shape_of(other)
+    low = other[MOVE + 2] + profile(side, max(side.R - 2.0 * half, 0.0))
+    return covered(shape, move, dexels.x0 + i * dexels.dx, dexels.y0 + j * dexels.dy, half) <= low + SKIN
+
+
+@part
 def cut_leaning(world: World, shape: Shape, move: Move, r: int) -> None:
     """Cut a step of a leaning cutter, ``move`` in its own frame, into columns of several layers."""
     dexels, ends, k = world.dexels, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
     frame = tool_frame(k[0], k[1], k[2])
     up = max(0.0, world.bounds.z_high - min(ends[2], ends[5]) + shape.R * frame.sine) / k[2]
-    first, end = cells_between(
-        min(ends[0], ends[3]) + min(0.0, up * k[0]) - shape.R,
-        max(ends[0], ends[3]) + max(0.0, up * k[0]) + shape.R,
-        dexels.x0,
-        dexels.dx,
-        dexels.heights.shape[0],
-    )
-    j_first, j_end = cells_between(
-        min(ends[1], ends[4]) + min(0.0, up * k[1]) - shape.R,
-        max(ends[1], ends[4]) + max(0.0, up * k[1]) + shape.R,
-        dexels.y0,
-        dexels.dy,
-        dexels.heights.shape[1],
-    )
+    x_low, x_high = min(ends[0], ends[3]) + min(0.0, up * k[0]), max(ends[0], ends[3]) + max(0.0, up * k[0])
+    y_low, y_high = min(ends[1], ends[4]) + min(0.0, up * k[1]), max(ends[1], ends[4]) + max(0.0, up * k[1])
+    corner, other = (x_low - shape.R, y_low - shape.R), (x_high + shape.R, y_high + shape.R)
+    first, end = cells_between(corner[0], other[0], dexels.x0, dexels.dx, dexels.heights.shape[0])
+    j_first, j_end = cells_between(corner[1], other[1], dexels.y0, dexels.dy, dexels.heights.shape[1])
+    tell_nothing(world.relief, corner, other)
     for i in range(first, end):
         for j in range(j_first, j_end):
             top = dexels.heights[i, j, 0]
@@ -272,9 +246,9 @@ def note_rim(world: World, shape: Shape, r: int, stops: bool) -> None:
 
 @part
 def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
-    """Note a run in the cell of a place on its rim (m), unless a noted run reaches further there."""
+    """Note a run in the cell of a place on its rim (m), unless a noted run reaches further there, or nothing stands."""
     x, y, z = place
-    if z > world.bounds.z_high:
+    if z > world.bounds.z_high or beside(world.bounds, x, y) or tops_about(world.relief, x, y)[1] < z:
         return
     i, j = cell_of(world.dexels, x, y)
     noted = world.dexels.names[i, j, 0]

@@ -17,6 +17,7 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
 from robomill.cutting.profile_kernels import profile, shape_of
 from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height
+from robomill.surface.relief_kernels import Relief, tops_about
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
@@ -81,6 +82,7 @@ class World(NamedTuple):
     runs: Out2
     bounds: Bounds
     facets: Facets
+    relief: Relief
 
 
 SHAPE, ENDS, AXIS, MOVE, RUN = 0, 5, 11, 14, 21  # where in a run its parts begin
@@ -134,17 +136,23 @@ def height_of_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> flo
 
 
 @part
+def beside(bounds: Bounds, x: float, y: float) -> bool:
+    """Whether a point in plan lies beside the stock."""
+    return x < bounds.x_low or x > bounds.x_high or y < bounds.y_low or y > bounds.y_high
+
+
+@part
 def cell_of(dexels: Dexels, x: float, y: float) -> tuple[int, int]:
     """The cell that holds a point in plan; beyond the grid the nearest one."""
-    i = math.floor((x - dexels.x0) / dexels.dx + 0.5)
-    j = math.floor((y - dexels.y0) / dexels.dy + 0.5)
+    i = math.floor((x - dexels.x0) * (1.0 / dexels.dx) + 0.5)
+    j = math.floor((y - dexels.y0) * (1.0 / dexels.dy) + 0.5)
     return max(0, min(i, dexels.heights.shape[0] - 1)), max(0, min(j, dexels.heights.shape[1] - 1))
 
 
 @part
 def cells_around(dexels: Dexels, x: float, y: float) -> tuple[int, int, int, int]:
     """The four cells whose centres stand around a point in plan, as rows i, i_next and columns j, j_next."""
-    i, j = math.floor((x - dexels.x0) / dexels.dx), math.floor((y - dexels.y0) / dexels.dy)
+    i, j = math.floor((x - dexels.x0) * (1.0 / dexels.dx)), math.floor((y - dexels.y0) * (1.0 / dexels.dy))
     rows, width = dexels.heights.shape[0] - 1, dexels.heights.shape[1] - 1
     return max(0, min(i, rows)), max(0, min(i + 1, rows)), max(0, min(j, width)), max(0, min(j + 1, width))
 
@@ -153,6 +161,8 @@ def cells_around(dexels: Dexels, x: float, y: float) -> tuple[int, int, int, int
 def in_column(dexels: Dexels, i: int, j: int, z: float) -> float:
     """How deep in the material of a column a height is, m: the way to the nearest end of its layer, < 0 in air."""
     before, count = math.inf, dexels.heights.shape[2]
+    if count == 1:
+        return dexels.heights[i, j, 0] - z
     for n in range(count):
         end = dexels.heights[i, j, n]
         if z > end:
@@ -226,7 +236,7 @@ def in_runs(
 def in_stock(bounds: Bounds, facets: Facets, point: tuple[float, float, float]) -> bool:
     """Whether the stock held a point (x, y, z) m before the first cut: of a mesh, by the faces above the point."""
     x, y, z = point
-    if x < bounds.x_low or x > bounds.x_high or y < bounds.y_low or y > bounds.y_high:
+    if beside(bounds, x, y):
         return False
     if z < bounds.z_low or z > bounds.z_high:
         return False
@@ -280,8 +290,11 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
 def top_over(world: World, x: float, y: float) -> float:
     """Height of the material over a point in plan, m, for columns of one layer cut by upright tools; -inf outside."""
     bounds, dexels = world.bounds, world.dexels
-    if x < bounds.x_low or x > bounds.x_high or y < bounds.y_low or y > bounds.y_high:
+    if beside(bounds, x, y):
         return -math.inf
+    low, high = tops_about(world.relief, x, y)
+    if high - low <= SKIN:
+        return high
     cells = cells_around(dexels, x, y)
     low, high = lowest_and_highest(dexels, cells)
     if high - low <= SKIN and not has_side(dexels, cells):

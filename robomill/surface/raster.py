@@ -12,8 +12,11 @@ from robomill.surface.stock import Cells, Stock
 
 if TYPE_CHECKING:
     from robomill.surface.material_kernels import Facets
+    from robomill.surface.relief_kernels import Relief
 
 SQUARES = 64  # along the longer side of a mesh
+RELIEF, MARGIN = 0.2, 0.12  # of the radius: the side of a square of the relief, and how far about it its bounds hold
+MOST_OF_RELIEF = 1000  # squares along a side
 
 
 def stock_heights(stock: Stock, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -84,6 +87,19 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
     heights[cell[number % 2 == 0], number[number % 2 == 0] + 1] = bottom
     heights[cell, number] = z
     return heights.reshape(*shape, -1), binned(stock)
+
+
+def relief_of(stock: Stock, radius: float) -> Relief:
+    """Squares over a stock for cutters of up to this ``radius`` m: a block is full up to its top, of a mesh it is known
+    only that nothing stands above it."""
+    from robomill.surface.relief_kernels import Relief
+
+    many = np.clip(np.round(stock.size[:2] / (RELIEF * radius)), 1, MOST_OF_RELIEF).astype(np.int64)
+    tops = np.full((*many, 2), float(stock.upper[2]))
+    if stock.triangles is not None:
+        tops[:, :, 0] = -np.inf
+    (x, y, bottom), (per_x, per_y) = map(float, stock.lower), map(float, many / stock.size[:2])
+    return Relief(tops, x, y, per_x, per_y, MARGIN * radius, bottom)
 
 
 def binned(stock: Stock) -> Facets:

@@ -13,30 +13,48 @@ from typing import NamedTuple
 from robomill.arrays import FloatArray
 from robomill.compiled import Out2, called, part
 from robomill.cutting.profile_kernels import END, FLANK, FLAT, Shape, on_profile
-from robomill.surface.material_kernels import NOBODY, Dexels, World, cell_of, in_column, standing, top_over
+from robomill.surface.material_kernels import (
+    NOBODY,
+    SKIN,
+    Dexels,
+    World,
+    beside,
+    cell_of,
+    in_column,
+    standing,
+    top_over,
+)
+from robomill.surface.relief_kernels import UNKNOWN, told, tops_between
 from robomill.surface.step_kernels import Step
-from robomill.surface.turn_kernels import COSINE, HALF, PHI, SINE, gap_end, jumps
+from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, PHI, SINE, gap_end, jumps
 
 PITCH = 0.7  # cells: so far apart ribs and gaps of material are looked for
 THIN, LEAST = 25e-6, 1.0 / 16.0  # m, cells: so far apart where a side passes, a quarter of a cell at most
 THICK = 0.25  # of the radius: ribs and gaps that are thicker are met by the places looked at
 CIRCLES = 4  # looked at on a stretch of the profile
 ALONG = 0.245  # of a stretch, from one of its circles to the next; a little more to the first one
-RADIUS, HEIGHT, LOW, HIGH = range(4)  # of a circle, and what stands on it at the angles looked at about a gap
+# of a circle: itself; what stands on it at the angles of rows, whether a side is near there, and what stands on the
+# whole gap before each (UNSEEN: it is not known)
+RADIUS, HEIGHT, SEEN = 0, 1, 2
+NEAR = SEEN + 2 * ANGLES
+WHOLE = NEAR + 2 * ANGLES
+COLUMNS = WHOLE + 2 * ANGLES
+UNSEEN = -1.0
 
 Point = tuple[float, float, float]
+Pace = tuple[float, float, float]
 
 
 class Walk(NamedTuple):
-    """Steps along circles about the axis of the cutter: the circles (c, 4) m, of which the first ``used`` are walked,
-    and the angles of a step, rad, where no side is near and where one is. ``plain``: they see how high material
-    stands above them, others only whether it does. ``most``: so far from an angle looked at, rad, there is another;
-    ``rim``: the widest radius, m."""
+    """Steps along circles about the axis of the cutter: the circles (c, ``COLUMNS``) m, of which the first ``used`` are
+    walked, and the ``pace`` where no side is near and where one is. ``plain``: they see how high material stands above
+    them, others only whether it does. ``most``: so far from an angle looked at, rad, there is another; ``rim``: the
+    widest radius, m."""
 
     circles: Out2
     used: int
-    pitch: float
-    fine: float
+    coarse: Pace
+    fine: Pace
     plain: bool
     most: float
     rim: float
@@ -71,98 +89,141 @@ def walk_on(world: World, shape: Shape, step: Step, stretches: FloatArray, circl
             widest, count = max(widest, r), count + 1
     if step.z >= world.bounds.z_high + widest * math.hypot(step.kx, step.ky):
         count = 0
-    cell, fine = PITCH * min(world.dexels.dx, world.dexels.dy), fine_pitch(world)
-    rim = max(widest, cell)
     only = plain and shape.kind == FLAT and stretches[END, 1] <= stretches[END, 0]
-    return Walk(circles, count, cell / rim, fine / rim, only, math.inf, rim)
+    cell = PITCH * min(world.dexels.dx, world.dexels.dy)
+    rim = max(widest, cell)
+    return Walk(circles, count, pace(cell / rim), pace(fine_pitch(world) / rim), only, math.inf, rim)
 
 
 @part
-def seen_on(world: World, step: Step, walk: Walk, n: int, turn: tuple[float, float]) -> tuple[float, bool]:
-    """What a circle meets at an angle (sine, cosine): how high above it material stands, m, or whether it does (1 or
-    0), by the column there, or exact where a side passes; and whether one does."""
-    dexels, (sine, cosine) = world.dexels, turn
-    r, t = walk.circles[n, RADIUS], walk.circles[n, HEIGHT]
-    x = step.x + r * (sine * step.fx + cosine * step.lx) + t * step.kx
-    y = step.y + r * (sine * step.fy + cosine * step.ly) + t * step.ky
-    z = step.z + r * (sine * step.fz + cosine * step.lz) + t * step.kz
-    i, j = math.floor((x - dexels.x0) / dexels.dx + 0.5), math.floor((y - dexels.y0) / dexels.dy + 0.5)
+def pace(angle: float) -> Pace:
+    """The angle of a step, its sine and cosine."""
+    return angle, math.sin(angle), math.cos(angle)
+
+
+@part
+def seen_at(world: World, step: Step, walk: Walk, place: Point) -> tuple[float, float]:
+    """What a circle meets at a place: how high above it material stands, m, or whether it does (1 or 0), by the column
+    there, or exact where a side passes; and whether one does (1 or 0)."""
+    dexels, (x, y, z) = world.dexels, place
+    i = math.floor((x - dexels.x0) * (1.0 / dexels.dx) + 0.5)
+    j = math.floor((y - dexels.y0) * (1.0 / dexels.dy) + 0.5)
     if i < 0 or j < 0 or i >= dexels.heights.shape[0] or j >= dexels.heights.shape[1]:
-        return 0.0, False
+        return 0.0, 0.0
     near = dexels.names[i, j, 0] != NOBODY
+    by_side = 1.0 if near else 0.0
     if walk.plain:
-        return max((top_over(world, x, y) if near else dexels.heights[i, j, 0]) - z, 0.0), near
+        return max((top_over(world, x, y) if near else dexels.heights[i, j, 0]) - z, 0.0), by_side
     deep = 0.0 if near else in_column(dexels, i, j, z)
     if abs(deep) <= dexels.slack or z < world.bounds.z_low:
-        deep = standing(world, (x, y, z), step.run)
-    return 1.0 if deep > 0.0 else 0.0, near
+        deep = standing(world, place, step.run)
+    return 1.0 if deep > 0.0 else 0.0, by_side
+
+
+@called
+def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: int) -> None:
+    """Note on every circle what stands there at the angles of rows, whether a side is near, and what stands on the
+    whole of a gap between them, as the relief tells."""
+    relief = world.relief
+    for n in range(walk.used):
+        circle = walk.circles[n]
+        for half in range(halves):
+            first = half * ANGLES
+            a = place_on(step, circle, rows[first, SINE], rows[first, COSINE])
+            circle[SEEN + first] = UNSEEN
+            for row in range(first + 1, first + ANGLES):
+                b = place_on(step, circle, rows[row, SINE], rows[row, COSINE])
+                tops = tops_between(relief, a, b)
+                z_low, z_high = min(a[2], b[2]), max(a[2], b[2])
+                if step.kz != 1.0:
+                    aside = 0.125 * circle[RADIUS] * (rows[row, PHI] - rows[row - 1, PHI]) ** 2
+                    z_low, z_high = z_low - aside, z_high + aside
+                seen = UNSEEN
+                if walk.plain:
+                    if tops[1] <= z_low + SKIN:
+                        seen = 0.0
+                    elif tops[1] - tops[0] <= SKIN:
+                        seen = tops[1] - z_low
+                else:
+                    what = told(relief, tops, z_low, z_high)
+                    seen = UNSEEN if what == UNKNOWN else 0.5 + 0.5 * what
+                circle[WHOLE + row] = circle[SEEN + row] = seen
+                if seen != UNSEEN:
+                    circle[SEEN + row - 1] = seen
+                a = b
+        for row in range(ANGLES * halves):
+            circle[NEAR + row] = 0.0
+            if circle[SEEN + row] == UNSEEN:
+                place = place_on(step, circle, rows[row, SINE], rows[row, COSINE])
+                circle[SEEN + row], circle[NEAR + row] = seen_at(world, step, walk, place)
 
 
 @part
-def look(world: World, step: Step, walk: Walk, row: FloatArray, end: int) -> bool:
-    """Note on every circle what stands there at the angle of a row, as one end of a gap: ``LOW`` or ``HIGH``; whether a
-    side is near."""
-    near = False
-    for n in range(walk.used):
-        walk.circles[n, end], by_side = seen_on(world, step, walk, n, (row[SINE], row[COSINE]))
-        near = near or by_side
-    return near
-
-
-@part
-def stands_out(world: World, step: Step, walk: Walk, turn: tuple[float, float]) -> tuple[bool, bool]:
-    """Whether at an angle (sine, cosine) material stands otherwise on a circle than at both ends of the gap, and
-    whether a side is near."""
-    near = False
-    for n in range(walk.used):
-        top, by_side = seen_on(world, step, walk, n, turn)
-        near = near or by_side
-        if jumps(top, walk.circles[n, LOW]) and jumps(top, walk.circles[n, HIGH]):
-            return True, near
-    return False, near
+def place_on(step: Step, circle: FloatArray, sine: float, cosine: float) -> Point:
+    """A point of a circle about the axis at an angle, in {W}, m."""
+    r, t = circle[RADIUS], circle[HEIGHT]
+    return (
+        step.x + r * (sine * step.fx + cosine * step.lx) + t * step.kx,
+        step.y + r * (sine * step.fy + cosine * step.ly) + t * step.ky,
+        step.z + r * (sine * step.fz + cosine * step.lz) + t * step.kz,
+    )
 
 
 @called
 def next_change(
-    world: World, step: Step, walk: Walk, rows: FloatArray, since: tuple[int, int, int, int]
+    world: World, step: Step, walk: Walk, rows: FloatArray, since: tuple[int, int, int]
 ) -> tuple[int, float]:
     """The next change along the circles: the gap between the angles of rows, and the angle in it at which material
     stands otherwise than at the angles looked at about it. ``since``: the gap it is looked for from, the row to look on
-    from, that where the gap begins, and how many gaps there are. Past the last gap if none."""
-    gap, row, left, gaps = since
-    near_low = look(world, step, walk, rows[left], LOW)
+    from, and how many gaps there are. Past the last gap if none."""
+    gap, row, gaps = since
     while gap < gaps:
         right = gap_end(gap)
-        near_high = look(world, step, walk, rows[right], HIGH)
-        phi, end, sine, cosine = rows[row, PHI], rows[right, PHI], rows[row, SINE], rows[row, COSINE]
-        fine, pitch, turn = pace(walk, near_low or row != left)
-        while phi + pitch < end or (near_high and not fine):
-            there = sine * turn[1] + cosine * turn[0], cosine * turn[1] - sine * turn[0]
-            out, near = stands_out(world, step, walk, there)
-            if (near or phi + pitch >= end) and not fine:
-                fine, pitch, turn = pace(walk, True)
-                continue
-            phi += pitch
-            sine, cosine = there
-            if out or phi - rows[row, PHI] >= walk.most:
-                return gap, phi
-            if fine and not near:
-                fine, pitch, turn = pace(walk, phi + walk.pitch >= end and near_high)
-        gap, row, left, near_low = gap + 1, right, right, near_high
-        if gap == HALF and gap < gaps:  # where both half turns meet, the other one has a row of its own
-            row, left = row + 1, row + 1
-            look(world, step, walk, rows[row], LOW)
-        else:
-            for n in range(walk.used):
-                walk.circles[n, LOW] = walk.circles[n, HIGH]
+        end = rows[right, PHI]
+        first = min(end, rows[row, PHI] + walk.most)
+        for n in range(walk.used):
+            if walk.circles[n, WHOLE + right] == UNSEEN:
+                first = first_change(world, step, walk, n, (rows[row], row, right, first, end))
+        if first < end:
+            return gap, first
+        gap, row = gap + 1, right
+        if gap == HALF:  # where both half turns meet, the other one has a row of its own
+            row += 1
     return gaps, 0.0
 
 
 @part
-def pace(walk: Walk, fine: bool) -> tuple[bool, float, tuple[float, float]]:
-    """Whether to walk finely, the angle of a step then, and its sine and cosine."""
-    pitch = walk.fine if fine else walk.pitch
-    return fine, pitch, (math.sin(pitch), math.cos(pitch))
+def first_change(world: World, step: Step, walk: Walk, n: int, gap: tuple[FloatArray, int, int, float, float]) -> float:
+    """The first angle on a circle at which material stands otherwise than at both ends of a gap, rad. ``gap``: the row
+    where it begins, its number and that of the row where it ends, the angle up to which it is looked for (the answer if
+    there is none), and where the gap ends."""
+    row, left, right, until, end = gap
+    circle = walk.circles[n]
+    phi, sine, cosine = row[PHI], row[SINE], row[COSINE]
+    if left < 2 * ANGLES:
+        low, near = circle[SEEN + left], circle[NEAR + left]
+    else:
+        low, near = seen_at(world, step, walk, place_on(step, circle, sine, cosine))
+    high, to_side, fine = circle[SEEN + right], circle[NEAR + right] > 0.0, near > 0.0
+    if not walk.plain and low != high:  # it stands or does not: nothing is otherwise than both
+        return until
+    while True:
+        turn = walk.fine if fine else walk.coarse
+        there = phi + turn[0]
+        if there >= end and to_side and not fine:
+            fine = True
+            continue
+        if there >= until:
+            return until
+        on_sine, on_cosine = sine * turn[2] + cosine * turn[1], cosine * turn[2] - sine * turn[1]
+        top, near = seen_at(world, step, walk, place_on(step, circle, on_sine, on_cosine))
+        if near > 0.0 and not fine:
+            fine = True
+            continue
+        phi, sine, cosine = there, on_sine, on_cosine
+        if jumps(top, low) and jumps(top, high):
+            return phi
+        fine = near > 0.0 or (to_side and phi + walk.coarse[0] >= end)
 
 
 @called
@@ -170,14 +231,13 @@ def alternates(world: World, step: Step, walk: Walk, rows: FloatArray, count: in
     """Whether on a circle material begins and ends within a quarter of the radius over the angles of rows; where it
     ends at the top of the stock does not count."""
     for n in range(walk.used):
-        r, t = walk.circles[n, RADIUS], walk.circles[n, HEIGHT]
+        circle, r = walk.circles[n], walk.circles[n, RADIUS]
         before, changed, last = -1.0, -math.inf, 0.0
         for row in range(count):
-            sine, cosine = rows[row, SINE], rows[row, COSINE]
-            if step.z + r * (sine * step.fz + cosine * step.lz) + t * step.kz >= world.bounds.z_high:
+            if place_on(step, circle, rows[row, SINE], rows[row, COSINE])[2] >= world.bounds.z_high:
                 before = -1.0
                 continue
-            there, _ = seen_on(world, step, walk, n, (sine, cosine))
+            there = circle[SEEN + row]
             if before >= 0.0 and there != before:
                 if (last - changed) * r < THICK * walk.rim:
                     return True
@@ -191,6 +251,9 @@ def change_between(world: World, run: int, ends: tuple[Point, Point], since: flo
     """How far on the straight way between two ends m, from the share ``since`` of it on, material is first met where
     there was none (or none where it ``cuts``), as a share; 1 where that is nowhere."""
     dexels, (a, b) = world.dexels, ends
+    tops = tops_between(world.relief, a, b)
+    if told(world.relief, tops, min(a[2], b[2]), max(a[2], b[2])) != UNKNOWN:
+        return 1.0
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     length = math.sqrt(dx * dx + dy * dy + dz * dz)
     if length <= 0.0:
@@ -206,7 +269,7 @@ def change_between(world: World, run: int, ends: tuple[Point, Point], since: flo
             continue
         share = there
         i, j = cell_of(dexels, x, y)
-        deep = 0.0 if near else in_column(dexels, i, j, z)
+        deep = 0.0 if near or beside(world.bounds, x, y) else in_column(dexels, i, j, z)
         if abs(deep) <= dexels.slack or z < world.bounds.z_low:
             deep = standing(world, (x, y, z), run)
         if (deep > 0.0) != cuts:

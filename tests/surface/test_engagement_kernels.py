@@ -16,12 +16,14 @@ from robomill.surface import engagement_kernels as kernels
 from robomill.surface.division_kernels import GAPS, HALVINGS, REACH, REST, ROWS, SIZE, add_part, divide, follow_jumps
 from robomill.surface.engagement_kernels import LENGTH, SUMS, Ray, Room, lay_out, measure_stretch
 from robomill.surface.material_kernels import Bounds, Dexels, Facets, World
-from robomill.surface.rib_kernels import Walk
+from robomill.surface.relief_kernels import Relief
+from robomill.surface.rib_kernels import COLUMNS, Walk
 from robomill.surface.step_kernels import step_at
 from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_end
 
 MM = 1e-3
-NO_WALK = Walk(np.zeros((12, 4)), 0, 1.0, 1.0, True, np.inf, 1.0)
+NO_WALK = Walk(np.zeros((12, COLUMNS)), 0, (1.0, 0.84, 0.54), (1.0, 0.84, 0.54), True, np.inf, 1.0)
+NO_RELIEF = Relief(np.zeros((0, 0, 2)), 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
     "ball": Cutter("ball", 8 * MM),
@@ -44,7 +46,7 @@ def room_for(halves=1):
         np.zeros((gaps, 7)),
         np.zeros((gaps * (2 * HALVINGS + 2), 4)),
         np.zeros((4 * PANELS * halves, 5)),
-        np.zeros((12, 4)),
+        np.zeros((12, COLUMNS)),
         np.zeros(1),
     )
 
@@ -133,7 +135,7 @@ def block_world(layers=1, dx=0.5 * MM):
     )
     nothing = np.zeros(0, dtype=np.int64)
     bounds = Bounds(-1.0, -1.0, -10 * MM, 1.0, 1.0, 0.0)
-    return World(dexels, np.zeros((1, 21)), bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
+    return World(dexels, np.zeros((1, 21)), bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0), NO_RELIEF)
 
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):

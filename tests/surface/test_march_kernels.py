@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.march_kernels import cut_run, follows, go_on, note_rim, take_out
+from robomill.surface.march_kernels import cut_run, go_on, note_rim, take_out
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -24,6 +24,9 @@ from robomill.surface.material_kernels import (
     standing,
     top_over,
 )
+from robomill.surface.raster import relief_of
+from robomill.surface.stock import Stock
+from robomill.surface.track_kernels import follows
 
 MM = 1e-3
 FLAT, BALL = Cutter("flat", 8 * MM), Cutter("ball", 8 * MM)
@@ -55,7 +58,8 @@ def world_of(moves, layers=0, size=(24.0, 16.0), cells=(31, 17)):
         run[AXIS:MOVE] = axis
     nothing = np.zeros(0, dtype=np.int64)
     bounds = Bounds(0.0, 0.0, -10 * MM, lengths[0], lengths[1], 0.0)
-    return World(dexels, runs, bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0))
+    relief = relief_of(Stock((0.0, 0.0, -10 * MM), (*lengths[:2], 0.0)), 4 * MM)
+    return World(dexels, runs, bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0), relief)
 
 
 def centres(dexels):
