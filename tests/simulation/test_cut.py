@@ -11,7 +11,8 @@ from scipy.spatial.transform import Rotation
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.simulation.cut import SUSPECTED, cut_notes, moved_points, suspicions, told_conditions
+from robomill.simulation.cut import SUSPECTED, cut_notes, moved_points, suspicions, told_conditions, unknown_material
+from robomill.simulation.run import simulate
 from robomill.toolpath.path import Toolpath
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
@@ -89,3 +90,16 @@ def test_notes_of_the_cutter_are_of_what_is_engaged():
     assert "beyond-flutes" in {each.code for each in cut_notes(short, told, np.ones(2, bool))}
     air = replace(told, a_p=np.zeros(2))
     assert "beyond-flutes" not in {each.code for each in cut_notes(short, air, np.ones(2, bool))}
+
+
+def test_steps_before_which_the_material_is_not_known_are_not_judged_where_they_cut():
+    met = simulate(PROCESS.replace(cell=1e-3, step=5e-3)).conditions
+    cuts = np.flatnonzero(met.cutting)
+    for lost in ([], [cuts[3]], [cuts[3], cuts[5]], [np.flatnonzero(~met.cutting)[0]], range(len(met))):
+        known = ~np.isin(np.arange(len(met)), lost)
+        found = unknown_material(replace(met, part=replace(met.part, known=known)))
+        told = [i for i in cuts if i in lost]
+        assert [each.code for each in found] == ["layers"] * bool(told)
+        for each in found:
+            np.testing.assert_array_equal(np.flatnonzero(each.where), told)
+    assert unknown_material(replace(met, part=None)) == ()

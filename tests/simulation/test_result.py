@@ -195,6 +195,7 @@ def test_a_verdict_names_three_lines_that_are_not_reached():
 
 def test_levels_where_nothing_is_cut():
     assert program("G0 X0 Y90 Z-2", "G1 X50 F1800").verdict.level == "missed"
+    assert program("G0 X0 Y90 Z-2", "G1 X50 F1800", "G1 Y9000", step=0.5).verdict.level == "missed"
     nowhere = rm.simulate(SETUP.replace(T_MW=part_frame([9.0, 0, 0])))
     assert nowhere.verdict.level == "unreached"
     assert "No point of the cut can be reached" in nowhere.verdict.sentence

@@ -87,7 +87,9 @@ def test_what_is_not_known_is_never_green(result: SimulationResult, share, unjud
     cut = int(np.flatnonzero(run.path.cutting)[3])
     reached, F, delta = run.reached.copy(), run.F.copy(), run.delta.copy()
     F[cut] = delta[cut] = np.nan
-    assert judge(dataclasses.replace(run, F=F, delta=delta), gauge(share, None, None)).level == unjudged
+    found = judge(dataclasses.replace(run, F=F, delta=delta), gauge(share, None, None))
+    assert found.level == unjudged
+    assert ("of it used" in found.sentence) == (share is not None), "a figure stands only where one was measured"
     reached[cut] = False
     gone = dataclasses.replace(run, F=F, delta=delta, ik=dataclasses.replace(run.ik, reached=reached))
     found = judge(gone, gauge(share, None, None))
