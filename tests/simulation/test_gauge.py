@@ -351,7 +351,10 @@ def test_a_thin_wall_that_two_passes_cut_away_is_off_by_no_more_than_they_are():
 @pytest.mark.parametrize("y", [0.0, -19.0])
 def test_a_cut_through_the_bottom_has_walls_as_high_as_the_stock_and_no_floor(y):
     plate = Stock([*BLOCK.lower[:2], -2e-3], BLOCK.upper)
-    found = pushed(run(f"G0 X-40 Y{y} Z5", "G0 Z-2.5", "G1 X40 F900", stock=plate), left=0.2e-3, up=-0.1e-3).gauge
+    result = pushed(run(f"G0 X-40 Y{y} Z5", "G0 Z-2.5", "G1 X40 F900", stock=plate), left=0.2e-3, up=-0.1e-3)
+    found = result.gauge
+    assert "too deep" not in result.verdict.sentence
+    assert "too high" not in result.verdict.sentence
     np.testing.assert_allclose(found.walls.error, 0.2e-3, atol=1e-8)
     np.testing.assert_allclose(found.walls.height, 2e-3, atol=1e-9)
     assert len(found.floors.error) == 0
