@@ -93,7 +93,7 @@ def test_the_scrubber_moves_code_section_and_point_without_the_whole_page(millin
 
 def test_a_length_that_is_not_known_can_be_left_out_again(milling: Any) -> None:
     page = milling
-    box = page.get_by_role("spinbutton", name="Stick-out, mm").first
+    box = page.get_by_role("textbox", name="Stick-out, mm").first
     box.fill("32")
     box.press("Enter")
     idle(page)
