@@ -10,7 +10,7 @@ from robomill.cutting.tool import Cutter
 from robomill.progress import slices
 from robomill.surface.stock import Cells
 
-TILE_CELLS = 250_000
+TILE_CELLS = 100_000  # what is noted of so many stays in the memory that is at hand
 
 
 @dataclass(frozen=True)
