@@ -5,6 +5,7 @@ Run from the project's folder: ``python samples/load_tests/generate.py``. The sa
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +14,16 @@ import robomill as rm
 from robomill.identification.load_test import LoadTests
 from robomill.identification.models import Model
 from robomill.identification.plan import box_candidates
-from robomill.identification.synthesis import simulated_tests, three_directions, true_parameters
+from robomill.identification.synthesis import three_directions
 from robomill.io.load_test_sheets import load_tests_to_csv
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.transforms import world_from_pose
 from robomill.units import from_si, to_si
 
 HERE = Path(__file__).parent
+sys.path.append(str(HERE.parents[1] / "tests" / "identification"))
+from synthetic import simulated_tests, true_parameters  # noqa: E402 - tests of any model are made where they are needed
+
 LOAD = 250.0  # N, the paper's dead weight
 NOISE = 4e-6  # m
 STIFF_TOOL = {"tool across": 5e-9, "tool along": 1e-9}  # m/N: a short tool with a sphere for its tip
