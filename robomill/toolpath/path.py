@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, digest, frozen
+from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
 from robomill.units import format_si, format_significant
@@ -25,7 +25,16 @@ PER_MOVE: dict[str, type] = {
     "dwell": float,
 }
 """Arrays of a path with one value a move, and their types."""
-FARTHEST = 1e4  # m from part zero: beyond any machine, and far below where lengths overflow
+
+
+def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
+    """Line (of ``block``, one a point or one for all) and reason where a point p (m, 3) m is beyond any machine."""
+    far = np.flatnonzero(~(np.abs(p) <= FARTHEST).all(axis=1))
+    if not len(far):
+        return None
+    found, most = format_significant(float(np.abs(p[far[0]]).max())), format_si(FARTHEST, "m", 0)
+    why = f"a point lies {found} m from part zero, expected at most {most}; mend the number, or the unit it is in."
+    return int(np.broadcast_to(block, len(p))[far[0]]), why
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,13 +84,8 @@ class Toolpath:
             values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)
         if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():
             raise ToolpathError("Toolpath: a feed rate is negative or not a number; feeds must be 0 or more.")
-        far = np.flatnonzero(~(np.abs(p) <= FARTHEST).all(axis=1))
-        if len(far):
-            found = format_significant(float(np.abs(p[far[0]]).max()))
-            raise ToolpathError(
-                f"Line {values['block'][far[0]]}: a point lies {found} m from part zero, expected at most "
-                f"{format_si(FARTHEST, 'm', 0)}; mend the number, or the unit it is in."
-            )
+        if far := far_off(p, values["block"]):
+            raise ToolpathError("Line {}: {}".format(*far))
         for name, value in values.items():
             object.__setattr__(self, name, value)
 

@@ -9,7 +9,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
 from robomill.toolpath.gcode.program import Program
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import Toolpath, far_off
 
 MAX_TILT_STEP = math.radians(2.0)
 _BLOCK = 500_000
@@ -18,7 +18,7 @@ _BLOCK = 500_000
 def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
     """The moves as points of {W}: arcs as chords within ``chord_error`` (m), turning axes in steps of 2 degrees.
 
-    Raises GCodeError if nothing moves or more than ``arcs.MAX_POINTS`` points would be needed.
+    Raises GCodeError if nothing moves, a point is beyond any machine, or more than ``arcs.MAX_POINTS`` would be needed.
     """
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
@@ -43,12 +43,15 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
         p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
             points
         )
+    block = _spread(program.line, counts, program.line[0])
+    if far := far_off(p, block):
+        raise GCodeError.at(*far)
     return Toolpath(
         p=p,
         k=_axes(program, counts),
         v_f=_spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0),
         cutting=_spread(program.at_feed, counts, False),
-        block=_spread(program.line, counts, program.line[0]),
+        block=block,
         n_s=_spread(program.n_s, counts, program.n_s[0]),
         ccw=_spread(program.ccw, counts, program.ccw[0]),
         thread=_spread(program.thread, counts, False),
