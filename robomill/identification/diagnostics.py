@@ -10,7 +10,7 @@ from robomill.identification.models import Parameter
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.identification.system import System
 from robomill.provenance import Finding
-from robomill.units import format_percent, format_si
+from robomill.units import format_number, format_percent, format_si
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
@@ -108,17 +108,18 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
     table[k] = 0.0
     j = int(np.argmax(np.abs(table)))
     alike, other = abs(table[j]), parameters[j].label
+    said = f"(correlation {format_number(table[j], 2, sign=True)})"
     part = format_si(share[k], "%", 1 if share[k] < 0.1 else 0)
     half = half_share(fit, k)
     if half >= 1.0 and alike >= ALIKE:
         return (
-            f"{name} cannot be told from {other}: at these poses both move the tool alike (correlation "
-            f"{table[j]:+.2f}), so only a mix of the two is known; measure where they move it differently."
+            f"{name} cannot be told from {other}: at these poses both move the tool alike {said}, "
+            "so only a mix of the two is known; measure where they move it differently."
         )
     known = f"is known to ±{format_percent(half)}" if half < 1.0 else "cannot be told from a rigid one"
     text = f"{name} {known}: it makes {part} of the measured displacement"
     if alike >= 0.3:
-        text += f", and here it moves the tool much as {other} does (correlation {table[j]:+.2f})"
+        text += f", and here it moves the tool much as {other} does {said}"
         cure = f"measure where {parameters[k].label} and {other} move the tool differently"
     return f"{text}; to know it better, {cure}."
 

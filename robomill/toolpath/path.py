@@ -126,11 +126,13 @@ class Toolpath:
 
     @cached_property
     def on_one_line(self) -> bool:
-        """Whether all cuts lie on one line, seen from above: then, and only then, there is one groove to speak of."""
+        """Whether all cuts lie on one line, seen from above, and one goes along it: then, and only then, there is one
+        groove to speak of (holes in a row are none)."""
         points = self.p[self.cutting][:, :2]
         along = points[-1] - points[0]
         length = float(np.linalg.norm(along))
-        if length < ON_LINE:
+        ways = np.diff(self.p[:, :2], axis=0)[self.cutting[1:]]
+        if length < ON_LINE or np.linalg.norm(ways, axis=1).max() < ON_LINE:
             return False
         off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
         return bool(np.abs(off).max() <= ON_LINE)

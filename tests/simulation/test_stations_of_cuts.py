@@ -69,14 +69,15 @@ def test_one_way_and_one_groove(corner):
     )
     skew = run((-30, 0, -2), (0, 0.002, -2), (20, 0, -2))  # 2 um beside the line
     there_and_back = run((-30, 0, -2), (20, 0, -2), (-30, 0, -2))
+    holes = rm.simulate(SETUP.replace(source=GCodeSource("G21 G90 S9000 M3 F90\nG81 X-30 Y0 Z-2 R2\nX0\nX30\nM2\n")))
     assert [r.path.goes_one_way for r in (slot, back, ramp, beside, corner, skew)] == [True] * 2 + [
         False,
         True,
         False,
         False,
     ]
-    grooves = [r.path.on_one_line for r in (slot, back, ramp, beside, corner, skew, there_and_back)]
-    assert grooves == [True, True, True, False, False, False, False]
+    grooves = [r.path.on_one_line for r in (slot, back, ramp, beside, corner, skew, there_and_back, holes)]
+    assert grooves == [True, True, True, False, False, False, False, False]
 
 
 def test_joint_shares_are_what_each_joint_moves_along_the_deviation(corner):
