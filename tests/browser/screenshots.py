@@ -39,10 +39,10 @@ def page_paths() -> dict[str, str]:
 
 
 @contextlib.contextmanager
-def served() -> Iterator[str]:
-    """The app on a free port of this machine, with its work kept in a folder that goes with it."""
+def served(page: Path | None = None) -> Iterator[str]:
+    """The app (or one ``page``) on a free port of this machine, with its work kept in a folder that goes with it."""
     with tempfile.TemporaryDirectory() as folder:
-        server = Server(Path(folder))
+        server = Server(Path(folder), page=page)
         server.start()
         try:
             yield server.url

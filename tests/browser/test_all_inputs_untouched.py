@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from server import Server
+from screenshots import served
 
 pytestmark = pytest.mark.browser
 LOADS = 6
 
 
 @pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def url() -> Iterator[str]:
     """Address of a page with every kind of input."""
-    server = Server(tmp_path_factory.mktemp("work"), page=Path(__file__).with_name("all_inputs.py"))
-    server.start()
-    yield server.url
-    server.stop()
+    with served(Path(__file__).with_name("all_inputs.py")) as address:
+        yield address
 
 
 def test_an_untouched_input_takes_nothing(page: Any, url: str) -> None:

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from screenshots import idle
-from server import Server
+from screenshots import idle, served
 
 pytestmark = pytest.mark.browser
 CLICKS = 5
 
 
 @pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def url() -> Iterator[str]:
     """Address of pages that go on speaking until they are gone."""
-    server = Server(tmp_path_factory.mktemp("work"), page=Path(__file__).with_name("left_page.py"))
-    server.start()
-    yield server.url
-    server.stop()
+    with served(Path(__file__).with_name("left_page.py")) as address:
+        yield address
 
 
 @pytest.mark.parametrize("speaking", ["part", "whole"])
