@@ -158,16 +158,14 @@ def _uncertain(result: SimulationResult, i: int) -> dict[str, Any]:
 
 
 def surface_record(result: SimulationResult) -> dict[str, Any]:
-    """Both surfaces in numbers: volumes, and the share of the cut area out of tolerance: seen from above, and walls by
-    their length and height."""
-    error, walls, verdict = result.error, result.gauge.walls, result.verdict
-    out, wall = error.area_out(verdict.floor.tolerance)[0] + walls.area(verdict.wall.tolerance), walls.area()
+    """Both surfaces in numbers: volumes, and the share of them that is out of tolerance."""
+    error, (out, all_of_it) = result.error, result.area_out
     return {
         "removed_volume_mm3": shown(result.machined.removed_volume, "mm3"),
         "ideal_volume_mm3": shown(result.ideal.removed_volume, "mm3"),
         "excess_volume_mm3": shown(error.excess_volume, "mm3"),
         "gouge_volume_mm3": shown(error.gouge_volume, "mm3"),
-        "area_out_of_tolerance_share": out / (error.cut_area + wall) if error.cut_area + wall else 0.0,
+        "area_out_of_tolerance_share": out / all_of_it if all_of_it else 0.0,
         "cells": int(result.machined.z.size),
     }
 

@@ -206,6 +206,13 @@ class SimulationResult:
         return crashes(self.setup, self.setup.toolpath)
 
     @property
+    def area_out(self) -> tuple[float, float]:
+        """(out of tolerance, all) m^2 of what was cut: seen from above, and walls by their length and height, each
+        against its own tolerance."""
+        wall, floor, walls = self.verdict.wall.tolerance, self.verdict.floor.tolerance, self.gauge.walls
+        return self.error.area_out(floor, wall) + walls.area(wall), self.error.cut_area + walls.area()
+
+    @property
     def rapids(self) -> tuple[int, ...]:
         """Source lines of rapids through material that no cut removes: what they leave is not judged."""
         return self._crashes.never

@@ -22,7 +22,8 @@ class ProfileCurves:
     offset: FloatArray
     floor: FloatArray
     unit: str
-    tolerance: float
+    wall_tolerance: float
+    floor_tolerance: float
     band: FloatArray | None = None
     fit: FloatArray | None = None
     measured: tuple[FloatArray, FloatArray] | None = None
@@ -42,19 +43,28 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     if curves.measured is not None:
         marks = {"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}}
         plot.fig.dots(*curves.measured, marks, name="measured", hovertemplate="measured %{y:+.4f} " + unit)
-    for side, words in ((1, "+ tolerance"), (-1, "− tolerance")):
-        plot.level(side * curves.tolerance, p.bad, "solid")
-        say(plot.fig, words, 1, side * curves.tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
+    limits = _limits(curves.wall_tolerance, curves.floor_tolerance)
+    for place, words in limits:
+        plot.level(place, p.bad, "solid")
+        say(plot.fig, words, 1, place, p.bad, xref="paper", xanchor="right", yshift=9)
     plot.zero()
     drawn = [curves.offset, curves.floor, *([] if curves.band is None else [curves.band])]
-    reach = 1.15 * max(curves.tolerance, *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))
+    reach = 1.15 * max(*(place for place, _ in limits), *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))
     plot.station(station)
     return plot.done(f"Error of the groove, {unit}", range=[-reach, reach])
 
 
-def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, dark: bool) -> Chart:
-    """Share of the cut area (%) by signed error (µm), in the colours of the surface; tolerance marked."""
+def _limits(walls: float, floors: float) -> list[tuple[float, str]]:
+    """Where the tolerances of walls and floors lie, with their words: one pair where they are one."""
+    told = [(walls, "tolerance")] if walls == floors else [(walls, "walls"), (floors, "floors")]
+    return [(side * value, f"{sign} {words}") for value, words in told for side, sign in ((1, "+"), (-1, "−"))]
+
+
+def histogram_figure(edges: FloatArray, share: FloatArray, tolerances: FloatArray, *, dark: bool) -> Chart:
+    """Share of the cut area (%) by signed error (µm), in the colours of the surface; ``tolerances`` of walls and floors
+    marked."""
     p = palette(dark)
+    walls, floors = map(float, tolerances)
     middle = 0.5 * (edges[1:] + edges[:-1])
     fig = figure(dark=dark, height=320, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
     fig.add(
@@ -67,16 +77,16 @@ def histogram_figure(edges: FloatArray, share: FloatArray, tolerance: float, *, 
         marker={
             "color": middle,
             "colorscale": DIVERGING,
-            "cmin": -tolerance,
-            "cmax": tolerance,
+            "cmin": -walls,
+            "cmax": walls,
             "line": {"width": 0.6, "color": p.line},
         },
         hovertemplate="%{x:+.0f} µm<br>%{y:.1f} % of the area<extra></extra>",
     )
-    for side, words in ((-1, "− tolerance"), (1, "+ tolerance")):
-        fig.upright(x=side * tolerance, line={"color": p.bad, "width": 1.2, "dash": "dash"})
-        say(fig, words, side * tolerance, 1.0, p.bad, yref="paper", yanchor="bottom")
-    reach = max(1.12 * tolerance, float(np.abs(edges).max()) * 1.04)
+    for place, words in _limits(walls, floors):
+        fig.upright(x=place, line={"color": p.bad, "width": 1.2, "dash": "dash"})
+        say(fig, words, place, 1.0, p.bad, yref="paper", yanchor="bottom")
+    reach = max(1.12 * walls, 1.12 * floors, float(np.abs(edges).max()) * 1.04)
     fig.lay_out(
         xaxis=axis("Signed error, µm (− too deep, + material left)", dark=dark, range=[-reach, reach]),
         yaxis=axis("Share of the cut area, %", dark=dark, rangemode="tozero"),

@@ -274,3 +274,18 @@ def test_a_rapid_through_the_part_is_not_judged_and_never_green():
     assert (rash.verdict.level, rash.rapids) == ("unjudged", (8,))
     assert rash.verdict.wall == calm.verdict.wall
     assert simulation_record(rash)["not_judged"]["rapids"] == [8]
+
+
+def test_what_is_out_of_tolerance_counts_walls_by_length_and_height():
+    """The paper's slot is cut 96 mm far, with half a circle at its end; both walls are out, seen from above nearly
+    nothing is; with a closer tolerance of floors the floor is out too."""
+    setup = SETUP.replace(tolerance=0.2e-3, floor_tolerance=0.15e-3, cell=1e-4)
+    found = rm.simulate(setup)
+    length, aside = 0.096, abs(found.verdict.wall.value)
+    walls = 2 * 0.002 * length
+    floors = 0.008 * length + np.pi * 0.004**2 / 2 + aside * length
+    out, all_of_it = found.area_out
+    assert all_of_it == pytest.approx(floors + walls, rel=0.02)
+    assert out == pytest.approx(walls, rel=0.03)
+    closer = rm.simulate(setup.replace(floor_tolerance=0.05e-3)).area_out[0]
+    assert closer == pytest.approx(floors - 2 * aside * length + walls, rel=0.02)

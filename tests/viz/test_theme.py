@@ -82,6 +82,7 @@ def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
         -0.1 + 0 * q,
         "mm",
         0.3,
+        0.4,
         band=np.stack([0.1 + 0 * q, 0.3 + 0 * q]),
         fit=0.2 + 0 * q,
         measured=(q, 0.29 + 0 * q),
@@ -90,7 +91,9 @@ def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
         "force": force_figure(result, alloy_spread(result), peak, "mm", dark=dark, i=result.worst),
         "engagement": engagement_figure(result, "mm", dark=dark),
         "profile": profile_figure(profile, np.arange(21), 50.0, dark=dark),
-        "histogram": histogram_figure(np.linspace(-300, 300, 11), np.full(10, 10.0), 300.0, dark=dark),
+        "histogram": histogram_figure(
+            np.linspace(-300, 300, 11), np.full(10, 10.0), np.array([300.0, 200.0]), dark=dark
+        ),
         "evidence": evidence_figure(CLAIMS, "mm", dark=dark),
     }
 

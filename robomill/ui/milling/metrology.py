@@ -90,12 +90,14 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     fit = None
     if result.path.goes_one_way and np.isfinite(found.centre_offset).sum() >= 3:
         fit = fit_groove(found)
+    limits = [float(from_si(each.tolerance, unit)) for each in (result.verdict.wall, result.verdict.floor)]
     curves = ProfileCurves(
         from_si(found.station, unit),
         from_si(found.centre_offset, unit),
         from_si(found.floor_error, unit),
         unit,
-        float(from_si(result.setup.tolerance, unit)),
+        limits[0],
+        limits[1],
         band=None if spread is None or len(spread.titles) < 2 else from_si(offset_band(result, spread, found), unit),
         fit=None if fit is None else from_si(found.centre_offset - fit.side.residual, unit),
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
@@ -180,7 +182,7 @@ def _take(data: bytes, name: str) -> None:
 
 def spread_panel(result: SimulationResult, dark: bool) -> None:
     """How the error is spread over the cut area: histogram, volumes, share out of tolerance."""
-    tolerance = result.setup.tolerance
+    walls, floors = (each.tolerance for each in (result.verdict.wall, result.verdict.floor))
     try:
         error = pieces.underway(error_of, result)
     except RobomillError:
@@ -189,11 +191,11 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     if error is None:
         return
     largest = float(np.abs(error.worst).max())
-    limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)
+    limit = min(max(1.15 * floors, 1.15 * walls, 1.05 * largest), 3.0 * max(floors, walls))
     edges, area = error.histogram(48, limit)
     share = 100.0 * area / error.cut_area if error.cut_area else area
     pieces.figure(
-        histogram_figure(from_si(edges, "um"), share, float(from_si(tolerance, "um")), dark=dark),
+        histogram_figure(from_si(edges, "um"), share, from_si(np.array([walls, floors]), "um"), dark=dark),
         "histogram",
         name="error-histogram",
         table=lambda: {
@@ -205,15 +207,15 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         caption="Shortest distance of the machined surface to the ideal one, over the cut area seen from above.",
         alt="Histogram of the signed error over the cut area.",
     )
-    out, out_share = error.area_out(tolerance)
+    out, all_of_it = result.area_out
     pieces.facts(
         [
             ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
             ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
             (
                 "Out of tolerance",
-                format_percent(out_share, 1),
-                f"{format_si(out, 'mm2')} of the {format_si(error.cut_area, 'mm2')} that were cut",
+                format_percent(out / all_of_it if all_of_it else 0.0, 1),
+                f"{format_si(out, 'mm2')} of the {format_si(all_of_it, 'mm2')} of floors and walls",
             ),
             ("RMS error", format_si(error.rms, "um"), "over the cut area"),
         ]

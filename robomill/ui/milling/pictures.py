@@ -37,7 +37,7 @@ SIZE = (1360, 720)
 def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
     """The picture with its controls."""
     how = _controls()
-    view, tolerance = session.project().view, result.setup.tolerance
+    view, tolerance, floors = session.project().view, result.setup.tolerance, result.verdict.floor.tolerance
 
     def turnable() -> None:
         shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
@@ -53,9 +53,10 @@ def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> No
     times = (
         "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
     )
+    ends, other = f"± {format_si(tolerance, 'um', 0)}", f"± {format_si(floors, 'um', 0)}"
+    ends = f"tolerance, {ends}" if floors == tolerance else f"tolerance of walls, {ends} (floors: {other})"
     pieces.note(
-        f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the tolerance, "
-        f"± {format_si(tolerance, 'um', 0)}."
+        f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the {ends}."
     )
 
 
