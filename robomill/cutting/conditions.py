@@ -7,6 +7,7 @@ cutter's hand; a right-hand cutter's teeth run from 0 to pi.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -19,7 +20,7 @@ from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.provenance import Finding
-from robomill.units import format_count, format_si
+from robomill.units import format_count, format_si, to_si
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
@@ -160,6 +161,9 @@ def beyond_flutes(conditions: CutConditions, tooling: Tooling) -> BoolArray:
     return np.asarray(conditions.engaged & (highest > edges[tooling.of_step] * (1.0 + 1e-9)))
 
 
+GENTLE = math.sin(to_si(0.01, "deg"))
+"""Slopes that a person means: gentler ones are roundings of a program."""
+
 THRUSTS = {
     "thrust-end-teeth": "of the end teeth, to the centre, by the same coefficients as the flank",
     "thrust-lips": "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)",
@@ -169,7 +173,7 @@ THRUSTS = {
 
 def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | BoolArray = True) -> tuple[Finding, ...]:
     """What deserves a word though it can be computed: depth beyond the flutes and, where the force is ``computed`` (for
-    all, or (m,)) from the material, what the thrust of a plunge or of a drill is."""
+    all, or (m,)) from the material, what the thrust of a plunge or of a drill is, and where it is taken as none."""
     found = []
     engaged = conditions.engaged
     tooling = Tooling.of(conditions.tooling or cutter, len(conditions))
@@ -191,4 +195,12 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
             count = format_count(int(steps.sum()), "step")
             text = f"the tool goes down into the material; its thrust is that {THRUSTS[code]}: not measured ({count})."
             found.append(Finding("info", text, int(conditions.block[np.argmax(steps)]), code=code))
+    clear = engaged & (conditions.along < -GENTLE) & ~down & computed & (tooling.each("flat_radius") > 0.0)
+    if clear.any():
+        slope, count = format_si(math.asin(DISH), "deg", 1), format_count(int(clear.sum()), "step")
+        text = (
+            f"the tool goes down by less than {slope}: its end is taken as ground hollow by more, so that its corners "
+            f"cut and no end tooth pushes: assumed ({count})."
+        )
+        found.append(Finding("info", text, int(conditions.block[np.argmax(clear)]), code="end-teeth-clear"))
     return tuple(found)

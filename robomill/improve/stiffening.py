@@ -11,16 +11,19 @@ from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.verdict_words import Verdict
 
 TWICE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
 class Stiffening:
-    """before: largest deviation m as the robot is; after (n,) m with joint i alone ``factor`` times as stiff."""
+    """before: largest deviation m as the robot is; after (n,) m with joint i alone ``factor`` times as stiff;
+    ``verdict`` of the part with the first of ``ranking``."""
 
     before: float
     after: FloatArray
+    verdict: Verdict
     factor: float = TWICE
 
     @property
@@ -31,7 +34,7 @@ class Stiffening:
     @property
     def ranking(self) -> IntArray:
         """(n,) joints, 0-based, the one that saves most first."""
-        return np.argsort(-self.saved, kind="stable")
+        return np.argsort(self.after, kind="stable")
 
 
 def one_stiffer(robot: Robot, joint: int, factor: float = TWICE) -> Robot:
@@ -51,5 +54,6 @@ def stiffer_joints(
     ``run`` may keep results. Raises the refusal of the simulation.
     """
     robots = [one_stiffer(setup.robot, joint, factor) for joint in range(setup.robot.n)]
-    after = [run(setup.replace(robot=robot)).max_deviation for robot in robots]
-    return Stiffening(run(setup).max_deviation, frozen(after), factor)
+    results = [run(setup.replace(robot=robot)) for robot in robots]
+    after = frozen([result.max_deviation for result in results])
+    return Stiffening(run(setup).max_deviation, after, results[int(np.argmin(after))].verdict, factor)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tooling import Tooling
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import stock_grid
@@ -52,7 +52,8 @@ def _true_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float
 
     Where the heights differ by no more than the enlarged path rises or sinks it is an error of height. Where they
     differ by more a wall has moved, by as much as the tip did sideways at the nearest sample: material is left beside
-    the commanded path (+) and cut away beside the deflected one (-).
+    the commanded path (+) and cut away beside the deflected one (-). Where the enlarged path leaves the stock, the
+    floor is as much too high as the nearest sample.
     """
     from scipy.spatial import cKDTree
 
@@ -64,11 +65,18 @@ def _true_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, times: float
     aside, slack = np.linalg.norm(moved[:, :2], axis=1), drawn.cell / times
     far = (error > 1.02 * max(moved[:, 2].max(), 0.0) + slack) | (error < 1.02 * min(moved[:, 2].min(), 0.0) - slack)
     x, y = np.meshgrid(drawn.x, drawn.y, indexing="ij")
+
+    def nearest(cells: BoolArray, points: FloatArray) -> IntArray:
+        return np.asarray(cKDTree(points[:, :2]).query(np.column_stack([x[cells], y[cells]]))[1])
+
     for sign, points in ((1.0, told), (-1.0, told + times * moved)):
         cells = far & (np.sign(error) == sign)
         if cells.any():
-            nearest = cKDTree(points[:, :2]).query(np.column_stack([x[cells], y[cells]]))[1]
-            error[cells] = sign * aside[nearest]
+            error[cells] = sign * aside[nearest(cells, points)]
+    out = ideal.cut_mask & ~drawn.cut_mask
+    if out.any():
+        up = moved[nearest(out, told), 2]
+        error[out] = np.where(times * up > (drawn.z - ideal.z)[out], up, error[out])
     return error
 
 

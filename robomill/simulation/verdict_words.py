@@ -7,7 +7,7 @@ import numpy as np
 
 from robomill.provenance import named
 from robomill.simulation.seen import Run
-from robomill.units import format_percent, format_si
+from robomill.units import format_count, format_percent, format_si
 
 TIGHT_FROM = 0.8
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
@@ -168,7 +168,7 @@ def _unjudged(result: Run) -> str:
     lost, told = result.not_judged, []
     if lost.any():
         why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
-        more = f" (and {len(result.unjudged) - 1} more reasons)" if len(result.unjudged) > 1 else ""
+        more = f" (and {format_count(len(result.unjudged) - 1, 'more reason')})" if len(result.unjudged) > 1 else ""
         points = f"{int(lost.sum())} of {int(result.path.cutting.sum())} points of the cut are not judged"
         told.append(f"{points} (line {named(result.path.block[lost].tolist())}): {why.rstrip('.')}{more}")
     if result.rapids:

@@ -31,9 +31,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
     old = previous(result)
     verdict, before = result.verdict, None if old is None else old.verdict
-    share = NOTHING.get(verdict.level, "nothing cut")
-    if np.isfinite(verdict.share):
-        share = f"{format_percent(verdict.share)} of the tolerance used"
+    share = share_words(verdict)
     if verdict.level == "unjudged":
         lost, total = int(result.not_judged.sum()), int(result.path.cutting.sum())
         share = f"{lost} of {format_count(total, 'point')} of the cut are not judged"
@@ -71,6 +69,13 @@ def range_words(found: Range, name: str, unit: str) -> str:
         return f"{format_percent(low)} to {format_percent(high)}: {found.over}"
     ends = format_many((low, high), unit, between=" to ", sign=name != "tip", with_unit=False)
     return f"{ends}: {found.over}"
+
+
+def share_words(verdict: Verdict) -> str:
+    """How much of the tolerance is used, or why nobody knows."""
+    if np.isfinite(verdict.share):
+        return f"{format_percent(verdict.share)} of the tolerance used"
+    return NOTHING.get(verdict.level, "nothing cut")
 
 
 def tone(verdict: Verdict) -> str:

@@ -7,6 +7,7 @@ from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.simulation.run import simulate
+from robomill.toolpath.source import GCodeSource
 
 
 def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
@@ -18,12 +19,23 @@ def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
     best = before.robot.joint_numbers[int(left.argmin())]
     assert f"Joint {best} twice as stiff would bring the largest deviation" in words(app)
     assert "are not computed yet" in words(app)
+    assert "Verdict then" in words(app)
     app.button(key=f"improve.use.{best}").click().run()
     assert not app.exception
     used = store(app).project.setup
     assert abs(simulate(used).max_deviation - left.min()) < 1e-9 * left.min()
     app.button(key="undo").click().run()
     assert store(app).project.setup.digest() == before.digest()
+
+
+def test_a_cut_that_is_not_judged_is_not_called_good_with_a_stiffer_joint(app: AppTest) -> None:
+    kept = store(app)
+    source = GCodeSource("G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F300\nG1 X20 F1800\nG0 Z5\nG33 Z-8 K1\nG0 Z5\nM2\n")
+    kept.project = kept.project.replace(setup=kept.project.setup.replace(source=source))
+    go(app, "7_Improve")
+    assert not app.exception
+    assert "met with that joint" not in words(app)
+    assert "Not judged" in words(app)
 
 
 def test_a_cut_out_of_reach_has_nothing_to_improve(app: AppTest) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from robomill.cutting.forces.along_path import PathForce
 from robomill.simulation.enlarged import PICTURE_CELLS, enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
 from robomill.simulation.stations import nearest_feed
 
 
@@ -64,3 +66,15 @@ def test_a_picture_has_no_more_cells_than_a_screen_needs(result: SimulationResul
     shown = enlarged(result, 1.0)
     assert shown.drawn.z.size <= 1.05 * PICTURE_CELLS
     assert shown.drawn.cell >= result.setup.cell
+
+
+def test_a_floor_whose_enlarged_path_leaves_the_stock_keeps_its_true_error(result: SimulationResult) -> None:
+    lifted = simulate(result.setup.replace(force=PathForce(feed_normal=0.0, axial=500.0)))
+    sample = nearest_feed(lifted, 0.05)
+    up = float(lifted.delta[sample, 2])
+    times = 2.2 * 0.002 / up
+    shown = enlarged(lifted, times)
+    assert (shown.drawn.z == 0.0).all(), "the enlarged path stands above the stock"
+    i = int(np.argmin(np.abs(shown.drawn.x - lifted.path.p[sample, 0])))
+    middle = np.abs(shown.drawn.y) < 0.003
+    assert shown.error[i, middle] == pytest.approx(up, rel=0.02)

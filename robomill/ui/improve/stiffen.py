@@ -11,6 +11,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
+from robomill.ui.verdict import WORDS, share_words, tone
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
@@ -57,17 +58,12 @@ def tiles(ranked: Stiffening, joints: tuple[int, ...], setup: SimulationSetup, u
     """The deviation now, the best joint, what it leaves, what the tolerance asks."""
     best = int(ranked.ranking[0])
     after, saved = float(ranked.after[best]), float(ranked.saved[best])
-    fits = after <= setup.tolerance
+    verdict = ranked.verdict
     return [
         pieces.Tile("Max deviation", format_si(ranked.before, unit), "as the robot is", kind="computed"),
         pieces.Tile("Stiffen first", f"joint {joints[best]}", f"saves {format_si(saved, unit)}"),
         pieces.Tile("Then", format_si(after, unit), "with that joint twice as stiff", kind="computed"),
-        pieces.Tile(
-            "Tolerance",
-            format_si(setup.tolerance, unit),
-            "met with that joint" if fits else "not met by any one joint",
-            tone="ok" if fits else "out",
-        ),
+        pieces.Tile("Verdict then", WORDS[verdict.level], share_words(verdict), tone=tone(verdict)),
     ]
 
 
