@@ -31,7 +31,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache, cached_property, partial
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -41,6 +41,7 @@ import numpy as np
 
 from robomill import seals
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.lazy import cached_property
 from robomill.seals import COMPLETE
 
 PACKAGE = Path(__file__).parent

@@ -1,7 +1,6 @@
 """What holds at one configuration: pose, Jacobian, determinant, compliance and the joints' shares of it."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +12,7 @@ from robomill.errors import KinematicsError
 from robomill.kinematics import dexterity
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 
 

@@ -1,7 +1,6 @@
 """Milling force from the process: cutter, material, feed and engagement give the mean force and its peak."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import product
 from typing import Any, ClassVar, Self
 
@@ -18,6 +17,7 @@ from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
+from robomill.lazy import cached_property
 from robomill.progress import checkpoint, slices
 from robomill.provenance import Finding, Provenance
 from robomill.quantities import quantity, switch

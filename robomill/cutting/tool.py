@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
+from robomill.lazy import cached_property
 from robomill.quantities import choice, quantity, settle, whole
 from robomill.units import format_si, to_si
 

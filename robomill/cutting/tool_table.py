@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import quantities, quantity, settle, whole
 from robomill.units import format_si

@@ -6,13 +6,13 @@ where there is more than one candidate also the model, by a cross-validation of 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.identification.points import Normal, PointFit, at_shift, slopes
 from robomill.identification.system import System
+from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 
 Choose = Callable[["frozenset[int]"], "Folded"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from robomill.compliance.cartesian import cartesian_compliance
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 
 

@@ -9,7 +9,6 @@ another one is from it. ``standard_error`` says how sure the entries are (``map_
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
+from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_percent, format_si

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.kinematics.choice import SPIN_STEPS
 from robomill.kinematics.inverse import LEAST_MOTION, inverse_kinematics
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 
 LEAST_DEVIATION = "least_deviation"

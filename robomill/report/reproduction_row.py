@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import NamedTuple
 
 from robomill.cutting.materials import Material
 from robomill.identification.result import IdentificationResult
+from robomill.lazy import cached_property
 from robomill.report.paper import Statement, Status
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
+from robomill.lazy import cached_property
 from robomill.provenance import UNSTATED, Provenance
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks

@@ -1,7 +1,6 @@
 """What one run says: deflection and its shares, force, both surfaces, groove sections, the verdict."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +11,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.inverse import IKResult
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
+from robomill.lazy import cached_property
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, Replaceable, quantity, settle, switch
 from robomill.robot.model import Robot

@@ -1,12 +1,12 @@
 """Machined against ideal: a signed error field, + where material was left (excess), - where too much went (gouge)."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.errors import SurfaceError
+from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.surface.zmap import ZMap
 from robomill.units import format_si

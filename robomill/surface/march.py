@@ -1,7 +1,6 @@
 """A stock that steps of a path are cut into one after the other, each asked first what it meets."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from robomill.cutting.profile_kernels import valley
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.surface.passes import STRAIGHT, bends, check_rise, leaning, moves_at_feed, moves_of, tool_axes
 from robomill.surface.raster import relief_of, stock_layers

@@ -1,13 +1,13 @@
 """Walls and floors that a path leaves, asked at single places: exact, without a grid, with every pass that comes by."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
+from robomill.lazy import cached_property
 from robomill.progress import slices
 from robomill.surface.block_kernels import Blocks
 from robomill.surface.outline_kernels import Tracks, floors_left, walls_left

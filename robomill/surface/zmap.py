@@ -1,7 +1,6 @@
 """The part after the cut as a height map: exact heights at cell centres, exact shares of cells at walls."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +9,7 @@ from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.surface.passes import Passes, at_one_axis, feed_passes, leaning, moves_at_feed
 from robomill.surface.raster import crossings, stock_heights

@@ -1,7 +1,6 @@
 """The toolpath: what the tool is told to do, in the part frame {W}. Units, arcs and modes are gone."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.units import format_si, format_significant
 

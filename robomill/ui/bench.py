@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 from robomill.arrays import digest
 from robomill.errors import ProjectError
@@ -16,6 +16,7 @@ from robomill.identification.folds import LEAVE_OUT
 from robomill.identification.models import MODELS
 from robomill.identification.treatment import AUTO, BENDING_JOINTS, WEIGHTS, Treatment
 from robomill.io.samples import samples_dir
+from robomill.lazy import cached_property
 from robomill.quantities import Replaceable, choice, quantity, settle, switch, whole
 from robomill.units import to_si
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.lazy import cached_property
 from robomill.units import format_short_count
 
 BUDGET = 20_000

@@ -1,7 +1,6 @@
 """What is known of every cell of a grid: the laws of one configuration at every point, and what follows from them."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.components import symmetric
 from robomill.kinematics import dexterity
 from robomill.kinematics.transforms import pose_from_world
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 

@@ -19,6 +19,7 @@ STOREYS = [
         "arrays",
         "vectors",
         "errors",
+        "lazy",
         "files",
         "compiled",
         "provenance",

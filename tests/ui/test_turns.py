@@ -5,6 +5,7 @@ import time
 
 import pytest
 
+from robomill.lazy import cached_property
 from robomill.progress import Cancelled
 from robomill.ui.turns import AT_ONCE_S, Turn, Turns
 
@@ -111,3 +112,27 @@ def test_work_that_is_given_up_while_it_lets_others_pass_gives_its_place_up_once
     for thread in (one, other):
         thread.join(10.0)
     assert turns._free == 1
+
+
+def test_work_that_lets_others_pass_in_the_midst_of_a_property_holds_up_nobody_who_needs_it_too():
+    class Result:
+        def __init__(self, make) -> None:
+            self._make = make
+
+        @cached_property
+        def surface(self) -> str:
+            return self._make()
+
+    turns, made = Turns(1), []
+
+    def long(turn: Turn) -> str:
+        until(lambda: turns.waited_for)
+        time.sleep(1.2 * AT_ONCE_S)
+        turn.let_pass()
+        return "long"
+
+    first = begun(turns, lambda turn: made.append(Result(lambda: long(turn)).surface))
+    second = begun(turns, lambda _: made.append(Result(lambda: "short").surface))
+    first.join(10.0)
+    second.join(10.0)
+    assert made == ["short", "long"]

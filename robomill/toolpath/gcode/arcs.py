@@ -6,12 +6,12 @@ from the positive end of the third axis, along which it may climb (helix). Lengt
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
+from robomill.lazy import cached_property
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.units import from_si
 

@@ -2,7 +2,6 @@
 
 import sys
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import product
 from operator import attrgetter
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.errors import GCodeError
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
 from robomill.toolpath.gcode.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE

@@ -2,13 +2,13 @@
 
 import sys
 from collections.abc import Sequence
-from functools import cached_property
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import IntArray
+from robomill.lazy import cached_property
 from robomill.toolpath.gcode import mode_rules
 from robomill.toolpath.gcode.program import Rows
 from robomill.toolpath.gcode.records import STATE, Text
