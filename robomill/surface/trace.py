@@ -90,11 +90,11 @@ def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: Flo
 
 
 def _wall_form(wall: FloatArray, levels: FloatArray, side: int) -> tuple[float, float, float]:
-    """Position at the top, angle and straightness of a wall from its positions at the levels."""
-    known = np.isfinite(wall[1:])
-    if np.isnan(wall[0]) or known.sum() < 3:
-        return float(wall[0]), float("nan"), float("nan")
-    z, w = levels[1:][known], wall[1:][known]
+    """Position at the top, angle and straightness of a wall from its positions at the levels: whoever meets material
+    as high as the top has met it at every level below."""
+    if np.isnan(wall[0]):
+        return float("nan"), float("nan"), float("nan")
+    z, w = levels[1:], wall[1:]
     slope, offset = np.polyfit(z, w, 1)
     off_line = (w - (slope * z + offset)) / np.sqrt(1 + slope * slope)
     return float(wall[0]), float(np.pi / 2 + np.arctan(side * slope)), float(np.ptp(off_line))

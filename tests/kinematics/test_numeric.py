@@ -1,5 +1,7 @@
 """Numerical inverse kinematics: its errors and Jacobians against the rotation vector and finite differences, limits."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -149,3 +151,39 @@ def test_poses_in_blocks_are_solved_as_they_are_at_once(monkeypatch, block):
         parts, met = numeric.solve_numerically(robot, T_MT, near, "position")
         np.testing.assert_allclose(parts, known, atol=1e-9)
         assert met.all()
+
+
+def test_a_straight_arm_starts_bent_in_every_joint_but_the_first():
+    """By as much, to the side that counts +, as far as the limits let it."""
+    free = twisted_arm([-2.8, 2.8])
+    bend = np.array([0.0, *[numeric.BEND] * 5])
+    np.testing.assert_allclose(numeric.bent_home(free), free.home + bend)
+    tight = twisted_arm([-2.8, 0.25])
+    np.testing.assert_allclose(numeric.bent_home(tight), np.minimum(tight.home + bend, 0.25))
+
+
+@pytest.mark.parametrize("reached", [True, False])
+def test_a_descent_ends_where_it_has_arrived_or_is_stuck(arm, monkeypatch, reached):
+    """How often each pose was looked at: no more after it was met, and no more once six steps have not halved what is
+    left, as when a joint stands at its limit."""
+    theta = configurations(arm, 30)
+    T_MT = rm.tool_pose(arm, theta)
+    if not reached:
+        T_MT[:, :3, 3] *= 3.0  # beyond what the arm can stretch to
+    looked = []
+
+    def look(pose, J, goal, mode):
+        e, jacobian = task(pose, J, goal, mode)
+        looked.append((goal[:, 0, 3].copy(), np.abs(e).max(axis=1)))
+        return e, jacobian
+
+    task = numeric._task
+    monkeypatch.setattr(numeric, "_task", look)
+    _, error = numeric.descend(arm, T_MT, theta + 0.15, "position")
+    assert (error <= numeric.TIGHT).all() == reached
+    for x in T_MT[:, 0, 3]:
+        left = [float(size[row == x][0]) for row, size in looked if (row == x).any()]
+        assert all(size > numeric.TIGHT for size in left[:-1])
+        checks = left[:: numeric.PATIENCE]
+        assert all(b < 0.5 * a for a, b in pairwise(checks[:-1]))
+        assert len(left) <= numeric.STEPS if not reached else left[-1] <= numeric.TIGHT

@@ -143,6 +143,24 @@ def test_a_straight_law_is_solved_whatever_its_slope(q):
     np.testing.assert_array_equal(place, found.x)
 
 
+@pytest.mark.parametrize("q", [0.0, -0.6, -3.0])
+def test_a_place_that_is_told_beforehand_is_taken_and_one_beside_it_is_left_at_once(q):
+    """The first step from anywhere goes to where the force bends the tool from there."""
+    goal, asked = np.array([1e-4, -2e-4, 0.5e-4]), []
+
+    def bends(x):
+        asked.append(x)
+        return goal + q * (x - goal)
+
+    there = settle(bends, goal, np.zeros(3))
+    assert (there.agreed, there.evaluations, len(asked)) == (True, 1, 1)
+    np.testing.assert_array_equal(there.x, goal)
+    assert np.isnan(there.gain)
+    beside = goal + np.array([0.0, 0.6e-4, -0.2e-4])
+    assert settle(bends, beside, np.zeros(3)).agreed
+    np.testing.assert_allclose(asked[1:3], [beside, goal + q * (beside - goal)], atol=1e-15)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_law_of_three_slopes_is_closed_in_upon_in_short_steps(seed):
     """g(x) = goal + A (x - goal) with A of any slopes but 1, the goal some millimetres away."""
@@ -188,6 +206,11 @@ def test_a_force_that_jumps_is_held_at_the_jump():
     assert len(found.mix) == 2
 
 
+def remains(bends, found):
+    """How far the force that acts at the place, of one side or of both by their weights, bends the tool from it."""
+    return np.abs(sum(weight * bends(place) for place, weight in found.mix) - found.x).max()
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_a_wall_that_pushes_sideways_too_holds_the_tool(seed):
     """Free push a, a plane n . x = at, and behind it a + b: so much w of b acts that n . (a + w b) = at."""
@@ -200,9 +223,30 @@ def test_a_wall_that_pushes_sideways_too_holds_the_tool(seed):
         b = rng.uniform(1.2, 6.0) * (a @ n - at) * (-n + rng.uniform(0.0, 0.6) * across)
     root = a + (at - a @ n) / (b @ n) * b
 
-    found = settle(lambda x: a + (b if x @ n > at else 0.0), np.zeros(3), np.zeros(3))
+    def bends(x):
+        return a + (b if x @ n > at else 0.0)
+
+    found = settle(bends, np.zeros(3), np.zeros(3))
     assert found.agreed
+    assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
     np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_what_remains_between_force_and_deflection_is_told_agreed_or_not(seed):
+    """Two walls at once, each with a push of its own: a place between four forces, which two cannot always hold."""
+    rng = np.random.default_rng(seed)
+    a, (n, m) = rng.uniform(50e-6, 300e-6, 3), np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+    walls = [
+        (u * np.sign(a @ u), rng.uniform(0.2, 0.9) * abs(a @ u), rng.uniform(1.5, 4.0) * abs(a @ u)) for u in (n, m)
+    ]
+
+    def bends(x):
+        return a - sum((u * back * (1.0 + 0.3 * (n + m)) for u, at, back in walls if x @ u > at), np.zeros(3))
+
+    found = settle(bends, np.zeros(3), np.zeros(3))
+    assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
+    assert found.agreed == (remains(bends, found) <= TOLERANCE)
 
 
 def test_what_is_not_a_number_ends_it():

@@ -11,8 +11,18 @@ from scipy.spatial.transform import Rotation
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.simulation.cut import SUSPECTED, cut_notes, moved_points, suspicions, told_conditions, unknown_material
+from robomill.simulation.cut import (
+    SEEN,
+    SUSPECTED,
+    cut_notes,
+    moved_points,
+    steps_in_stock,
+    suspicions,
+    told_conditions,
+    unknown_material,
+)
 from robomill.simulation.run import simulate
+from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
@@ -38,6 +48,58 @@ def test_a_slot_is_told_as_deep_as_the_tip_stands_below_the_top():
     np.testing.assert_allclose(told.along[1:3], [-1.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(told.across[1:3], [0.0, 1.0], atol=1e-12)
     np.testing.assert_array_equal(told.block, path.block)
+
+
+def leaning(rng, m):
+    k = np.column_stack([rng.normal(size=(m, 2)) * 0.7, np.ones(m)])
+    return k / np.linalg.norm(k, axis=1, keepdims=True)
+
+
+def test_no_step_that_meets_the_stock_is_longer_than_a_quarter_of_the_tool():
+    """Tools that lean and moves about the block, from afar and from above: points all over the body at some places of
+    the way, up to above the block, asked whether one is in it."""
+    high = SETUP.replace(stock=Stock([-30e-3, -20e-3, -60e-3], [30e-3, 20e-3, 0.0]))
+    rng, block, width = np.random.default_rng(2), high.stock_block, high.cutter.diameter
+    m, size = 400, block.upper - block.lower
+    p, k = rng.uniform(block.lower - 0.7 * size, block.upper + 0.7 * size, (m, 3)), leaning(rng, m)
+    p[:, 2] = rng.uniform(block.lower[2] - width, block.upper[2] + width, m)
+    p[1::2] = p[::2] + rng.normal(size=(m // 2, 3)) * width
+    longest = steps_in_stock(high, path_of(p, np.ones(m), k=k))
+    meets = np.zeros(m, dtype=bool)
+    for i in range(1, m):
+        e1 = np.cross(k[i], [1.0, 0.0, 0.0]) / np.linalg.norm(np.cross(k[i], [1.0, 0.0, 0.0]))
+        rim = [np.cos(a) * e1 + np.sin(a) * np.cross(k[i], e1) for a in np.arange(0.0, 6.2, 0.4)]
+        disc = np.vstack([np.zeros(3), np.array(rim) * 0.499 * width])
+        up = np.linspace(0.0, 3.0 * (size[2] + 2.0 * width), 90)[:, None] * k[i]
+        body = (up[:, None] + disc).reshape(-1, 3)
+        for share in (0.0, 0.5, 1.0):
+            at = body + p[i - 1] + share * (p[i] - p[i - 1])
+            meets[i] |= ((at > block.lower) & (at < block.upper)).all(axis=1).any()
+    assert 50 < meets.sum() < m - 50
+    np.testing.assert_array_equal(longest[meets], width / SEEN)
+    assert set(longest) == {width / SEEN, np.inf}
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("side", [1, -1])
+def test_steps_beside_and_above_the_stock_may_be_of_any_length(lean, axis, side):
+    """Two widths from the block, and as much more as the tool leans over from its tip up to the block's top; what is
+    less than half a width away is near."""
+    block, width = SETUP.stock_block, SETUP.cutter.diameter
+    middle, deep = 0.5 * (block.lower + block.upper), 6e-3
+    middle[2] = block.upper[2] - deep
+    near, far = middle.copy(), middle.copy()
+    edge = (block.upper if side > 0 else block.lower)[axis]
+    if axis == 2:
+        far[2], near[2] = block.upper[2] + 2.0 * width, block.upper[2] + 0.5 * width * (side > 0)
+    else:
+        far[axis] = edge + side * (2.0 * width + deep * np.tan(lean))
+        near[axis] = edge + side * 0.4 * width
+    aside = np.eye(3)[1 - axis if axis < 2 else 0] * 0.3 * width  # along the block, so as not to come nearer
+    k = [np.sin(lean), 0.0, np.cos(lean)]
+    path = path_of([far, far + aside, far, near, near + aside], np.ones(5), k=k)
+    np.testing.assert_array_equal(steps_in_stock(SETUP, path)[1:] < np.inf, [False, False, True, True])
 
 
 def test_a_rapid_arrives_where_the_cut_after_it_begins_and_what_is_not_reached_stays():

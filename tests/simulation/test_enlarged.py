@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from robomill.cutting.forces.along_path import PathForce
+from robomill.cutting.unjudged import Unjudged
+from robomill.errors import SurfaceError
 from robomill.simulation.enlarged import PICTURE_CELLS, enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.stations import nearest_feed
+from robomill.surface.stock import Stock
 
 
 def test_exaggeration_moves_the_picture_and_keeps_the_error_true(result: SimulationResult) -> None:
@@ -78,3 +83,22 @@ def test_a_floor_whose_enlarged_path_leaves_the_stock_keeps_its_true_error(resul
     i = int(np.argmin(np.abs(shown.drawn.x - lifted.path.p[sample, 0])))
     middle = np.abs(shown.drawn.y) < 0.003
     assert shown.error[i, middle] == pytest.approx(up, rel=0.02)
+
+
+def test_a_tool_that_the_picture_lifts_off_the_part_leaves_it_whole(result: SimulationResult) -> None:
+    """Ten times the deflection is more than the slot is deep; only the path itself has to meet the stock."""
+    up = np.where(result.path.cutting[:, None], [0.0, 0.0, 0.4e-3], 0.0)
+    lifted = dataclasses.replace(result, delta=up)
+    assert lifted.path.p[lifted.path.cutting, 2].min() > -3.9e-3
+    shown = enlarged(lifted, 10.0)
+    np.testing.assert_array_equal(shown.drawn.z, shown.drawn.z_stock)
+    assert shown.ideal.removed_volume > 0.0
+    block, aside = result.setup.stock_block, np.array([0.0, 1.0, 0.0])
+    beside = Stock(block.lower + aside, block.upper + aside)
+    with pytest.raises(SurfaceError, match="never touches"):
+        enlarged(dataclasses.replace(result, setup=result.setup.replace(stock=beside)), 1.0)
+    cuts = result.path.cutting
+    nothing_known = dataclasses.replace(
+        result, setup=result.setup.replace(stock=beside), unjudged=(Unjudged("tool", cuts, "of another tool"),)
+    )
+    assert enlarged(nothing_known, 1.0).ideal.removed_volume == 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -156,7 +157,25 @@ def test_at_a_corner_the_feed_error_is_a_wall_error():
     )
     assert bent.path.p[bent.verdict.wall.worst, :2] == pytest.approx([10e-3, 0.0], abs=1e-9)
     only = pushed(run(*lines), along=np.where(run(*lines).path.block == 4, 0.25e-3, 0.0))
-    assert abs(only.verdict.wall.value) == pytest.approx(0.25e-3, abs=2e-6)
+    assert only.verdict.wall.value == pytest.approx(0.25e-3, abs=2e-6)  # straight ahead: along the feed +, as ends are
+
+
+def test_a_mirrored_part_has_the_same_errors_on_its_other_sides():
+    """Corners to both sides, all of it aside: what lies to the left lies to the right in the mirror. Straight ahead and
+    behind, at two heights, stay what they are."""
+    points = [(-10, -10), (0, 10), (10, -10), (12, 10), (40, 10)]
+    found = []
+    for side in (1, -1):
+        lines = ["G0 X-40 Y" + f"{-10 * side} Z5", "G0 Z-2", *(f"G1 X{x} Y{side * y} F1800" for x, y in points)]
+        found.append(pushed(run(*lines), left=side * 0.2e-3).gauge.walls)
+    one, other = found
+    np.testing.assert_array_equal(np.sort(one.sample), np.sort(other.sample))
+    for i in np.unique(one.sample):
+        here, there = (
+            Counter(np.round(s * each.error[each.sample == i] * 1e8).tolist()) for s, each in zip((1, -1), found)
+        )
+        assert (here - there).total() <= 4
+    assert one.error.min() < -0.1e-3 < 0.1e-3 < one.error.max()
 
 
 def test_facing_leaves_a_floor_and_no_wall():

@@ -97,3 +97,14 @@ def test_what_is_not_known_is_never_green(result: SimulationResult, share, unjud
     assert f"1 of {len(run.path)} points" in found.sentence
     off = dataclasses.replace(run, delta=delta)  # a force, and no compliance: outside of what was measured
     assert judge(off, gauge(share, None, None)).level == "unreached"
+
+
+def test_where_nothing_is_judged_nothing_is_read(result: SimulationResult) -> None:
+    cuts = result.path.cutting[:, None]
+    silent = dataclasses.replace(result, F=np.where(cuts, np.nan, result.F), delta=np.where(cuts, np.nan, result.delta))
+    found = judge(toleranced(silent, feed=True), gauge(None, None, None))
+    assert found.level == "unjudged"
+    for reading in (found.wall, found.floor, found.feed, found.end):
+        assert reading.worst == -1
+        assert np.isnan(reading.value)
+    assert np.isnan(found.share)

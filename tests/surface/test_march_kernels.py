@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.march_kernels import cut_run, go_on, note_rim, take_out
+from robomill.surface.march_kernels import as_halves, cut_run, go_on, note_rim, take_out
 from robomill.surface.material_kernels import (
     AXIS,
     ENDS,
@@ -329,3 +329,16 @@ def test_points_of_what_is_left_stand_as_deep_as_the_nearest_wall():
             assert top == pytest.approx(min(level, 0.0), abs=5e-6)
         else:
             assert top == -np.inf
+
+
+def test_numbers_in_half_precision_are_the_nearest_that_there_are():
+    """No half is nearer than the one chosen; what is a half already stays it, down to the smallest."""
+    rng = np.random.default_rng(3)
+    exact = np.arange(np.float16(4096.0).view(np.int16), dtype=np.int16).view(np.float16).astype(np.float32)
+    between = np.exp2(rng.uniform(-27.0, 12.0, 4000)).astype(np.float32)
+    for singles in (exact, between):
+        halves = np.empty(len(singles), dtype=np.float16)
+        as_halves(singles, singles.view(np.int32), halves.view(np.int16))
+        off = np.abs(halves.astype(float) - singles)
+        nearest = np.abs(singles.astype(np.float16).astype(float) - singles)
+        np.testing.assert_array_equal(off, nearest)

@@ -88,3 +88,27 @@ def test_how_high_a_leaning_tool_cuts_is_told_by_what_stands_highest(pit):
     # As far along X as the lower side of the tool goes at the top: the tip, the lean up to it, and the radius.
     reached = cells.x0 + cells.dx * np.flatnonzero((pitted < 0.0).any(axis=1)).max()
     assert reached == pytest.approx(9e-3 + 5e-3 * 0.75 + 4e-3 / 0.8, abs=1.5e-3)
+
+
+def test_voids_that_a_later_move_lays_open_are_as_deep_as_they_were_cut():
+    """Two leaning moves under the same metal, then one from above through half of it: along every column, points that
+    lie in a cutter's body at some stamp of its way are gone."""
+    cells = Cells(24, 18, 0.5e-3, 0.5e-3, 1e-3, 1e-3)
+    k, up = np.array([0.6, 0.0, 0.8]), np.array([0.0, 0.06, np.sqrt(1.0 - 0.06**2)])
+    ends = np.array([[10, 3, -9, 10, 15, -9], [7, 3, -7, 7, 15, -7], [2, 9, -6, 22, 9, -3]]) * 1e-3
+    axes = np.array([k, k, up])
+    z = np.zeros((24, 18))
+    overhang = cut_tilted(z, cells, MILL, (ends, axes))
+    levels = np.arange(-11.95e-3, 0.0, 0.1e-3)
+    x, y = np.meshgrid(cells.x0 + cells.dx * np.arange(24), cells.y0 + cells.dy * np.arange(18), indexing="ij")
+    gone = np.zeros((24, 18, len(levels)), dtype=bool)
+    for row, axis in zip(ends, axes, strict=True):
+        for tip in np.linspace(row[:3], row[3:], 41):
+            from_tip = np.stack(np.broadcast_arrays(x[..., None] - tip[0], y[..., None] - tip[1], levels - tip[2]), -1)
+            along = from_tip @ axis
+            gone |= (along >= 0.0) & ((from_tip**2).sum(axis=-1) - along**2 <= MILL.radius**2)
+    open_down_to = np.logical_and.accumulate(gone[..., ::-1], axis=-1).sum(axis=-1)
+    np.testing.assert_array_equal(overhang, gone.sum(axis=-1) > open_down_to)
+    assert ((z < -4e-3) & (y > 6e-3) & (y < 12e-3)).sum() > 20
+    assert overhang.sum() > 20
+    assert np.quantile(np.abs(z + 0.1e-3 * open_down_to), 0.99) < 0.15e-3

@@ -106,3 +106,16 @@ def test_a_wall_beyond_the_stock_is_not_known_and_nothing_cut_is_no_groove():
     assert np.isnan([found.right, found.right_angle, found.right_straightness]).all()
     assert found.left == pytest.approx(4e-3, abs=1e-9)
     assert trace_groove(height, 6e-3, -9e-3, 9e-3, RADIUS, flat) is None
+
+
+@pytest.mark.parametrize("high", [-1.9, -1.3, -0.9, -0.1])
+def test_a_step_lower_than_the_stock_is_no_wall(high):
+    """To the left only a step stands, up to where the stock ends."""
+
+    def height(w):
+        return np.where(w > 4e-3, high * 1e-3, np.where(w > -4e-3, -DEPTH, 0.0))
+
+    found = trace_groove(height, 0.0, -9e-3, 9e-3, RADIUS, flat)
+    assert np.isnan([found.left, found.left_angle, found.left_straightness]).all()
+    assert found.right == pytest.approx(-4e-3, abs=1e-9)
+    assert found.right_angle == pytest.approx(np.pi / 2, abs=1e-6)

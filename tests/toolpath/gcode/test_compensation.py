@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 
@@ -191,6 +193,46 @@ def test_a_change_of_units_on_the_way_changes_nothing():
     whole = read(99)
     for switch in range(2, 9):
         np.testing.assert_allclose(read(switch), whole, atol=1e-9)
+
+
+def back(kind, turn):
+    """How far before an inside corner (rad along an arc, mm along a line) the cutter touches both of its sides. Its
+    centre is one radius beside the next line: at the corner's place (radius, 0) of an arc about the origin, or (0, 0)."""
+    if kind == "line":
+        return R * math.tan(0.5 * turn)
+    radius, way = (6.0, 1) if kind == "towards" else (6.0, -1)  # an arc that bends towards the cutter's side, or away
+    normal = np.exp(1j * (turn + (math.pi if way > 0 else 0.0)))
+
+    def beside(phi):
+        centre = (radius - way * R) * np.exp(-1j * way * phi)
+        return ((centre - radius) * np.conj(normal)).real - R
+
+    return brentq(beside, 0.0, turn)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("kind", ["line", "towards", "away"])
+@pytest.mark.parametrize("turn", [0.4, 1.0, 1.4])
+def test_a_cutter_that_does_not_fit_into_a_corner_is_refused(code, kind, turn):
+    """The piece before the corner is a little longer, or shorter, than the cutter needs."""
+    side = 1 if code == "G41.1" else -1
+    for fits in (True, False):
+        outline = Outline((1.0, 2.0), 0.3)
+        outline.line(10.0)
+        need = back(kind, turn)
+        if kind == "line":
+            outline.heading -= side * 0.6  # an outside corner, so that the line begins where it is
+            outline.line(need + (0.05 if fits else -0.05))
+        else:
+            outline.arc(6.0, side * (1 if kind == "towards" else -1) * (need + (0.03 if fits else -0.03)))
+        outline.heading += side * turn
+        outline.line(10.0)
+        if fits:
+            check(outline, code)
+        else:
+            with pytest.raises(GCodeError, match="does not fit") as refused:
+                interpret(outline.program(code))
+            assert refused.value.line == 7
 
 
 #: Noses of lathe tools as the handbook draws them: which way the programmed point lies from the centre (z, x).

@@ -97,6 +97,25 @@ def test_a_tap_goes_in_and_out_at_feed_and_waits_at_the_bottom(code):
     assert program.dwell[-1] == 0.25
 
 
+@pytest.mark.parametrize(("plane", "tapped"), [(17, (1, 2, -3)), (18, (-3, 1, 2)), (19, (2, -3, 1))])
+def test_outside_of_g17_a_tap_runs_along_the_axes_that_the_reference_taps_along(plane, tapped):
+    """LinuxCNC's tap swaps the planes G18 and G19: x, y, z where it ends, at the place (1, 2) and the depth -3 of its
+    own plane. It comes down at its place, is there again after it, and the next hole is one."""
+    letters = AXES[plane]
+    words = " ".join(f"{letter}{value}" for letter, value in zip(letters, (1, 2, -3)))
+    text = f"G21 G90 G{plane} S1000 M3 F100\nG0 {letters[2]}5\nG99 G84 {words} R1.5\n{letters[1]}4\nG80\nM2\n"
+    program = interpret(text)
+    columns = ["XYZ".index(letter) for letter in letters]
+    for line, second in ((3, 2.0), (4, 4.0)):
+        here = np.flatnonzero(program.line == line)
+        *_, down, tap, up = here
+        np.testing.assert_allclose(program.end[down, columns] * 1e3, [1, second, 1.5], atol=1e-9)
+        swapped = np.where(np.array(tapped) == 2.0, second, tapped)
+        np.testing.assert_allclose(program.end[tap] * 1e3, swapped, atol=1e-9)
+        assert program.kind[[tap, up]].tolist() == [FEED, FEED]
+        np.testing.assert_allclose(program.end[up] * 1e3, np.where(swapped == -3.0, 1.5, swapped), atol=1e-9)
+
+
 @pytest.mark.parametrize(("plane", "aside"), [(17, (0.4, -0.7, 0)), (18, (0, 0.4, -0.7)), (19, (-0.7, 0, 0.4))])
 def test_back_boring_goes_through_aside_and_cuts_upwards(plane, aside):
     """In G17: I, J aside, K the height up to which is bored. ``aside`` in x, y, z; the third axis has K 1.5."""

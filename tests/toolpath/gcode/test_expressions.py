@@ -124,6 +124,20 @@ def test_depth_is_what_is_open_at_once_and_not_what_was_opened():
         value("[" * (MAX_DEPTH + 1) + "1" + "]" * (MAX_DEPTH + 1))
 
 
+@pytest.mark.parametrize(("names", "there"), [({"a"}, "a"), ({"a", "longer name"}, "longername"), (set(), None)])
+def test_a_name_exists_where_it_was_set(names, there):
+    store = Parameters()
+    for name in names:
+        store.set(name.replace(" ", ""), -7.0)
+    for name in ("a", "longername", "b"):
+        assert Reader(f"exists[#<{name}>]", 1, store).value() == float(
+            name in {each.replace(" ", "") for each in names}
+        )
+    assert Reader(f"[2*exists[#<{there}>]-1]", 1, store).value() == (1.0 if there else -1.0)
+    with pytest.raises(GCodeError, match="Line 1: "):
+        Reader("exists[#<a", 1, store).value()
+
+
 @pytest.mark.parametrize("text", ["[1/0]", "[1mod0]", "[-2**0.5]", "sqrt[-1]", "ln[0]", "acos[1.1]", "[10**999]"])
 def test_what_has_no_value_is_refused(text):
     with pytest.raises(GCodeError, match="Line 1: "):

@@ -108,6 +108,27 @@ def test_lines_that_are_left_to_the_reader(line: str) -> None:
     assert scanned(line) is None
 
 
+@pytest.mark.parametrize("level", [0, 2])
+def test_a_line_sets_names_and_numbers_with_values_from_before_it(level: int) -> None:
+    """Against a dictionary: names of a subroutine, names for all, and numbers; a name that is new is left to the reader."""
+    store = Machine(None).store
+    for name in ("first", "a"):
+        store.set(name, -1.0)  # the caller's
+    for _ in range(level):
+        store.enter()
+    known = {"first": 3.0, "_all": 4.0, "a": 5.0}
+    for name, value in known.items():
+        store.set(name, value)
+    data = b"#<a>=[#<a>+#<_all>] # < _ALL > = #<first>  #7=#<a> #<first>=-2 (and so on) #8=[1+1]"
+    assert line_rules.read_line(store.arrays, data, 0, len(data)) == 5
+    assert {name: store.get_named(name) for name in known} == known  # reading changes nothing
+    line_rules.apply_settings(store.arrays, 5)
+    assert {name: store.get_named(name) for name in known} == {"first": -2.0, "_all": 3.0, "a": 9.0}
+    assert store.values(6, 4) == [0.0, 5.0, 2.0, 0.0]
+    new = b"#<newer>=1"
+    assert line_rules.read_line(store.arrays, new, 0, len(new)) == line_rules.NOT_PLAIN
+
+
 def test_numbers_are_pythons_own() -> None:
     r = random.Random(4)
     for _ in range(3000):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import types
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode import program as programs
 from robomill.toolpath.gcode.chords import to_toolpath
-from robomill.toolpath.gcode.program import Move, Recorder
+from robomill.toolpath.gcode.program import Move, Recorder, Rows
 
 
 def move(n: int) -> Move:
@@ -51,6 +53,22 @@ def test_more_moves_than_are_kept_are_refused_by_their_line(monkeypatch: pytest.
     for n in range(10):
         fits.add(move(n))
     assert len(fits.columns()["line"]) == 10
+
+
+def test_a_row_that_is_asked_for_again_is_kept_once() -> None:
+    """Rules in plain Python ask for the next row, write it and count it; one that is not counted leaves nothing."""
+    machine = types.SimpleNamespace(recorder=Recorder(), moves=99)
+    rows = Rows(machine)
+    assert (machine.moves, len(rows) > 10**9) == (0, True)
+    for n in range(5):
+        for again in range(3):
+            rows[machine.moves].line = 100 * again + n
+        machine.moves += 1
+        assert len(machine.recorder) == n
+    for _ in range(3):
+        rows.keep()
+    rows[machine.moves].line = 7
+    assert machine.recorder.columns()["line"].tolist() == [200, 201, 202, 203, 204]
 
 
 WALK = "G21 F60 S60 M3\nG0 X5\nG1 Y4\nG2 X9 Y8 I4 J0 Z2\nG18 G3 X1 Z0 I-4 K-1\nG33.1 Z-3 K1\nG38.3 X40\nG0 Z90\nM2\n"
