@@ -196,8 +196,8 @@ def test_a_change_of_units_on_the_way_changes_nothing():
 
 
 def back(kind, turn):
-    """How far before an inside corner (rad along an arc, mm along a line) the cutter touches both of its sides. Its
-    centre is one radius beside the next line: at the corner's place (radius, 0) of an arc about the origin, or (0, 0)."""
+    """How far before an inside corner (rad along an arc, mm along a line) the cutter touches both of its sides: its
+    centre is one radius beside the next line, which begins at (radius, 0) of an arc about the origin."""
     if kind == "line":
         return R * math.tan(0.5 * turn)
     radius, way = (6.0, 1) if kind == "towards" else (6.0, -1)  # an arc that bends towards the cutter's side, or away

@@ -110,7 +110,7 @@ def test_lines_that_are_left_to_the_reader(line: str) -> None:
 
 @pytest.mark.parametrize("level", [0, 2])
 def test_a_line_sets_names_and_numbers_with_values_from_before_it(level: int) -> None:
-    """Against a dictionary: names of a subroutine, names for all, and numbers; a name that is new is left to the reader."""
+    """Names of a subroutine, names for all, and numbers, against a dictionary; new names are left to the reader."""
     store = Machine(None).store
     for name in ("first", "a"):
         store.set(name, -1.0)  # the caller's
