@@ -76,12 +76,20 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         shares = zip(record["joints"], record["joint_share_mm"], strict=True)
         lines += [f"joint {joint}   {vector(share, 'mm')}" for joint, share in shares]
         lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
+    if record["worst_block"] and record["sag_mm"] is not None:
+        what = (
+            "added to what the force does"
+            if record["sag_added"]
+            else "not added: the part is zeroed with the arm sagged"
+        )
+        lines.append(f"sag       {vector(record['sag_mm'], 'mm')}   {what}")
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
     for name, turn in (record["tooth"] or {}).items():
         mean, low, high = (format_value(turn[end], "mm", sign=True) for end in ("mean", "low", "high"))
         lines.append(f"tooth     {name} {mean} by the mean force, {low} to {high} as teeth come by")
     lines.append(f"left out  {', '.join(record['left_out'])}")
-    lines.append(f"reached   {record['reached']['count']} of {record['reached']['of']} points")
+    reached, why = record["reached"], record["reached"]["reason"]
+    lines.append(f"reached   {reached['count']} of {reached['of']} points{f'; first: {why}' if why else ''}")
     lost = record["not_judged"]
     if lost["count"]:
         lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named(lost['blocks'])}")

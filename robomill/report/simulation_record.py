@@ -38,6 +38,8 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "spring_share_mm": {
             spring.name: there(result.delta_spring[:, k], "mm") for k, spring in enumerate(result.setup.springs)
         },
+        "sag_mm": None if result.sag is None else there(result.sag.sum(axis=-2), "mm"),
+        "sag_added": result.setup.add_sag,
         "force_N": there(result.F, "N"),
         "force_component_N": dict(zip(COMPONENTS, there(result.force_components, "N"))),
         "force_share_mm": {name: there(result.delta_component[:, c], "mm") for c, name in enumerate(COMPONENTS)},

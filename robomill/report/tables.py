@@ -37,7 +37,7 @@ def deviation_columns(result: SimulationResult) -> Columns:
             columns |= _vectors(f"joint{number}_{{axis}}_mm", result.delta_joint[:, j], "mm")
         for k, spring in enumerate(result.setup.springs):
             columns |= _vectors(f"{spring.name.replace(' ', '_')}_{{axis}}_mm", result.delta_spring[:, k], "mm")
-    if result.sag is not None and result.setup.add_sag:
+    if result.sag is not None:
         columns |= _vectors("sag_{axis}_mm", result.sag.sum(axis=-2), "mm")
     for name, found in (("gone", result.gauge.gone), ("thin_wall", result.gauge.thin)):
         columns[name] = np.isin(np.arange(len(path)), found).astype(float)

@@ -168,6 +168,11 @@ class SimulationResult:
         found += suspicions(self.setup, self.force_components[self.judged & self.conditions.engaged])
         if self.coupling is not None:
             found.append(self.coupling.finding)
+        if self.setup.add_sag:
+            text = (
+                "the sag under the arm's own weight is in the deviation; a part that is zeroed on the arm has lost it."
+            )
+            found.append(Finding("info", text, code="sag"))
         found += self.steadiness
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
@@ -210,7 +215,8 @@ class SimulationResult:
         """(out of tolerance, all) m^2 of what was cut: seen from above, and walls by their length and height, each
         against its own tolerance."""
         wall, floor, walls = self.verdict.wall.tolerance, self.verdict.floor.tolerance, self.gauge.walls
-        return self.error.area_out(floor, wall) + walls.area(wall), self.error.cut_area + walls.area()
+        beside = float(np.hypot(wall, floor))  # a corner of walls and floors may be off by both
+        return self.error.area_out(floor, beside) + walls.area(wall), self.error.cut_area + walls.area()
 
     @property
     def rapids(self) -> tuple[int, ...]:
@@ -230,7 +236,7 @@ class SimulationResult:
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
-        touches = not self.not_judged.any()  # what is not judged is not cut, so nothing may be
+        touches = bool(self.removes.any()) and not self.not_judged.any()  # what is not reached or judged is not cut
         return cut(setup.stock_block, setup.cell, self.tooling, p, self.path.k, self.removes, must_touch=touches)
 
     def groove(self, station: float) -> GrooveSection:

@@ -55,12 +55,12 @@ class Deviation:
         """Root mean square error over the cut cells, m."""
         return float(np.sqrt(np.mean(self.values**2))) if self.values.size else 0.0
 
-    def area_out(self, tolerance: float, walls: float | None = None) -> float:
-        """Area (m^2), seen from above, whose error is beyond +-tolerance (m); beyond ``walls`` where a wall is off.
+    def area_out(self, tolerance: float, beside: float | None = None) -> float:
+        """Area (m^2), seen from above, whose error is beyond +-tolerance (m); ``beside`` (m) is that of walls' cells.
 
         Raises SurfaceError for a tolerance that is not positive.
         """
-        own = tolerance if walls is None else walls
+        own = tolerance if beside is None else beside
         for limit in (tolerance, own):
             if not (np.isfinite(limit) and limit > 0):
                 raise SurfaceError(f"Tolerance: found {format_si(limit, 'mm')}; expected a length above 0.")

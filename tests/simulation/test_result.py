@@ -202,6 +202,12 @@ def test_levels_where_nothing_is_cut():
     assert np.isnan(nowhere.verdict.share)
     assert np.isnan(nowhere.rms_deviation)
     assert nowhere.worst_block == 0
+    for given in (SETUP, PROCESS):
+        record = simulation_record(rm.simulate(given.replace(T_MW=part_frame([0.0, -3.0, 0.002]))))
+        assert record["verdict"] == "unreached"
+        assert record["reached"]["count"] == 0
+        assert record["reached"]["reason"]
+        assert record["surface"]["removed_volume_mm3"] == 0.0
     mapped = rm.load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")
     outside = rm.simulate(mapped.replace(T_MW=part_frame([0.7, -1.3, 0.002])))
     assert outside.reached.all()
@@ -287,5 +293,7 @@ def test_what_is_out_of_tolerance_counts_walls_by_length_and_height():
     out, all_of_it = found.area_out
     assert all_of_it == pytest.approx(floors + walls, rel=0.02)
     assert out == pytest.approx(walls, rel=0.03)
+    corner = rm.simulate(setup.replace(tolerance=0.24e-3, floor_tolerance=0.12e-3)).area_out[0]
+    assert corner == 0.0  # 0.2295 aside and 0.1024 deep: each is within, together they are 0.25 from the ideal corner
     closer = rm.simulate(setup.replace(floor_tolerance=0.05e-3)).area_out[0]
     assert closer == pytest.approx(floors - 2 * aside * length + walls, rel=0.02)

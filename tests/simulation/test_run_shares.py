@@ -12,6 +12,8 @@ from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.forces.constant import ConstantForce
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import joint_frames
+from robomill.report.simulation_record import simulation_record
+from robomill.report.tables import deviation_columns
 from robomill.surface.engagement import engage
 from robomill.surface.march import March
 
@@ -125,3 +127,19 @@ def test_a_step_of_no_length_goes_the_way_of_the_next_step():
     for i in still:
         np.testing.assert_array_equal(run.R_MF[i], run.R_MF[i + 1])
         assert run.conditions.a_p[i] == pytest.approx(run.conditions.a_p[i + 1], rel=1e-9)
+
+
+def test_joints_springs_and_an_added_sag_make_up_the_deviation_that_is_reported():
+    links = LinkMasses(np.array([0.0, 0.0, 0.0, 10.0, 50.0]), np.zeros((5, 3)))
+    added, told = (rm.simulate(SETUP.replace(links=links, add_sag=add)) for add in (True, False))
+    for run in (added, told):
+        record = simulation_record(run)
+        parts = np.sum(record["joint_share_mm"], axis=0) + sum(map(np.array, record["spring_share_mm"].values()))
+        sag = np.array(record["sag_mm"])
+        assert np.linalg.norm(sag) > 0.1
+        np.testing.assert_allclose(parts + record["sag_added"] * sag, record["deviation_mm"], atol=1e-9)
+        columns = deviation_columns(run)
+        assert columns["sag_z_mm"][run.worst] == pytest.approx(sag[2])
+    assert [note.code for note in added.notes].count("sag") == 1
+    assert "sag" not in [note.code for note in told.notes]
+    assert simulation_record(rm.simulate(SETUP))["sag_mm"] is None
