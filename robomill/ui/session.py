@@ -24,6 +24,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
 from robomill.ui.closing import while_open
+from robomill.ui.commons import weight
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
 
 KEY = "robomill"
@@ -46,6 +47,8 @@ ROBOT_BLOCKS = {
     "base": ("T_base",),
 }
 MAX_HISTORY = 60
+MAX_HISTORY_BYTES = 32 * 2**20  # of a session; the project before the last change stays, however heavy
+HEAVY = 2**20  # bytes of a project whose history is weighed: weighing takes as long as a history is deep
 ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one step back
 
 
@@ -183,11 +186,20 @@ def replace(new: Project, label: str = "", from_editor: bool = False) -> None:
     held = store()
     now = time.monotonic()
     if not (label and label == held.last_label and held.past and now - held.last_time < ONE_GESTURE_S):
-        held.past = [*held.past, held.project][-MAX_HISTORY:]
+        held.past = remembered([*held.past, held.project])
     held.future, held.last_label, held.last_time = [], label, now
     if not from_editor:
         held.revision += 1
     held.put(new)
+
+
+def remembered(past: list[Project]) -> list[Project]:
+    """The last of them: no more, and together no heavier, than a session may keep."""
+    past = past[-MAX_HISTORY:]
+    if weight(past[-1]) > HEAVY:
+        while len(past) > 1 and weight(past) > MAX_HISTORY_BYTES:
+            past = past[1:]
+    return past
 
 
 def look(**fields: Any) -> None:
