@@ -186,3 +186,11 @@ def test_steps_are_the_nearest_of_one_two_five(step: float) -> None:
     # No other of the series is nearer by ratio.
     others = [m * 10.0**p for p in range(-11, 11) for m in (1, 2, 5)]
     assert abs(math.log(found / step)) <= min(abs(math.log(other / step)) for other in others) + 1e-12
+
+
+def test_what_no_number_may_exceed_is_itself_allowed():
+    """A million million of its unit, and no less than the million-millionth part where it has to be above zero."""
+    for value, good in ((1e12, True), (-1e12, True), (1.0001e12, False), (-1.0001e12, False), (math.nan, False)):
+        assert bool(quantities(Sample)["free"].allows(value)) == good
+    for value, good in ((1e-12, True), (0.9999e-12, False), (0.0, False), (-1e-12, False)):
+        assert bool(quantities(Sample)["width"].allows(to_si(value, "mm"))) == good

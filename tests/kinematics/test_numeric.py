@@ -187,3 +187,37 @@ def test_a_descent_ends_where_it_has_arrived_or_is_stuck(arm, monkeypatch, reach
         checks = left[:: numeric.PATIENCE]
         assert all(b < 0.5 * a for a, b in pairwise(checks[:-1]))
         assert len(left) <= numeric.STEPS if not reached else left[-1] <= numeric.TIGHT
+
+
+@pytest.mark.parametrize("height", [0.0, 0.35])
+def test_no_place_that_an_arm_reaches_is_ruled_out_beforehand(height):
+    """Arms of three joints that turn or slide, at every mixture of their limits; what lies beyond all links in a line,
+    or off the plane of an arm that cannot leave it, is ruled out."""
+    rng, base = np.random.default_rng(9), np.eye(4)
+    base[2, 3] = height
+    for slides in ([0, 0, 0], [0, 1, 0], [1, 1, 1], [0, 0, 1]):
+        planar = not any(slides)
+        mixed = rm.Robot(
+            name="mixed",
+            convention="standard",
+            alpha=np.array([0.0, 0.0, 0.0] if planar else [1.2, -0.7, 0.4]),
+            a=np.array([0.5, 0.4, 0.2]),
+            d=np.zeros(3) if planar else np.array([0.3, 1.5, 0.8]),
+            theta_offset=np.array([0.2, -0.4, 0.1]),
+            sign=np.array([1.0, -1.0, 1.0]),
+            prismatic=np.array(slides, dtype=bool),
+            limits_all=np.array([[-1.0, 2.0], [-2.0, 1.1], [-0.6, 0.9]]),
+            C_theta_all=np.full(3, 1e-6),
+            T_base=base,
+            T_tool=np.eye(4),
+            blocked=np.full(3, np.nan),
+        )
+        corners = np.stack(np.meshgrid(*mixed.limits), axis=-1).reshape(-1, 3)
+        T_MT = rm.tool_pose(mixed, np.vstack([corners, rng.uniform(*mixed.limits.T, (100, 3))]))
+        assert numeric._within_stretch(mixed, T_MT).all()
+        beyond = T_MT.copy()
+        beyond[:, 0, 3] += 20.0
+        assert not numeric._within_stretch(mixed, beyond).any()
+        above = T_MT.copy()
+        above[:, 2, 3] += 1e-3
+        assert numeric._within_stretch(mixed, above)[8:].any() != planar

@@ -13,7 +13,7 @@ from robomill.io.projects import setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.run import simulate
-from robomill.simulation.tools import cutting_numbers, farther, held, tooling
+from robomill.simulation.tools import cutting_numbers, farther, held, tool_notes, tooling
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=4e-3)
@@ -185,3 +185,19 @@ def test_no_tool_cuts_higher_than_it_sticks_out():
     for fits in (run(short, -4), run(SMALL.replace(stick_out=7e-3), -6), run(SMALL.replace(stick_out=None), -6)):
         assert not fits.not_judged.any()
         assert codes(fits) == set()
+
+
+def test_only_what_cuts_over_the_part_meets_it_with_its_holder():
+    """6 mm deep with 5 mm out of the holder: beside the block at feed, and above it in a rapid, nothing is met."""
+    short = SMALL.replace(stick_out=5e-3, flute_length=None)
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=5e-4, step=4e-3)
+    beside = 1e3 * setup.stock_block.upper[1] + 30.0
+
+    def warned(*lines):
+        text = "\n".join(["G21 G90 S12000 M3 F1800", "G0 X-80 Y0 Z5", "G0 Z-2", "G1 X80", *lines, "G0 Z5", "M2", ""])
+        given = setup.replace(source=GCodeSource(text), cutter=short)
+        return [each.line for each in tool_notes(given, given.toolpath) if each.code == "holder"]
+
+    assert warned("G0 Z5", f"G0 X-80 Y{beside}", "G0 Z-6", "G1 X0", "G1 X80") == []
+    assert warned("G0 X0", "G0 Z-6", "G0 X10") == []
+    assert warned("G0 Z5", "G0 X-80", "G0 Z-6", "G1 X0", "G1 X80") == [8]

@@ -66,6 +66,21 @@ def test_a_shift_put_aside_and_taken_up_again_is_the_same():
     np.testing.assert_allclose(there, [6e-3, -11e-3, -289e-3], atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("G92 X1 Y-2 A4", "G92 X1\nG92 X7 Z3", "G52 X9 Y1", "G92 X1 Y2 Z3 B5\nG92.1", "G92 X1 Y2 C3\nG92.2"),
+        *("G92 X1 Y2 A3\nG92.2\nG92.3", "G92 X1\nG92.2\nG55\nG92.3", "G10 L2 P1 X4 Z2", "G10 L20 P1 X4"),
+    ],
+)
+def test_no_shift_moves_the_tool(words):
+    """Whatever its place is called from then on: a step goes on from where it stands, and axes without a word stay."""
+    stands, steps = np.array([5.0, 6.0, 7.0]), np.array([0.25, 0.0, -1.0])
+    program = interpret(f"G21 G90\nG0 X5 Y6 Z7 A1 B2 C3\n{words}\nG91 G0 X0.25 Z-1\nA10\nM2\n")
+    np.testing.assert_allclose(program.end[-2:] * 1e3, [stands + steps] * 2, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.rotary[-1]), [11.0, 2.0, 3.0], atol=1e-9)
+
+
 def test_parameters_say_whether_a_shift_is_in_force_and_keep_what_is_put_aside():
     shift = "G21 G90\nG0 X5 Y6 Z7\nG92 X1 A4\n"  # X5 is called 1 and A0 is called 4
     for words, found in (
