@@ -8,7 +8,7 @@ import random
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import kernels, line_rules, mode_rules
+from robomill.toolpath.gcode import codes, kernels, line_rules, mode_rules
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Move
@@ -43,6 +43,8 @@ def scanned(line: str) -> dict[str, float] | None:
         ("X123456789.012345", {"X": 123456789.012345}),
         ("X1234567890.1234567", {"X": 1234567890.1234567}),
         ("G90 G1 G17 M8 M3", {"G3": 900.0, "G1": 10.0, "G2": 170.0, "M8": 8.0, "M7": 3.0}),
+        *((f"M{code} X1", {f"M{codes.STOP}": float(code), "X": 1.0}) for code in (0, 1, 60)),
+        ("M9 M49 M5", {f"M{codes.COOLANT}": 9.0, f"M{codes.OVERRIDE}": 49.0, f"M{codes.SPINDLE}": 5.0}),
         ("X[1 + 2 * 3] Y-#1 Z SIN [30]", {"X": 7.0, "Y": -0.0, "Z": math.sin(math.radians(30.0))}),
         ("(pass 3, depth 2) X1", {"X": 1.0}),
     ],
