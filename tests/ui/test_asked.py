@@ -22,8 +22,12 @@ def link(page: str) -> ClientState:
 class Session:
     """The runs that a server was asked for."""
 
-    def __init__(self) -> None:
+    def __init__(self, *gone: str) -> None:
         self.runs: list[tuple[str, str, int]] = []
+        self.gone = gone
+
+    def has_fragment(self, part: str) -> bool:
+        return part not in self.gone
 
     def say(self, what: ClientState | None) -> list[tuple[str, str, int]]:
         """The runs after it: page, part, boxes."""
@@ -66,6 +70,15 @@ def test_the_whole_of_a_page_that_was_left_is_the_page_that_was_asked_for():
     one.say(link("robot"))
     assert one.say(said("start", boxes=3))[-1] == ("robot", "", 3)
     assert one.say(said("robot", part="map"))[-1] == ("robot", "map", 2)
+
+
+def test_what_is_typed_into_a_part_that_is_drawn_anew_is_heard_by_the_whole_page():
+    """A tick of such a part is not worth a run."""
+    one = Session("map")
+    one.say(link("start"))
+    assert one.say(said("start", part="map", boxes=3))[-1] == ("start", "", 3)
+    assert one.say(said("start", part="table"))[-1] == ("start", "table", 2)
+    assert one.say(said("start", part="map", tick=True))[-1] == ("start", "map", 2), "left to Streamlit, which drops it"
 
 
 def test_back_and_forth():
