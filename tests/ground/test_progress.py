@@ -86,3 +86,27 @@ def test_a_part_of_the_work_says_no_share_and_a_new_stage_begins_at_nothing() ->
         checkpoint()
         checkpoint(stage="Surface")
     assert said == [("Map", 0.5), ("Map", 0.5), ("Map", 0.5), ("Surface", 0.0)]
+
+
+def test_at_an_even_pace_what_is_left_is_known_from_what_was_spent(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Eighty seconds, then a stage of ten; nothing is said of the first two hundredths."""
+    now = [1000.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    told = Progress(began=now[0])
+    for stage, whole in (("Slow", 80.0), ("Quick", 10.0)):
+        begun = now[0]
+        for spent in (0.0, 0.01 * whole, 0.05 * whole, 0.5 * whole, whole):
+            now[0] = begun + spent
+            told.reach(spent / whole, stage)
+            left = whole - spent if spent > 0.02 * whole else float("nan")
+            assert told.left_s == pytest.approx(left, abs=1e-9, nan_ok=True)
+
+
+def test_a_share_never_falls_and_never_exceeds_the_whole() -> None:
+    told, shares = Progress(), []
+    for share in (0.3, 0.2, None, 0.7, 1.2, 0.9):
+        told.reach(share, "Work")
+        shares.append(told.share)
+    assert shares == [0.3, 0.3, 0.3, 0.7, 1.0, 1.0]
+    told.reach(None, "More")
+    assert told.share == 0.0

@@ -66,8 +66,11 @@ def test_the_cheapest_sequence_of_all_is_taken(gaps, seed):
     x_M[:, 3:] = rng.uniform(-0.2, 0.2, (5, 2))
     T_MT = rm.pose_from_world(x_M)
     limits = [0.0] + [easy(T_MT[i], T_MT[i - 1])[0] for i in range(1, 5)]
-    expected, cost = best_of_all(theta, possible, limits, ROBOT.home)
-    found = join(ROBOT, theta.copy(), possible, T_MT, whole=False)
+    home = rng.choice([-1.5, 1.5], 5)  # in the middle of limits that leave out zero
+    robot, theta = ROBOT.replace(limits=np.stack([home - 1.2, home + 1.2], axis=1)), theta + home
+    np.testing.assert_array_equal(robot.home, home)
+    expected, cost = best_of_all(theta, possible, limits, robot.home)
+    found = join(robot, theta.copy(), possible, T_MT, whole=False)
     assert found.branch.tolist() == expected
     assert found.missed == expected.count(-1)
     assert found.cost == pytest.approx(cost, rel=1e-9)

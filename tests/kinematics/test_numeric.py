@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 import robomill as rm
 from robomill.kinematics import numeric
 from robomill.kinematics.jacobian import pose_and_jacobian
+from tests.telling import told
 
 
 def twisted_arm(limits):
@@ -221,3 +222,10 @@ def test_no_place_that_an_arm_reaches_is_ruled_out_beforehand(height):
         above = T_MT.copy()
         above[:, 2, 3] += 1e-3
         assert numeric._within_stretch(mixed, above)[8:].any() != planar
+
+
+def test_a_path_that_is_solved_pose_by_pose_tells_how_far_it_is(arm):
+    theta = configurations(arm, 1) + np.linspace(0.0, 0.1, 9)[:, None]
+    T_MT = rm.tool_pose(arm, theta)
+    (shares,) = told(lambda: rm.inverse_kinematics(arm, T_MT, near="path", spin="fixed")).values()
+    np.testing.assert_allclose(np.unique(shares), np.arange(9) / 9)

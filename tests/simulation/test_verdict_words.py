@@ -1,0 +1,31 @@
+"""What the sentence of a verdict says of where a groove goes, against slots in every direction."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.simulation.test_gauge import pushed, run
+
+
+@pytest.mark.parametrize(
+    ("there", "axis"),
+    [((40, 0), "Y"), ((40, 1), "Y"), ((0, 40), "X"), ((1, 40), "X"), ((40, 30), ""), ((30, 40), "")],
+)
+@pytest.mark.parametrize("back", [False, True])
+def test_a_straight_groove_is_off_along_the_axis_that_its_feed_does_not_follow(there, axis, back):
+    """Aslant, to the left or the right of its feed."""
+    x, y = (-n if back else n for n in there)
+    bent = pushed(run(f"G0 X{-x} Y{-y} Z5", "G0 Z-2", f"G1 X{x} Y{y} F1800"), left=0.12e-3)
+    said = bent.verdict.sentence
+    assert [name for name in ("X", "Y") if f"0.12 mm off in {name}" in said] == [axis] * bool(axis)
+    assert ("left" in said) == (not axis)
+
+
+def test_of_more_than_one_slot_the_lines_of_the_worst_wall_and_floor_are_named():
+    """The first is too far left, the second too deep."""
+    made = run("G0 X-40 Y-8 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5", "G0 X-40 Y10", "G0 Z-1", "G1 X40")
+    first = made.path.block < 6
+    said = pushed(made, left=0.2e-3 * first, up=-0.05e-3 * ~first).verdict.sentence
+    wall, floor = said.split(" are up to ")[1:]
+    assert all(word in wall for word in ("0.20 mm", "(line 4)"))
+    assert all(word in floor for word in ("0.05 mm", "(line 8)"))
