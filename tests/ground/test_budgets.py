@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import pytest
 
@@ -107,3 +108,58 @@ def test_no_more_cores_than_the_process_may_run_on():
     code = f"{alone}; from robomill import budgets; print(budgets.cores())"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.strip() == "1"
+
+
+def system(monkeypatch: pytest.MonkeyPatch, files: dict[str, str]) -> None:
+    """A system whose files say this and no more."""
+
+    def path(name: str) -> SimpleNamespace:
+        def read_text() -> str:
+            if name not in files:
+                raise FileNotFoundError(name)
+            return files[name]
+
+        return SimpleNamespace(read_text=read_text)
+
+    monkeypatch.setattr(budgets, "Path", path)
+    monkeypatch.delenv(budgets.PLACE, raising=False)
+    budgets.memory.cache_clear()
+    budgets.cores.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("machine", "container", "counted"),
+    [
+        (8, None, 8),
+        (8, "max", 8),
+        (8, 2, 2),
+        (8, 16, 8),
+        (0.5, None, 1),
+        (8, 0.25, 1),
+        (256, None, 64),
+        (None, None, 4),
+    ],
+)
+@pytest.mark.parametrize("file", ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"])
+def test_the_least_of_what_machine_and_container_have_counts(monkeypatch, machine, container, counted, file) -> None:
+    """In GiB; believed from one to sixty-four, and four where nothing is said."""
+    files = {}
+    if machine is not None:
+        files["/proc/meminfo"] = f"MemFree: 17 kB\nMemTotal:  {int(machine * 2**20)} kB\nMemAvailable: 9 kB\n"
+    if container is not None:
+        files[file] = container if isinstance(container, str) else f"{int(container * 2**30)}\n"
+    system(monkeypatch, files)
+    monkeypatch.setattr("resource.getrlimit", lambda _: (-1, -1))
+    assert budgets.memory() == counted * 2**30
+    assert budgets.samples() == int(counted * 2**30 / 4 / budgets.SAMPLE)
+    assert budgets.samples(marched=True) == int(counted * 2**30 / 4 / (budgets.SAMPLE + budgets.STEP))
+
+
+@pytest.mark.parametrize(
+    ("quota", "cores"), [("max 100000", 8), ("800000 100000", 8), ("150000 100000", 2), ("20000 100000", 1), ("?", 8)]
+)
+def test_a_container_may_have_a_share_of_the_cores(monkeypatch, quota: str, cores: int) -> None:
+    monkeypatch.setattr(budgets.os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
+    system(monkeypatch, {"/sys/fs/cgroup/cpu.max": quota})
+    assert budgets.cores() == cores
+    budgets.cores.cache_clear()
