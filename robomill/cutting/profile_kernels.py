@@ -36,21 +36,15 @@ class Shape(NamedTuple):
     slope: float
 
 
-class Piece(NamedTuple):
-    """A piece of the profile, from a place on one of its stretches to another: whether it is of a round nose, how far
-    along it the two are and how high (m), its radius at the end, and the sine and cosine of the normals' angle there.
-    """
+class Place(NamedTuple):
+    """A place on a stretch of the profile: how far along it, its radius and height (m), and the sine and cosine of the
+    angle between the axis and the normal there."""
 
-    arc: bool
-    start: float
-    end: float
-    low: float
-    high: float
+    s: float
     radius: float
+    height: float
     sine: float
     cosine: float
-    sine_end: float
-    cosine_end: float
 
 
 def round_nosed(R: float, corner: float) -> Shape:
@@ -162,27 +156,17 @@ def contact_lag(shape: Shape, m: float, v2: float) -> float:
 
 
 @part
-def on_profile(shape: Shape, stretch: int, s: float) -> tuple[float, float, float, float]:
-    """A point of a stretch of the profile (0 end, 1 nose, 2 flank), s m along it: radius, height, sine and cosine of
-    the angle between the axis and the normal."""
+def on_profile(shape: Shape, stretch: int, s: float) -> Place:
+    """The place ``s`` m along a stretch of the profile (0 end, 1 nose, 2 flank)."""
     if stretch == END:
-        return s, 0.0, 0.0, 1.0
+        return Place(s, s, 0.0, 0.0, 1.0)
     if stretch == FLANK:
-        return shape.R, s, 1.0, 0.0
+        return Place(s, shape.R, s, 1.0, 0.0)
     if shape.kind == CHAMFER:
         slant = math.sqrt(1.0 + shape.slope**2)
-        return shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant
+        return Place(s, shape.r0 + s / slant, s * shape.slope / slant, shape.slope / slant, 1.0 / slant)
     sine, cosine = math.sin(s / shape.rc), math.cos(s / shape.rc)
-    return shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine
-
-
-@part
-def piece_between(shape: Shape, stretch: int, start: float, end: float) -> Piece:
-    """The piece of a stretch of the profile between two places on it, m."""
-    _, low, sine, cosine = on_profile(shape, stretch, start)
-    radius, high, sine_end, cosine_end = on_profile(shape, stretch, end)
-    arc = stretch == NOSE and shape.kind != CHAMFER
-    return Piece(arc, start, end, low, high, radius, sine, cosine, sine_end, cosine_end)
+    return Place(s, shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine)
 
 
 @part
@@ -201,6 +185,18 @@ def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float
 
 
 @part
+def facing_part(shape: Shape, stretch: int, faces: tuple[float, float]) -> tuple[float, float]:
+    """From where to where on a stretch of the profile, m, its surface faces the feed: where a sin(kappa) is more than
+    b cos(kappa), with ``faces`` (a, b)."""
+    a, b = faces
+    if stretch == NOSE and shape.kind != CHAMFER:
+        turn = math.atan2(b, a) if b != 0.0 else 0.0 if a > 0.0 else math.pi
+        return shape.rc * turn, shape.rc * (turn + math.pi)
+    at = on_profile(shape, stretch, 0.0)
+    return (-math.inf, math.inf) if a * at.sine > b * at.cosine else (math.inf, -math.inf)
+
+
+@part
 def power(facing: float, exponent: float) -> float:
     """Chip thickness of a place that faces the feed by so much, as a force law's term has it, for a unit of feed."""
     if exponent == 1.0:
@@ -209,15 +205,18 @@ def power(facing: float, exponent: float) -> float:
 
 
 @part
-def edge_sums(shape: Shape, piece: Piece, faces: tuple[float, float], exponent: float) -> tuple[float, float, float]:
-    """Integrals of facing^exponent times 1, sin(kappa) and cos(kappa) over a piece of the profile.
+def edge_sums(
+    shape: Shape, ends: tuple[Place, Place], faces: tuple[float, float], exponent: float
+) -> tuple[float, float, float]:
+    """Integrals of facing^exponent times 1, sin(kappa) and cos(kappa) over a stretch of the profile from one place on
+    it to another.
 
     facing = a sin(kappa) - b cos(kappa) with ``faces`` (a, b). Straight stretches and the exponents 0 and 1 in closed
     form; other exponents over a round nose by Gauss' rule of two points.
     """
-    a, b = faces
-    length, s, c, s_end, c_end = piece.end - piece.start, piece.sine, piece.cosine, piece.sine_end, piece.cosine_end
-    if not piece.arc:
+    (a, b), (start, end) = faces, ends
+    length, s, c, s_end, c_end = end.s - start.s, start.sine, start.cosine, end.sine, end.cosine
+    if s == s_end:
         load = length * power(a * s - b * c, exponent)
         return load, load * s, load * c
     if exponent == 0.0:
@@ -231,7 +230,7 @@ def edge_sums(shape: Shape, piece: Piece, faces: tuple[float, float], exponent: 
     plain = up = lying = 0.0
     for n in range(2 * pieces):
         within = n // 2 + (GAUSS if n % 2 == 0 else 1.0 - GAUSS)
-        kappa = (piece.start + within / pieces * length) / shape.rc
+        kappa = (start.s + within / pieces * length) / shape.rc
         s, c = math.sin(kappa), math.cos(kappa)
         load = 0.5 * length / pieces * power(a * s - b * c, exponent)
         plain, up, lying = plain + load, up + load * s, lying + load * c
@@ -276,8 +275,7 @@ def nose_pieces(top: In1, shape: Shape, pieces: Out3) -> None:
     for n in range(len(top)):
         _, end = stretch_ends(shape, NOSE, top[n])
         for q in range(count):
-            _, low, _, _ = on_profile(shape, NOSE, end * q / count)
-            _, _, sine, cosine = on_profile(shape, NOSE, end * (q + 0.5) / count)
-            _, high, _, _ = on_profile(shape, NOSE, end * (q + 1) / count)
-            pieces[0, q, n], pieces[1, q, n] = low, high
-            pieces[2, q, n], pieces[3, q, n] = math.atan2(sine, cosine), end / count
+            middle = on_profile(shape, NOSE, end * (q + 0.5) / count)
+            pieces[0, q, n] = on_profile(shape, NOSE, end * q / count).height
+            pieces[1, q, n] = on_profile(shape, NOSE, end * (q + 1) / count).height
+            pieces[2, q, n], pieces[3, q, n] = math.atan2(middle.sine, middle.cosine), end / count

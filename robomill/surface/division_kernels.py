@@ -29,7 +29,7 @@ from robomill.surface.engagement_kernels import (
 )
 from robomill.surface.material_kernels import World
 from robomill.surface.rib_kernels import Walk, alternates, fine_pitch, look_about, next_change, walk_on
-from robomill.surface.step_kernels import Step
+from robomill.surface.step_kernels import Step, ask_for_rim
 from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, PHI, SINE, gap_end, jumps, panel_end
 
 HALVINGS = 8  # of the angle across which the engaged length jumps
@@ -194,18 +194,17 @@ def add_pieces(room: Room, count: int, total: FloatArray) -> None:
 def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) -> tuple[tuple[int, float, int], Walk]:
     """Measure the angles of the turn, more finely along the profile where ribs or gaps of material are passed over: the
     first of them, with the number of gaps between the angles, and the circles they are looked for on."""
-    room.fine[0] = 0.0
-    measure(room, world, shape, step, 0, ANGLES * halves)
+    ask_for_rim(world.dexels, step, shape.R, halves)
     walk, every = walk_on(world, shape, step, room.stretches, room.circles), HALF * halves
-    if walk.used == 0:
-        return (every, 0.0, every), walk
-    look_about(world, step, walk, room.rows, halves)
-    changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
-    if not walk.plain and (changed < every or alternates(world, step, walk, room.rows, ANGLES * halves)):
-        room.fine[0] = fine_pitch(world)
-        measure(room, world, shape, step, 0, ANGLES * halves)
-        walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, CLOSE, walk.rim)
+    room.fine[0], changed, phi = 0.0, every, 0.0
+    if walk.used > 0:
+        look_about(world, step, walk, room.rows, halves)
         changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
+        if not walk.plain and (changed < every or alternates(world, step, walk, room.rows, ANGLES * halves)):
+            room.fine[0] = fine_pitch(world)
+            walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, CLOSE, walk.rim)
+            changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
+    measure(room, world, shape, step, 0, ANGLES * halves)
     return (changed, phi, every), walk
 
 

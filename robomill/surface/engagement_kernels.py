@@ -16,23 +16,23 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
-from robomill.cutting.engaged import FACING
 from robomill.cutting.profile_kernels import (
     END,
     FLANK,
     FLAT,
+    Place,
     Shape,
     edge_sums,
+    facing_part,
     on_profile,
-    piece_between,
     stretch_ends,
 )
 from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
+from robomill.surface.relief_kernels import UNKNOWN, told, tops_about
 from robomill.surface.rib_kernels import change_between, is_plain
-from robomill.surface.step_kernels import Step, ask_for_rim
+from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import (
-    ANGLES,
     COSINE,
     SINE,
     between_panels,
@@ -51,9 +51,6 @@ UNSEEN = -math.inf  # where an angle begins at which nothing was looked at yet
 BEGIN, STOP, PIECES, FIRST = range(4)  # of a stretch of the profile: where, in how many pieces, its first place
 
 
-Place = tuple[float, float, float, float]  # of the profile: radius, height, sine and cosine of its normal
-
-
 class Ray(NamedTuple):
     """An angle of the cutter: its sine, and the unit vector e(phi) out of the axis, in {W}."""
 
@@ -66,7 +63,7 @@ class Ray(NamedTuple):
 class Room(NamedTuple):
     """Room for what is measured (arrays in a tuple count as written, to the compiler).
 
-    exponents (e,); the stretches of the profile (3, 4) and the places on them that are looked at (r, t, sine, cosine);
+    exponents (e,); the stretches of the profile (3, 4) and the places on them that are looked at (p, 5);
     the angles (``ROWS``, 9 + 3 e) looked at in one step, those of both half turns first; gaps between two of them
     across which the length jumps (their rows, from, to, and their panel: number, beginning, quarters a rad); the pieces
     of the turn that follow (row, middle, width, sector); sectors (s, 5): width, engaged height, that height times where
@@ -86,47 +83,54 @@ class Room(NamedTuple):
 
 @part
 def point_at(step: Step, ray: Ray, at: Place) -> tuple[float, float, float]:
-    """A place of the profile (radius, height, ...) at the angle of a ray, in {W}, m."""
-    r, t = at[0], at[1]
+    """A place of the profile at the angle of a ray, in {W}, m."""
+    r, t = at.radius, at.height
     return step.x + r * ray.x + t * step.kx, step.y + r * ray.y + t * step.ky, step.z + r * ray.z + t * step.kz
 
 
 @part
 def engaged_at(world: World, step: Step, ray: Ray, at: Place) -> float:
-    """How deep in the material the cutter cuts at a place of its profile (radius, height, sine, cosine) at the angle of
-    a ray, m: > 0 where it does (see ``standing``)."""
-    sine, cosine = at[2], at[3]
-    if step.across * ray.sine * sine - step.along * cosine <= FACING:
-        return -FAR
+    """How deep in the material the cutter is at a place of its profile at the angle of a ray, m: > 0 where it cuts, if
+    it faces the feed there (see ``standing``)."""
     return standing(world, point_at(step, ray, at), step.run)
 
 
 @part
-def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int, ends: tuple[float, float]) -> None:
-    """Add an engaged piece of the profile to what is measured at one angle."""
-    length = ends[1] - ends[0]
+def about_at(world: World, step: Step, ray: Ray, at: Place) -> float:
+    """Whether the cutter is in the material there, told by the relief where it can: ``FAR`` or -``FAR``; else
+    ``engaged_at``."""
+    x, y, z = point_at(step, ray, at)
+    what = told(world.relief, tops_about(world.relief, x, y), z, z)
+    return FAR * what if what != UNKNOWN else standing(world, (x, y, z), step.run)
+
+
+@part
+def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int, ends: tuple[Place, Place]) -> None:
+    """Add an engaged piece of the profile, between two places of it, to what is measured at one angle."""
+    start, end = ends
+    length = end.s - start.s
     if length <= 0.0:
         return
-    piece = piece_between(shape, stretch, ends[0], ends[1])
     for n in range(len(room.exponents)):
         faces = (step.across * row[SINE], step.along)
-        plain, up, lying = edge_sums(shape, piece, faces, room.exponents[n])
+        plain, up, lying = edge_sums(shape, ends, faces, room.exponents[n])
         row[SUMS + 3 * n] += plain
         row[SUMS + 3 * n + 1] += up
         row[SUMS + 3 * n + 2] += lying
     row[LENGTH] += length
-    row[WIDEST] = max(row[WIDEST], piece.radius)
+    row[WIDEST] = max(row[WIDEST], end.radius)
     if stretch == END:
         row[FACE] += length
         return
-    row[HEIGHT] += piece.high - piece.low
-    row[LOWEST] = min(row[LOWEST], piece.low)
-    row[HIGHEST] = max(row[HIGHEST], piece.high)
+    row[HEIGHT] += end.height - start.height
+    row[LOWEST] = min(row[LOWEST], start.height)
+    row[HIGHEST] = max(row[HIGHEST], end.height)
 
 
 @part
 def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
-    """The stretches of the profile for one step, as far up as material may stand, and the places looked at on them."""
+    """The stretches of the profile for one step, as far up as material may stand, and the places looked at on them: the
+    first and the last a little inside; then where it begins and stops itself."""
     reach = (world.bounds.z_high - step.z + shape.R * math.hypot(step.kx, step.ky)) / step.kz
     first = 0
     for stretch in range(3):
@@ -140,12 +144,28 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
         noted[BEGIN], noted[STOP], noted[PIECES], noted[FIRST] = begin, stop, pieces, first
         if stop <= begin or (stretch == FLANK and is_plain(world, step)):
             continue
+        width = (stop - begin) / pieces
         for n in range(pieces + 1):
             inside = INSIDE if n == 0 else -INSIDE if n == pieces else 0.0
             at = on_profile(shape, stretch, begin + (n + inside) * (stop - begin) / pieces)
-            for q in range(4):
-                room.places[first, q] = at[q]
-            first += 1
+            note_at(room, first + n, at, begin + n * width)
+        note_at(room, first + pieces + 1, on_profile(shape, stretch, begin), begin)
+        note_at(room, first + pieces + 2, on_profile(shape, stretch, stop), stop)
+        first += pieces + 3
+
+
+@part
+def note_at(room: Room, row: int, at: Place, s: float) -> None:
+    """Note a place of the profile, as one that lies ``s`` m along its stretch."""
+    place = room.places[row]
+    place[0], place[1], place[2], place[3], place[4] = s, at.radius, at.height, at.sine, at.cosine
+
+
+@part
+def noted_at(room: Room, row: int) -> Place:
+    """A noted place of the profile."""
+    place = room.places[row]
+    return Place(place[0], place[1], place[2], place[3], place[4])
 
 
 @called
@@ -153,8 +173,6 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
     """What is engaged at the angles of some rows. From the first row on they are the turn: there a round or pointed
     nose is as engaged at the ends of panels as at the nodes before, unless it jumps between the nodes about them."""
     plain, rows = is_plain(world, step), room.rows
-    if first == 0:
-        ask_for_rim(world.dexels, step, shape.R, end // ANGLES)
     for place in range(first, end):
         n = turn_row(place) if first == 0 else place
         row = rows[n]
@@ -173,54 +191,55 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
         )
         for stretch in range(3):
             begin, stop = room.stretches[stretch, BEGIN], room.stretches[stretch, STOP]
-            if stop <= begin or (stretch == FLANK and sine * step.across <= FACING):
+            if stop <= begin:
+                continue
+            facing = facing_part(shape, stretch, (step.across * sine, step.along))
+            begin, stop = max(begin, facing[0]), min(stop, facing[1])
+            if stop <= begin:
                 continue
             if stretch == FLANK and plain:
                 material = top_over(world, step.x + shape.R * ray.x, step.y + shape.R * ray.y)
-                ends = (max(begin, world.bounds.z_low - step.z), material - step.z)
+                low, high = max(begin, world.bounds.z_low - step.z), material - step.z
+                ends = (on_profile(shape, FLANK, low), on_profile(shape, FLANK, high))
                 add_edge(room, row, shape, step, FLANK, ends)
             else:
-                measure_stretch(room, row, world, (shape, step, ray), stretch)
+                measure_stretch(room, row, world, (shape, step, ray), (stretch, begin, stop))
 
 
 @part
-def place_of(room: Room, first: int, n: int) -> Place:
-    """A place that is looked at on the profile, of those of a stretch, the first of which is so far on."""
-    place = room.places[first + n]
-    return place[0], place[1], place[2], place[3]
-
-
-@part
-def measure_stretch(room: Room, row: FloatArray, world: World, seen: tuple[Shape, Step, Ray], stretch: int) -> None:
-    """What is engaged of a stretch of the profile at one angle, looked for at the ends of its pieces, and between them
-    where ribs are near."""
-    _, step, ray = seen
-    whole = room.stretches[stretch]
-    pieces, first = int(whole[PIECES]), int(whole[FIRST])
-    width = (whole[STOP] - whole[BEGIN]) / pieces
-    low, at_low = whole[BEGIN], place_of(room, first, 0)
-    deep_low = engaged_at(world, step, ray, at_low)
-    begin, n, shut = low, 1, room.fine[0] == 0.0
-    at_end, deep_end = at_low, 0.0
-    while n <= pieces:
-        high = whole[BEGIN] + n * width
-        if low == whole[BEGIN] + (n - 1) * width:
-            at_end = place_of(room, first, n)
-            deep_end = engaged_at(world, step, ray, at_end)
-        at_high, deep_high = at_end, deep_end
-        if not shut and (deep_low > 0.0) == (deep_high > 0.0):
-            gap = (low, high), (deep_low, deep_high), (at_low, at_high)
-            high, deep_high, at_high = hidden_place(world, seen, stretch, gap)
-        if (deep_low > 0.0) != (deep_high > 0.0):
-            ends = end_between(world, seen, stretch, (low, high), (deep_low, deep_high))
-            if deep_low > 0.0:
-                add_edge(room, row, seen[0], step, stretch, (begin, ends[0]))
-            begin = ends[1]
-        if high == whole[BEGIN] + n * width:
-            n += 1
-        low, deep_low, at_low = high, deep_high, at_high
+def measure_stretch(
+    room: Room, row: FloatArray, world: World, seen: tuple[Shape, Step, Ray], of: tuple[int, float, float]
+) -> None:
+    """What is engaged at one angle ``of`` a stretch of the profile between two places, m, beyond which it does not face
+    the feed: looked for at the ends of its pieces, and between them where ribs are near."""
+    (shape, step, ray), (stretch, facing, to), shut = seen, of, room.fine[0] == 0.0
+    pieces, first = int(room.stretches[stretch, PIECES]), int(room.stretches[stretch, FIRST])
+    low, begin, stop = noted_at(room, first), noted_at(room, first + pieces + 1), noted_at(room, first + pieces + 2)
+    if facing > begin.s:
+        low = begin = on_profile(shape, stretch, facing)
+    if to < stop.s:
+        stop = on_profile(shape, stretch, to)
+    deep_low = about_at(world, step, ray, low)
+    for n in range(first + 1, first + pieces + 1):
+        if low.s >= min(room.places[n, 0], stop.s):
+            continue
+        end = noted_at(room, n) if room.places[n, 0] <= stop.s else stop
+        deep_end = about_at(world, step, ray, end)
+        while low.s < end.s:
+            high, deep_high = end, deep_end
+            if not shut and (deep_low > 0.0) == (deep_high > 0.0):
+                share = hidden_place(world, seen, stretch, (low, high), deep_low > 0.0)
+                if share < 1.0:
+                    high = on_profile(shape, stretch, low.s + share * (end.s - low.s))
+                    deep_high = engaged_at(world, step, ray, high)
+            if (deep_low > 0.0) != (deep_high > 0.0):
+                last, next_begin = end_between(world, seen, stretch, (low, high), (deep_low, deep_high))
+                if deep_low > 0.0:
+                    add_edge(room, row, shape, step, stretch, (begin, last))
+                begin = next_begin
+            low, deep_low = high, deep_high
     if deep_low > 0.0:
-        add_edge(room, row, seen[0], step, stretch, (begin, whole[STOP]))
+        add_edge(room, row, shape, step, stretch, (begin, stop))
 
 
 @part
@@ -228,41 +247,40 @@ def end_between(
     world: World,
     seen: tuple[Shape, Step, Ray],
     stretch: int,
-    ends: tuple[float, float],
-    deeps: tuple[float, float],
-) -> tuple[float, float]:
-    """Where material begins or ends between two places of a stretch, m, of which one is so deep in it and the other in
-    the air: from and to (rule of false position)."""
-    (low, high), (deep_low, deep_high), cuts = ends, deeps, deeps[0] > 0.0
+    ends: tuple[Place, Place],
+    about: tuple[float, float],
+) -> tuple[Place, Place]:
+    """Where material begins or ends between two places of a stretch, of which one is ``about`` so deep in it and the
+    other in the air: from and to (rule of false position)."""
+    (shape, step, ray), (low, high), (deep_low, deep_high), cuts = seen, ends, about, about[0] > 0.0
+    if abs(deep_low) == FAR:
+        deep_low = engaged_at(world, step, ray, low)
+    if abs(deep_high) == FAR:
+        deep_high = engaged_at(world, step, ray, high)
     for _ in range(ENDS):
-        s = low + (high - low) * deep_low / (deep_low - deep_high)
-        deep = engaged_at(world, seen[1], seen[2], on_profile(seen[0], stretch, s))
+        at = on_profile(shape, stretch, low.s + (high.s - low.s) * deep_low / (deep_low - deep_high))
+        deep = engaged_at(world, step, ray, at)
         if (deep > 0.0) == cuts:
-            low, deep_low, deep_high = s, deep, 0.5 * deep_high
+            low, deep_low, deep_high = at, deep, 0.5 * deep_high
         else:
-            high, deep_high, deep_low = s, deep, 0.5 * deep_low
+            high, deep_high, deep_low = at, deep, 0.5 * deep_low
         if abs(deep) < EXACT:
-            return s, s
+            return at, at
     return low, high
 
 
 @part
 def hidden_place(
-    world: World,
-    seen: tuple[Shape, Step, Ray],
-    stretch: int,
-    gap: tuple[tuple[float, float], tuple[float, float], tuple[Place, Place]],
-) -> tuple[float, float, Place]:
-    """A place between two of a stretch at which it is otherwise than at both: where, m, how deep, and itself; the
-    second of them where there is none. ``gap``: where the two are, m, how deep, and themselves."""
-    (shape, step, ray), ((low, high), deeps, places), share = seen, gap, 0.0
-    a, b = point_at(step, ray, places[0]), point_at(step, ray, places[1])
+    world: World, seen: tuple[Shape, Step, Ray], stretch: int, ends: tuple[Place, Place], cuts: bool
+) -> float:
+    """How far on between two places of a stretch it is otherwise than at both, where the cutter ``cuts`` or does not,
+    as a share; 1 where that is nowhere."""
+    (shape, step, ray), (low, high), share = seen, ends, 0.0
+    a, b = point_at(step, ray, low), point_at(step, ray, high)
     while share < 1.0:
-        share = change_between(world, step.run, (a, b), share, deeps[0] > 0.0)
+        share = change_between(world, step.run, (a, b), share, cuts)
         if share < 1.0:
-            s = low + share * (high - low)
-            at = on_profile(shape, stretch, s)
-            deep = engaged_at(world, step, ray, at)
-            if (deep > 0.0) != (deeps[0] > 0.0):
-                return s, deep, at
-    return high, deeps[1], places[1]
+            at = on_profile(shape, stretch, low.s + share * (high.s - low.s))
+            if (engaged_at(world, step, ray, at) > 0.0) != cuts:
+                return share
+    return share

@@ -176,7 +176,7 @@ class March:
         from robomill.surface.rib_kernels import CIRCLES, COLUMNS
         from robomill.surface.turn_kernels import ANGLES, half_turn
 
-        places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3
+        places = kernels.END_PIECES + kernels.NOSE_PIECES + kernels.FLANK_PIECES + 3 * 3
         rows = np.zeros((division.ROWS, kernels.SUMS + 3 * len(self.exponents)))
         for half in range(2):
             phi = half * np.pi + half_turn()
@@ -186,7 +186,7 @@ class March:
         return kernels.Room(
             np.array(self.exponents, dtype=float),
             np.zeros((3, 4)),
-            np.zeros((places, 4)),
+            np.zeros((places, 5)),
             rows,
             np.zeros((division.GAPS, 7)),
             np.zeros((division.GAPS * (2 * division.HALVINGS + 2), 4)),

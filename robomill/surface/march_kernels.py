@@ -30,7 +30,7 @@ from robomill.surface.material_kernels import (
     is_upright,
     see_move,
 )
-from robomill.surface.relief_kernels import Relief, covered, half_of, lower_tops, tell_nothing, tops_about
+from robomill.surface.relief_kernels import LOW, SIDES, Relief, covered, half_of, lower_tops, tell, tops_about
 from robomill.surface.soon import soon
 from robomill.surface.step_kernels import step_at
 from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
@@ -172,7 +172,7 @@ def cut_leaning(world: World, shape: Shape, move: Move, r: int) -> None:
     corner, other = (x_low - shape.R, y_low - shape.R), (x_high + shape.R, y_high + shape.R)
     first, end = cells_between(corner[0], other[0], dexels.x0, dexels.dx, dexels.heights.shape[0])
     j_first, j_end = cells_between(corner[1], other[1], dexels.y0, dexels.dy, dexels.heights.shape[1])
-    tell_nothing(world.relief, corner, other)
+    tell(world.relief, corner, other, LOW, -math.inf)
     for i in range(first, end):
         for j in range(j_first, j_end):
             top = dexels.heights[i, j, 0]
@@ -250,10 +250,14 @@ def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
     x, y, z = place
     if z > world.bounds.z_high or beside(world.bounds, x, y) or tops_about(world.relief, x, y)[1] < z:
         return
-    i, j = cell_of(world.dexels, x, y)
-    noted = world.dexels.names[i, j, 0]
+    dexels = world.dexels
+    i, j = cell_of(dexels, x, y)
+    noted = dexels.names[i, j, 0]
+    if noted == NOBODY:  # a point that looks at the cell lies less than two cells off
+        dx, dy = 2.0 * dexels.dx, 2.0 * dexels.dy
+        tell(world.relief, (x - dx, y - dy), (x + dx, y + dy), SIDES, 1.0)
     if noted == NOBODY or height_of_run(world.runs, noted, x, y, z) <= SKIN:
-        world.dexels.names[i, j, 0] = r
+        dexels.names[i, j, 0] = r
 
 
 @kernel

@@ -17,7 +17,7 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
 from robomill.cutting.profile_kernels import profile, shape_of
 from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height
-from robomill.surface.relief_kernels import Relief, tops_about
+from robomill.surface.relief_kernels import Relief, sides_about, tops_about
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
@@ -222,13 +222,12 @@ def in_runs(
         i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
         for n in range(names.shape[2]):
             name = names[i, j, n]
-            if name in (NOBODY, last, before, but):
-                continue
-            before, last = last, name
-            height, within = place_in_run(world.runs, name, point[0], point[1], point[2])
-            deep = max(deep, min(height, within))
-            if within > SKIN:
-                high = max(high, height)
+            if name != NOBODY and name != last and name != before and name != but:
+                before, last = last, name
+                height, within = place_in_run(world.runs, name, point[0], point[1], point[2])
+                deep = max(deep, min(height, within))
+                if within > SKIN:
+                    high = max(high, height)
     return high, deep
 
 
@@ -278,7 +277,8 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     if within < 0.0:
         return max(within, -FAR)
     cells = cells_around(dexels, x, y)
-    deep = 0.0 if has_side(dexels, cells) else looked_up(dexels, cells, z)
+    near = sides_about(world.relief, x, y) and has_side(dexels, cells)
+    deep = 0.0 if near else looked_up(dexels, cells, z)
     if deep == 0.0:
         deep = -dexels.slack
         if in_stock(bounds, world.facets, point):

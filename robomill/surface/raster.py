@@ -95,9 +95,8 @@ def relief_of(stock: Stock, radius: float) -> Relief:
     from robomill.surface.relief_kernels import Relief
 
     many = np.clip(np.round(stock.size[:2] / (RELIEF * radius)), 1, MOST_OF_RELIEF).astype(np.int64)
-    tops = np.full((*many, 2), float(stock.upper[2]))
-    if stock.triangles is not None:
-        tops[:, :, 0] = -np.inf
+    top = float(stock.upper[2])
+    tops = np.full((*many, 3), [top if stock.triangles is None else -np.inf, top, 0.0])
     (x, y, bottom), (per_x, per_y) = map(float, stock.lower), map(float, many / stock.size[:2])
     return Relief(tops, x, y, per_x, per_y, MARGIN * radius, bottom)
 

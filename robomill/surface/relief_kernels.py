@@ -17,6 +17,7 @@ from robomill.surface.envelope_kernels import Move, nearest
 
 CLOSE = 1e-9  # m: so near to a bound nothing is said: rounding
 AIR, UNKNOWN, MATERIAL = -1, 0, 1
+LOW, HIGH, SIDES = range(3)  # of a square: below which all is material, above which all is air, whether sides pass
 
 Point = tuple[float, float, float]
 
@@ -24,9 +25,9 @@ Point = tuple[float, float, float]
 class Relief(NamedTuple):
     """Squares of a coarse grid over the stock, from its lower corner on.
 
-    tops (nx, ny, 2) m: below the first all is material down to the bottom, above the second all is air, in a square and
-    up to ``margin`` m about it; x0, y0 m; how many squares there are on a metre along x and y; and the bottom, m.
-    Nothing is known beside them.
+    tops (nx, ny, 3) m: below the first all is material down to the bottom, above the second all is air, in a square and
+    up to ``margin`` m about it; not 0 where the side of a run may pass there; x0, y0 m; how many squares there are on a
+    metre along x and y; and the bottom, m. Nothing is known beside them.
     """
 
     tops: Out3
@@ -44,7 +45,16 @@ def tops_about(relief: Relief, x: float, y: float) -> tuple[float, float]:
     i, j = math.floor((x - relief.x0) * relief.per_x), math.floor((y - relief.y0) * relief.per_y)
     if i < 0 or j < 0 or i >= relief.tops.shape[0] or j >= relief.tops.shape[1]:
         return -math.inf, math.inf
-    return relief.tops[i, j, 0], relief.tops[i, j, 1]
+    return relief.tops[i, j, LOW], relief.tops[i, j, HIGH]
+
+
+@part
+def sides_about(relief: Relief, x: float, y: float) -> bool:
+    """Whether the side of a run may pass about a point in plan: within the margin."""
+    i, j = math.floor((x - relief.x0) * relief.per_x), math.floor((y - relief.y0) * relief.per_y)
+    if i < 0 or j < 0 or i >= relief.tops.shape[0] or j >= relief.tops.shape[1]:
+        return True
+    return bool(relief.tops[i, j, SIDES] != 0.0)
 
 
 @part
@@ -89,25 +99,28 @@ def covered(shape: Shape, move: Move, x: float, y: float, half: float) -> float:
 
 @part
 def lower_tops(tops: FloatArray, square: Point, shape: Shape, move: Move, radius: float) -> None:
-    """Lower the bounds (2,) of a square, its middle and how far they hold (x, y, half), for an upright cutter's move,
+    """Lower the bounds of a square, its middle and how far they hold (x, y, half), for an upright cutter's move,
     which reaches ``radius`` m wide into the stock."""
     x, y, half = square
+    if tops[HIGH] <= move.az:
+        return
     ex, ey = nearest(move, x, y)
     near = max(math.sqrt(ex * ex + ey * ey) - half, 0.0)
     if near < radius:
         first = clip((x - move.ax) * move.ux + (y - move.ay) * move.uy - half - radius, 0.0, move.length)
-        tops[0] = min(tops[0], move.az + move.m * first + profile(shape, near))
-        tops[1] = min(tops[1], covered(shape, move, x, y, half))
+        tops[LOW] = min(tops[LOW], move.az + move.m * first + profile(shape, near))
+        tops[HIGH] = min(tops[HIGH], covered(shape, move, x, y, half))
 
 
 @part
-def tell_nothing(relief: Relief, low: tuple[float, float], high: tuple[float, float]) -> None:
-    """From now on it is not known how far down all is material, between two corners in plan."""
+def tell(relief: Relief, low: tuple[float, float], high: tuple[float, float], which: int, number: float) -> None:
+    """Have ``which`` number of all squares be ``number`` from now on, between two corners in plan and the margin about
+    them."""
     i = max(math.floor((low[0] - relief.margin - relief.x0) * relief.per_x), 0)
     j_first = max(math.floor((low[1] - relief.margin - relief.y0) * relief.per_y), 0)
     i_last = min(math.floor((high[0] + relief.margin - relief.x0) * relief.per_x), relief.tops.shape[0] - 1)
     j_last = min(math.floor((high[1] + relief.margin - relief.y0) * relief.per_y), relief.tops.shape[1] - 1)
     while i <= i_last:
         for j in range(j_first, j_last + 1):
-            relief.tops[i, j, 0] = -math.inf
+            relief.tops[i, j, which] = number
         i += 1

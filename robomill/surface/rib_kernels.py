@@ -84,9 +84,9 @@ def walk_on(world: World, shape: Shape, step: Step, stretches: FloatArray, circl
             continue
         for n in range(1 if stretch == FLANK and plain else CIRCLES):
             along = 0.0 if stretch == FLANK and plain else 0.01 + ALONG * (n + (0.0 if stretch == FLANK else 1.0))
-            r, t, _, _ = on_profile(shape, stretch, begin + along * (stop - begin))
-            circles[count, RADIUS], circles[count, HEIGHT] = r, t
-            widest, count = max(widest, r), count + 1
+            at = on_profile(shape, stretch, begin + along * (stop - begin))
+            circles[count, RADIUS], circles[count, HEIGHT] = at.radius, at.height
+            widest, count = max(widest, at.radius), count + 1
     if step.z >= world.bounds.z_high + widest * math.hypot(step.kx, step.ky):
         count = 0
     only = plain and shape.kind == FLAT and stretches[END, 1] <= stretches[END, 0]
@@ -246,7 +246,7 @@ def alternates(world: World, step: Step, walk: Walk, rows: FloatArray, count: in
     return False
 
 
-@called
+@part
 def change_between(world: World, run: int, ends: tuple[Point, Point], since: float, cuts: bool) -> float:
     """How far on the straight way between two ends m, from the share ``since`` of it on, material is first met where
     there was none (or none where it ``cuts``), as a share; 1 where that is nowhere."""

@@ -16,9 +16,9 @@ from robomill.cutting.profile_kernels import (
     NOSE,
     contact_lag,
     edge_sums,
+    facing_part,
     heights,
     on_profile,
-    piece_between,
     profile,
     profile_within,
     radii,
@@ -112,16 +112,18 @@ def test_the_profile_is_the_cutters_and_its_normal_stands_on_it(name):
     """Walked by its length: radius as the cutter says, each stretch where the last one ended, a normal across it."""
     cutter, at = CUTTERS[name], (0.0, 0.0)
     for shape, stretch, a, b in stretches(cutter):
-        assert on_profile(shape, stretch, a)[:2] == pytest.approx(at, abs=1e-12)
+        assert on_profile(shape, stretch, a)[1:3] == pytest.approx(at, abs=1e-12)
         for s in np.linspace(a, b, 7)[1:-1]:
-            r, t, sine, cosine = on_profile(shape, stretch, s)
+            along, r, t, sine, cosine = on_profile(shape, stretch, s)
+            assert along == s
             h = 1e-8
-            along = (np.array(on_profile(shape, stretch, s + h)[:2]) - on_profile(shape, stretch, s - h)[:2]) / (2 * h)
+            before, after = (np.array(on_profile(shape, stretch, s + q)[1:3]) for q in (-h, h))
+            along = (after - before) / (2 * h)
             assert np.hypot(*along) == pytest.approx(1.0, abs=1e-6)
             assert (sine, cosine) == pytest.approx((along[1], along[0]), abs=1e-6)
             if stretch != END:
                 assert r == pytest.approx(float(cutter.radius_at(t)), abs=1e-9)
-        at = on_profile(shape, stretch, b)[:2]
+        at = on_profile(shape, stretch, b)[1:3]
     assert at == pytest.approx((cutter.radius, REACH))
 
 
@@ -130,8 +132,22 @@ def test_the_profile_is_the_cutters_and_its_normal_stands_on_it(name):
 def test_stretches_reach_as_high_as_they_are_asked(name, reach):
     shape = CUTTERS[name].solid
     found = [(stretch, *stretch_ends(shape, stretch, reach)) for stretch in (NOSE, FLANK)]
-    highest = max((on_profile(shape, stretch, b)[1] for stretch, a, b in found if b > a), default=0.0)
+    highest = max((on_profile(shape, stretch, b).height for stretch, a, b in found if b > a), default=0.0)
     assert highest == pytest.approx(max(reach, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("turn", [0.0, 0.3, -0.3, 1.2, -1.2, -1.9, 2.0, -3.0])
+def test_the_part_that_faces_the_feed_is_where_its_normal_does(name, turn):
+    """On the way up, on the level and down, ahead and behind; every place asked for itself, but near an end."""
+    faces = (math.cos(turn), math.sin(turn))
+    for shape, stretch, a, b in stretches(CUTTERS[name]):
+        low, high = facing_part(shape, stretch, faces)
+        for s in np.linspace(a, b, 41):
+            _, _, _, sine, cosine = on_profile(shape, stretch, s)
+            facing = faces[0] * sine - faces[1] * cosine
+            if abs(facing) > 1e-9:
+                assert (low < s < high) == (facing > 0.0)
 
 
 @pytest.mark.parametrize("exponent", [0.0, 1.0, 0.75, 0.6])
@@ -145,12 +161,12 @@ def test_an_edge_adds_up_to_its_integral(name, exponent):
             faces = (rng.uniform(0.3, 1.0), rng.uniform(-0.9, 0.05))
 
             def load(s, faces=faces, stretch=stretch, shape=shape):
-                _, _, sine, cosine = on_profile(shape, stretch, s)
+                _, _, _, sine, cosine = on_profile(shape, stretch, s)
                 facing = faces[0] * sine - faces[1] * cosine
                 return (facing if exponent == 1.0 else max(facing, 0.0) ** exponent), sine, cosine
 
             truth = [quad(lambda s, w=w: load(s)[0] * (1.0, *load(s)[1:])[w], *ends, epsabs=1e-14)[0] for w in range(3)]
-            found = edge_sums(shape, piece_between(shape, stretch, *ends), faces, exponent)
+            found = edge_sums(shape, tuple(on_profile(shape, stretch, s) for s in ends), faces, exponent)
             np.testing.assert_allclose(found, truth, rtol=2e-4, atol=1e-4 * abs(truth[0]))
 
 

@@ -23,7 +23,7 @@ from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_e
 
 MM = 1e-3
 NO_WALK = Walk(np.zeros((12, COLUMNS)), 0, (1.0, 0.84, 0.54), (1.0, 0.84, 0.54), True, np.inf, 1.0)
-NO_RELIEF = Relief(np.zeros((0, 0, 2)), 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
+NO_RELIEF = Relief(np.zeros((0, 0, 3)), 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
     "ball": Cutter("ball", 8 * MM),
@@ -41,7 +41,7 @@ def room_for(halves=1):
     return Room(
         np.array([1.0, 0.0]),
         np.zeros((3, 4)),
-        np.zeros((120, 4)),
+        np.zeros((130, 5)),
         rows,
         np.zeros((gaps, 7)),
         np.zeros((gaps * (2 * HALVINGS + 2), 4)),
@@ -147,7 +147,8 @@ def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
 @pytest.mark.parametrize("along", [0.0, -DISH, -1.01 * DISH])
 @pytest.mark.parametrize("depth", [0.5 * MM, 3 * MM, 20 * MM])
 def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth):
-    """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it."""
+    """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it; then they
+    themselves."""
     cutter, room, world = CUTTERS[name], room_for(), block_world(layers=6)
     shape, step = cutter.solid, fed_at(depth, along)
     lay_out(room, shape, step, world)
@@ -166,8 +167,11 @@ def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth)
         s = np.linspace(begin, stop, most + 1)
         s[[0, -1]] += np.array([1, -1]) * 0.01 * (stop - begin) / most
         for place, at in zip(room.places[first:], s, strict=False):
+            np.testing.assert_allclose(place[1:], on_profile(shape, stretch, at)[1:], atol=1e-12)
+        np.testing.assert_allclose(room.places[first : first + most + 1, 0], np.linspace(begin, stop, most + 1))
+        for place, at in zip(room.places[first + most + 1 :], (begin, stop), strict=False):
             np.testing.assert_allclose(place, on_profile(shape, stretch, at), atol=1e-12)
-        first += most + 1
+        first += most + 3
     assert not room.places[first:].any()
 
 
@@ -184,26 +188,35 @@ def test_the_flank_of_an_upright_tool_in_one_layer_is_not_looked_at_in_places():
 SPANS = [[(0.4, 1.3)], [(0.0, 0.7), (1.9, 2.6)], [(0.9, 9.9)], [(-1.0, 9.9)], [(0.5, 2.2)]]
 
 
+@pytest.mark.parametrize("faces", [(-1.0, 9.0), (0.7, 9.0), (-1.0, 1.6), (0.2, 2.9), (1.0, 1.2)])
 @pytest.mark.parametrize("spans", SPANS)
 @pytest.mark.parametrize("stretch", [NOSE, FLANK])
-def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch, spans):
-    """Material in layers of known heights along the axis (mm), as deep as the nearest end of its layer."""
+def test_what_is_engaged_of_a_stretch_between_known_heights(monkeypatch, stretch, spans, faces):
+    """Material in layers of known heights along the axis (mm), as deep as the nearest end of its layer; as far as the
+    stretch faces the feed, from a height to another."""
     cutter, depth = CUTTERS["ball" if stretch == NOSE else "flat"], 3 * MM
     shape, step = cutter.solid, fed_at(depth)
     room, world = room_for(), block_world(layers=6, dx=0.25 * MM)
     lay_out(room, shape, step, world)
 
     def deep(world, step, ray, at):
-        z = at[1] / MM
+        z = at.height / MM
         nearest = min(abs(z - end) for span in spans for end in span) * MM
         return nearest if any(low < z < high for low, high in spans) else -nearest
 
     monkeypatch.setattr(kernels, "engaged_at", deep)
+    monkeypatch.setattr(kernels, "about_at", deep)
     row = room.rows[5]
     row[LENGTH:] = 0.0
     row[kernels.LOWEST] = math.inf
-    measure_stretch(room, row, world, (shape, step, Ray(1.0, 0.0, 0.0, 0.0)), stretch)
-    ends = [np.clip(span, 0.0, 3.0) for span in spans]
+    low, high = np.clip(faces, 0.0, 3.0)
+    facing = (4 * MM * np.arccos(1.0 - np.array([low, high]) / 4.0)) if stretch == NOSE else np.array([low, high]) * MM
+    measure_stretch(room, row, world, (shape, step, Ray(1.0, 0.0, 0.0, 0.0)), (stretch, *facing))
+    ends = [np.clip(span, low, high) for span in spans]
+    ends = [end for end in ends if end[1] > end[0]]
+    if not ends:
+        assert row[LENGTH] == 0.0
+        return
     if stretch == NOSE:
         length = sum(4.0 * np.diff(np.arccos(1.0 - end / 4.0))[0] for end in ends)
     else:
@@ -343,7 +356,7 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
             continue
         ds = (stop - begin) / 200
         for s in begin + (np.arange(200) + 0.5) * ds:
-            r, t, sine, cosine = on_profile(shape, stretch, s)
+            _, r, t, sine, cosine = on_profile(shape, stretch, s)
             facing = math.sqrt(1.0 - along**2) * np.sin(phi) * sine - along * cosine
             cuts = ((tip + r * e + t * k)[:, 2] < 0.0) & (facing > 0.0)
             size += cuts.sum() * ds * np.pi / 360
