@@ -15,6 +15,10 @@ class RobomillError(ValueError):
         self.where = where
 
 
+class NumberError(RobomillError):
+    """A text that is no number, or no single one, of the unit it is typed in."""
+
+
 class RobotError(RobomillError):
     """A robot that cannot be: its table, limits, frames or compliances."""
 

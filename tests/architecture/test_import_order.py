@@ -16,6 +16,8 @@ PACKAGE = ROOT / "robomill"
 STOREYS = [
     {
         "units",
+        "unit_words",
+        "typed_numbers",
         "arrays",
         "vectors",
         "errors",
