@@ -1,15 +1,15 @@
-"""A number is declared once, with the field that holds it: label, unit, bounds, step, default and name in files.
+"""A number is declared once, with the field that holds it: label, unit, bounds, default and name in files.
 
     @dataclass(frozen=True)
     class Groove:
-        width: float = quantity("Width", "mm", above=0.0, step=0.5)
+        width: float = quantity("Width", "mm", above=0.0)
         walls: int = whole("Walls", least=1, default=2)
 
         def __post_init__(self) -> None:
             settle(self, CuttingError, "Groove")
 
 The class checks itself with ``settle``; files, boxes on the page and reports ask ``quantities(Groove)``. Bounds and
-defaults are SI, steps and digits are meant in the unit of the edge. Fields of another kind (a material, a record) are
+defaults are SI, digits are meant in the unit of the edge. Fields of another kind (a material, a record) are
 not declared here: whoever reads, writes or draws them goes by their type (``declared_types``).
 """
 
@@ -40,7 +40,7 @@ class Quantity:
 
     label     what people call it; ``unit`` a key of ``units.UNITS``, in which it is typed, shown and written to files
     above, least, below, most   bounds in SI: more than, at least, less than, at most (None: free)
-    step      what a click in its box adds, and ``digits`` the decimals shown, both in ``unit``
+    digits    the decimals shown, in ``unit``
     optional  None is a value ("not given"); ``written_none`` is the number that files write for it (None: no key)
     shape, axes   of an array (None: any length) and the names of its entries in boxes
     options   of a choice: code -> title
@@ -57,7 +57,6 @@ class Quantity:
     least: float | None = None
     below: float | None = None
     most: float | None = None
-    step: float | None = None
     digits: int | None = None
     hint: str | None = None
     optional: bool = False
@@ -80,12 +79,6 @@ class Quantity:
         """Decimals that show in ``unit`` what ``digits`` show in the unit of the edge."""
         digits = UNITS[self.unit].digits if self.digits is None else self.digits
         return max(0, digits + math.ceil(math.log10(UNITS[unit].factor / UNITS[self.unit].factor) - 1e-9))
-
-    def step_in(self, unit: str) -> float | None:
-        """The step in another display unit, rounded to 1, 2 or 5 times a power of ten."""
-        if self.step is None or unit == self.unit:
-            return self.step
-        return round_step(self.step * UNITS[self.unit].factor / UNITS[unit].factor)
 
     @property
     def expected(self) -> str:
@@ -184,7 +177,7 @@ def quantity(label: str, unit: str = "1", *, default: Any = MISSING, **said: Any
 
 def whole(label: str, *, default: Any = MISSING, **said: Any) -> Any:
     """A whole number as a dataclass field."""
-    return _declared(Quantity(label, kind="whole", **{"step": 1.0, "digits": 0, **said}), default)
+    return _declared(Quantity(label, kind="whole", **{"digits": 0, **said}), default)
 
 
 def switch(label: str, *, default: Any = MISSING, **said: Any) -> Any:
@@ -260,13 +253,6 @@ def described(value: Any) -> str:
 def file_suffix(unit: str) -> str:
     """How a unit ends a key in files: ``"_mm"``, ``"_N_mm2"``, nothing for a plain number."""
     return "" if unit == "1" else "_" + unit.replace("/", "_").replace(" ", "_")
-
-
-def round_step(step: float) -> float:
-    """The nearest of 1, 2, 5 times a power of ten (nearest by ratio)."""
-    power = 10.0 ** math.floor(math.log10(step))
-    nearest = min((1.0, 2.0, 5.0, 10.0), key=lambda mantissa: abs(math.log(mantissa * power / step)))
-    return float(f"{nearest * power:.1g}")
 
 
 def _declared(declared: Quantity, default: Any, compare: bool = True) -> Any:

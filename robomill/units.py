@@ -191,11 +191,6 @@ def format_many(
     return between.join([*texts, format_si(last, unit, digits, sign, with_unit)])
 
 
-def parse_number(text: str) -> float:
-    """The number that a text shows: decimal point or comma, either minus. Raises ValueError."""
-    return float(text.strip().replace(MINUS, "-").replace(",", "."))
-
-
 def split_unit(text: str) -> tuple[str, str]:
     """``"0.230 mm"`` as number and unit, for screens that set the unit small; ``(text, "")`` where none follows."""
     number, _, unit = text.rpartition(" ")

@@ -31,7 +31,7 @@ def _share(part: str) -> Any:
     low, high = PUBLISHED[part]
     hint = f"Of the tangential force, for a row that gives no {part} one. Published for aluminium: {low:g} to {high:g}."
     label = f"{part.capitalize()} share, assumed"
-    return quantity(label, optional=True, least=0.0, most=3.0, step=0.05, digits=2, boxed=False, hint=hint)
+    return quantity(label, optional=True, least=0.0, most=3.0, digits=2, boxed=False, hint=hint)
 
 
 @dataclass(frozen=True)

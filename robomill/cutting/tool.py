@@ -63,8 +63,8 @@ class Cutter:
     """
 
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
-    diameter: float = quantity("Diameter", "mm", least=1e-6, step=1.0)
-    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, step=0.25)
+    diameter: float = quantity("Diameter", "mm", least=1e-6)
+    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0)
     flutes: int = whole("Flutes", default=2, least=1)
     helix: Hand = choice(
         "Helix",
@@ -73,14 +73,13 @@ class Cutter:
         hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
     )
     helix_angle: float = quantity(
-        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), step=5.0, digits=1
+        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), digits=1
     )
     flute_length: float | None = quantity(
         "Flute length",
         "mm",
         optional=True,
         above=0.0,
-        step=1.0,
         digits=1,
         hint="Deeper cuts are warned of: the shank would rub.",
     )
@@ -89,14 +88,11 @@ class Cutter:
         "mm",
         optional=True,
         above=0.0,
-        step=1.0,
         digits=1,
         hint="Free length from the holder; tool bending grows with its cube.",
     )
-    tip_angle: float | None = quantity(
-        "Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"), step=5.0
-    )
-    tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, step=0.25)
+    tip_angle: float | None = quantity("Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"))
+    tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0)
     hand: Hand = choice("Hand", HANDS, default="right")
 
     def __post_init__(self) -> None:

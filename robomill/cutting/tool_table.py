@@ -25,7 +25,7 @@ class TableTool:
 
     number: int = whole("Tool", least=0)
     cutter: Cutter | None = None
-    length: float = quantity("Length", "mm", default=0.0, step=1.0)
+    length: float = quantity("Length", "mm", default=0.0)
     offset_x: float = quantity("Offset X", "mm", default=0.0, boxed=False)
     offset_y: float = quantity("Offset Y", "mm", default=0.0, boxed=False)
     orientation: int = whole("Orientation of the nose", default=0, least=0, most=9, boxed=False)

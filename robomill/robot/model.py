@@ -19,7 +19,7 @@ from robomill.robot.dh import Chain, build_chain
 
 USER_SET = "user"
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
-TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), step=1.0, digits=2)
+TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
 
 
 @dataclass(frozen=True, eq=False)

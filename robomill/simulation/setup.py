@@ -27,9 +27,9 @@ NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
 # What people type of T_MW, of a part that stands upright, and of the spin.
-PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), step=10.0, digits=2, key="zero_mm")
-PART_TURN = Quantity("Turn about Z", "deg", step=5.0, key="rotation_z_deg")
-SPIN = Quantity("Turn about z_T", "deg", step=5.0, digits=1)
+PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), digits=2, key="zero_mm")
+PART_TURN = Quantity("Turn about Z", "deg", key="rotation_z_deg")
+SPIN = Quantity("Turn about z_T", "deg", digits=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +65,12 @@ class SimulationSetup(Replaceable):
     cutter: Cutter
     force: ForceModel
     stock: Stock | None = None
-    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, step=0.05)
+    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0)
     floor_tolerance: float | None = quantity(
         "Tolerance of floors",
         "mm",
         optional=True,
         above=0.0,
-        step=0.05,
         hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
     )
     feed_tolerance: float | None = quantity(
@@ -79,11 +78,10 @@ class SimulationSetup(Replaceable):
         "mm",
         optional=True,
         above=0.0,
-        step=0.05,
         hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
-    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, step=0.5)
-    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, step=0.05, digits=4)
+    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0)
+    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, digits=4)
     engagement: bool = switch(
         "Engagement from the part",
         default=False,
@@ -103,7 +101,6 @@ class SimulationSetup(Replaceable):
         "mm/min",
         optional=True,
         above=0.0,
-        step=1000.0,
         digits=0,
         hint="How fast the machine goes on rapids: a force recorded over time runs on meanwhile.",
     )

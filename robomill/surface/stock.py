@@ -28,8 +28,8 @@ class Stock:
     Raises SurfaceError for corners the wrong way round or a block without extent.
     """
 
-    lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, step=1.0, digits=2)
-    upper: FloatArray = quantity("to", "mm", shape=(3,), axes=AXES, step=1.0, digits=2)
+    lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, digits=2)
+    upper: FloatArray = quantity("to", "mm", shape=(3,), axes=AXES, digits=2)
     triangles: FloatArray | None = None
 
     def __post_init__(self) -> None:

@@ -98,11 +98,11 @@ class Sketch(Replaceable):
     """
 
     elements: tuple[Element, ...] = ()
-    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, step=60.0, key="plunge_mm_min")
-    clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, step=1.0, digits=2)
-    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, step=500.0, key="spindle_1_min")
-    v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, step=60.0, key="feed_mm_min", compare=False)
-    depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, step=0.5, digits=2, compare=False)
+    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min")
+    clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2)
+    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min")
+    v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False)
+    depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False)
     grid: float = quantity("Snap", "mm", default=5e-3, least=0.0, key="snap_mm", compare=False)
 
     def __post_init__(self) -> None:

@@ -72,7 +72,7 @@ class LinesSource:
     start: FloatArray
     end: FloatArray
     v_f: FloatArray
-    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, step=500.0, key="spindle_1_min")
+    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, key="spindle_1_min")
     name: str = field(default="table of lines", compare=False)
     kind: ClassVar[Literal["lines"]] = "lines"
     block_name: ClassVar[str] = "row"

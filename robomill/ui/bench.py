@@ -73,15 +73,15 @@ class Bench(Replaceable):
     )
     goal_joint: int = whole("Joint", least=0, default=0)
     count: int = whole("More tests", least=1, most=30, default=3)
-    load: float = quantity("Load", "N", least=1.0, most=5000.0, step=50.0, digits=0, default=250.0)
+    load: float = quantity("Load", "N", least=1.0, most=5000.0, digits=0, default=250.0)
     tilt: float = quantity(
-        "Tilt up to", "deg", least=0.0, most=to_si(90.0, "deg"), step=5.0, digits=0, default=to_si(30.0, "deg")
+        "Tilt up to", "deg", least=0.0, most=to_si(90.0, "deg"), digits=0, default=to_si(30.0, "deg")
     )
     band: str = choice(
         "Band", {"model": "Noise and error of the model", "noise": "Noise of the fit only"}, default="model"
     )
-    force_unsure: float = quantity("Force known to ±", "N", least=0.0, most=1000.0, step=5.0, digits=0, default=0.0)
-    length_unsure: float = quantity("Link lengths to ±", "mm", least=0.0, most=0.05, step=0.5, digits=2, default=0.0)
+    force_unsure: float = quantity("Force known to ±", "N", least=0.0, most=1000.0, digits=0, default=0.0)
+    length_unsure: float = quantity("Link lengths to ±", "mm", least=0.0, most=0.05, digits=2, default=0.0)
 
     def __post_init__(self) -> None:
         settle(self, ProjectError, "Load tests")

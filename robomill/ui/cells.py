@@ -1,17 +1,16 @@
-"""A table of numbers that is edited: from SI to its cells and back, the one way of every such table."""
+"""A table of nothing but numbers: the cells of an array, and the array of its cells."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.ui.inputs import empty
-from robomill.units import from_si, to_si
+from robomill.ui.box import NumberBox
+from robomill.ui.grid import empty
 
 
 @dataclass(frozen=True)
@@ -23,23 +22,25 @@ class Cells:
     error: type[RobomillError]
 
     def frame(self, values: FloatArray, **names: Sequence[str]) -> pd.DataFrame:
-        """Numbers (r, c) in SI as cells, without the last bits of the conversion, behind columns of ``names``."""
-        shown = np.round(self._each(from_si, values), 9) + 0.0  # no minus before a zero
-        return pd.DataFrame({**names, **dict(zip(self.heads, shown.T, strict=True))})
+        """Numbers (r, c) in SI as a table behind columns of ``names``."""
+        return pd.DataFrame({**names, **dict(zip(self.heads, np.asarray(values).T, strict=True))})
 
     def read(self, frame: pd.DataFrame, where: Callable[[int], str]) -> FloatArray:
         """The numbers (r, c) in SI. Raises ``error`` naming row (as ``where`` does) and column of an empty cell."""
         for row in range(len(frame)):
             for head in self.heads:
                 if empty(frame[head].iloc[row]):
-                    raise self.error(f"{where(row)}: {head.partition(',')[0]} is missing; type a number.")
-        return self._each(to_si, frame[list(self.heads)].to_numpy(dtype=float))
+                    raise self.error(f"{where(row)}: {_label(head)} is missing; type a number.")
+        return frame[list(self.heads)].to_numpy(dtype=float)
 
-    def columns(self, width: int | None = None) -> dict[str, Any]:
-        """How the columns are shown."""
-        return {head: st.column_config.NumberColumn(head, format="%.6g", width=width) for head in self.heads}
+    def boxes(self) -> Mapping[str, NumberBox | list[NumberBox]]:
+        """How each column is typed, or each of its cells where they differ."""
+        if np.ndim(self.units) == 2:
+            rows = [np.broadcast_to(np.asarray(row, dtype=object), len(self.heads)) for row in self.units]
+            return {head: [NumberBox(_label(head), row[j]) for row in rows] for j, head in enumerate(self.heads)}
+        units = np.broadcast_to(np.asarray(self.units, dtype=object), len(self.heads))
+        return {head: NumberBox(_label(head), unit) for head, unit in zip(self.heads, units, strict=True)}
 
-    def _each(self, convert: Callable[[float, str], float], values: FloatArray) -> FloatArray:
-        units = np.broadcast_to(np.asarray(self.units, dtype=object), values.shape)
-        cells = [convert(float(v), unit) for v, unit in zip(values.flat, units.flat, strict=True)]
-        return np.array(cells).reshape(values.shape)
+
+def _label(head: str) -> str:
+    return head.partition(",")[0]

@@ -1,4 +1,4 @@
-"""Inputs: one number box, one choice, one switch, one slider, one button, one upload, one table.
+"""Inputs: one number box, one choice, one switch, one slider, one button, one upload; the table is in ``grid``.
 
 Each is seeded from what is in force and hands what was typed to the project. Input that is refused stays where it was
 typed with the sentence beneath it; the project keeps the last good value. Keys read "page.thing".
@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-import pandas as pd
 import streamlit as st
 
+from robomill.errors import ProjectError
 from robomill.ui import session
 from robomill.ui.box import NumberBox, declared
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import read_field, with_field
-from robomill.ui.typed import accept, heard, seed, sentence, submit
+from robomill.ui.typed import accept, heard, note, refuse, seed, sentence, submit
 
 
 @dataclass(frozen=True)
@@ -57,16 +57,6 @@ class Span:
     form: str | None = None
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """How a table is edited: its columns, those ``locked``, whether rows can be added, its height in pixels."""
-
-    columns: Mapping[str, Any] | None = None
-    locked: tuple[str, ...] = ()
-    dynamic: bool = False
-    height: int | Literal["auto"] = "auto"
-
-
 def number(path: str, **shown: Any) -> None:
     """The number box of the set-up's field at ``path``, shown otherwise than declared, or not declared at all.
 
@@ -89,43 +79,48 @@ def into_setup(path: str, label: str) -> Callable[[Any], None]:
 
 
 def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
-    """A number box for any value in SI; ``write`` gets what was typed, in SI."""
-    key = _key(name, box)
-    if box.optional:
-        _optional(key, box, current, write)
-        return
-    shown = seed(key, box.shown(current))
+    """A number box for any value in SI; ``write`` gets what was typed, in SI.
+
+    A line of text: a browser's own number box swallows a decimal comma, and one with a default cannot be emptied.
+    """
+    key, written = _key(name, box), box.written(current)
+    shown = seed(key, written)
 
     def take() -> None:
-        typed = st.session_state[key]
-        submit(key, typed, lambda: write(box.typed(typed)))
+        text = st.session_state[key]
+        if text.strip() == written:
+            accept(key)  # what is shown may be rounded: the value stays as it is
+        elif not text.strip() and not box.optional:
+            refuse(key, written, f"{box.label}: the box was emptied; it stays {box.named(current)}.")
+        else:
+            _read(key, text, box, current, write)
 
-    st.number_input(
+    st.text_input(
         box.title,
-        value=shown,
+        shown,
         key=key,
-        step=1 if box.whole else box.step,
-        format=box.form,
         on_change=take,
         help=box.hint,
         disabled=box.disabled,
+        placeholder=box.placeholder if box.optional else None,
         label_visibility="collapsed" if box.hidden else "visible",
+        autocomplete="off",
     )
     heard(key, shown, take)
+    note(key, shown)
 
 
-def _optional(key: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
-    """A number that may be left out, as a line of text: a number box that has a default cannot be emptied."""
-    text(
-        box.title,
-        key,
-        box.written(current),
-        lambda typed: write(box.read(typed)),
-        help=box.hint,
-        disabled=box.disabled,
-        placeholder=box.placeholder,
-        label_visibility="collapsed" if box.hidden else "visible",
-    )
+def _read(key: str, text: str, box: NumberBox, current: float | None, write: Callable[[Any], None]) -> None:
+    """What was typed into a number box into ``write``; a refusal that is not the project's own says what stays."""
+    session.store().read_as.pop(key, None)
+    try:
+        new = box.read(text)
+    except ProjectError as exc:
+        refuse(key, text, f"{exc} It stays {box.named(current)}.")
+        return
+    submit(key, text, lambda: write(new))
+    if key not in session.store().refused:
+        session.store().read_as[key] = box.written(new), box.understood(text)
 
 
 def _key(name: str, box: NumberBox) -> str:
@@ -312,60 +307,3 @@ def reread(key: str, take: Callable[[bytes, str], None], option: str, chosen: An
     session.keep(option, chosen)
     if given := session.kept(key):
         submit(key, None, lambda: take(*given))
-
-
-def table(
-    name: str, base: Callable[[], pd.DataFrame], write: Callable[[pd.DataFrame], None], sheet: Sheet | None = None
-) -> None:
-    """A table whose edits go to ``write`` (which changes the project, ``from_editor=True``, or raises its refusal).
-
-    The table starts from ``base()`` and keeps what was typed until the project changes from outside (undo, preset,
-    another input) or the page is left.
-    """
-    sheet = sheet or Sheet()
-    held = session.store()
-    key = f"{name}:{held.revision}"
-    waiting = held.refused.get(name)
-    if key not in st.session_state or key not in held.frames:
-        for old in [k for k in held.frames if k.startswith(f"{name}:")]:
-            del held.frames[old]
-        # A refused table comes back as it was typed when its page is entered again.
-        held.frames[key] = waiting[0] if waiting is not None and waiting[0] is not None else base()
-    start = held.frames[key]
-
-    def take() -> None:
-        frame = edited(start, st.session_state[key])
-        submit(name, frame, lambda: write(frame))
-
-    st.data_editor(
-        start,
-        key=key,
-        column_config=dict(sheet.columns) if sheet.columns else None,
-        disabled=list(sheet.locked),
-        hide_index=True,
-        on_change=take,
-        num_rows="dynamic" if sheet.dynamic else "fixed",
-        height=sheet.height,
-        width="stretch",
-    )
-    sentence(name)
-
-
-def edited(base: pd.DataFrame, changes: Mapping[str, Any]) -> pd.DataFrame:
-    """``base`` with what ``st.data_editor`` says was changed (edited, added and deleted rows)."""
-    frame = base.copy()
-    for row, cells in changes.get("edited_rows", {}).items():
-        for column, new in cells.items():
-            if pd.api.types.is_integer_dtype(frame[column]) and not isinstance(new, int):
-                frame = frame.astype({column: float})  # emptied, or larger than any whole number
-            frame.loc[frame.index[int(row)], column] = new
-    frame = frame.drop(index=[frame.index[i] for i in changes.get("deleted_rows", [])])
-    added = [{c: r.get(c) for c in frame.columns} for r in changes.get("added_rows", [])]
-    if added:
-        frame = pd.concat([frame, pd.DataFrame(added)], ignore_index=True)
-    return frame
-
-
-def empty(cell: Any) -> bool:
-    """Whether a cell of an edited table holds nothing."""
-    return cell is None or cell is pd.NA or (isinstance(cell, float) and cell != cell)

@@ -40,8 +40,8 @@ WHERE = "project file"
 TABLES = ("view", "maps", "experiments", "uncertainty")
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
-PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "step": 50.0, "digits": 2}  # in {M}
-TILT: dict[str, Any] = {"unit": "deg", "step": 5.0, "default": 0.0}
+PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "digits": 2}  # in {M}
+TILT: dict[str, Any] = {"unit": "deg", "default": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,7 @@ class MapView:
     )
     lower: FloatArray = number("From", default=BOX[0], **PLACE)
     upper: FloatArray = number("To", default=BOX[1], **PLACE)
-    step: float | None = number("Step", "mm", above=0.0, step=5.0, digits=2, optional=True)
+    step: float | None = number("Step", "mm", above=0.0, digits=2, optional=True)
     A: float = number("Tilt A", **TILT)
     B: float = number("Tilt B", **TILT)
     normal: str = choice("Plane", {"z": "XY", "y": "XZ", "x": "YZ"}, default="z")

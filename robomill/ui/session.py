@@ -56,7 +56,8 @@ ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one st
 class Store:
     """What lives in the session: the project, its history, and input that was refused but is still shown.
 
-    ``values`` are kept by name. ``revision`` counts changes that came from outside a table editor, so that editors
+    ``values`` are kept by name. ``read_as`` says of numbers just typed what is shown for them and how they were meant.
+    ``revision`` counts changes that came from outside a table editor, so that editors
     start afresh then. ``seeded`` are the widgets of ``page`` that have been given their value: a widget that returns
     with its page has lost it. ``older`` are project files of an earlier session, to be gone back to after ``past``.
     ``keeper`` is called after every change. ``returned``: the page was open before this session was (its server had
@@ -70,6 +71,7 @@ class Store:
     values: dict[str, Any] = field(default_factory=dict)
     revision: int = 0
     refused: dict[str, tuple[Any, str]] = field(default_factory=dict)
+    read_as: dict[str, tuple[str, str]] = field(default_factory=dict)
     frames: dict[str, Any] = field(default_factory=dict)
     last_label: str = ""
     last_time: float = 0.0
@@ -111,6 +113,7 @@ def enter(page: str) -> None:
         held.returned = held.returned and not held.page
         held.page = page
         held.seeded.clear()
+        held.read_as.clear()
 
 
 def kept(name: str, otherwise: Any = None) -> Any:
@@ -287,4 +290,5 @@ def _forget(held: Store) -> None:
     held.revision += 1
     held.last_label = ""
     held.refused.clear()
+    held.read_as.clear()
     held.frames.clear()

@@ -1,4 +1,5 @@
-"""What was typed: how widgets are seeded, refused input that stays with its sentence, edits of a page cut off."""
+"""What was typed: how widgets are seeded, refused input that stays with its sentence, how a number was understood,
+edits of a page cut off."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,8 +18,6 @@ def seed(key: str, current: Any) -> Any:
     held = session.store()
     waiting = held.refused.get(key)
     known = key in st.session_state and key in held.seeded
-    if waiting is not None and known:
-        return st.session_state[key]
     shown = waiting[0] if waiting is not None else current
     # Written only where it differs: a slider that is being dragged would jump otherwise.
     if not unheard(key) and (not known or st.session_state[key] != shown):
@@ -54,6 +53,13 @@ def sentence(key: str) -> None:
 def refuse(key: str, typed: Any, reason: str) -> None:
     """Keep refused input and its reason, to be shown under the widget ``key``."""
     session.store().refused[key] = (typed, reason)
+
+
+def note(key: str, shown: str) -> None:
+    """How the number ``shown`` in the widget ``key`` was understood when it was typed, if that is to be said."""
+    read_as, words = session.store().read_as.get(key, ("", ""))
+    if words and read_as == shown:
+        st.caption(as_markdown(words))
 
 
 def accept(key: str) -> None:

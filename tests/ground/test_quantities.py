@@ -1,15 +1,12 @@
-"""Declared numbers: what is settled, what is refused in which words, and steps and digits in other units."""
+"""Declared numbers: what is settled, what is refused in which words, and digits in other units."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import CuttingError
@@ -20,7 +17,6 @@ from robomill.quantities import (
     file_suffix,
     quantities,
     quantity,
-    round_step,
     settle,
     switch,
     whole,
@@ -31,7 +27,7 @@ from robomill.units import to_si
 @dataclass(frozen=True, eq=False)
 class Sample:
     source: CuttingError
-    width: float = quantity("Width", "mm", above=0.0, most=to_si(5.0, "mm"), step=0.5, digits=2, hint="Across.")
+    width: float = quantity("Width", "mm", above=0.0, most=to_si(5.0, "mm"), digits=2, hint="Across.")
     turn: float = quantity("Turn", "deg", default=0.0, least=-math.pi, below=math.pi)
     reach: float | None = quantity("Reach", "mm", optional=True, above=0.0)
     ratio: float = quantity("Ratio", default=0.5, least=0.0, most=1.0, key="share")
@@ -141,7 +137,7 @@ def test_a_class_is_asked_for_its_numbers() -> None:
     assert (found["reach"].needed, found["reach"].default) == (False, None)
     assert found["push"].axes == "XYZ"
     assert found["teeth"].kind == "whole"
-    assert (found["teeth"].step, found["teeth"].digits) == (1.0, 0)
+    assert found["teeth"].digits == 0
     assert found["hand"].options == {"l": "left", "r": "right"}
     assert found["width"].hint == "Across."
     assert found["width"].boxed
@@ -165,27 +161,10 @@ def test_keys_in_files() -> None:
     assert [file_suffix(u) for u in units] == ["", "_mm", "_N_mm2", "_1_min", "_um_N", "_kN_m"]
 
 
-def test_a_box_in_inches_steps_and_shows_about_the_same() -> None:
+def test_a_box_in_inches_shows_about_the_same() -> None:
     width, free = quantities(Sample)["width"], quantities(Sample)["free"]
-    assert (width.step_in("mm"), width.digits_in("mm")) == (0.5, 2)
-    assert (width.step_in("in"), width.digits_in("in")) == (0.02, 4)
-    assert (width.step_in("um"), width.digits_in("um")) == (500.0, 0)
-    assert (width.step_in("m"), width.digits_in("m")) == (0.0005, 5)
-    assert (free.step_in("kN"), free.digits_in("N"), free.digits_in("kN")) == (None, 1, 4)
-
-
-@given(st.floats(1e-9, 1e9))
-def test_steps_are_the_nearest_of_one_two_five(step: float) -> None:
-    found = round_step(step)
-    mantissa = Fraction(repr(found))
-    while mantissa >= 10:
-        mantissa /= 10
-    while mantissa < 1:
-        mantissa *= 10
-    assert mantissa in (1, 2, 5)
-    # No other of the series is nearer by ratio.
-    others = [m * 10.0**p for p in range(-11, 11) for m in (1, 2, 5)]
-    assert abs(math.log(found / step)) <= min(abs(math.log(other / step)) for other in others) + 1e-12
+    assert [width.digits_in(unit) for unit in ("mm", "in", "um", "m")] == [2, 4, 0, 5]
+    assert [free.digits_in(unit) for unit in ("N", "kN")] == [1, 4]
 
 
 def test_what_no_number_may_exceed_is_itself_allowed():

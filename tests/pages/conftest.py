@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import pandas as pd
 import pytest
+import streamlit as st
 from plotly_checks import checked_figure
 from streamlit.testing.v1 import AppTest
-from streamlit.testing.v1.element_tree import NumberInput
+from streamlit.testing.v1.element_tree import TextInput
 
-from robomill.ui import beside, rendered
+from robomill.toolpath.source import SketchSource
+from robomill.ui import beside, inputs, rendered
+from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import KEY, Store
+from robomill.ui.toolpath.sources import lines_of_path, sketch_of_path
 from robomill.viz.chart import Chart
 from robomill.viz.render_queue import RenderQueue
 from robomill.viz.worker import NO_OPENGL, RenderWorker
@@ -66,6 +73,84 @@ def errors(app: AppTest) -> list[str]:
     return [element.value for element in app.error]
 
 
-def box(app: AppTest, label: str) -> NumberInput:
+class Grid:
+    """In the place of Streamlit's grid, which no AppTest can type into: it shows the tables and types into a cell."""
+
+    def __init__(self) -> None:
+        self.shown: dict[str, pd.DataFrame] = {}
+        self.columns: dict[str, dict[str, Any]] = {}
+        self.typed: tuple[str, int, str, Any] | None = None
+
+    def __call__(
+        self,
+        frame: pd.DataFrame,
+        *,
+        key: str,
+        on_change: Callable[[], None],
+        disabled: Any,
+        column_config: Any,
+        **_: Any,
+    ) -> None:
+        name = key.rpartition(":")[0]
+        self.shown[name] = frame.drop(columns=[c for c in disabled if c in frame])
+        self.columns[name] = dict(column_config or {})
+        if self.typed is not None and self.typed[0] == name:
+            _, row, column, value = self.typed
+            self.typed = None
+            st.session_state[key] = {"edited_rows": {row: {column: value}}}
+            on_change()
+
+
+@pytest.fixture
+def grid(monkeypatch: pytest.MonkeyPatch) -> Grid:
+    """What stands in the place of Streamlit's grid."""
+    made = Grid()
+    monkeypatch.setattr(inputs.st, "data_editor", made)
+    return made
+
+
+WAYS = ("robot", "lines", "shapes", "springs", "tools")
+
+
+def put(app: AppTest, way: str) -> str:
+    """Open a set-up with the tables of one kind; the page that shows them."""
+    held = store(app)
+    setup = preset_setup("two_tools" if way == "tools" else "paper_flute")
+    if way == "lines":
+        setup = setup.replace(source=lines_of_path(setup.toolpath))
+        held.values["toolpath.way"] = "points"
+    if way == "shapes":
+        drawn = sketch_of_path(setup.toolpath)
+        assert drawn is not None
+        setup = setup.replace(source=SketchSource(drawn))
+    if way == "springs":
+        held.values |= {f"springs.{kind}": True for kind in ("joint_bending", "weight")}
+    held.project = Project(setup)
+    held.revision += 1
+    return {"robot": "1_Robot", "lines": "5_Toolpath", "shapes": "5_Toolpath"}.get(way, "6_Milling")
+
+
+class Number:
+    """A number box, which is a line of text: the number it shows, and a number typed into it as Python writes it."""
+
+    def __init__(self, line: TextInput) -> None:
+        self.line = line
+
+    @property
+    def value(self) -> float:
+        """What it shows, which is a number as any program reads it."""
+        return float(self.line.value or "nan")
+
+    def set_value(self, value: float) -> TextInput:
+        """Type a number."""
+        return self.line.set_value(str(value))
+
+
+def number(app: AppTest, key: str) -> Number:
+    """The number box with this key."""
+    return Number(app.text_input(key=key))
+
+
+def box(app: AppTest, label: str) -> Number:
     """The number box with this label."""
-    return next(b for b in app.number_input if b.label == label)
+    return Number(next(b for b in app.text_input if b.label == label))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import number
 from streamlit.testing.v1 import AppTest
 
 from robomill.compliance.springs.joint_bending import JointBending
@@ -290,10 +291,10 @@ def test_every_template_says_what_is_missing_rather_than_breaking(page: AppTest,
 )
 def test_a_refused_plan_number_stays_with_its_bounds(page: AppTest, key: str, value: float) -> None:
     pick(page, "identification.view", "next")
-    page.number_input(key=key).set_value(value).run()
+    number(page, key).set_value(value).run()
     assert not page.exception
     assert "expected" in page.error[0].value
-    assert page.number_input(key=key).value == value
+    assert number(page, key).value == value
 
 
 # ---- use in the project, and the band ------------------------------------------------------------------------------
@@ -457,7 +458,7 @@ def test_a_student_measures_fits_and_is_scored(page: AppTest) -> None:
     pick(page, "identification.section", "laboratory")
     for x, y, b in ((0.0, -1300.0, 30.0), (400.0, -1500.0, -30.0), (-400.0, -1100.0, 20.0), (500.0, -1200.0, 0.0)):
         for name, value in (("tip[0]:mm", x), ("tip[1]:mm", y), ("tilt[1]:deg", b)):
-            page.number_input(key=f"identification.lab.{name}").set_value(value).run()
+            number(page, f"identification.lab.{name}").set_value(value).run()
         click(page, "identification.lab.three")
     assert not page.exception
     assert exercise(page).laboratory.budget == 0
@@ -473,16 +474,16 @@ def test_a_student_measures_fits_and_is_scored(page: AppTest) -> None:
 @pytest.mark.parametrize("load", [0.0, -50.0, MAX_LOAD + 1])
 def test_a_load_that_cannot_be_hung_on_is_refused_at_its_box(page: AppTest, load: float) -> None:
     pick(page, "identification.section", "laboratory")
-    page.number_input(key="identification.lab.load:N").set_value(load).run()
+    number(page, "identification.lab.load:N").set_value(load).run()
     assert page.error[0].value == f"Load: found {load:g} N; expected more than 0 N to {MAX_LOAD:g} N.".replace("-", "−")
-    assert page.number_input(key="identification.lab.load:N").value == load
+    assert number(page, "identification.lab.load:N").value == load
     assert exercise(page).trial.load == Trial.load, "what was asked for stays the last good one"
 
 
 def test_a_new_exercise_has_what_was_asked_for(page: AppTest) -> None:
     pick(page, "identification.section", "laboratory")
     for name, value in (("seed", 7), ("noise:um", 2.5), ("budget", 30)):
-        page.number_input(key=f"identification.lab.{name}").set_value(value).run()
+        number(page, f"identification.lab.{name}").set_value(value).run()
     lab = exercise(click(page, "identification.lab.begin")).laboratory
     assert (lab.seed, lab.budget) == (7, 30)
     assert lab.noise == pytest.approx(2.5e-6)
@@ -490,12 +491,12 @@ def test_a_new_exercise_has_what_was_asked_for(page: AppTest) -> None:
 
 def test_a_pose_out_of_reach_costs_nothing_and_is_explained(page: AppTest) -> None:
     pick(page, "identification.section", "laboratory")
-    page.number_input(key="identification.lab.tip[0]:mm").set_value(5000.0).run()
+    number(page, "identification.lab.tip[0]:mm").set_value(5000.0).run()
     click(page, "identification.lab.measure")
     assert not page.exception
     assert "not reached" in page.error[0].value
     assert exercise(page).laboratory.budget == 12
-    assert page.number_input(key="identification.lab.tip[0]:mm").value == 5000.0
+    assert number(page, "identification.lab.tip[0]:mm").value == 5000.0
 
 
 # ---- words ---------------------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import errors, go, store, words
+from conftest import errors, go, number, store, words
 from random_arms import seven
 from streamlit.testing.v1 import AppTest
 
@@ -222,9 +222,9 @@ def test_inches(app: AppTest) -> None:
 def test_a_region_of_ones_own_is_typed_in_the_unit_of_lengths(app: AppTest) -> None:
     go(app, COMPLIANCE)
     look(app, region="own")
-    app.number_input(key="maps.lower[0]:mm").set_value(-500.0).run()
+    number(app, "maps.lower[0]:mm").set_value(-500.0).run()
     app.text_input(key="maps.step:mm").set_value("40").run()
-    app.number_input(key="maps.A:deg").set_value(10.0).run()
+    number(app, "maps.A:deg").set_value(10.0).run()
     assert view(app).lower.tolist() == [-0.5, -1.6, -0.4]
     assert (view(app).step, view(app).A) == (0.04, pytest.approx(np.radians(10.0)))
     app.text_input(key="maps.step:mm").set_value("").run()

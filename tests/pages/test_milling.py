@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import errors, go, store, words
+from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource
@@ -19,7 +19,7 @@ def test_it_runs_with_every_figure(app: AppTest) -> None:
 
 def test_force_reaches_the_tiles(app: AppTest) -> None:
     go(app, "6_Milling")
-    app.number_input(key="force.feed_normal:N").set_value(200.0).run()
+    number(app, "force.feed_normal:N").set_value(200.0).run()
     assert "0.503" in words(app)
     assert "Out of tolerance" in words(app)
     assert store(app).project.setup.provenance["force"].kind == "user"
@@ -40,35 +40,35 @@ def test_a_refused_value_stays_in_its_box_with_one_sentence(
 ) -> None:
     go(app, "6_Milling")
     before = store(app).project.setup.digest()
-    app.number_input(key=key).set_value(value).run()
+    number(app, key).set_value(value).run()
     assert not app.exception
     assert len(errors(app)) == 1
     assert sentence in errors(app)[0]
-    assert app.number_input(key=key).value == value
+    assert number(app, key).value == value
     assert store(app).project.setup.digest() == before
     go(app, "1_Robot")
     go(app, "6_Milling")
-    assert app.number_input(key=key).value == value
+    assert number(app, key).value == value
     assert len(errors(app)) == 1
 
 
 def test_a_cell_too_small_names_the_size_that_fits(app: AppTest) -> None:
     go(app, "6_Milling")
-    app.number_input(key="cell:mm").set_value(0.001).run()
+    number(app, "cell:mm").set_value(0.001).run()
     assert not app.exception
     assert errors(app)
     assert "cell" in errors(app)[0].lower()
-    assert app.number_input(key="cell:mm").value == pytest.approx(0.001)
+    assert number(app, "cell:mm").value == pytest.approx(0.001)
 
 
 def test_stock_beside_the_path_is_one_sentence_and_nothing_is_lost(app: AppTest) -> None:
     go(app, "6_Milling")
-    app.number_input(key="stock.upper[1]:mm").set_value(300.0).run()
-    app.number_input(key="stock.lower[1]:mm").set_value(200.0).run()
+    number(app, "stock.upper[1]:mm").set_value(300.0).run()
+    number(app, "stock.lower[1]:mm").set_value(200.0).run()
     assert not app.exception
     assert errors(app)
     assert "stock" in errors(app)[0].lower()
-    assert app.number_input(key="stock.lower[1]:mm").value == 200.0
+    assert number(app, "stock.lower[1]:mm").value == 200.0
     go(app, "app")
     assert not app.exception
     assert "never touches the stock" in words(app)
@@ -82,7 +82,7 @@ def test_cutter_kinds_and_force_kinds_switch(app: AppTest) -> None:
         assert store(app).project.setup.cutter.kind == kind
     app.selectbox(key="force.kind").set_value("constant").run()
     assert not app.exception
-    assert app.number_input(key="force.vector_M[1]:N").value == pytest.approx(100.0)
+    assert number(app, "force.vector_M[1]:N").value == pytest.approx(100.0)
     assert "0.23 mm off in Y" in words(app)
 
 
@@ -111,4 +111,4 @@ def test_the_papers_test_is_shown_beside_the_papers_path_alone(app: AppTest) -> 
 
 def test_a_small_cell_is_shown_as_it_is(app: AppTest) -> None:
     go(app, "6_Milling")
-    assert app.number_input(key="cell:mm").proto.format == "%.4f"
+    assert app.text_input(key="cell:mm").value.partition(".")[2] == f"{store(app).project.setup.cell * 1e3:.4f}"[2:]

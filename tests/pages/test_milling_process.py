@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import errors, go, store, words
+from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.compliance.springs.joint_bending import JointBending
@@ -93,7 +93,7 @@ def test_kienzle_row_and_back(app: AppTest) -> None:
     assert "assumed 0.3 of the tangential one" in words(app)
     app.selectbox(key="force.kind").set_value("path").run()
     assert not app.exception
-    assert app.number_input(key="force.feed_normal:N").value > 0
+    assert number(app, "force.feed_normal:N").value > 0
 
 
 def test_a_row_of_ones_own_joins_the_band(app: AppTest) -> None:
@@ -115,8 +115,8 @@ def test_a_row_of_ones_own_joins_the_band(app: AppTest) -> None:
 def test_edited_coefficients_are_the_users_and_refusals_name_them() -> None:
     row = load_material("al7075_t6_carbide_ref190")
     frame = material_panel.coefficient_frame(row)
-    assert frame["value"].tolist() == [767.01, 27.7, 168.8, 26.6, 222.0, 0.7]
-    frame.loc[0, "value"] = 800.0
+    assert frame["value"].tolist() == pytest.approx([767.01e6, 27.7e3, 168.8e6, 26.6e3, 222.0e6, 0.7e3])
+    frame.loc[0, "value"] = 800e6
     edited = material_panel.with_coefficients(row, frame)
     assert edited.Ktc == pytest.approx(800e6)
     assert edited.provenance.kind == "user"
@@ -124,8 +124,8 @@ def test_edited_coefficients_are_the_users_and_refusals_name_them() -> None:
     frame.loc[5, "value"] = None
     with pytest.raises(CuttingError, match="Kac is given without Kae"):
         material_panel.with_coefficients(row, frame)
-    frame.loc[5, "value"] = 0.7
-    frame.loc[0, "value"] = -5.0
+    frame.loc[5, "value"] = 0.7e3
+    frame.loc[0, "value"] = -5e6
     with pytest.raises(CuttingError, match="Ktc: found −5 N/mm²"):
         material_panel.with_coefficients(row, frame)
 
@@ -140,17 +140,17 @@ def test_springs_have_their_own_lines(app: AppTest) -> None:
     text = words(app)
     assert "tool bending" in text
     assert "spindle and holder" in text
-    app.number_input(key="springs.spindle.lateral:um/N").set_value(-1.0).run()
+    number(app, "springs.spindle.lateral:um/N").set_value(-1.0).run()
     assert len(errors(app)) == 1
     assert "Spindle and holder, Across: found −1 µm/N" in errors(app)[0]
-    app.number_input(key="springs.spindle.lateral:um/N").set_value(0.1).run()
+    number(app, "springs.spindle.lateral:um/N").set_value(0.1).run()
     assert errors(app) == []
-    app.number_input(key="cutter.diameter:mm").set_value(10.0).run()
+    number(app, "cutter.diameter:mm").set_value(10.0).run()
     assert app.button(key="springs.tool_bending.same").label == "It bends as 8.0 mm: take the cutter's diameter"
     app.button(key="springs.tool_bending.same").click().run()
     (bending,) = [spring for spring in store(app).project.setup.springs if isinstance(spring, ToolBending)]
     assert bending.diameter == pytest.approx(10e-3)
-    app.number_input(key="cutter.diameter:mm").set_value(8.0).run()
+    number(app, "cutter.diameter:mm").set_value(8.0).run()
     app.toggle(key="springs.tool_bending").set_value(False).run()
     app.toggle(key="springs.spindle").set_value(False).run()
     assert store(app).project.setup.digest() == before.digest()
@@ -159,15 +159,15 @@ def test_springs_have_their_own_lines(app: AppTest) -> None:
 def test_bending_and_weight_tables_to_springs_and_back() -> None:
     frame = springs_panel.joint_frame(JointBending, 5, {})
     assert springs_panel.joint_springs(JointBending, frame) == []
-    frame.loc[1, "about y"] = 3.0
+    frame.loc[1, "about y"] = 3e-7
     (spring,) = springs_panel.joint_springs(JointBending, frame)
     assert (spring.joint, spring.C_x, spring.C_y) == (2, 0.0, pytest.approx(3e-7))
-    assert springs_panel.joint_frame(JointBending, 5, {2: spring}).loc[1, "about y"] == pytest.approx(3.0)
+    assert springs_panel.joint_frame(JointBending, 5, {2: spring}).loc[1, "about y"] == 3e-7
     turned = springs_panel.joint_frame(JointBending, 5, {2: dataclasses.replace(spring, turned=True)})
     assert [each.turned for each in springs_panel.joint_springs(JointBending, turned)] == [True]
     weight = springs_panel.weight_frame(5, None)
     assert springs_panel.weight_from(weight) is None
-    weight.loc[2, ["kg", "x mm"]] = 40.0, 250.0
+    weight.loc[2, ["kg", "x mm"]] = 40.0, 0.25
     links = springs_panel.weight_from(weight)
     assert links is not None
     assert links.mass[2] == 40.0
@@ -209,8 +209,8 @@ def test_the_papers_numbers_stand_on_one_chart(app: AppTest) -> None:
     charts = [json.loads(c.proto.spec) for c in app.get("plotly_chart")]
     chart = next(c for c in charts if "Sideways error" in json.dumps(c["layout"].get("xaxis")))
     text = " ".join(a["text"] for a in chart["layout"]["annotations"])
-    for number in ("0.23 mm", "0.264 mm", "0.29 mm", "about 0.30 mm", "0.277 mm", "0.321 mm"):
-        assert number in text, text
+    for value in ("0.23 mm", "0.264 mm", "0.29 mm", "about 0.30 mm", "0.277 mm", "0.321 mm"):
+        assert value in text, text
 
 
 FORCE_HEAD = "t_s,F_feed_normal_N\n"
@@ -259,16 +259,16 @@ def test_a_force_record_is_filtered_and_laid_on_the_path(app: AppTest) -> None:
     assert "low-pass 50 Hz, zero phase" in words(app)
     assert "The groove is 0.23 mm off in Y" in words(app)
     assert store(app).values[FORCE_FILE][1] == "record.csv"
-    app.number_input(key="force.cutoff:Hz").set_value(0.0).run()
+    number(app, "force.cutoff:Hz").set_value(0.0).run()
     assert len(errors(app)) == 1
-    assert app.number_input(key="force.cutoff:Hz").value == 0.0
-    app.number_input(key="force.cutoff:Hz").set_value(20.0).run()
-    app.number_input(key="force.start:s").set_value(1.5).run()
+    assert number(app, "force.cutoff:Hz").value == 0.0
+    number(app, "force.cutoff:Hz").set_value(20.0).run()
+    number(app, "force.start:s").set_value(1.5).run()
     app.toggle(key="force.filter").set_value(False).run()
     assert not app.exception
     force = store(app).project.setup.force
     assert (force.cutoff, force.start) == (None, 1.5)
-    assert "force.cutoff:Hz" not in {n.key for n in app.number_input}
+    assert "force.cutoff:Hz" not in {n.key for n in app.text_input}
     assert "unfiltered" in words(app)
     app.toggle(key="force.filter").set_value(True).run()
     assert store(app).project.setup.force.cutoff == 50.0
@@ -360,9 +360,9 @@ def test_a_stopped_spindle_and_no_feed_are_refused_with_their_line(app: AppTest)
 
 def test_inputs_of_every_panel_are_still_there_when_nothing_can_be_computed(app: AppTest) -> None:
     milling(app)
-    app.number_input(key="stock.lower[2]:mm").set_value(-1.0).run()
+    number(app, "stock.lower[2]:mm").set_value(-1.0).run()
     assert not app.exception
-    keys = {n.key for n in app.number_input}
+    keys = {n.key for n in app.text_input}
     assert {"cutter.diameter:mm", "tolerance:mm", "stock.lower[2]:mm"} <= keys
 
 

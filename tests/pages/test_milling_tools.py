@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import errors, go, store, words
+from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.projects import load_setup
@@ -60,7 +60,7 @@ def test_a_table_comes_from_a_file_in_its_unit_and_goes_again(two_tools: AppTest
     assert [tool.length for tool in store(app).project.setup.tools.tools] == pytest.approx([0.0508, 0.06096])
     app.button(key="milling.tools.clear").click().run()
     assert not store(app).project.setup.tools
-    assert app.number_input(key="cutter.diameter:mm").value == 8.0
+    assert number(app, "cutter.diameter:mm").value == 8.0
 
 
 def test_a_table_begins_with_the_cutter_in_force(app: AppTest) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import errors, go, store, words
+from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.robots import load_robot
@@ -20,9 +20,9 @@ def halve_joint_5(app: AppTest) -> None:
     """What the table editor's callback does; AppTest cannot type into a table."""
     kept = store(app)
     robot = kept.project.setup.robot
-    frame = tables.compliance_frame(robot, "1e-7 rad/(N m)")
-    frame.loc[4, "value"] = "45.675"
-    new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame, "1e-7 rad/(N m)"))
+    frame = tables.compliance_frame(robot)
+    frame.loc[4, "value"] = 45.675e-7
+    new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame))
     kept.past, kept.project = [kept.project], Project(new, kept.project.view, kept.project.preset)
 
 
@@ -33,7 +33,7 @@ def test_it_runs_and_shows_the_compliance_at_the_cut(app: AppTest) -> None:
     assert "2.295" in text
     assert "−1.024" in text
     assert "1.134" in text
-    assert not np.signbit(app.number_input(key="pose.box.0:deg").value), "no -0.00 from the last bits"
+    assert not np.signbit(number(app, "pose.box.0:deg").value), "no -0.00 from the last bits"
 
 
 def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> None:
@@ -53,13 +53,13 @@ def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> 
 
 def test_slider_and_box_show_the_same_angle_and_it_survives_a_page_change(app: AppTest) -> None:
     go(app, "1_Robot")
-    app.number_input(key="pose.box.1:deg").set_value(-40.0).run()
+    number(app, "pose.box.1:deg").set_value(-40.0).run()
     assert app.slider(key="pose.slider.1").value == -40.0
     app.slider(key="pose.slider.0").set_value(12.5).run()
-    assert app.number_input(key="pose.box.0:deg").value == 12.5
+    assert number(app, "pose.box.0:deg").value == 12.5
     go(app, "6_Milling")
     go(app, "1_Robot")
-    assert app.number_input(key="pose.box.1:deg").value == -40.0
+    assert number(app, "pose.box.1:deg").value == -40.0
     theta = np.array(store(app).project.view.theta)
     np.testing.assert_allclose(theta[:2], [to_si(12.5, "deg"), to_si(-40.0, "deg")])
     app.button(key="pose.cut").click().run()
@@ -86,7 +86,7 @@ def test_every_robot_of_the_samples_opens(app: AppTest) -> None:
 
 def test_edited_blocks_become_the_users_own(app: AppTest) -> None:
     go(app, "1_Robot")
-    app.number_input(key="robot.tip[2]:mm").set_value(5.0).run()
+    number(app, "robot.tip[2]:mm").set_value(5.0).run()
     robot = store(app).project.setup.robot
     assert robot.T_tool[2, 3] == 0.005
     assert robot.provenance["tool"].kind == "user"
@@ -99,7 +99,7 @@ def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.Mon
     go(app, "1_Robot")
     monkeypatch.setattr(session, "ONE_GESTURE_S", 0.0)
     for value in (5.0, 6.0):
-        app.number_input(key="robot.tip[2]:mm").set_value(value).run()
+        number(app, "robot.tip[2]:mm").set_value(value).run()
     app.button(key="undo").click().run()
     assert store(app).project.setup.robot.T_tool[2, 3] == 0.005
 
@@ -107,11 +107,11 @@ def test_each_typed_value_is_one_step_back(app: AppTest, monkeypatch: pytest.Mon
 def test_an_angle_beyond_its_limit_is_refused_in_a_sentence(app: AppTest) -> None:
     go(app, "1_Robot")
     before = store(app).project.view.theta
-    app.number_input(key="pose.box.1:deg").set_value(400.0).run()
+    number(app, "pose.box.1:deg").set_value(400.0).run()
     assert not app.exception
     assert any("found 400, expected" in e for e in errors(app))
     assert store(app).project.view.theta == before
-    app.number_input(key="pose.box.1:deg").set_value(-40.0).run()
+    number(app, "pose.box.1:deg").set_value(-40.0).run()
     assert errors(app) == []
 
 
@@ -129,7 +129,7 @@ def test_the_spin_of_a_six_axis_arm_is_chosen_and_its_influence_said(app: AppTes
     low, high = (f"{1e3 * value:.3f}" for value in over.range)
     assert f"between {low} and {high} mm" in words(app)
     app.selectbox(key="robot.spin_rule").set_value("given").run()
-    app.number_input(key="robot.spin:deg").set_value(30.0).run()
+    number(app, "robot.spin:deg").set_value(30.0).run()
     assert store(app).project.setup.spin == pytest.approx(np.pi / 6)
 
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import pytest
 from conftest import go, store
 from streamlit.testing.v1 import AppTest
@@ -12,7 +9,7 @@ from streamlit.testing.v1 import AppTest
 from robomill.errors import ProjectError
 from robomill.ui.project import MapView, View, project_from_toml, project_to_toml
 
-ODD = (math.nan, 1e308, 1e-300, -1.0, 0.0, -1e308, math.inf, None)
+ODD = ("nan", "1e308", "1e-300", "-1.0", "0.0", "-1e308", "inf", "", "9" * 400, "1,220", "1/0", "5 foo", "words")
 PAGES = (
     "1_Robot",
     "2_Workspace",
@@ -25,37 +22,28 @@ PAGES = (
 )
 
 
-def each_box(app: AppTest, page: str, odd: tuple[Any, ...]) -> list[str]:
-    """What crashes where a box of the page is given an odd number; a rule of thumb: ``odd`` in turn.
-
-    A number that may be left out is a line of text; lines of text take the numbers as they are typed, and words.
-    """
+def each_box(app: AppTest, page: str, odd: tuple[str, ...]) -> list[str]:
+    """What crashes where a line of the page is given an odd number; a rule of thumb: ``odd`` in turn."""
     held, crashed = store(app), []
     good = held.project
     go(app, page)
-    kinds = {box.key: kind for kind in ("number_input", "text_input") for box in app.get(kind) if not box.disabled}
-    for k, (key, kind) in enumerate(kinds.items()):
-        some = odd if len(odd) == len(ODD) else (odd[k % len(odd)],)
-        for value in some if kind == "number_input" else (*("" if v is None else str(v) for v in some), "words"):
-            try:
-                box = getattr(app, kind)(key=key)
-            except KeyError:
+    assert not app.get("number_input"), "a browser's own number box swallows what it does not understand"
+    keys = [box.key for box in app.text_input if not box.disabled]
+    for k, key in enumerate(keys):
+        for value in odd if len(odd) == len(ODD) else (odd[k % len(odd)], "words"):
+            if key not in {box.key for box in app.text_input}:
                 continue  # the page shows other boxes now
-            if kind == "number_input" and box.proto.data_type == box.proto.INT:
-                value = (
-                    None if value is None else 10**15 if not math.isfinite(value) or abs(value) > 1e15 else int(value)
-                )
-            box.set_value(value).run()
+            app.text_input(key=key).set_value(value).run()
             crashed += [f"{page}, {key} = {value!r}: {e.message[:200]}" for e in app.exception]
         held.project, held.refused = good, {}
         app.run()
-    assert kinds or page in ("7_Improve", "8_Learn", "2_Workspace", "4_Identification")
+    assert keys or page in ("7_Improve", "8_Learn", "2_Workspace", "4_Identification")
     return crashed
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_an_odd_number_in_each_box_is_taken_or_refused(app: AppTest, page: str) -> None:
-    assert not each_box(app, page, (math.nan, 1e308, 1e-300))
+    assert not each_box(app, page, ("nan", "1e308", "1e-300"))
 
 
 @pytest.mark.slow

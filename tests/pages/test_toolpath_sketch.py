@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import box, errors, go, store, words
+from conftest import box, errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.errors import ToolpathError
@@ -117,16 +117,16 @@ def shapes() -> Sketch:
 
 @pytest.mark.parametrize(("unit", "feed"), UNITS)
 def test_pad_and_table_give_the_sketch_back(unit: str, feed: str) -> None:
-    """Both in display units; a table that is not touched keeps every bit."""
+    """The pad in display units; a table that is not touched keeps every bit."""
     sketch = shapes()
-    from_table = sketch_from_frame(sketch_frame(sketch, unit, feed), sketch, unit, feed)
+    from_table = sketch_from_frame(sketch_frame(sketch, unit), sketch, unit)
     sent = {"elements": pad_elements(sketch, unit, feed), "grid": 0.1}
     from_pad = sketch_from_pad(sent, sketch, unit, feed)
     for found, tolerance in ((from_table, 0.0), (from_pad, 3e-8)):
         for a, b in zip(found.elements, sketch.elements, strict=True):
             assert a.shape == b.shape
             np.testing.assert_allclose(a.points, b.points, atol=tolerance)
-            assert (a.depth, a.v_f) == pytest.approx((b.depth, b.v_f), abs=3e-8)
+            assert (a.depth, a.v_f) == pytest.approx((b.depth, b.v_f), rel=0.0, abs=tolerance)
     assert from_pad.grid == pytest.approx(to_si(0.1, unit))
 
 
@@ -136,11 +136,13 @@ def test_pad_and_table_give_the_sketch_back(unit: str, feed: str) -> None:
         ("0 0; 10 5", [[0, 0], [10, 5]]),
         ("(0, 0); (10, −5)", [[0, 0], [10, -5]]),
         ("1e1,.5;\n-2.,+3 ;", [[10, 0.5], [-2, 3]]),
+        ("1 in, 1/2 in; 0,0", [[25.4, 12.7], [0, 0]]),
+        ("1 220, 5; 12,5 7,25", [[1220, 5], [12.5, 7.25]]),
     ],
 )
 def test_points_are_typed_in_many_ways(points: str, found: list[list[float]]) -> None:
     frame = pd.DataFrame([{"line": None, "shape": None, "points": points, "depth": None, "feed": None}])
-    sketch = sketch_from_frame(frame, Sketch(), "mm", "mm/min")
+    sketch = sketch_from_frame(frame, Sketch(), "mm")
     assert sketch.elements[0].shape == "line"
     assert sketch.elements[0].depth == Sketch().depth
     np.testing.assert_allclose(sketch.elements[0].points, np.array(found) * 1e-3)
@@ -153,23 +155,25 @@ def test_points_are_typed_in_many_ways(points: str, found: list[list[float]]) ->
         ("line", "1,5; 2,5; 3", "Row 1: '3' is not a point"),
         ("line", "0; 5 1", "Row 1: '0' is not a point"),
         ("line", "a b; 1 2", "Row 1: 'a b' is not a point"),
+        ("line", "1,220 5; 1 2", "Row 1: '1,220 5' is not a point"),
+        ("line", "5 N, 3; 1 2", "Row 1: '5 N, 3' is not a point"),
         ("circle", "0 0; 0 0", "Row 1: Sketch: points 1 and 2 of the circle are the same"),
         ("blob", "0 0; 1 1", "Row 1: 'blob' is not a shape"),
     ],
 )
 def test_points_that_are_none_are_refused_by_row(shape: str, points: str, says: str) -> None:
-    frame = pd.DataFrame([{"line": None, "shape": shape, "points": points, "depth": 1.0, "feed": 100.0}])
+    frame = pd.DataFrame([{"line": None, "shape": shape, "points": points, "depth": 1e-3, "feed": 0.1}])
     with pytest.raises(ToolpathError) as refusal:
-        sketch_from_frame(frame, Sketch(), "mm", "mm/min")
+        sketch_from_frame(frame, Sketch(), "mm")
     assert str(refusal.value).startswith(says)
 
 
 def test_long_shapes_are_kept_though_their_points_are_not_typed() -> None:
     sketch = preset("spiral", Sketch(), 8e-3)
-    frame = sketch_frame(sketch, "mm", "mm/min")
+    frame = sketch_frame(sketch, "mm")
     assert frame["points"][0] == f"{len(sketch.elements[0].points)} points"
-    frame.loc[0, "depth"] = 3.0
-    found = sketch_from_frame(frame, sketch, "mm", "mm/min")
+    frame.loc[0, "depth"] = 3e-3
+    found = sketch_from_frame(frame, sketch, "mm")
     np.testing.assert_array_equal(found.elements[0].points, sketch.elements[0].points)
     assert found.elements[0].depth == pytest.approx(3e-3)
 
@@ -177,14 +181,14 @@ def test_long_shapes_are_kept_though_their_points_are_not_typed() -> None:
 def test_three_points_of_the_table_give_the_frame_back(app: AppTest) -> None:
     go(app, "5_Toolpath")
     T_MW = store(app).project.setup.T_MW
-    frame = points_frame(T_MW, "in")
-    points = frame_points(frame, "in")
+    frame = points_frame(T_MW)
+    points = frame_points(frame)
     from robomill.toolpath.part_zero import frame_from_points
 
     np.testing.assert_allclose(frame_from_points(*points).T_MW, T_MW, atol=1e-7)
     frame.loc[1, "Y"] = None
     with pytest.raises(ToolpathError, match="on \\+x: Y is missing"):
-        frame_points(frame, "in")
+        frame_points(frame)
     app.button_group(key="toolpath.way").set_value("points").run()
     assert not app.exception
     assert "Touch the zero" in words(app)
@@ -229,7 +233,7 @@ def test_a_program_that_is_refused_is_shown_at_its_line(app: AppTest) -> None:
 
 def test_a_line_is_pointed_at_by_its_number(app: AppTest) -> None:
     go(app, "5_Toolpath")
-    app.number_input(key="toolpath.go-to").set_value(7).run()
+    number(app, "toolpath.go-to").set_value(7).run()
     assert not app.exception
     assert any("Line 7: N50 G1 X50 F1800 — 1 move, 100.00 mm at 1800 mm/min (30.0 mm/s)" in i.value for i in app.info)
 

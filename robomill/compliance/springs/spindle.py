@@ -24,8 +24,8 @@ class SpindleSpring(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
-    lateral: float = quantity("Across", "um/N", least=0.0, step=0.01, digits=4)
-    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, step=0.01, digits=4)
+    lateral: float = quantity("Across", "um/N", least=0.0, digits=4)
+    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4)
     name: str = "spindle and holder"
     provenance: Provenance = ASSUMED
 

@@ -34,14 +34,13 @@ class ToolBending(Spring):
     rank: ClassVar[int] = 1
 
     diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False)
-    stick_out: float = quantity("Stick-out", "mm", above=0.0, step=1.0, digits=1)
-    E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, above=0.0, step=10e3, digits=0)
+    stick_out: float = quantity("Stick-out", "mm", above=0.0, digits=1)
+    E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, above=0.0, digits=0)
     core: float = quantity(
         "Bending Ø / Ø",
         default=FLUTED_CORE,
         above=0.0,
         most=1.0,
-        step=0.05,
         digits=2,
         hint="Flutes weaken the shank: its bending diameter over the cutter's.",
     )

@@ -23,9 +23,9 @@ class PathForce(ForceModel):
     hint: ClassVar[str | None] = "Feed-normal is to the left of the feed; axial is positive out of the part."
     rank: ClassVar[int] = 1
 
-    feed: float = quantity("Feed", "N", default=0.0, step=10.0, digits=1)
-    feed_normal: float = quantity("Feed-normal", "N", default=0.0, step=10.0, digits=1)
-    axial: float = quantity("Axial", "N", default=0.0, step=10.0, digits=1)
+    feed: float = quantity("Feed", "N", default=0.0, digits=1)
+    feed_normal: float = quantity("Feed-normal", "N", default=0.0, digits=1)
+    axial: float = quantity("Axial", "N", default=0.0, digits=1)
     provenance: Provenance = BY_HAND
     notes: tuple[str, ...] = ()
 

@@ -20,7 +20,7 @@ class ConstantForce(ForceModel):
     title: ClassVar[str] = "Fixed in {M} (the paper's)"
     rank: ClassVar[int] = 2
 
-    vector_M: FloatArray = quantity("F", "N", shape=(3,), axes="XYZ", step=10.0, digits=1, key="vector_N")
+    vector_M: FloatArray = quantity("F", "N", shape=(3,), axes="XYZ", digits=1, key="vector_N")
     provenance: Provenance = BY_HAND
     notes: tuple[str, ...] = ()
 

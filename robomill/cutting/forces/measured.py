@@ -111,7 +111,6 @@ class MeasuredForce(ForceModel):
         optional=True,
         above=0.0,
         written_none=0.0,
-        step=10.0,
         boxed=False,
     )
     start: float = quantity("Path starts at", default=0.0, digits=3, boxed=False)

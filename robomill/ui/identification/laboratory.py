@@ -37,7 +37,7 @@ class Rules:
     """What hides the robot, how far the dial gauge is off (one standard deviation, m), how many readings there are."""
 
     seed: int = whole("Number", least=0, most=9999, default=1)
-    noise: float = quantity("Noise", "um", least=0.0, most=500e-6, step=1.0, default=Laboratory.noise)
+    noise: float = quantity("Noise", "um", least=0.0, most=500e-6, default=Laboratory.noise)
     budget: int = whole("Budget", least=1, most=500, default=Laboratory.budget)
 
     def __post_init__(self) -> None:
@@ -48,9 +48,9 @@ class Rules:
 class Trial:
     """What is measured next: the tip (3,) m in {M} and the tilt A, B rad; the load, N, along an axis of {M}."""
 
-    tip: FloatArray = quantity("Tip", "mm", shape=(3,), axes=tuple("XYZ"), step=50.0, digits=1, default=SLOT.point)
-    tilt: FloatArray = quantity("Tilt", "deg", shape=(2,), axes=tuple("AB"), step=5.0, digits=1, default=(0.0, 0.0))
-    load: float = quantity("Load", "N", above=0.0, most=MAX_LOAD, step=50.0, digits=0, default=250.0)
+    tip: FloatArray = quantity("Tip", "mm", shape=(3,), axes=tuple("XYZ"), digits=1, default=SLOT.point)
+    tilt: FloatArray = quantity("Tilt", "deg", shape=(2,), axes=tuple("AB"), digits=1, default=(0.0, 0.0))
+    load: float = quantity("Load", "N", above=0.0, most=MAX_LOAD, digits=0, default=250.0)
     axis: str = choice("Direction", {axis: f"+{axis}" for axis in "XYZ"}, default="Y")
 
     def __post_init__(self) -> None:

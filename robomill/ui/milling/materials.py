@@ -17,9 +17,9 @@ from robomill.io.materials import material_from_toml, material_to_toml, sample_m
 from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
-from robomill.ui import inputs, pieces, session
-from robomill.ui.box import NumberBox
-from robomill.units import to_si, unit_label
+from robomill.ui import grid, inputs, pieces, session
+from robomill.ui.box import box_of
+from robomill.units import unit_label
 
 OWN, NEW = "milling.materials", "milling.material"
 
@@ -81,12 +81,15 @@ def picker(force: Any) -> None:
 
 def _coefficients(material: Material) -> None:
     pieces.strong(material.title)
-    inputs.table(
+    said = list(quantities(type(material)).values())
+    grid.table(
         f"milling.coefficients.{material.name}",
         lambda: coefficient_frame(material),
         lambda frame: _keep(with_coefficients(material, frame), from_editor=True),
-        inputs.Sheet(
-            columns={"value": st.column_config.NumberColumn("value", format="%.6g")}, locked=("coefficient", "unit")
+        grid.Sheet(
+            {"value": [box_of(q, label="value") for q in said]},
+            where=lambda row: said[row].name,
+            locked=("coefficient", "unit"),
         ),
     )
     pieces.note("An edited row becomes a row of your own; the original stays in the list and in the band.")
@@ -129,12 +132,12 @@ def _keep(material: Material, from_editor: bool = False) -> None:
 
 
 def coefficient_frame(material: Material) -> pd.DataFrame:
-    """One row a coefficient in the units of the trade; empty where the source does not give it."""
+    """One row a coefficient in SI, beside the unit of the trade; empty where the source does not give it."""
     said = quantities(type(material)).values()
     return pd.DataFrame(
         {
             "coefficient": [q.name for q in said],
-            "value": [NumberBox(q.label, q.unit).shown(getattr(material, q.name)) for q in said],
+            "value": [getattr(material, q.name) for q in said],
             "unit": [unit_label(q.unit) for q in said],
         }
     )
@@ -142,9 +145,8 @@ def coefficient_frame(material: Material) -> pd.DataFrame:
 
 def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
     """``material`` with the table's coefficients, as a row of one's own. Raises CuttingError naming the coefficient."""
-    units = {name: quantities(type(material))[name].unit for name in frame["coefficient"]}
-    values = {
-        name: None if inputs.empty(value) else to_si(float(value), units[name])
+    values: dict[str, Any] = {
+        name: None if grid.empty(value) else float(value)
         for name, value in zip(frame["coefficient"], frame["value"], strict=True)
     }
     if material.provenance.kind == "user":

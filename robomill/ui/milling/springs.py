@@ -15,9 +15,10 @@ from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import declared, grid, inputs, pieces, session
+from robomill.ui.box import box_of
 from robomill.ui.cells import Cells
-from robomill.units import format_si, from_si, to_si, unit_label
+from robomill.units import format_si, unit_label
 
 WEIGHT = Cells(("kg", "x mm", "y mm", "z mm"), ["kg", "mm", "mm", "mm"], RobotError)
 
@@ -91,17 +92,14 @@ def _each_joint(kind: type[Spring]) -> None:
     if not _table_open(kind.title, key, bool(springs), lambda: _put(kind), kind.hint):
         return
     columns = joint_columns(kind)
-    inputs.table(
-        key,
+    grid.table(
+        f"{key}.table",
         lambda: joint_frame(kind, n, springs),
         lambda frame: _put(kind, *joint_springs(kind, frame), from_editor=True),
-        inputs.Sheet(
-            columns={
-                q.label: st.column_config.CheckboxColumn(q.label)
-                if q.kind == "switch"
-                else st.column_config.NumberColumn(q.label, format="%.4g")
-                for q in columns
-            },
+        grid.Sheet(
+            {q.label: box_of(q) for q in columns if q.kind != "switch"},
+            {q.label: st.column_config.CheckboxColumn(q.label) for q in columns if q.kind == "switch"},
+            where=lambda row: f"{kind.title}, joint {row + 1}",
             locked=("joint",),
         ),
     )
@@ -117,27 +115,22 @@ def joint_columns(kind: type[Spring]) -> list[Quantity]:
 def joint_frame(kind: type[Any], n: int, springs: Mapping[int, Any]) -> pd.DataFrame:
     """One row a joint with its numbers; joints without the spring as it starts."""
     rows = [springs.get(joint, kind(joint)) for joint in range(1, n + 1)]
-    values = {q.label: [_cell(q, getattr(s, q.name)) for s in rows] for q in joint_columns(kind)}
+    values = {q.label: [getattr(s, q.name) for s in rows] for q in joint_columns(kind)}
     return pd.DataFrame({"joint": [str(s.joint) for s in rows], **values})
 
 
-def _cell(q: Quantity, value: Any) -> Any:
-    """A number or a switch of a spring as its cell shows it."""
-    return value if q.kind == "switch" else from_si(value, q.unit)
-
-
-def _number(q: Quantity, cell: Any) -> Any:
+def _value(q: Quantity, cell: Any) -> Any:
     """What a cell says: an empty one is 0, or off."""
     if q.kind == "switch":
-        return not inputs.empty(cell) and bool(cell)
-    return 0.0 if inputs.empty(cell) else to_si(float(cell), q.unit)
+        return not grid.empty(cell) and bool(cell)
+    return 0.0 if grid.empty(cell) else float(cell)
 
 
 def joint_springs(kind: type[Any], frame: pd.DataFrame) -> list[Any]:
     """The springs of a table; joints whose numbers are all as at the start are left out."""
     found = []
     for i, joint in enumerate(frame["joint"]):
-        values = {q.name: _number(q, frame[q.label].iloc[i]) for q in joint_columns(kind)}
+        values = {q.name: _value(q, frame[q.label].iloc[i]) for q in joint_columns(kind)}
         spring = kind(int(joint), **values, provenance=TYPED)
         if spring != kind(int(joint), provenance=TYPED):
             found.append(spring)
@@ -151,15 +144,9 @@ def _weight() -> None:
     nothing = partial(session.change, links=None, add_sag=False)
     if not _table_open("Weight of the arm", "springs.weight", links is not None, nothing, hint):
         return
-    inputs.table(
-        "springs.weight",
-        lambda: weight_frame(setup.robot.n, links),
-        _take_weight,
-        inputs.Sheet(
-            columns={"joint": st.column_config.TextColumn("joint", width=44)} | WEIGHT.columns(56),
-            locked=("joint",),
-        ),
-    )
+    first = st.column_config.TextColumn("joint", width=44)
+    sheet = grid.Sheet(WEIGHT.boxes(), {"joint": first}, width=56, where=_weight_of, locked=("joint",))
+    grid.table("springs.weight.table", lambda: weight_frame(setup.robot.n, links), _take_weight, sheet)
     if links is None:
         pieces.note("Type the mass that moves with each joint, and its centre in the frame after that joint.")
         return
@@ -180,8 +167,12 @@ def weight_frame(n: int, links: LinkMasses | None) -> pd.DataFrame:
 
 def weight_from(frame: pd.DataFrame) -> LinkMasses | None:
     """The masses of a table; None where every mass is 0. Raises RobotError for a cell that is empty or negative."""
-    values = WEIGHT.read(frame, lambda row: f"Weight, joint {row + 1}")
+    values = WEIGHT.read(frame, _weight_of)
     return LinkMasses(values[:, 0], values[:, 1:], TYPED) if values[:, 0].any() else None
+
+
+def _weight_of(row: int) -> str:
+    return f"Weight, joint {row + 1}"
 
 
 def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, bool]]:

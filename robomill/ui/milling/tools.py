@@ -13,13 +13,14 @@ from robomill.arrays import IntArray
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError, RobomillError
+from robomill.io.declared import write_quantity
 from robomill.io.tables import Table
 from robomill.io.tool_tables import UNITS, read_tool_table, tools_from_table, tools_to_tables
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.tools import cutting_numbers
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import declared, grid, inputs, pieces, session
 from robomill.ui.box import NumberBox, box_of
-from robomill.units import from_si, to_si, unit_label
+from robomill.units import unit_label
 
 FILE, UNIT, TABLE, ODD = "milling.tools.file", "milling.tools.unit", "milling.tools.table", "milling.tools.odd"
 OF_TOOL = ("number", "length")
@@ -81,17 +82,15 @@ def _table(tools: ToolTable) -> None:
     special = {
         "kind": st.column_config.SelectboxColumn(options=kinds, width=92),
         "hand": st.column_config.SelectboxColumn(options=hands),
-        "number": st.column_config.NumberColumn(step=1, format="%d", width=72),
-        NAME: st.column_config.TextColumn("Name"),
     }
-    columns = {
-        _head(q, unit): special.get(q.name, st.column_config.NumberColumn(format="%.6g", width=128)) for q in _columns()
-    }
-    inputs.table(
+    columns = {_head(q, unit): special[q.name] for q in _columns() if q.name in special}
+    numbers = {_head(q, unit): _box(q, unit) for q in _columns() if q.name not in special}
+    widths = {head: 72 if box.label == _columns()[0].label else 128 for head, box in numbers.items()}
+    grid.table(
         TABLE,
         lambda: tool_frame(tools, unit),
         lambda frame: session.change(tools=tools_of(frame, unit, tools), from_editor=True),
-        inputs.Sheet(columns=columns | {NAME: special[NAME]}, dynamic=True),
+        grid.Sheet(numbers, columns | {NAME: st.column_config.TextColumn("Name")}, width=widths, dynamic=True),
     )
     pieces.note(pieces.badge("user"), "An empty cell is not stated: kind, flutes and helix are then assumed.")
     for finding in (*session.kept(ODD, ()), *tools.notes(_cut_with().tolist())):
@@ -145,20 +144,23 @@ def _shown(said: Quantity, unit: str) -> str:
     return unit if said.unit == "mm" else said.unit
 
 
+def _box(said: Quantity, unit: str) -> NumberBox:
+    """How a number of a tool is typed; only its number and its diameter have to be there."""
+    return box_of(said, unit=_shown(said, unit), optional=said.name not in ("number", "diameter"))
+
+
 def tool_frame(tools: ToolTable, unit: str) -> pd.DataFrame:
-    """One row a tool with its declared numbers, lengths in ``unit``; what nobody has stated is empty."""
-    columns: dict[str, list[Any]] = {_head(q, unit): [_cell(t, q, unit) for t in tools.tools] for q in _columns()}
+    """One row a tool with its declared numbers in SI, headed in ``unit``; what nobody has stated is empty."""
+    columns: dict[str, list[Any]] = {_head(q, unit): [_cell(t, q) for t in tools.tools] for q in _columns()}
     return pd.DataFrame({**columns, NAME: [tool.name for tool in tools.tools]})
 
 
-def _cell(tool: TableTool, said: Quantity, unit: str) -> Any:
+def _cell(tool: TableTool, said: Quantity) -> Any:
     cutter = tool.cutter
     owner = tool if said.name in OF_TOOL else cutter
     value = None if said.name in tool.assumed else getattr(owner, said.name, None)
     needless = said.name in OF_SHAPE and cutter is not None and said.name not in cutter.family.needs
-    if value is None or needless:
-        return None
-    return NumberBox(said.label, _shown(said, unit)).shown(value) if said.kind == "number" else value
+    return None if needless else value
 
 
 def tools_of(frame: pd.DataFrame, unit: str, before: ToolTable) -> ToolTable:
@@ -173,19 +175,11 @@ def tools_of(frame: pd.DataFrame, unit: str, before: ToolTable) -> ToolTable:
     rows: list[dict[str, Any]] = []
     for i in range(len(frame)):
         number = frame[_head(_columns()[0], unit)].iloc[i]
-        row = {} if inputs.empty(number) else dict(hidden.get(int(number), {}))
+        row = {} if grid.empty(number) else dict(hidden.get(int(number), {}))
         for said in _columns():
             cell = frame[_head(said, unit)].iloc[i]
-            if not inputs.empty(cell):
-                row[said.key] = _value(said, cell, unit)
+            if not grid.empty(cell):
+                row[said.key] = int(cell) if said.kind == "whole" else write_quantity(said, cell)
         name = frame[NAME].iloc[i]
-        rows.append(row if inputs.empty(name) or not name else {**row, "name": str(name)})
+        rows.append(row if grid.empty(name) else {**row, "name": str(name)})
     return tools_from_table(Table({"tools": [row for row in rows if row]}, "Tool table", CuttingError))
-
-
-def _value(said: Quantity, cell: Any, unit: str) -> Any:
-    """A cell as files hold it."""
-    if said.kind == "number":
-        # Without the last bits that a conversion leaves behind, so that what is not edited stays what it was.
-        return float(f"{float(from_si(to_si(float(cell), _shown(said, unit)), said.unit)):.11g}")
-    return int(cell) if said.kind == "whole" else str(cell)

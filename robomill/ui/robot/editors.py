@@ -1,7 +1,7 @@
 """The robot page's inputs: which robot, its compliances, D-H table, limits and tool."""
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -14,7 +14,7 @@ from robomill.kinematics.transforms import transform
 from robomill.robot.model import TOOL_TIP, USER_SET, Robot
 from robomill.robot.stiffness import is_stiffness
 from robomill.simulation.setup import SPIN
-from robomill.ui import cached, declared, inputs, pieces, session
+from robomill.ui import cached, declared, grid, inputs, pieces, session
 from robomill.ui.project import Project
 from robomill.ui.robot import tables
 from robomill.units import format_many, format_si, unit_label
@@ -31,22 +31,18 @@ def editors(project: Project) -> None:
     with compliance:
         _compliances(robot, project.view.joint_unit)
     with geometry:
-        narrow = {
-            tables.HEADINGS[name]: st.column_config.NumberColumn(format="%.6g", width=64 if said.unit == "mm" else 54)
-            for name, said in tables.GEOMETRY.items()
-        }
-        _table("geometry", "#", narrow, tables.geometry_frame, _with(tables.with_geometry))
+        widths = {tables.HEADINGS[name]: 64 if said.unit == "mm" else 54 for name, said in tables.GEOMETRY.items()}
+        sheet = grid.Sheet(tables.LENGTHS.boxes(), {"joint": _joints("#", 34)}, width=widths)
+        _table("geometry", sheet, tables.geometry_frame, _with(tables.with_geometry))
         pieces.note(f"{robot.convention.capitalize()} Denavit-Hartenberg; the joint turns by sign · θ + θ₀.")
         _said(robot, "geometry")
         _said(robot, "lengths")
     with limits:
         slides = f" ({tables.LIMIT.sliding} where it slides)" if robot.prismatic.any() else ""
         unit = unit_label(tables.LIMIT.unit) + slides
-        sides = {
-            side: st.column_config.NumberColumn(f"{side.capitalize()}, {unit}", format="%.6g")
-            for side in tables.LIMIT.axes
-        }
-        _table("limits", "Joint", sides, tables.limits_frame, _with(tables.with_limits))
+        heads = {side: f"{side.capitalize()}, {unit}" for side in tables.LIMIT.axes}
+        sheet = grid.Sheet(tables.limits(robot).boxes(), {"joint": _joints("Joint")}, heads)
+        _table("limits", sheet, tables.limits_frame, _with(tables.with_limits))
         _said(robot, "limits")
     with tool:
         _tool(robot)
@@ -87,22 +83,15 @@ def _compliances(robot: Robot, unit: str) -> None:
                 else session.change(robot=session.project().setup.robot.with_compliance_set(name))
             ),
         )
-    stiff = is_stiffness(unit)
-    heading = f"{'Stiffness' if stiff else 'Compliance'}, {unit_label(unit)}"
-    column = {"value": st.column_config.TextColumn(heading, help=None if stiff else SPELLINGS)}
-    shown, write = partial(tables.compliance_frame, unit=unit), partial(_write_compliance, unit=unit)
-    _table(f"compliance:{unit}", "Joint", column, shown, write)
+    heading = f"{'Stiffness' if is_stiffness(unit) else 'Compliance'}, {unit_label(unit)}"
+    hint = None if is_stiffness(unit) else SPELLINGS
+    column = st.column_config.TextColumn(heading, help=hint, alignment="right")
+    sheet = grid.Sheet({"value": tables.compliance_boxes(robot, unit)}, {"joint": _joints("Joint"), "value": column})
+    _table(f"compliance:{unit}", sheet, tables.compliance_frame, _with(tables.with_compliance))
     if robot.compliance_set == USER_SET:
         pieces.note(pieces.badge("user"), "entered in the app")
     else:
         _said(robot, f"compliance.{robot.compliance_set}")
-
-
-def _write_compliance(frame: pd.DataFrame, unit: str) -> None:
-    robot = tables.with_compliance(session.project().setup.robot, frame, unit)
-    # What was typed in SI comes back in the column's unit, so that the cell agrees with its heading.
-    spelled = not is_stiffness(unit) and any(map(tables.is_si_text, frame["value"]))
-    session.change(robot=robot, from_editor=not spelled)
 
 
 def _with(change: Callable[[Robot, pd.DataFrame], Robot]) -> Callable[[pd.DataFrame], None]:
@@ -110,17 +99,17 @@ def _with(change: Callable[[Robot, pd.DataFrame], Robot]) -> Callable[[pd.DataFr
     return lambda frame: session.change(robot=change(session.project().setup.robot, frame), from_editor=True)
 
 
+def _joints(head: str, width: Any = "small") -> Any:
+    """The first column, which says the joint."""
+    return st.column_config.TextColumn(head, width=width)
+
+
 def _table(
-    name: str,
-    joint: str,
-    columns: Mapping[str, Any],
-    shown: Callable[[Robot], pd.DataFrame],
-    write: Callable[[pd.DataFrame], None],
+    name: str, sheet: grid.Sheet, shown: Callable[[Robot], pd.DataFrame], write: Callable[[pd.DataFrame], None]
 ) -> None:
-    """A table with a row a joint, whose first column says which and is headed ``joint``."""
-    first = st.column_config.TextColumn(joint, width=34 if joint == "#" else "small")
-    sheet = inputs.Sheet({"joint": first, **columns}, ("joint",))
-    inputs.table(name, lambda: shown(session.project().setup.robot), write, sheet)
+    """A table with a row a joint, the first column of which says which."""
+    own = replace(sheet, where=tables.joint, locked=("joint",))
+    grid.table(name, lambda: shown(session.project().setup.robot), write, own)
 
 
 def _tool(robot: Robot) -> None:

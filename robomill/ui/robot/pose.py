@@ -71,9 +71,8 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         span = inputs.Span(low, high, 0.5, "%.1f°" if unit == "deg" else "%.1f mm")
         inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
     with box:
-        inputs.value(
-            f"pose.box.{i}", NumberBox(label, unit, 1.0, 2, low=low, high=high, hidden=True), to_si(shown, unit), turn
-        )
+        exact = float(theta[i]) if shown else 0.0
+        inputs.value(f"pose.box.{i}", NumberBox(label, unit, 2, low=low, high=high, hidden=True), exact, turn)
 
 
 def det_value(pose: PoseReport | None) -> str:

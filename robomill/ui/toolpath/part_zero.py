@@ -10,7 +10,7 @@ from robomill.io.workpiece import part_frame
 from robomill.kinematics.transforms import transform
 from robomill.simulation.setup import PART_TURN, PART_ZERO
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import declared, grid, inputs, pieces, session
 from robomill.ui.cells import Cells
 from robomill.units import format_si, unit_label
 from robomill.vectors import angle_between
@@ -57,12 +57,8 @@ def tilt_of(T_MW: FloatArray) -> float:
 
 def _by_points() -> None:
     unit = session.project().view.length
-    inputs.table(
-        f"toolpath.points:{unit}",
-        lambda: points_frame(session.project().setup.T_MW, unit),
-        lambda frame: _take(frame, unit),
-        inputs.Sheet(columns=Cells("XYZ", unit, ToolpathError).columns(), locked=("point",)),
-    )
+    sheet = grid.Sheet(_cells(unit).boxes(), where=_where, locked=("point",))
+    grid.table(f"toolpath.points:{unit}", lambda: points_frame(session.project().setup.T_MW), _take, sheet)
     touched = session.kept(TOUCHED)
     words = f"Tool tip in {{M}} at each point, in {unit_label(unit)}."
     if touched is not None and np.array_equal(touched.T_MW, session.project().setup.T_MW):
@@ -76,17 +72,25 @@ def _by_points() -> None:
     pieces.note(words)
 
 
-def points_frame(T_MW: FloatArray, unit: str) -> pd.DataFrame:
-    """Three points that give the frame in force, in display units."""
-    return Cells("XYZ", unit, ToolpathError).frame(points_of_frame(T_MW), point=NAMES)
+def points_frame(T_MW: FloatArray) -> pd.DataFrame:
+    """Three points that give the frame in force."""
+    return _cells().frame(points_of_frame(T_MW), point=NAMES)
 
 
-def frame_points(frame: pd.DataFrame, unit: str) -> FloatArray:
+def frame_points(frame: pd.DataFrame) -> FloatArray:
     """Points (3, 3) m of the table. Raises ToolpathError naming an empty cell."""
-    return Cells("XYZ", unit, ToolpathError).read(frame, lambda row: f"Part zero, {NAMES[row]}")
+    return _cells().read(frame, _where)
 
 
-def _take(frame: pd.DataFrame, unit: str) -> None:
-    touched = frame_from_points(*frame_points(frame, unit))
+def _cells(unit: str = "mm") -> Cells:
+    return Cells("XYZ", unit, ToolpathError)
+
+
+def _where(row: int) -> str:
+    return f"Part zero, {NAMES[row]}"
+
+
+def _take(frame: pd.DataFrame) -> None:
+    touched = frame_from_points(*frame_points(frame))
     session.change(T_MW=touched.T_MW, from_editor=True)
     session.keep(TOUCHED, touched)

@@ -8,7 +8,8 @@ import streamlit as st
 from robomill.quantities import quantities
 from robomill.toolpath.sketch import SHAPES, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import declared, grid, inputs, pieces, session
+from robomill.ui.box import NumberBox
 from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.toolpath.sources import put_sketch, sketch_source
 from robomill.units import format_si, unit_label
@@ -71,14 +72,16 @@ def _table() -> None:
     length, feed = view.length, view.feed
 
     def write(frame: pd.DataFrame) -> None:
-        put_sketch(sketch_from_frame(frame, sketch_source().sketch, length, feed), from_editor=True)
+        put_sketch(sketch_from_frame(frame, sketch_source().sketch, length), from_editor=True)
 
     column = st.column_config
-    inputs.table(
+    grid.table(
         f"toolpath.shapes:{view.units}",
-        lambda: sketch_frame(sketch_source().sketch, length, feed),
+        lambda: sketch_frame(sketch_source().sketch, length),
         write,
-        inputs.Sheet(
+        grid.Sheet(
+            numbers={"depth": NumberBox("depth", length), "feed": NumberBox("feed", feed)},
+            width={"depth": 68, "feed": 58},
             columns={
                 "line": column.NumberColumn("no.", width=38, help="The order of the cuts, and the line in the results"),
                 "shape": column.SelectboxColumn("shape", options=list(SHAPES), width=80),
@@ -88,8 +91,6 @@ def _table() -> None:
                     help="x, y; x, y; … · line: start; end · rectangle: two corners · circle: centre; point on it · "
                     "arc: start; on the way; end · polyline and polygon: any number",
                 ),
-                "depth": column.NumberColumn("depth", format="%.6g", width=68),
-                "feed": column.NumberColumn("feed", format="%.6g", width=58),
             },
             locked=("line",),
             dynamic=True,

@@ -9,25 +9,26 @@ import pandas as pd
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import SHAPES, Element, Sketch
-from robomill.ui.inputs import empty
-from robomill.units import from_si, parse_number, to_si, unit_label
+from robomill.typed_numbers import read_number, write_number
+from robomill.ui.grid import empty
+from robomill.units import from_si, to_si, unit_label
 
 COLUMNS = ("line", "shape", "points", "depth", "feed")
 MAX_SHOWN_POINTS = 60
-_NUMBER = re.compile(r"[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _LONG = re.compile(r"\d+ points$")
 
 
-def sketch_frame(sketch: Sketch, unit: str, feed_unit: str) -> pd.DataFrame:
-    """One row a shape; ``points`` reads "x, y; x, y", or "1253 points" where there are too many to type."""
+def sketch_frame(sketch: Sketch, unit: str) -> pd.DataFrame:
+    """One row a shape, its numbers in SI, its points in ``unit``: "x, y; x, y", or "1253 points" where they are too
+    many to type.
+    """
     rows = [
-        (number, e.shape, points_text(e, unit), in_unit(e.depth, unit), in_unit(e.v_f, feed_unit))
-        for number, e in enumerate(sketch.elements, start=1)
+        (number, e.shape, points_text(e, unit), e.depth, e.v_f) for number, e in enumerate(sketch.elements, start=1)
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str, feed_unit: str) -> Sketch:
+def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str) -> Sketch:
     """``sketch`` with the table's shapes. Raises ToolpathError naming row and column of what cannot be read."""
     kept = frame.dropna(how="all", subset=["shape", "points"])
     found = []
@@ -36,8 +37,8 @@ def sketch_from_frame(frame: pd.DataFrame, sketch: Sketch, unit: str, feed_unit:
         shape = "line" if empty(entry["shape"]) else str(entry["shape"])
         if shape not in SHAPES:
             raise ToolpathError(f"Row {row}: {shape!r} is not a shape; choose one of {', '.join(SHAPES)}.")
-        depth = sketch.depth if empty(entry["depth"]) else to_si(float(entry["depth"]), unit)
-        v_f = sketch.v_f if empty(entry["feed"]) else to_si(float(entry["feed"]), feed_unit)
+        depth = sketch.depth if empty(entry["depth"]) else float(entry["depth"])
+        v_f = sketch.v_f if empty(entry["feed"]) else float(entry["feed"])
         try:
             found.append(Element(shape, _points(entry["points"], old, unit), depth, v_f))  # type: ignore[arg-type]
         except ToolpathError as exc:
@@ -49,7 +50,8 @@ def points_text(element: Element, unit: str) -> str:
     """The points as people type them."""
     if len(element.points) > MAX_SHOWN_POINTS:
         return f"{len(element.points)} points"
-    return "; ".join(f"{in_unit(x, unit):.10g}, {in_unit(y, unit):.10g}" for x, y in element.points)
+    numbers = ((write_number(from_si(float(value), unit)) for value in point) for point in element.points)
+    return "; ".join(", ".join(point) for point in numbers)
 
 
 def pad_elements(sketch: Sketch, unit: str, feed_unit: str) -> list[dict[str, Any]]:
@@ -90,18 +92,21 @@ def _points(typed: Any, old: Element | None, unit: str) -> Any:
     if _LONG.match(text) and old is not None:
         return old.points
     pairs = [part for part in re.split(r"[;\n]", text) if part.strip()]
-    found = []
-    for pair in pairs:
-        numbers = _NUMBER.findall(pair)
-        if len(numbers) != 2 or _NUMBER.sub("", pair).strip(" ,()\t"):
-            raise ToolpathError(
-                f"{pair.strip()!r:.40} is not a point; type x, y with a point as decimal mark, "
-                "and a semicolon between points."
-            )
-        found.append([parse_number(n) for n in numbers])
     if old is not None and points_text(old, unit) == text:
         return old.points
-    return to_si(np.array(found), unit)
+    return to_si(np.array([_point(pair.strip().strip("()"), unit) for pair in pairs]), unit)
+
+
+def _point(pair: str, unit: str) -> list[float]:
+    """x and y of a point, parted by a comma, or by a blank where each then may have a decimal comma."""
+    numbers = pair.split(",") if pair.count(",") == 1 else pair.split()
+    try:
+        x, y = (read_number(number, unit).value for number in numbers)
+    except ValueError:
+        raise ToolpathError(
+            f"{pair!r:.40} is not a point; type x, y with a point as decimal mark, and a semicolon between points."
+        ) from None
+    return [x, y]
 
 
 def in_unit(value: Any, unit: str) -> Any:
