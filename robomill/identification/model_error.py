@@ -102,8 +102,6 @@ def _spread(e2: FloatArray, v: FloatArray, columns: FloatArray) -> FloatArray:
         R = triangle(A * weight[:, None], target * weight)
         found = nnls(R[:, :3], R[:, 3])[0]
         guess = v + A @ found
-        if not guess.any():
-            break
     return np.asarray(found / typical)
 
 
