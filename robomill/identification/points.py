@@ -89,7 +89,7 @@ class Normal(NamedTuple):
         for _ in range(ROUNDS):
             step = self.step(shift, x)
             size = float(np.linalg.norm(step))
-            if size < SETTLED or size == 0.0:
+            if size < SETTLED:
                 break
             step = step * min(1.0, LONGEST / size)
             for _ in range(12):
