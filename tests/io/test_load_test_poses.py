@@ -93,6 +93,16 @@ def test_poses_by_three_angles_are_those_of_the_simulator(name, frame, how):
     assert sum(f.count for f in tests.findings if f.code == "postures-open") > stood_otherwise
 
 
+@pytest.mark.parametrize(("how", "lost"), [*(("fanuc", n) for n in "WPRXY"), *(("kuka", n) for n in "ABZ")])
+def test_an_angle_or_a_place_that_is_missing_is_asked_for_by_its_column(how, lost):
+    name = "fanuc_r2000ic"
+    columns = {**pose(name, how), **pull(name), **cable(name), **POINTS, **moved(name)}
+    del columns[next(key for key in columns if key.startswith(f"{lost}_"))]
+    head = ["frame: flange"] + ([f"angles: {how}"] if how != "fanuc" else [])
+    with pytest.raises(LoadTestError, match=rf"\b{lost.lower()}_(mm|deg)|\b{lost}_(mm|deg)"):
+        read_load_tests(csv(columns, *head), ARMS[name][1])
+
+
 def test_the_pulley_or_the_hook_and_the_pulley_give_the_cable_too():
     name = "kuka_kr270"
     arm, robot = ARMS[name]
