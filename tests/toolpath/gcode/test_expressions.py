@@ -138,6 +138,20 @@ def test_a_name_exists_where_it_was_set(names, there):
         Reader("exists[#<a", 1, store).value()
 
 
+@pytest.mark.parametrize("b", [-3.0, -2.0, -0.5, 0.0, 0.5, 1.0, 2.5, 4.0])
+@pytest.mark.parametrize("a", [-2.0, -1.0, 0.0, 0.25, 1.0, 3.0])
+def test_a_power_is_pythons_where_it_is_a_number(a, b):
+    try:
+        expected = a**b
+    except ZeroDivisionError:
+        expected = None
+    if expected is None or isinstance(expected, complex):
+        with pytest.raises(GCodeError, match="Line 1: "):
+            value(f"[[{a}]**[{b}]]")
+    else:
+        assert value(f"[[{a}]**[{b}]]") == pytest.approx(expected, rel=1e-14)
+
+
 @pytest.mark.parametrize("text", ["[1/0]", "[1mod0]", "[-2**0.5]", "sqrt[-1]", "ln[0]", "acos[1.1]", "[10**999]"])
 def test_what_has_no_value_is_refused(text):
     with pytest.raises(GCodeError, match="Line 1: "):

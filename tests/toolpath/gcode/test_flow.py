@@ -20,6 +20,11 @@ def test_loops() -> None:
     assert xs("O1 while [0]\nG0 X1\nO1 endwhile\nG0 X2") == [2]
 
 
+@pytest.mark.parametrize("times", [0, 1, 63, 200, -3])
+def test_a_repeat_runs_as_often_as_it_says(times: int) -> None:
+    assert xs(f"#1=0\nO1 repeat [{times}]\n#1=[#1+1]\nO1 endrepeat\nG0 X#1") == [max(times, 0)]
+
+
 def test_break_and_continue() -> None:
     body = (
         "#1=0\nO1 while [1]\n#1=[#1+1]\nO2 if [#1 EQ 2]\nO1 continue\nO2 endif\nO3 if [#1 GT 3]\nO1 break\nO3 endif\n"
@@ -48,6 +53,15 @@ def test_left_over_flags_follow_the_reference_and_are_said() -> None:
     program = interpret(body)
     assert len(program) == 1
     assert any("does not loop as written" in f.message for f in program.findings)
+
+
+@pytest.mark.parametrize(("inside", "kept"), [("", True), ("continue", True), ("break", False)])
+def test_only_a_loop_that_could_be_broken_off_leaves_a_flag_behind(inside: str, kept: bool) -> None:
+    """A while that ends by its condition, with a word in it that is never met; a do after it loops as written unless
+    that word is break, as in the reference."""
+    word = f"O2 if [0]\nO1 {inside}\nO2 endif\n" if inside else ""
+    after = "#1=0\nO3 do\n#1=[#1+1]\nG0 X#1\nO3 while [#1 LT 3]"
+    assert xs(f"#2=0\nO1 while [#2 LT 2]\n#2=[#2+1]\n{word}O1 endwhile\n{after}") == ([1, 2, 3] if kept else [1])
 
 
 @pytest.mark.parametrize(
