@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from robomill.units import (
     format_many,
     format_number,
     format_percent,
+    format_plain,
     format_short,
     format_short_count,
     format_si,
@@ -186,3 +188,13 @@ def test_the_unit_comes_off_where_one_follows() -> None:
     assert split_unit("2 sample") == ("2", "sample")
     assert split_unit("3 x2") == ("3 x2", "")
     assert split_unit("joint 4") == ("joint 4", "")
+
+
+@pytest.mark.parametrize("digits", [0, 1, 3, 6])
+@pytest.mark.parametrize("value", [0.0, -0.0, 1.0, -1.0, 0.25, -0.0004, 0.0006, 120.0, -1200.5, 1e6, 99.9996])
+def test_a_number_of_a_file_is_the_nearest_decimal_without_anything_idle(value: float, digits: int) -> None:
+    text = format_plain(value, digits)
+    assert Decimal(text) == round(Decimal(value), digits)
+    assert text != "-0"
+    assert "e" not in text
+    assert "." not in text or not text.endswith(("0", "."))

@@ -110,7 +110,16 @@ def test_sideways_at_mid_cut_over_the_alloys_rows_is_that_of_runs_with_them(resu
     assert np.isnan(stated[1:]).all()
 
 
-def test_an_alloy_of_one_row_has_no_range(monkeypatch: pytest.MonkeyPatch, result: SimulationResult) -> None:
+def test_one_row_of_an_alloy_has_no_range_and_two_have(
+    monkeypatch: pytest.MonkeyPatch, result: SimulationResult
+) -> None:
     one = AlloySpread(tuple(sample_materials()[:1]), result.F[None], result.delta[None])
     monkeypatch.setattr(stations, "alloy_spread", lambda _: one)
     assert np.isnan(sideways(result)[1:]).all()
+    softer = np.stack([result.delta, 1.5 * result.delta])
+    two = AlloySpread(tuple(sample_materials()[:2]), np.stack([result.F] * 2), softer)
+    monkeypatch.setattr(stations, "alloy_spread", lambda _: two)
+    offset, low, high = sideways(result)
+    middle = int(np.argmin(np.abs(result.path.s - 0.5 * result.path.s[-1]) + ~result.path.cutting))
+    more = 0.5 * float(result.R_MF[middle, :, 1] @ result.delta[middle])
+    assert (low, high) == pytest.approx(tuple(sorted((offset, offset + more))), abs=1e-9)

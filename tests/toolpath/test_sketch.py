@@ -139,3 +139,15 @@ def test_values_are_frozen_and_drawing_settings_do_not_change_the_path():
     with pytest.raises(ValueError, match="read-only"):
         sketch.elements[0].points[0, 0] = 1.0
     assert sketch.replace(grid=0.0, v_f=0.5, depth=9e-3).toolpath().digest() == sketch.toolpath().digest()
+
+
+def test_a_sketch_keeps_as_many_shapes_and_points_as_it_says(monkeypatch):
+    monkeypatch.setattr("robomill.toolpath.sketch.MAX_ELEMENTS", 3)
+    monkeypatch.setattr("robomill.toolpath.sketch.MAX_POINTS", 8)
+    short = line([0, 0], [0.05, 0])
+    long = Element("polyline", np.array([[0, 0], [0.05, 0], [0.05, 0.05], [0, 0.05]]), 2e-3, 0.03)
+    for full in ((short, short, short), (short, short, long), (long, long)):
+        assert len(Sketch(full).elements) == len(full)
+    for more in ((short,) * 4, (short, long, long)):
+        with pytest.raises(ToolpathError, match="at most 3 shapes and 8 points"):
+            Sketch(more)
