@@ -163,3 +163,12 @@ def test_a_container_may_have_a_share_of_the_cores(monkeypatch, quota: str, core
     system(monkeypatch, {"/sys/fs/cgroup/cpu.max": quota})
     assert budgets.cores() == cores
     budgets.cores.cache_clear()
+
+
+@pytest.mark.parametrize(("machine", "cores"), [(6, 6), (None, 1)])
+def test_where_no_process_is_bound_to_cores_the_machine_s_count(monkeypatch, machine, cores: int) -> None:
+    monkeypatch.delattr(budgets.os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(budgets.os, "cpu_count", lambda: machine)
+    system(monkeypatch, {})
+    assert budgets.cores() == cores
+    budgets.cores.cache_clear()

@@ -8,7 +8,7 @@ from scipy.optimize import brentq, fsolve
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.coupling import LONGEST, MOST, TOLERANCE, Coupling, Settled, settle
+from robomill.simulation.coupling import LONGEST, MOST, TOLERANCE, Coupling, Settled, _by_bracket, settle
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -247,6 +247,26 @@ def test_what_remains_between_force_and_deflection_is_told_agreed_or_not(seed):
     found = settle(bends, np.zeros(3), np.zeros(3))
     assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
     assert found.agreed == (remains(bends, found) <= TOLERANCE)
+
+
+@pytest.mark.parametrize("stiff", [1.0, 3.0, 8.0])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_bracket_follows_a_push_that_turns_as_it_grows(seed, stiff):
+    """Behind a plane the tool is pushed back as far as it has gone in, times ``stiff``, and aside by the root of that:
+    how far it goes in is one number's equation."""
+    rng = np.random.default_rng(seed)
+    n, u, v = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    reach = rng.uniform(50e-6, 300e-6)
+    free, at = reach * n + rng.normal(size=3) * 30e-6, rng.uniform(0.2, 0.7) * reach
+
+    def bends(x):
+        into = max(x @ n - at, 0.0)
+        return free - stiff * into * n + 0.3 * stiff * np.sqrt(into * reach) * (u + 0.5 * v)
+
+    into = brentq(lambda into: free @ n - stiff * into - at - into, 0.0, 1.0, xtol=1e-15)
+    found = _by_bracket(bends, np.zeros(3))
+    assert found.agreed
+    np.testing.assert_allclose(found.x, bends((at + into) * n), atol=2 * TOLERANCE)
 
 
 def test_what_is_not_a_number_ends_it():

@@ -178,6 +178,21 @@ def test_a_mirrored_part_has_the_same_errors_on_its_other_sides():
     assert one.error.min() < -0.1e-3 < 0.1e-3 < one.error.max()
 
 
+@pytest.mark.parametrize("angle", [60.0, 90.0, 120.0])
+def test_a_wall_that_leans_is_off_by_less_than_its_cutter_goes_aside(angle):
+    """A V groove of which one half is 0.3 mm aside and one 0.06 mm: normal to its sides that is less by the cosine of
+    half the angle between them."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(angle))
+    result = run(*PARTS["slot"], cutter=cone)
+    x, lean = result.path.p[:, 0], np.cos(np.radians(0.5 * angle))
+    walls = pushed(result, left=np.where(x < -5e-3, 0.3e-3, 0.06e-3)).gauge.walls
+    along = walls.length > 0.0
+    for aside, here in ((0.3e-3, x < -8e-3), (0.06e-3, (x > -2e-3) & (x < 18e-3))):
+        found = walls.error[along & here[walls.sample]]
+        assert len(found) > 10
+        np.testing.assert_allclose(found, aside * lean, atol=2e-7)
+
+
 def test_facing_leaves_a_floor_and_no_wall():
     wide = SETUP.cutter.replace(diameter=60e-3)
     lines = ["G0 X-80 Y0 Z5", "G0 Z-1", "G1 X80 F1800"]

@@ -276,6 +276,31 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
     assert found[expected * length > 0.5 * min(dexels.dx, dexels.dy)].all()
 
 
+@pytest.mark.parametrize("axis", [UP, (0.0, 0.28, 0.96), (-0.28, 0.0, 0.96)])
+@pytest.mark.parametrize("way", [(11.0, 4.0, -0.5), (-9.0, 6.0, -0.5)])
+def test_where_a_run_stops_its_front_is_noted_too(axis, way):
+    """The half of the rim that lies ahead of the end, seen from above; nothing that lies behind it or off the rim."""
+    end = np.array([12.0, 8.0, -5.0])
+    found = []
+    for stops in (False, True):
+        world = world_of([(FLAT, end - way, end, axis)])
+        note_rim(world, FLAT.solid, 0, stops)
+        found.append(noted(world) == 0)
+    dexels, k = world.dexels, np.array(axis)
+    side = np.cross(k, way) / np.linalg.norm(np.cross(k, way))
+    ahead = np.cross(side, k)
+    phi = np.linspace(0.0, np.pi, 4001)[:, None]
+    rim = (end + FLAT.radius / MM * (np.cos(phi) * side + np.sin(phi) * ahead))[:, :2] * MM
+    cells, counts = np.unique(np.floor(rim / [dexels.dx, dexels.dy]).astype(int), axis=0, return_counts=True)
+    passed = np.zeros_like(found[0])
+    passed[tuple(cells.T)] = True
+    np.testing.assert_array_equal(found[1] & ~found[0] & ~passed, False)
+    step = np.pi * FLAT.radius / 4000
+    clear = counts * step > 0.7 * min(dexels.dx, dexels.dy)
+    assert clear.sum() > 8
+    assert found[1][tuple(cells[clear].T)].all()
+
+
 def test_the_side_that_reaches_further_is_noted():
     """A slot by 8 mm and one by 6 mm on its middle, either first, in cells of 2 mm that both sides pass through."""
     narrow = Cutter("flat", 6 * MM)

@@ -131,3 +131,8 @@ def test_part_zero_is_on_top_where_the_path_cuts_below_zero():
 def test_a_cell_that_is_next_to_nothing_is_refused(cell: float) -> None:
     with pytest.raises(SurfaceError, match=r"Cell size: .* million cells .* use .* or more"):
         stock_grid(Stock([0.0, 0.0, 0.0], [1.0, 1.0, 0.1]), cell)
+
+
+@pytest.mark.parametrize(("n", "m"), [(100, 100), (50, 200), (3, 7)])
+def test_cells_that_use_the_whole_budget_fit(n, m):
+    assert fitting_cell(n * 1e-3, m * 1e-3, n * m) == pytest.approx(1e-3, abs=1e-9)
