@@ -105,8 +105,8 @@ def test_stock_refusals_and_defaults():
     assert not STOCK.warnings(CUTTER)
 
 
-def test_corners_are_told_in_whole_millimetres_and_shown_to_a_hundredth():
-    assert [(each.step, each.digits) for each in quantities(Stock).values()] == [(1.0, 2)] * 2
+def test_corners_are_shown_to_a_hundredth_of_a_millimetre():
+    assert [(each.unit, each.digits) for each in quantities(Stock).values()] == [("mm", 2)] * 2
 
 
 def test_odd_sizes_are_said_from_two_millimetres_and_five_metres_on():
