@@ -121,19 +121,12 @@ def test_what_nobody_said_of_a_cutter():
     assert (plain.flute_length, plain.stick_out, plain.tip_angle, plain.tip_diameter) == (None, None, None, 0.0)
 
 
-def test_a_click_on_a_box_is_a_shops_step():
-    """Whole millimetres of what is bought so, quarters of what is ground, 5 degrees; lengths in hand to a tenth."""
-    boxes = {name: (each.step, each.digits) for name, each in quantities(Cutter).items() if each.step}
-    assert boxes == {
-        "diameter": (1.0, None),
-        "corner_radius": (0.25, None),
-        "flutes": (1.0, 0),
-        "helix_angle": (5.0, 1),
-        "flute_length": (1.0, 1),
-        "stick_out": (1.0, 1),
-        "tip_angle": (5.0, None),
-        "tip_diameter": (0.25, None),
-    }
+def test_lengths_in_hand_are_shown_to_a_tenth():
+    """And the helix to a tenth of a degree; diameters and corners as their unit is shown."""
+    shown = {name: each.digits for name, each in quantities(Cutter).items()}
+    assert {name for name, digits in shown.items() if digits == 1} == {"helix_angle", "flute_length", "stick_out"}
+    assert shown["flutes"] == 0
+    assert shown["diameter"] is shown["corner_radius"] is None
 
 
 def test_limits_are_part_of_what_is_allowed():

@@ -8,7 +8,6 @@ from robomill.arrays import digest
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
-from robomill.quantities import quantities
 
 SIX, EIGHT = Cutter("flat", 6e-3), Cutter("ball", 8e-3)
 
@@ -65,7 +64,6 @@ def test_a_number_that_stands_there_twice_is_found_anywhere() -> None:
 def test_what_nobody_said_of_a_tool() -> None:
     plain = TableTool(4)
     assert (plain.cutter, plain.length, plain.orientation, plain.compensates) == (None, 0.0, 0, None)
-    assert quantities(TableTool)["length"].step == 1.0
     assert TableTool(0, orientation=9).number == 0
     for wrong in ({"number": -1}, {"number": 1, "orientation": 10}, {"number": 1, "assumed": ("colour",)}):
         with pytest.raises(CuttingError):
