@@ -62,7 +62,7 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Identification").click()
     choose(page, "In the cut")
 
-    page.get_by_role("spinbutton", name=re.compile("Force known to")).fill("10")
+    page.get_by_role("textbox", name=re.compile("Force known to")).fill("10")
     page.keyboard.press("Enter")
     page.get_by_text("from the force").wait_for()
     wider = page.locator(".rm-tile", has_text="The cut at its worst").locator(".rm-value").inner_text()

@@ -41,7 +41,7 @@ WHOLE = "whole "  # the page stands, with nothing left under way
 
 @dataclass
 class Box:
-    """A number box or a slider as the browser got it: its widget, and the fragment it runs in."""
+    """A number box (a line of text) or a slider as the browser got it: its widget, and the fragment it runs in."""
 
     id: str
     kind: str
@@ -61,10 +61,8 @@ class Box:
         state = WidgetState(id=self.id)
         if self.kind == "slider":
             state.double_array_value.data.append(self.value)
-        elif self.whole:
-            state.int_value = int(self.value)
         else:
-            state.double_value = self.value
+            state.string_value = f"{self.value:.10g}"
         return state
 
 
@@ -143,12 +141,13 @@ class Visitor:
         kind = element.WhichOneof("type")
         if kind == "exception":
             self.broken.append(f"{element.exception.type}: {element.exception.message}")
-        if kind == "number_input" and not element.number_input.disabled:
-            box = element.number_input
-            limits = (box.min if box.has_min else -1e9, box.max if box.has_max else 1e9)
-            whole = box.data_type == box.INT
-            value = box.value if box.set_value else box.default
-            self._keep(Box(box.id, "number", value, *limits, box.step, whole, delta.fragment_id))
+        line = element.text_input
+        if kind == "text_input" and line.autocomplete == "off" and not line.disabled:
+            shown = line.value if line.set_value else line.default
+            if shown:  # a number that is left out stays so
+                whole = shown.lstrip("-").isdigit()
+                step = 1.0 if whole else 10.0 ** -len(shown.partition(".")[2])
+                self._keep(Box(line.id, "number", float(shown), -1e9, 1e9, step, whole, delta.fragment_id))
         box = element.slider
         if kind == "slider" and box.type == box.SLIDER and not box.disabled and len(box.default) == 1:
             value = box.value[0] if box.set_value else box.default[0]
