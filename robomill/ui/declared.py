@@ -13,6 +13,7 @@ from robomill.ui import inputs, session
 from robomill.ui.box import box_of, declaration, entry
 from robomill.ui.inputs import PLAIN, Look
 from robomill.ui.project import read_field
+from robomill.ui.typed import said_below
 
 Item = TypeVar("Item")
 
@@ -92,6 +93,7 @@ def in_view(unit: str) -> str:
 
 def in_row(items: Sequence[Item], show: Callable[[Item], None]) -> None:
     """Show the items side by side."""
-    for column, item in zip(st.columns(len(items)), items, strict=True):
-        with column:
-            show(item)
+    with said_below():
+        for column, item in zip(st.columns(len(items)), items, strict=True):
+            with column:
+                show(item)

@@ -1,7 +1,9 @@
 """What was typed: how widgets are seeded, refused input that stays with its sentence, how a number was understood,
 edits of a page cut off."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import streamlit as st
@@ -10,6 +12,7 @@ from robomill.errors import RobomillError
 from robomill.ui import session
 from robomill.ui.markup import as_markdown
 
+_ROW: ContextVar[list[str] | None] = ContextVar("row", default=None)
 HEARD = "typed.heard"  # kept once an edit was taken that no server had answered
 
 
@@ -45,9 +48,29 @@ def heard(key: str, shown: Any, take: Callable[[], None]) -> None:
 
 def sentence(key: str) -> None:
     """The reason why the input at ``key`` was refused, if it was."""
-    waiting = session.store().refused.get(key)
-    if waiting is not None:
-        st.error(as_markdown(waiting[1]), icon=":material/error:")
+    waiting, row = session.store().refused.get(key), _ROW.get()
+    if waiting is not None and row is not None:
+        row.append(waiting[1])
+    elif waiting is not None:
+        _refusal(waiting[1])
+
+
+@contextmanager
+def said_below() -> Iterator[None]:
+    """Refusals of the inputs drawn meanwhile stand beneath them all: a narrow column has no room for a sentence."""
+    row: list[str] = []
+    before = _ROW.set(row)
+    try:
+        yield
+    finally:
+        _ROW.reset(before)
+    around = _ROW.get()
+    for reason in row:
+        _refusal(reason) if around is None else around.append(reason)
+
+
+def _refusal(reason: str) -> None:
+    st.error(as_markdown(reason), icon=":material/error:")
 
 
 def refuse(key: str, typed: Any, reason: str) -> None:

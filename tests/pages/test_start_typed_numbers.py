@@ -222,3 +222,17 @@ def test_a_box_that_shows_less_than_it_holds_keeps_it_when_it_is_typed_again(app
     assert box.value == "0.143"
     box.set_value(" 0.143").run()
     assert held.project.setup.tolerance == 1e-3 / 7
+
+
+@pytest.mark.parametrize(
+    ("page", "key"),
+    [("5_Toolpath", "toolpath.zero[1]:mm"), ("1_Robot", "pose.box.1:deg"), ("5_Toolpath", "toolpath.go-to")],
+)
+def test_a_refusal_stands_beneath_the_row_of_a_narrow_box(app: AppTest, page: str, key: str) -> None:
+    go(app, page)
+    app.text_input(key=key).set_value("1,220").run()
+    assert len(errors(app)) == 1
+    narrow = [column for column in app.columns if any(box.key == key for box in column.text_input)]
+    thin = [column for column in narrow if len(column.text_input) == 1]
+    assert not any(len(column.error) for column in thin)
+    assert thin or key == "toolpath.go-to"

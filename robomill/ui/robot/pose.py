@@ -12,6 +12,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, point, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import Project
+from robomill.ui.typed import said_below
 from robomill.units import format_percent, format_si, from_si, to_si
 from robomill.viz.theme import joint_colours
 
@@ -52,7 +53,8 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
         home = partial(session.look, theta=robot.home)
         inputs.button("Home", "pose.home", "home", home, type="tertiary")
     for i, number in enumerate(robot.joint_numbers):
-        _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
+        with said_below():
+            _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:

@@ -77,7 +77,7 @@ def _take_dialect(name: str) -> None:
 
 def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
     count = len(source.block_texts())
-    with st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
+    with typed.said_below(), st.container(horizontal=True, vertical_alignment="bottom", gap="small"):
         with st.container(width=114):
             mode = inputs.pick("Program", MODE, MODES, look=inputs.HIDDEN)
         if mode == "code":
