@@ -1,8 +1,9 @@
 """Columns of numbers from CSV files and pasted cells: one reader for load tests, force records, profiles and maps.
 
 The first line that is neither empty nor a remark (``#``) names the columns with their units: ``Fx_N``, ``Fx [N]`` or
-``Fx (N)``. Tabs, semicolons or commas separate; with the first two, decimal commas are understood. Rows are numbered as
-an editor or spreadsheet shows them: the first line of the file is row 1.
+``Fx (N)``. Tabs, semicolons or commas separate; with the first two, decimal commas are understood, where one of them
+can be nothing else: a table in which every comma may as well part thousands is refused. Rows are numbered as an editor
+or spreadsheet shows them: the first line of the file is row 1.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from robomill.io.texts import read_text
 from robomill.units import to_si
 
 MOST_COLUMNS = 300
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 LONGEST_NAME = 100  # characters of a column's name; a longer one is none that is known
 
 
@@ -246,7 +248,10 @@ def _numbers(body: _Body, wanted: list[Column], open_cells: frozenset[str]) -> F
     for k, line in enumerate(body.lines):
         if '"' in line or line.count(body.mark) != len(body.names) - 1:
             _check_width(body, k)
-    lines = [line.replace(",", ".") for line in body.lines] if body.mark != "," else body.lines
+    lines = body.lines
+    if body.mark != ",":
+        _check_commas(body, wanted)
+        lines = [line.replace(",", ".") for line in lines]
     places = [column.at for column in wanted]
     try:
         values = np.loadtxt(lines, delimiter=body.mark, usecols=places, ndmin=2, comments=None, quotechar='"')
@@ -272,6 +277,23 @@ def _check_width(body: _Body, k: int) -> None:
     if any(cell.strip() for cell in cells[len(body.names) :]):
         cure = "; with decimal commas, separate the columns by semicolons" if body.mark == "," else ""
         raise body.place.refuse(f"{counted}{cure}.", int(body.row[k]))
+
+
+def _check_commas(body: _Body, wanted: list[Column]) -> None:
+    """Refuse the first number that is 1.220 to some and 1220 to others, where no other shows what a comma is here."""
+    first: RobomillError | None = None
+    for k, line in enumerate(body.lines):
+        cells = _cells(line, body.mark) if "," in line else []
+        for column in wanted if cells else ():
+            found = cells[column.at].strip()
+            if _THOUSANDS.fullmatch(found) is None and "," in found:
+                return
+            if "," in found and first is None:
+                ways = f"{found.replace(',', '.')} to some and {found.replace(',', '')} to others"
+                message = f"found {found!r:.40}, which is {ways}; write the table's numbers in one of these two ways."
+                first = body.place.refuse(message, int(body.row[k]), column.written)
+    if first is not None:
+        raise first
 
 
 def _cells(line: str, mark: str) -> list[str]:

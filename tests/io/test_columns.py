@@ -169,6 +169,16 @@ def test_refusals(text: str, sentence: str) -> None:
     assert str(caught.value).startswith(sentence)
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_comma_that_may_part_thousands_is_asked_where_no_other_says_what_it_is(mark: str) -> None:
+    asked = f"Fx_N{mark}m_Nm\n1{mark}-1,220\n3{mark}4\n"
+    with pytest.raises(SurfaceError, match="row 2, column m_Nm: found '-1,220', which is -1.220 to some and -1220 to"):
+        read_columns(asked, LAYOUT, "mine.csv")
+    for clear in ("0,220", "1,22", "1234,500"):
+        columns, _ = read_columns(asked.replace("4", clear), LAYOUT, "mine.csv")
+        assert columns.values["m"].tolist() == [-1.22, float(clear.replace(",", "."))]
+
+
 def test_the_refusal_is_of_the_layouts_kind_and_names_the_place_as_data() -> None:
     layout = Layout("Table", LoadTestError, UNITS, "Fx_N")
     columns, name = read_columns("#\nFx_N,f_feed_N\n1,2\n", layout)
