@@ -39,7 +39,6 @@ UNUSED = {
     "__getattr__": "Python asks the package for a public name",
     "__dir__": "Python lists the package",
     "task_jacobian": "public name",
-    "_do_*": "o-words are found by their name",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",
     "camera_position": "pyvista's",

@@ -68,7 +68,7 @@ program = st.lists(st.one_of(plain_line(), plain_line(), plain_line(), special),
 
 STRETCHES = "robomill.toolpath.gcode.stretches."
 READERS = {
-    "reader": {"Stretches.run": lambda stretches, lines, first, executed: (0, False)},
+    "reader": {"Stretches.run": lambda stretches, lines, structure, at, executed, most: (0, at, False)},
     "plain": {"LONG": 10**9, "LOADED_LONG": 10**9, "CHUNK": 5},
     "compiled": {"LONG": 0, "LOADED_LONG": 0},
 }

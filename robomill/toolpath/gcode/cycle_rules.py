@@ -100,7 +100,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
         level = current = clearance
     clear = clearance if m.retract_r else level
     for repeat in range(repeats):
-        refusal = end_point(m, w, end, end)
+        refusal = end_point(m, w, end)
         if refusal != 0:
             return refusal
         above = current if repeat == 0 and current > clearance else clear

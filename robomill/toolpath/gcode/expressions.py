@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Callable
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import operator_rules as rules
@@ -48,7 +49,7 @@ class Reader:
         self.line = line
         self.at = 0
         self.store = store
-        self._codes = value_rules.codes(text)
+        self.codes = value_rules.codes(text)
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
@@ -60,22 +61,30 @@ class Reader:
 
     def value(self) -> float:
         """A real value: number, ``[expression]``, ``#parameter`` or function."""
+        codes = self.codes
+        _, value, self.at = self.told(lambda: value_rules.value(self.store.arrays, codes, self.at, len(codes)))
+        return float(value)
+
+    def told(self, read: Callable[[], tuple[int, float, int]], first: int = 0) -> tuple[int, float, int]:
+        """(problem, ..., where) that ``read`` answers once the machine has said the values it is asked for.
+
+        ``first`` is where this line begins in what it reads. Raises GCodeError for a value that is refused.
+        """
         store, asked = self.store, False
         while True:
-            problem, value, at = value_rules.value(store.arrays, self._codes, self.at, len(self._codes))
+            problem, answer, at = read()
             if problem not in (rules.ASK_NUMBER, rules.ASK_NAME):
                 break
             asked = True
             try:
-                store.ask(None if problem == rules.ASK_NUMBER else self._name_at(at))
+                store.ask(None if problem == rules.ASK_NUMBER else self._name_at(at - first))
             except GCodeError as exc:
                 raise self.refuse(str(exc)) from None
         if asked:
             store.forget()
-        if problem:
-            raise self._refused(problem, at)
-        self.at = at
-        return float(value)
+        if problem in SENTENCES:
+            raise self._refused(problem, at - first)
+        return problem, answer, at
 
     def integer(self, what: str) -> int:
         """A value within 0.0001 of an integer."""
@@ -87,7 +96,7 @@ class Reader:
 
     def name(self) -> str:
         """``<name>``, without the brackets."""
-        end = value_rules.name_end(self._codes, self.at, len(self._codes))
+        end = value_rules.name_end(self.codes, self.at, len(self.codes))
         if end < 0:
             raise self._refused(rules.NAME_NOT_CLOSED, self.at)
         name = self.text[self.at + 1 : end]

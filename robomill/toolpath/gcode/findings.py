@@ -12,10 +12,10 @@ class Findings:
     def __init__(self) -> None:
         self._found: dict[tuple[str, Level, str], tuple[int, int]] = {}
 
-    def add(self, code: str, level: Level, line: int, message: str) -> None:
-        """Note ``message``, which is of the kind ``code``, for ``line`` (0: the whole file)."""
+    def add(self, code: str, level: Level, line: int, message: str, count: int = 1) -> None:
+        """Note ``message``, which is of the kind ``code``, for ``line`` (0: the whole file), ``count`` times."""
         first, before = self._found.get((code, level, message), (line, 0))
-        self._found[code, level, message] = (min(first, line), before + 1)
+        self._found[code, level, message] = (min(first, line), before + count)
 
     def freeze(self) -> tuple[Finding, ...]:
         """All findings, the grave ones first, then by line."""

@@ -15,7 +15,7 @@ from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read
 MAX_STEPS = 1_000_000
 """Lines that may be executed beyond the length of the program: loops and subroutines."""
 
-_CHECK_EVERY = 2048
+_CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
 
@@ -30,23 +30,24 @@ class Interpreter(OWords):
         self.stretches = Stretches(machine)
 
     def run(self) -> None:
-        """Execute until the program ends, plain lines in stretches."""
+        """Execute until the program ends, plain lines and O words in stretches."""
         self._skip_percent()
-        while not self.ended:
-            if self.pc >= len(self.file.lines):
-                self._end_of_file()
-                return
-            if self.machine.is_plain and not self.file.has_o_word(self.pc) and self._run_plain():
-                continue
-            index = self.pc
-            self.pc = index + 1
-            self.step(index)
+        try:
+            while not self.ended:
+                if self.machine.is_plain and self._run_stretch():
+                    continue
+                if self.pc >= len(self.file.lines):
+                    self._end_of_file()
+                    return
+                index = self.pc
+                self.pc = index + 1
+                self.step(index)
+        finally:
+            self.say_left_over()
 
     def step(self, index: int) -> None:
         """Execute line ``index`` of the current file."""
-        self.steps += 1
-        if self.steps % _CHECK_EVERY == 0:
-            self._tick(index)
+        self._count(1, index)
         raw = self.file.lines[index]
         machine = self.machine
         line = machine.line = index + 1
@@ -82,26 +83,33 @@ class Interpreter(OWords):
         apply_settings(block, machine.store)
         if block.comment:
             self._comment(block)
-        if execute(machine, block, self.calls[-1].saved):
+        level = machine.store.level
+        saved = self.saved.setdefault(level, {})
+        ends = execute(machine, block, saved)
+        self.calls.special[level] = level in self.foreign or bool(saved)
+        if ends:
             self.ended = True
             self._left_over_lines()
 
-    def _run_plain(self) -> bool:
-        """Execute plain lines; False if the next line is not one, or wants the reader's word."""
-        done, more = self.stretches.run(self.file.lines, self.pc, self.steps)
-        before = self.steps
-        self.pc, self.steps = self.pc + done, self.steps + done
-        if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
-            self._tick(self.pc - 1)
+    def _run_stretch(self) -> bool:
+        """Execute lines that the rules know; False if the next line is none, or wants the reader's word."""
+        structure, most = self.file.structure or self.no_words, self.budget + 1 - self.steps
+        done, self.pc, more = self.stretches.run(self.file.lines, structure, self.pc, self.steps, most)
+        self._count(done, max(self.pc - 1, 0))
         return more
 
     # --- budgets, ends, comments
-    def _tick(self, index: int) -> None:
+    def _count(self, executed: int, index: int) -> None:
+        """So many lines more were executed, ``index`` is the last one."""
+        before = self.steps
+        self.steps += executed
         if self.steps > self.budget:
             raise GCodeError.at(
                 index + 1, f"more than {MAX_STEPS} lines were executed in loops; the program may not end."
             )
-        checkpoint(min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0), "Reading the program")
+        if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
+            share = min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0)
+            checkpoint(share, "Reading the program")
 
     def _skip_percent(self) -> None:
         for index, raw in enumerate(self.main.lines):
@@ -127,12 +135,12 @@ class Interpreter(OWords):
 
     def _left_over_lines(self) -> None:
         """Say where the program goes on behind its end, other than with subprograms."""
-        if self.file is not self.main or len(self.calls) > 1:
+        if self.file is not self.main or self.machine.store.level > 0:
             return
         for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
             text = self.main.lines[index].strip()
             if text and text[0] not in "%(;":
-                if self.main.o_words().lines:
+                if self.o_words(self.main).words:
                     return
                 self.machine.findings.add(
                     "after-end", "warning", index + 1, "the program ended before; this is not read"
@@ -141,9 +149,8 @@ class Interpreter(OWords):
 
     def _end_of_file(self) -> None:
         last = len(self.file.lines)
-        if len(self.calls) > 1:
-            label = self.calls[-1].label
-            raise GCodeError.at(last, f"the file ends inside O{label}; close it with endsub or M99.")
+        if self.machine.store.level > 0:
+            raise GCodeError.at(last, f"the file ends inside O{self.called_now()}; close it with endsub or M99.")
         self.machine.findings.add("no-end", "warning", last, "the program ends without M2, M30 or %")
         self.finish(last)
 

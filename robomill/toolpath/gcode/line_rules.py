@@ -1,8 +1,8 @@
 """The rules of plain lines: which ones are plain, and what their words are.
 
-A line is plain if it holds only words that ``mode_rules.run`` knows, each once, and comments that say nothing to the
-machine; or if it only sets parameters. All others are left to the reader of ``words``. Like the other rules this is
-plain Python that numba can compile.
+A line is plain if it holds only words that ``mode_rules.plain_line`` knows, each once, and comments that say nothing
+to the machine; or if it only sets parameters. All others are left to the reader of ``words``. Like the other rules this
+is plain Python that numba can compile.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from robomill.toolpath.gcode import codes
-from robomill.toolpath.gcode.codes import ANGLE, G_GROUP, LETTERS, M_GROUP, RADIUS, WIDTH, F, L, S
+from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH, F, L, S
 from robomill.toolpath.gcode.operator_rules import whole
 from robomill.toolpath.gcode.parameters import MAX_SETTINGS
 from robomill.toolpath.gcode.value_rules import (
@@ -22,7 +22,7 @@ from robomill.toolpath.gcode.value_rules import (
     keyword,
     lower,
     name_end,
-    packed,
+    packed_all,
     past_blanks,
     place_of,
     value,
@@ -41,7 +41,7 @@ PLAIN_M = (0, 1, 60, 3, 4, 5, 7, 8, 9, 48, 49)
 _G_GROUPS = np.array([codes.G_GROUPS[code] if code in PLAIN_G else -1 for code in range(1000)])
 _M_GROUPS = np.array([codes.M_GROUPS[code] if code in PLAIN_M else -1 for code in range(100)])
 _COLUMNS = np.array([LETTERS.find(chr(code)) for code in range(128)])
-_SAYING = tuple(packed(word) for word in ("msg", "debug", "print", "log", "abort"))
+_SAYING = packed_all(("msg", "debug", "print", "log", "abort"))
 """Comments that begin with one of these and a comma are said, or end the program."""
 
 
@@ -95,7 +95,7 @@ def _column(code, number: float):
         group = _M_GROUPS[near] if near >= 0 else -1
         return (M_GROUP + group if group >= 0 else -1), float(near)
     column = _COLUMNS[code]
-    if column in (RADIUS, ANGLE) or (number < 0.0 and column in (F, S, L)):
+    if number < 0.0 and column in (F, S, L):
         return -1, number
     if column == L:
         number = whole(number)

@@ -69,7 +69,7 @@ class Machine:
         self.spline: list[tuple[float, float, float]] = []
         self.spline_order = 3
         self.line = 0
-        self.return_value, self.value_returned = 0.0, 0.0
+        self.seeking = self.broke = self.continued = False
         self.dwells, self.dwell_time, self.waited = 0, 0.0, 0.0
         self.moves = 0
         self.messages: list[tuple[int, str]] = []
@@ -231,8 +231,6 @@ _PROVIDED: dict[str, Any] = {
     "_u": lambda m: 0,
     "_v": lambda m: 0,
     "_w": lambda m: 0,
-    "_value": lambda m: m.return_value,
-    "_value_returned": lambda m: m.value_returned,
     "_call_level": lambda m: m.store.level,
     "_remap_level": lambda m: 0,
     "_task": lambda m: 0,

@@ -1,4 +1,4 @@
-"""Rules of modes, feeds, speeds and dwells, and of stretches of plain lines; ``motion_rules`` says what rules are."""
+"""Rules of modes, feeds, speeds and dwells, and of plain lines; ``motion_rules`` says what rules are."""
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
@@ -7,7 +7,6 @@ import math
 from robomill.toolpath.gcode import codes
 from robomill.toolpath.gcode.codes import G_GROUP, M_GROUP, A, B, C, F, I, J, K, L, P, Q, R, S, X
 from robomill.toolpath.gcode.cycle_rules import cycle, is_cycle, pecks
-from robomill.toolpath.gcode.line_rules import apply_settings, read_line
 from robomill.toolpath.gcode.motion_rules import (
     INVERSE_TIME,
     LINE,
@@ -16,6 +15,7 @@ from robomill.toolpath.gcode.motion_rules import (
     end_point,
     implied_motion,
     is_arc,
+    is_polar,
     make_move,
 )
 
@@ -73,23 +73,6 @@ def system_code(system: int) -> int:
     return 530 + 10 * system if system < 7 else 584 + system
 
 
-def run(m, s, text, first: int, count: int, rows) -> int:
-    """How many of ``count`` lines from ``first`` on are made into ``rows``, of which ``m.moves`` are written.
-
-    Up to the first line that is not plain, that is refused or that means more than these rules. That one has changed
-    nothing that doing it again would not; the interpreter reads it and says what is wrong.
-    """
-    for i in range(first, first + count):
-        if m.moves == len(rows):
-            return i - first
-        settings = read_line(s, text.codes, text.starts[i], text.starts[i + 1] - 1)
-        if settings > 0:
-            apply_settings(s, settings)
-        elif settings < 0 or not _line(m, s.words, s.end, rows, i + 1):
-            return i - first
-    return count
-
-
 def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
     """True if a line has only words that its motion (-1: none) uses; cycles of which more is to be said are not."""
     if is_cycle(motion):
@@ -106,12 +89,16 @@ def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
     return motion in (RAPID, LINE) or (motion in (-1, NO_MOTION) and not has_axes)
 
 
-def _line(m, w, end, rows, line: int) -> bool:
-    """Do a plain line; False if it is left to the interpreter."""
+def plain_line(m, w, end, rows, line: int) -> bool:
+    """Do a plain line, whose words are ``w``; False if it is left to the interpreter."""
     has_centre = not (math.isnan(w[I]) and math.isnan(w[J]) and math.isnan(w[K]))
     has_axes = False
     for axis in range(6):
         has_axes = has_axes or not math.isnan(w[X + axis])
+    if is_polar(w):
+        if m.plane != 17 or not (math.isnan(w[X]) and math.isnan(w[X + 1])):
+            return False
+        has_axes = True
     motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[MOTION]) else int(w[MOTION])
     if not _takes(w, motion, has_axes, has_centre):
         return False
@@ -131,7 +118,9 @@ def _line(m, w, end, rows, line: int) -> bool:
         return True
     if is_cycle(motion):
         return cycle(m, w, motion, line, end, rows) == 0
-    if check_move(m, w, motion) != 0 or end_point(m, w, m.p, end) != 0:
+    for axis in range(6):
+        end[axis] = m.p[axis]
+    if check_move(m, w, motion) != 0 or end_point(m, w, end) != 0:
         return False
     row = rows[m.moves]
     if make_move(m, w, motion, end, row) != 0:

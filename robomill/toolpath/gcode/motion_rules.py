@@ -129,14 +129,12 @@ def dwell(m, seconds: float) -> None:
     m.waited += max(seconds, 0.0)
 
 
-def end_point(m, w, base, end) -> int:
-    """``end`` (6,): where the words lead from ``base``, in the current coordinate system."""
+def end_point(m, w, end) -> int:
+    """``end`` (6,): where the words lead from there, in the current coordinate system."""
     for axis in range(6):
         word = w[X + axis]
-        if math.isnan(word):
-            end[axis] = base[axis]
-        else:
-            end[axis] = word if m.absolute else base[axis] + word
+        if not math.isnan(word):
+            end[axis] = word if m.absolute else end[axis] + word
     return _polar(m, w, end) if is_polar(w) else 0
 
 

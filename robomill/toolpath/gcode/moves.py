@@ -93,8 +93,8 @@ def find_end(machine: Machine, block: Block, words: list[float] | None = None) -
     base = machine.p
     if machine.compensation is not None and machine.compensation.programmed is not None:
         base = machine.compensation.programmed_point(machine)
-    end = [0.0] * 6
-    demand(machine, block, rules.end_point(machine, words, base, end))
+    end = list(base)
+    demand(machine, block, rules.end_point(machine, words, end))
     return end
 
 

@@ -1,268 +1,192 @@
-"""O words and subroutines: where the program goes on."""
+"""O words and subroutines as the interpreter follows them: where ``flow_rules`` hands a line back, files, M98, M99."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.files import FileKind, read_file
-from robomill.toolpath.gcode import flow
+from robomill.toolpath.gcode import flow_rules as rules
+from robomill.toolpath.gcode import value_rules
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import restore_modes
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.flow import Calls, OWord, Structure, scan
+from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
-from robomill.toolpath.gcode.stretches import Lines
+from robomill.toolpath.gcode.records import Flow
 from robomill.toolpath.gcode.words import Block
 
 SUBROUTINE = FileKind("a subroutine beside the program", 10)
 
+SENTENCES = {
+    rules.NO_CONDITION: "{name} needs [ and a condition.",
+    rules.MORE_BEHIND: "found {rest!r} after {name}; remove it.",
+    rules.NO_END: "O{label} {opening} has no end; close it with {closing}.",
+    rules.OUTSIDE: "{name} is outside of a subroutine.",
+    rules.TOO_MANY_ARGUMENTS: f"O{{label}} is called with {{count:.0f}} arguments; at most {ARGUMENTS} are passed.",
+    rules.TOO_MANY_LEVELS: f"subroutines call one another more than {LEVELS - 1} levels deep.",
+}
+"""What is said for a problem of ``flow_rules``."""
+
 
 @dataclass
 class File:
-    """Lines of a program or subroutine file, and its O words."""
+    """Lines of a program or subroutine file, and its O words once one has been met."""
 
     name: str
     lines: Lines
     folder: Path | None = None
-    structure: flow.Structure | None = None
-
-    def has_o_word(self, index: int) -> bool:
-        """True if a line is known to be one of the structure."""
-        return self.structure is not None and index in self.structure.lines
-
-    def o_words(self) -> flow.Structure:
-        """The structure, found when it is first needed."""
-        if self.structure is None:
-            self.structure = flow.scan(self.lines)
-        return self.structure
+    structure: Structure | None = None
 
 
 @dataclass
 class Call:
-    """A subroutine being executed: where it returns to, and what it put aside."""
+    """A call that the rules cannot leave: it goes back into another file, or behind a line that has no O word."""
 
-    sub: flow.Node | None
     label: str
-    back_to: int
-    back_file: File
-    arguments: list[float] | None = None
-    counters: dict[int, int] = field(default_factory=dict)
-    saved: dict[str, Any] = field(default_factory=dict)
+    file: File
+    pc: int
     repeats: int = 1
 
 
 class OWords:
-    """Follows O words and M98/M99. ``file`` and ``pc`` are the line that comes next, ``calls`` the open calls."""
+    """Follows O words and M98/M99. ``file`` and ``pc`` are the line that comes next.
+
+    ``foreign`` are the open calls that the rules cannot leave, by level; ``saved`` is what M70 and M73 have kept there.
+    """
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         self.machine = machine
         self.main = self.file = file
         self.dialect = dialect
         self.pc = 0
-        self.calls = [Call(None, "", -1, file)]
+        self.calls = Calls()
+        self.no_words = Structure(self.calls)
+        self.foreign: dict[int, Call] = {}
+        self.saved: dict[int, dict[str, Any]] = {}
         self.ended = False
         self.others: dict[str, File] = {}
-        self.broke = self.continued = False
 
     def finish(self, line: int) -> None:
         """Record what cutter compensation holds back, as the program ends."""
         if self.machine.compensation is not None:
             self.machine.compensation.finish(self.machine, Block(line))
 
-    def o_word(self, reader: Reader, index: int) -> None:
-        entry = self.file.o_words().lines.get(index)
-        if entry is None:
-            self._computed_call(reader)
-            return
-        if entry.problem:
-            raise reader.refuse(entry.problem)
-        argument = Reader(entry.argument, reader.line, self.machine.store)
-        getattr(self, f"_do_{entry.keyword or 'bare'}")(entry, argument, index)
+    def o_words(self, file: File) -> Structure:
+        """The structure of a file, found when it is first needed."""
+        if file.structure is None:
+            file.structure = scan(file.lines, self.calls)
+        return file.structure
 
-    def _computed_call(self, reader: Reader) -> None:
+    def o_word(self, reader: Reader, index: int) -> None:
+        """Follow the O word of a line."""
+        structure = self.o_words(self.file)
+        place = structure.places.get(index)
+        if place is None:
+            word = self._computed_call(reader)
+            codes: Any = value_rules.codes(word.argument)
+            self._follow(word, structure.plain._replace(words=[word], arguments=codes), 0)
+            return
+        word = structure.words[place]
+        if word.problem:
+            raise reader.refuse(word.problem)
+        self._follow(word, structure.plain, place)
+
+    def _follow(self, word: OWord, known: Flow, place: int) -> None:
+        machine, store = self.machine, self.machine.store
+        argument, level = Reader(word.argument, word.line + 1, store), store.level
+        while True:
+            problem, behind, where = argument.told(lambda: rules.step(machine, store.arrays, known, place), word.begin)
+            if problem != rules.SPECIAL:
+                break
+            self.calls.special[level] = 0
+        if problem == rules.ELSEWHERE:
+            self._call(word, argument)
+        elif problem:
+            argument.at = where - word.begin
+            raise self._refused(problem, argument, word)
+        elif store.level < level:
+            self._go_back(level, where)
+        else:
+            self.pc = known.words[where].line + behind
+
+    def _refused(self, problem: int, argument: Reader, word: OWord) -> GCodeError:
+        opening = rules.KEYWORDS[self.o_words(self.file).words[word.start].keyword] if problem == rules.NO_END else ""
+        return argument.refuse(
+            SENTENCES[problem].format(
+                name=word.name,
+                label=word.label,
+                rest=argument.rest(),
+                opening=opening,
+                closing="while" if opening == "do" else f"end{opening}",
+                count=self.machine.store.arrays.figures[0],
+            )
+        )
+
+    def say_left_over(self) -> None:
+        """LinuxCNC keeps one flag each for break and continue; the reference's quirk is followed, counted and said."""
+        for file in (self.main, *self.others.values()):
+            structure = file.structure or self.no_words
+            for word, count in zip(structure.words, structure.plain.left_over):
+                cause = "break in an earlier while" if word.keyword == rules.WHILE else "continue in an earlier do"
+                if count:
+                    message = f"O{word.label} does not loop as written: LinuxCNC still remembers a {cause} loop"
+                    self.machine.findings.add("loop-flags", "warning", word.line + 1, message, int(count))
+
+    # --- subroutines
+    def _computed_call(self, reader: Reader) -> OWord:
         reader.at += 1
         label = str(reader.integer("The number of a subroutine"))
         if not reader.text.startswith("call", reader.at):
             raise reader.refuse("an O word with a computed number can only be a call.")
-        argument = Reader(reader.text[reader.at + 4 :], reader.line, self.machine.store)
-        self._call(label, argument, reader.line - 1)
+        argument = reader.text[reader.at + 4 :]
+        most = rules.MOST[rules.CALL]
+        return OWord(reader.line - 1, rules.CALL, label, argument, 0, len(argument), most=most)
 
-    def _condition(self, entry: flow.OLine, argument: Reader) -> float:
-        if argument.text[:1] != "[":
-            raise argument.refuse(f"O{entry.label} {entry.keyword} needs [ and a condition.")
-        value = argument.value()
-        self._nothing_after(entry, argument)
-        return value
+    def _call(self, word: OWord, argument: Reader) -> None:
+        """Call a subroutine of any file, with the arguments that the rules have read."""
+        arrays = self.machine.store.arrays
+        file, sub = self._find_sub(word.label, argument)
+        structure = self.o_words(file)
+        problem = rules.enter(arrays, structure.plain, sub, -1, int(arrays.figures[0]))
+        if problem:
+            raise self._refused(problem, argument, word)
+        self._go_to(Call(word.label, self.file, self.pc), file, structure.words[sub].line + 1)
 
-    @staticmethod
-    def _nothing_after(entry: flow.OLine, argument: Reader) -> None:
-        if argument.rest() != "the end of the line" and argument.text[argument.at] not in "(;":
-            raise argument.refuse(f"found {argument.rest()!r} after O{entry.label} {entry.keyword}; remove it.")
+    def _go_to(self, call: Call, file: File, pc: int) -> None:
+        level = self.machine.store.level
+        self.foreign[level], self.calls.special[level] = call, 1
+        self.file, self.pc = file, pc
 
-    def _end_of(self, entry: flow.OLine, argument: Reader) -> int:
-        node = entry.node
-        if node is None or node.end < 0:
-            raise argument.refuse(f"O{entry.label} {entry.keyword} has no end; close it with end{entry.keyword}.")
-        return node.end
-
-    def _do_bare(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        if entry.argument and entry.argument[0] not in "(;":
-            raise argument.refuse(f"found {argument.rest()!r} after O{entry.label}; expected sub, call, if and so on.")
-
-    def _do_sub(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        if self.calls[-1].sub is not entry.node:
-            self._nothing_after(entry, argument)
-            self.pc = self._end_of(entry, argument) + 1
-
-    def _do_call(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        self._call(entry.label, argument, index)
-
-    def _do_endsub(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        self._do_return(entry, argument, index)
-
-    def _do_return(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        machine = self.machine
-        if len(self.calls) == 1:
-            raise argument.refuse(f"O{entry.label} {entry.keyword} is outside of a subroutine.")
-        value = argument.value() if argument.text[:1] == "[" else None
-        self._nothing_after(entry, argument)
-        machine.return_value, machine.value_returned = value or 0.0, float(value is not None)
-        self._leave()
-
-    def _do_if(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        if self._condition(entry, argument) == 0.0:
-            self._branch(entry, index, argument)
-
-    def _branch(self, entry: flow.OLine, index: int, argument: Reader) -> None:
-        """Go to the branch whose condition holds, or behind the endif."""
-        node = entry.node
-        assert node is not None
-        end = self._end_of(flow.OLine("if", entry.label, "", node), argument)
-        at = node.next_branch(index)
-        while at != end:
-            branch = self.file.o_words().lines[at]
-            reader = Reader(branch.argument, at + 1, self.machine.store)
-            if branch.keyword == "else" or self._condition(branch, reader) != 0.0:
-                break
-            at = node.next_branch(at)
-        self.pc = at + 1
-
-    def _do_else(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        assert entry.node is not None
-        self.pc = self._end_of(flow.OLine("if", entry.label, "", entry.node), argument) + 1
-
-    def _do_elseif(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        self._do_else(entry, argument, index)
-
-    def _do_endif(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        self._nothing_after(entry, argument)
-
-    def _do_while(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        holds = self._condition(entry, argument) != 0.0
-        assert entry.node is not None
-        if entry.node.kind == "do":
-            if holds and not self.broke:
-                self.pc = entry.node.start + 1
-                return
-            if holds:
-                self._left_over(entry, "break in an earlier while")
-            self.broke = False
-        elif not holds:
-            self.pc = self._end_of(entry, argument) + 1
-            self.continued = False
-            self.broke |= entry.node.has_break
-
-    def _do_endwhile(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        assert entry.node is not None
-        self.pc = entry.node.start
-
-    def _do_do(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        self._nothing_after(entry, argument)
-
-    def _do_repeat(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        counters = self.calls[-1].counters
-        if index not in counters:
-            counters[index] = round(min(self._condition(entry, argument), 2.0**31))
-        if counters[index] <= 0:
-            del counters[index]
-            self.pc = self._end_of(entry, argument) + 1
-            if self.continued:
-                self._left_over(entry, "continue in an earlier do")
-                self.pc, self.continued = index, False
+    def _go_back(self, level: int, where: int) -> None:
+        """Go on behind a call that has been left: where ``foreign`` knows, or behind the O word ``where``."""
+        call, saved = self.foreign.pop(level, None), self.saved.pop(level, {})
+        self.calls.special[level] = 0
+        if call is None:
+            self.pc = self.o_words(self.file).words[where].line + 1
         else:
-            counters[index] -= 1
+            self.file, self.pc = call.file, call.pc
+        if saved.get("automatic"):
+            restore_modes(self.machine, Block(self.machine.line), saved)
 
-    def _do_endrepeat(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        assert entry.node is not None
-        self.pc = entry.node.start
+    def called_now(self) -> str:
+        """The label of the subroutine that is being executed."""
+        level = self.machine.store.level
+        call = self.foreign.get(level)
+        return call.label if call is not None else self.o_words(self.file).words[self.calls.subs[level]].label
 
-    def _do_break(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        assert entry.node is not None
-        end = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
-        self.calls[-1].counters.pop(entry.node.start, None)
-        self.pc = end + 1
-        if entry.node.kind == "while":
-            self.broke = True
-            if self.continued:
-                self._left_over(entry, "continue in an earlier do")
-                self.pc, self.continued = entry.node.start, False
-
-    def _do_continue(self, entry: flow.OLine, argument: Reader, index: int) -> None:
-        assert entry.node is not None
-        self.pc = self._end_of(flow.OLine(entry.node.kind, entry.label, "", entry.node), argument)
-        self.continued = entry.node.kind == "do"
-
-    def _left_over(self, entry: flow.OLine, cause: str) -> None:
-        """LinuxCNC keeps one flag each for break and continue; the reference's quirk is followed and said."""
-        message = f"O{entry.label} does not loop as written: LinuxCNC still remembers a {cause} loop"
-        self.machine.note("loop-flags", "warning", message)
-
-    # --- subroutines
-    def _call(self, label: str, argument: Reader, index: int) -> None:
-        values = []
-        while argument.text[argument.at : argument.at + 1] in ("[", "("):
-            if argument.text[argument.at] == "(":
-                argument.at = argument.text.index(")", argument.at) + 1
-            else:
-                values.append(argument.value())
-        self._nothing_after(flow.OLine("call", label, ""), argument)
-        if len(values) > ARGUMENTS:
-            raise argument.refuse(f"O{label} is called with {len(values)} arguments; at most {ARGUMENTS} are passed.")
-        file, node = self._find_sub(label, argument)
-        store = self.machine.store
-        call = Call(node, label, self.pc, self.file, store.values(1, ARGUMENTS))
-        self._enter(call, argument)
-        store.put(1, values + [0.0] * (ARGUMENTS - len(values)))
-        store.set("n_args", float(len(values)))
-        self.file, self.pc = file, node.start + 1
-
-    def _enter(self, call: Call, reader: Reader) -> None:
-        if len(self.calls) >= LEVELS:
-            raise reader.refuse(f"subroutines call one another more than {LEVELS - 1} levels deep.")
-        self.calls.append(call)
-        self.machine.store.enter()
-
-    def _leave(self) -> None:
-        call = self.calls.pop()
-        store = self.machine.store
-        store.leave()
-        if call.arguments is not None:
-            store.put(1, call.arguments)
-        self.file, self.pc = call.back_file, call.back_to
-        if call.saved.get("automatic"):
-            restore_modes(self.machine, Block(self.machine.line), call.saved)
-
-    def _find_sub(self, label: str, reader: Reader) -> tuple[File, flow.Node]:
+    def _find_sub(self, label: str, reader: Reader) -> tuple[File, int]:
         for file in (self.file, self.main):
-            node = file.o_words().subs.get(label)
-            if node is not None:
-                return file, node
+            place = self.o_words(file).subs.get(label)
+            if place is not None:
+                return file, place
         other = self.others.get(label) or self._open_sub(label, reader)
-        node = other.o_words().subs.get(label)
-        if node is None:
+        place = self.o_words(other).subs.get(label)
+        if place is None:
             raise reader.refuse(f"O{label} is called, but {other.name} does not define it.")
-        return other, node
+        return other, place
 
     def _open_sub(self, label: str, reader: Reader) -> File:
         folder = self.main.folder
@@ -283,9 +207,8 @@ class OWords:
         code = next((c for c in block.unknown_m if c in (98, 99)), None)
         if code is None:
             return False
-        reader = Reader("", block.line, self.machine.store)
         if code == 99:
-            if len(self.calls) == 1:
+            if self.machine.store.level == 0:
                 self.machine.note("m99-ends", "info", "M99 in the main program is taken as its end")
                 self.finish(block.line)
                 self.ended = True
@@ -295,18 +218,20 @@ class OWords:
         if "p" not in block.words:
             raise block.refuse("M98 needs P, the number of the program to call.")
         number, repeats = self.dialect.subprogram(block)
-        target = self.main.o_words().bare.get(str(number))
+        target = self.o_words(self.main).bare.get(str(number))
         if target is None:
             raise block.refuse(f"M98 calls O{number}, but there is no O{number} in the program.")
         if repeats > 0:
-            self._enter(Call(None, str(number), self.pc, self.file, None, repeats=repeats), reader)
-            self.file, self.pc = self.main, target + 1
+            if rules.enter(self.machine.store.arrays, self.o_words(self.main).plain, -1, -1, 0):
+                raise block.refuse(SENTENCES[rules.TOO_MANY_LEVELS])
+            self._go_to(Call(str(number), self.file, self.pc, repeats), self.main, target + 1)
         return True
 
     def _repeat_or_leave(self) -> None:
-        call = self.calls[-1]
-        call.repeats -= 1
-        if call.repeats > 0:
-            self.pc = self.main.o_words().bare[call.label] + 1
+        level = self.machine.store.level
+        call = self.foreign.get(level)
+        if call is not None and call.repeats > 1:
+            call.repeats -= 1
+            self.pc = self.o_words(self.main).bare[call.label] + 1
         else:
-            self._leave()
+            self._go_back(level, rules.leave(self.machine.store.arrays, self.o_words(self.file).plain))

@@ -25,6 +25,10 @@ MAX_SETTINGS = 50
 READ_ONLY = frozenset(range(5400, 5414)) | frozenset(range(5420, 5429))
 
 
+RETURNED = ("_value", "_value_returned")
+VALUE, VALUE_RETURNED = range(len(RETURNED))
+"""What a subroutine returns; these names come first, and their values are among the others."""
+
 LEVELS = 10
 """Levels of subroutines, the main program included; each has names of its own."""
 
@@ -59,11 +63,12 @@ class Store(NamedTuple):
     """The words of a line,"""
     end: Out1
     """(6,) and where it leads."""
-    level: int
+    level: OutInt1
+    """(1,) how many subroutines are being executed."""
     room: int
     """Columns of ``named``."""
     provided: int
-    """So many columns are names that the machine provides."""
+    """So many columns are names that the machine provides; the next one is ``n_args``."""
 
 
 class Parameters:
@@ -80,11 +85,13 @@ class Parameters:
         marks, figures, keys = array("q", [0]) * STACK, array("d", [0.0]) * 3, array("q", [0]) * MAX_SETTINGS
         values, settings = array("d", [0.0]) * STACK, array("d", [0.0]) * MAX_SETTINGS
         self._scratch = (values, marks, figures, keys, settings, array("d", [0.0]) * WIDTH, array("d", [0.0]) * 6)
-        self._level, self._room, self._provided = 0, 0, 0
+        self._room, self._provided, self._level = 0, 0, array("q", [0])
         self._views: Store | None = None
+        names = (*RETURNED, *names)
         self._make_room(max(64, 2 * len(names)))
-        for name in names:
+        for name in (*names, "n_args"):
             self._add(name)
+        self._named[VALUE] = self._named[VALUE_RETURNED] = 0.0
         if provide is not None:
             for index in READ_ONLY:
                 self.numbered[index] = math.nan
@@ -102,8 +109,8 @@ class Parameters:
         """The same memory, as arrays for compiled code; what holds them has to let go before a name is added."""
         if self._views is None:
             fields: Any = self.arrays
-            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-3])
-            self._views = Store(*views, *fields[-3:])
+            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-2])
+            self._views = Store(*views, *fields[-2:])
         return self._views
 
     def _make_room(self, room: int) -> None:
@@ -137,19 +144,7 @@ class Parameters:
     @property
     def level(self) -> int:
         """How many subroutines are being executed."""
-        return self._level
-
-    def enter(self) -> None:
-        """A subroutine begins, with no names of its own yet."""
-        self._level += 1
-        first = self._level * self._room
-        self._named[first : first + self._room] = array("d", [math.nan]) * self._room
-        self.arrays = self._store()
-
-    def leave(self) -> None:
-        """It ends; the names of its caller are back."""
-        self._level -= 1
-        self.arrays = self._store()
+        return self._level[0]
 
     # --- values
     def values(self, first: int, count: int) -> list[float]:
@@ -168,19 +163,19 @@ class Parameters:
     def get_named(self, name: str) -> float | None:
         """Value of ``#<name>``, None if it is not defined."""
         column = self._columns.get(name, -1)
-        if 0 <= column < self._provided and self._provide is not None:
-            return self._provide(name)
         value = math.nan if column < 0 else self._named[self._place(name)]
-        return None if math.isnan(value) else value
+        if not math.isnan(value):
+            return value
+        return self._provide(name) if 0 <= column < self._provided and self._provide is not None else None
 
     def _place(self, name: str) -> int:
-        return (0 if name.startswith("_") else self._level) * self._room + self._columns[name]
+        return (0 if name.startswith("_") else self._level[0]) * self._room + self._columns[name]
 
     def set(self, key: int | str, value: float) -> None:
         """Set ``#key`` or ``#<key>``. Raises GCodeError (without a line) if it cannot be set."""
         if isinstance(key, str):
             if key not in self._columns:
-                if len(self._columns) >= MAX_NAMED + self._provided:
+                if len(self._columns) > MAX_NAMED + self._provided:
                     raise GCodeError(f"more than {MAX_NAMED} named parameters; use fewer.")
                 self._add(key)
             if self._columns[key] < self._provided:

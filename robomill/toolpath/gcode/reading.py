@@ -14,10 +14,10 @@ from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Interpreter
+from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
-from robomill.toolpath.gcode.stretches import Lines
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools

@@ -4,7 +4,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from robomill.compiled import Axes, InInt1
+from robomill.compiled import Axes, InInt1, Out1, OutInt1
 from robomill.toolpath.gcode.codes import LETTERS
 
 _NUMBERS = ("rotation", "factor", "feed", "speed", "waited", "dwell_time", "initial_level")
@@ -12,7 +12,10 @@ _CODES = (
     *("unit_code", "units_said", "system", "dwells", "motion", "plane"),
     *("feed_mode", "spindle", "spindle_mode", "in_spindle", "moves"),
 )
-_FLAGS = ("absolute", "retract_r", "mist", "flood", "arc_absolute", "arc_not_allowed")
+_FLAGS = (
+    *("absolute", "retract_r", "mist", "flood", "arc_absolute", "arc_not_allowed"),
+    *("seeking", "broke", "continued"),
+)
 STATE = np.dtype(
     [
         *((name, "f8", 6) for name in ("p", "sent", "g5x", "g92")),
@@ -50,6 +53,15 @@ MOVE = np.dtype(
 """A move; the columns are explained in ``Program``."""
 
 
+OWORD = np.dtype(
+    [
+        *((name, "i8") for name in ("line", "keyword", "begin", "past", "start", "end", "next", "counter", "most")),
+        *((name, "?") for name in ("has_break", "handed")),
+    ]
+)
+"""An O word; the columns are explained in ``flow.OWord``."""
+
+
 class Text(NamedTuple):
     """The lines of a program, for the rules."""
 
@@ -57,3 +69,24 @@ class Text(NamedTuple):
     """Its characters,"""
     starts: InInt1
     """and where each line starts; the last number is where one more would."""
+
+
+class Flow(NamedTuple):
+    """The O words of a file and the calls that are open, for the rules: as ``Store`` in plain Python or in arrays."""
+
+    words: Annotated[Any, Axes(OWORD, 1)]
+    """The O words in order,"""
+    arguments: Annotated[Any, Axes("uint8", 1)]
+    """and the characters of their arguments."""
+    counters: OutInt1
+    """(LEVELS * repeats,) how many rounds each ``repeat`` has left at each level of calls."""
+    left_over: OutInt1
+    """(words,) how often each went astray for a flag that LinuxCNC had not forgotten."""
+    special: OutInt1
+    """(LEVELS,) not 0 for a call that only the interpreter can leave,"""
+    back: OutInt1
+    """(LEVELS,) where each goes back to,"""
+    subs: OutInt1
+    """(LEVELS,) the subroutine that it is of,"""
+    aside: Out1
+    """(LEVELS * ARGUMENTS,) and the #1 and so on of its caller."""

@@ -20,6 +20,7 @@ from robomill.toolpath.gcode import operator_rules as op
 BLANKS = (9, 11, 12, 13, 26, 32)
 MAX_DEPTH = 60
 
+KEYWORDS = 16
 _EXACT = 15
 _TENS = tuple(10.0**n for n in range(23))
 """A whole number of ``_EXACT`` digits over one of these is the nearest double: neither is rounded."""
@@ -39,8 +40,12 @@ def packed(word: str) -> int:
     return code
 
 
-_OPERATOR_WORDS = tuple(packed(word) if word.isalpha() else -1 for word in op.OPERATORS)
-_FUNCTION_WORDS = tuple(packed(word) for word in op.FUNCTIONS)
+def packed_all(words: tuple[str, ...]) -> tuple[int, ...]:
+    """Keywords for ``keyword``, -1 for signs; as many for all, so that it is compiled once."""
+    return tuple(packed(word) if word.isalpha() else -1 for word in (*words, *("]" * (KEYWORDS - len(words)))))
+
+
+_OPERATOR_WORDS, _FUNCTION_WORDS = packed_all(op.OPERATORS), packed_all(op.FUNCTIONS)
 
 
 # --- characters
@@ -166,7 +171,7 @@ def _is_name(s, column, text, at, end) -> bool:
 
 def place_of(s, text, at, end, column) -> int:
     """Where the value of a name stands in ``s.named``: names with _ in front are shared by all calls."""
-    return (0 if text[past_blanks(text, at, end)] == 95 else s.level) * s.room + column
+    return (0 if text[past_blanks(text, at, end)] == 95 else s.level[0]) * s.room + column
 
 
 def _named(s, text, at, end):

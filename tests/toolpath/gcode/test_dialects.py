@@ -8,7 +8,7 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.dialects import LONGEST, NAMES, choose_dialect
-from robomill.toolpath.gcode.stretches import Lines
+from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.words import Block
 
 TOLD = [

@@ -8,12 +8,13 @@ import random
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import codes, kernels, line_rules, mode_rules
+from robomill.toolpath.gcode import codes, flow_rules, kernels, line_rules
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, WIDTH
+from robomill.toolpath.gcode.flow import Calls, Structure
+from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Move
 from robomill.toolpath.gcode.records import MOVE, STATE
-from robomill.toolpath.gcode.stretches import Lines
 
 NAMES = [*LETTERS.upper(), *(f"G{n}" for n in range(M_GROUP - G_GROUP)), *(f"M{n}" for n in range(WIDTH - M_GROUP))]
 """Of the columns: letters, then codes by modal group."""
@@ -84,7 +85,6 @@ def test_plain_lines(line: str, words: dict[str, float]) -> None:
         "G4 P1",
         "L1.5",
         "L-1",
-        "@5",
         "F-1",
         "S-1",
         "F-1 ; x",
@@ -163,14 +163,15 @@ def test_compiled_code_reads_the_same() -> None:
     ]
     written = ["".join(r.choices(words, k=r.randint(0, 4))) for _ in range(6000)]
     lines, plain, compiled = Lines("\n".join(written).encode()), Machine(None), Machine(None)
+    none = Structure(Calls())
     state, rows, table, read = np.zeros(1, STATE), [Move()], np.zeros(1, MOVE), 0
     state[0] = tuple(getattr(compiled, name) for name in STATE.names)
     for i in range(len(lines)):
         plain.moves = state["moves"][0] = 0
-        done = mode_rules.run(plain, plain.store.arrays, lines.plain_text, i, 1, rows)
-        assert kernels.run(state, compiled.store.views(), lines.text, i, 1, table) == done, written[i]
-        if done:
+        done = flow_rules.run(plain, plain.store.arrays, lines.plain_text, none.plain, i, 1, rows)
+        assert kernels.run(state, compiled.store.views(), lines.text, none.views, i, 1, table) == done, written[i]
+        if done[0]:
             assert plain.store.values(1, 30) == compiled.store.values(1, 30), written[i]
             np.testing.assert_allclose(compiled.store.arrays.words, plain.store.arrays.words, rtol=1e-15)
-        read += done
+        read += done[0]
     assert 1000 < read < 5000

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import line_rules, mode_rules
+from robomill.toolpath.gcode import flow_rules, line_rules, mode_rules
+from robomill.toolpath.gcode.flow import Calls, Structure
+from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Move
-from robomill.toolpath.gcode.stretches import Lines
 
 # Lines after "G1 F100", and whether they are plain; every word that no rule here uses leaves its line.
 PLAIN = {
@@ -35,6 +36,12 @@ PLAIN = {
     "I1": False,
     "R1": False,
     "G1 X1 R1": False,
+    "G1 @1 ^90": True,
+    "G1 @1 Z2": False,  # in no direction
+    "^45": True,
+    "G1 @1 X1": False,
+    "G1 ^90 Y0": False,
+    "G80 @1": False,
     "G0 X1 J1": False,
     "G1 X1 K1": False,
     "P1": False,
@@ -75,7 +82,8 @@ def machine_after(text: str) -> tuple[Machine, Lines]:
 
 
 def run(machine: Machine, lines: Lines, first: int, count: int, rows: list[Move]) -> int:
-    return mode_rules.run(machine, machine.store.arrays, lines.plain_text, first, count, rows)
+    none = Structure(Calls()).plain
+    return flow_rules.run(machine, machine.store.arrays, lines.plain_text, none, first, count, rows)[0]
 
 
 @pytest.mark.parametrize("line", PLAIN)
@@ -188,11 +196,11 @@ def test_names_that_are_known_are_set_too() -> None:
     store = Machine(None).store
     store.set("a", 1.0)
     store.set("_mine", 2.0)
-    store.enter()
+    flow_rules.enter_names(store.arrays)
     store.set("a", 5.0)
     data = b"#<a>=[#<a>+1] #<_mine>=#<a>"
     assert line_rules.read_line(store.arrays, data, 0, len(data)) == 2
     line_rules.apply_settings(store.arrays, 2)
     assert (store.get_named("a"), store.get_named("_mine")) == (6.0, 5.0)
-    store.leave()
+    store.arrays.level[0] -= 1
     assert (store.get_named("a"), store.get_named("_mine")) == (1.0, 5.0)

@@ -9,7 +9,8 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.parameters import COUNT, LEVELS, MAX_NAMED, READ_ONLY, Parameters
+from robomill.toolpath.gcode.flow_rules import enter_names
+from robomill.toolpath.gcode.parameters import COUNT, LEVELS, MAX_NAMED, READ_ONLY, RETURNED, Parameters
 
 PROVIDED = {"_x": 4.5, "_y": -2.0}
 
@@ -33,10 +34,10 @@ def test_names_are_a_dictionary_a_level_and_one_for_all(names: tuple[str, ...], 
             store.set(name, float(step))
         elif r.random() < 0.05 and len(levels) < LEVELS:
             levels.append({})
-            store.enter()
+            enter_names(store.arrays)
         elif r.random() < 0.05 and len(levels) > 1:
             levels.pop()
-            store.leave()
+            store.arrays.level[0] -= 1
         assert store.level == len(levels) - 1
         for asked in (name, r.choice(known)):
             expected = (everywhere if asked.startswith("_") else levels[-1]).get(asked)
@@ -61,12 +62,12 @@ def test_what_the_machine_provides_is_read_and_never_set() -> None:
         with pytest.raises(GCodeError, match=f"#<{name}> is provided by the machine"):
             store.set(name, 1.0)
     store.ask("_x")
-    assert store.arrays.named[0] == PROVIDED["_x"]
+    assert store.arrays.named[len(RETURNED)] == PROVIDED["_x"]
     store.arrays.figures[0] = 5421.0
     store.ask(None)
     assert store.arrays.numbered[5421] == 542.1
     store.forget()
-    assert math.isnan(store.arrays.named[0])
+    assert math.isnan(store.arrays.named[len(RETURNED)])
     assert math.isnan(store.arrays.numbered[5421])
 
 
