@@ -117,7 +117,7 @@ def test_a_line_sets_names_and_numbers_with_values_from_before_it(level: int) ->
     for name in ("first", "a"):
         store.set(name, -1.0)  # the caller's
     for _ in range(level):
-        store.enter()
+        flow_rules.enter_names(store.arrays)
     known = {"first": 3.0, "_all": 4.0, "a": 5.0}
     for name, value in known.items():
         store.set(name, value)
