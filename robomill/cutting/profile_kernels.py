@@ -170,6 +170,20 @@ def on_profile(shape: Shape, stretch: int, s: float) -> Place:
 
 
 @part
+def beside_place(shape: Shape, stretch: int, near: Place, s: float) -> Place:
+    """The place ``s`` m along a stretch of the profile, known one so near that its normal is turned by less than 0.1
+    rad: on a round nose by the series of the small angle between them."""
+    if stretch != NOSE or shape.kind == CHAMFER:
+        return on_profile(shape, stretch, s)
+    turn = (s - near.s) / shape.rc
+    square = turn * turn
+    c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))
+    d = turn * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))))
+    sine, cosine = near.sine * c + near.cosine * d, near.cosine * c - near.sine * d
+    return Place(s, shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine)
+
+
+@part
 def stretch_ends(shape: Shape, stretch: int, reach: float) -> tuple[float, float]:
     """(from, to) m of a stretch of the profile, up to height ``reach`` above the tip."""
     nose = profile(shape, shape.R)

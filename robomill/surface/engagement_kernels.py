@@ -22,6 +22,7 @@ from robomill.cutting.profile_kernels import (
     FLAT,
     Place,
     Shape,
+    beside_place,
     edge_sums,
     facing_part,
     on_profile,
@@ -257,8 +258,9 @@ def end_between(
         deep_low = engaged_at(world, step, ray, low)
     if abs(deep_high) == FAR:
         deep_high = engaged_at(world, step, ray, high)
+    middle = on_profile(shape, stretch, 0.5 * (low.s + high.s))
     for _ in range(ENDS):
-        at = on_profile(shape, stretch, low.s + (high.s - low.s) * deep_low / (deep_low - deep_high))
+        at = beside_place(shape, stretch, middle, low.s + (high.s - low.s) * deep_low / (deep_low - deep_high))
         deep = engaged_at(world, step, ray, at)
         if (deep > 0.0) == cuts:
             low, deep_low, deep_high = at, deep, 0.5 * deep_high

@@ -154,18 +154,18 @@ class March:
     def _state(self, first: BoolArray, spare: int = SPARE_LAYERS[-1]) -> tuple[Any, Any]:
         """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
         the steps that begin a run; ``spare``: layers that leaning cutters may open in a column."""
-        from robomill.surface.material_kernels import AXIS, ENDS, MOVE, NOBODY, RUN, SHAPE, Bounds, Dexels, World
+        from robomill.surface.material_kernels import AXIS, ENDS, MOVE, RUN, SHAPE, Bounds, Dexels, World
 
         cells = stock_grid(self.stock, self.cell)
         heights, facets = stock_layers(self.stock, cells, spare if leaning(np.concatenate(self._axes)).any() else 0)
-        names = np.full((*heights.shape[:2], heights.shape[2] + 1), NOBODY, dtype=np.int32)
+        names = np.zeros((*heights.shape[:2], heights.shape[2] + 1), dtype=np.int32)  # all ``NOBODY``'s
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
         dexels = Dexels(heights, names, lost, *grid, self._slack(cells, heights.shape[2] > 1))
         shapes = np.array([[float(n) for n in cutter.solid] for cutter in self.tooling.cutters])
-        runs = np.zeros((int(first.sum()), RUN))
-        runs[:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
-        runs[:, ENDS:AXIS] = self._ends[first]
-        runs[:, AXIS:MOVE] = self._axes[1][first]
+        runs = np.zeros((1 + int(first.sum()), RUN))
+        runs[1:, SHAPE : len(shapes[0])] = shapes[self.tooling.of_step[self.steps][first]]
+        runs[1:, ENDS:AXIS] = self._ends[first]
+        runs[1:, AXIS:MOVE] = self._axes[1][first]
         bounds = Bounds(*map(float, (*self.stock.lower, *self.stock.upper)))
         relief = relief_of(self.stock, max(cutter.radius for cutter in self.tooling.cutters))
         return World(dexels, runs, bounds, facets, relief), self._room()
@@ -227,7 +227,7 @@ class March:
         state, begins = self._state(self._begins, spare), self._begins
         rows = np.zeros((len(self.points), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(self.points), len(state[1].sectors), 4), dtype=np.float16)
-        run, first = np.cumsum(begins) - 1, 0
+        run, first = np.cumsum(begins, dtype=np.int64), 0
         while first < len(self.steps):
             checkpoint(first / len(self.steps), "What each step meets")
             n = np.arange(first, self._stop_after(first))
@@ -255,7 +255,7 @@ class March:
     def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, np.ndarray]:
         n = self._number[[i]]
         alone = np.ones(1, dtype=bool)
-        return self._march(self._stepwise, n, ends[None], (n, alone, alone), do)
+        return self._march(self._stepwise, n, ends[None], (n + 1, alone, alone), do)
 
     def _march(
         self,

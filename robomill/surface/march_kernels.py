@@ -253,6 +253,8 @@ def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
     dexels = world.dexels
     i, j = cell_of(dexels, x, y)
     noted = dexels.names[i, j, 0]
+    if noted == r:
+        return
     if noted == NOBODY:  # a point that looks at the cell lies less than two cells off
         dx, dy = 2.0 * dexels.dx, 2.0 * dexels.dy
         tell(world.relief, (x - dx, y - dy), (x + dx, y + dy), SIDES, 1.0)

@@ -24,7 +24,7 @@ Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
 
 FAR = 1e-3  # m: how deep in material or air is counted, at most
 SKIN = 1e-10  # m: thinner layers are rounding
-NOBODY = -1  # made by no run: the stock's own surface
+NOBODY = 0  # made by no run: the stock's own surface; runs are numbered from 1
 
 
 class Dexels(NamedTuple):
@@ -74,8 +74,8 @@ class Facets(NamedTuple):
 class World(NamedTuple):
     """The stock as it stands in the middle of a march.
 
-    runs (r, 21): straight runs of moves as far as they are cut: the five numbers of the tool's ``Shape``, ends (m),
-    unit axis, and the seven of the ``Move`` as the tool sees it, once it is cut.
+    runs (1 + r, 21): after nobody's, straight runs of moves as far as they are cut: the five numbers of the tool's
+    ``Shape``, ends (m), unit axis, and the seven of the ``Move`` as the tool sees it, once it is cut.
     """
 
     dexels: Dexels

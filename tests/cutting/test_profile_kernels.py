@@ -14,6 +14,7 @@ from robomill.cutting.profile_kernels import (
     FLANK,
     FLAT,
     NOSE,
+    beside_place,
     contact_lag,
     edge_sums,
     facing_part,
@@ -134,6 +135,16 @@ def test_stretches_reach_as_high_as_they_are_asked(name, reach):
     found = [(stretch, *stretch_ends(shape, stretch, reach)) for stretch in (NOSE, FLANK)]
     highest = max((on_profile(shape, stretch, b).height for stretch, a, b in found if b > a), default=0.0)
     assert highest == pytest.approx(max(reach, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_a_place_beside_another_is_the_place_itself(name):
+    rng = np.random.default_rng(6)
+    for shape, stretch, a, b in stretches(CUTTERS[name]):
+        for s in rng.uniform(a, b, 30):
+            near = np.clip(s + rng.uniform(-0.1, 0.1) * (shape.rc or 1e-3), a, b)
+            found = beside_place(shape, stretch, on_profile(shape, stretch, near), s)
+            np.testing.assert_allclose(found, on_profile(shape, stretch, s), rtol=0.0, atol=1e-15)
 
 
 @pytest.mark.parametrize("name", CUTTERS)

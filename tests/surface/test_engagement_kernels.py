@@ -129,18 +129,18 @@ def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
 
 
 def block_world(layers=1, dx=0.5 * MM):
-    """A block from -10 mm to 0 in few cells."""
+    """A block from -10 mm to 0 in few cells, all of them passed through by the side of the step's own run."""
     dexels = Dexels(
-        np.zeros((2, 2, layers)), np.zeros((2, 2, layers + 1), np.int32), np.zeros(1, np.int64), 0, 0, dx, dx, dx
+        np.zeros((2, 2, layers)), np.ones((2, 2, layers + 1), np.int32), np.zeros(1, np.int64), 0, 0, dx, dx, dx
     )
     nothing = np.zeros(0, dtype=np.int64)
     bounds = Bounds(-1.0, -1.0, -10 * MM, 1.0, 1.0, 0.0)
-    return World(dexels, np.zeros((1, 21)), bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0), NO_RELIEF)
+    return World(dexels, np.zeros((2, 21)), bounds, Facets(np.zeros((0, 3, 3)), nothing, nothing, 1.0), NO_RELIEF)
 
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
     v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
-    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), 0)
+    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), 1)
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -237,7 +237,7 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     turns step and block by so many right angles."""
     way = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][turn])
     v = np.append(math.sqrt(1.0 - along**2) * way, along)
-    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), 0)
+    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), 1)
     if turn in (1, 2):  # the left of Y is -X, that of -X is -Y
         low, high = -high, -low
     limits = {"x_low": low, "x_high": high} if turn % 2 else {"y_low": low, "y_high": high}
@@ -345,7 +345,7 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
     world, halves = block_world(layers=6, dx=0.2 * MM), 2 if along < 0.0 else 1
     tip = np.array([2.0, -3.0, -depth / MM]) * MM
     total, sectors = np.zeros(2 * MOMENTS + REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
-    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, 0), total, sectors)
+    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, 1), total, sectors)
 
     phi = (np.arange(720) + 0.5) * np.pi / 360
     e = np.sin(phi)[:, None] * f + np.cos(phi)[:, None] * left

@@ -51,8 +51,8 @@ def world_of(moves, layers=0, size=(24.0, 16.0), cells=(31, 17)):
         heights = np.zeros((*cells, 1))
     names = np.full((*cells, heights.shape[2] + 1), NOBODY, dtype=np.int32)
     dexels = Dexels(heights, names, np.zeros(1, dtype=np.int64), 0.5 * dx, 0.5 * dy, dx, dy, 0.5 * max(dx, dy))
-    runs = np.zeros((len(moves), RUN))
-    for run, (cutter, start, end, axis) in zip(runs, moves, strict=True):
+    runs = np.zeros((1 + len(moves), RUN))
+    for run, (cutter, start, end, axis) in zip(runs[1:], moves, strict=True):
         run[:ENDS] = cutter.solid
         run[ENDS:AXIS] = np.array([*start, *end]) * MM
         run[AXIS:MOVE] = axis
@@ -95,7 +95,7 @@ def test_columns_are_left_by_the_lowest_stamp_and_know_the_run_that_made_them(ki
     """A path whose runs follow one another: what a run need not look at again is cut by the one before."""
     moves = walk(kind, points)
     world = world_of(moves)
-    for r in range(len(moves)):
+    for r in range(1, len(world.runs)):
         cut_run(world, r, False)
     dexels = world.dexels
     x, y = centres(dexels)
@@ -106,7 +106,7 @@ def test_columns_are_left_by_the_lowest_stamp_and_know_the_run_that_made_them(ki
     np.testing.assert_array_equal((made == NOBODY)[expected < -1e-5], False)
     np.testing.assert_array_equal(made[expected > -1e-9], NOBODY)
     i, j = np.nonzero(made != NOBODY)
-    by_maker = np.array(left)[made[i, j], i, j]
+    by_maker = np.array(left)[made[i, j] - 1, i, j]
     np.testing.assert_allclose(by_maker, dexels.heights[i, j, 0], atol=5e-6)
 
 
@@ -123,7 +123,7 @@ def test_columns_are_left_by_the_lowest_stamp_where_runs_begin_anew_and_tools_ch
         kind = str(rng.choice(list(CUTTERS))) if rng.random() < 0.25 else kind
         moves, at = [*moves, (CUTTERS[kind], here, there, UP)], there
     world = world_of(moves)
-    for r in range(len(moves)):
+    for r in range(1, len(world.runs)):
         cut_run(world, r, False)
     x, y = centres(world.dexels)
     expected = np.minimum(np.min([stamped(move, x, y) for move in moves], axis=0), 0.0)
@@ -138,7 +138,7 @@ def test_a_leaning_run_takes_its_body_out_of_the_columns(kind, lean):
     k /= np.linalg.norm(k)
     cutter, start, end = CUTTERS[kind], np.array([7.0, 6.0, -4.0]), np.array([12.0, 8.0, -5.0])
     world = world_of([(cutter, start, end, k)], layers=3, cells=(25, 17))
-    cut_run(world, 0, False)
+    cut_run(world, 1, False)
     dexels = world.dexels
     x, y = centres(dexels)
     z = np.linspace(-9.98, -0.02, 84) * MM
@@ -168,7 +168,7 @@ def test_layers_after_many_cuts_are_what_was_never_taken_out():
         world = world_of([(FLAT, (0, 0, 0), (1, 0, 0), UP)], layers=6, cells=(1, 1))
         dexels = world.dexels
         material, maker = np.ones(len(z), dtype=bool), {-10.0: NOBODY, 0.0: NOBODY}
-        for r in range(5):
+        for r in range(1, 6):
             low, high = np.sort(rng.choice(np.arange(-11.0, 1.01, 0.25), 2, replace=False))
             take_out(dexels, (0, 0, r), low * MM, np.inf if high > 0.9 else high * MM)
             ends_before = {end for end in maker if not low <= end <= high}
@@ -191,16 +191,16 @@ def test_layers_after_many_cuts_are_what_was_never_taken_out():
 
 @pytest.mark.parametrize(
     ("low", "high", "ends", "made"),
-    [(-4, -3, [0, -1, -4, -10], 1), (-9, -8, [0, -1, -2, -10], 0), (-7, -5, [0, -1, -2, -10], 0)],
+    [(-4, -3, [0, -1, -4, -10], 2), (-9, -8, [0, -1, -2, -10], 1), (-7, -5, [0, -1, -2, -10], 1)],
 )
 def test_without_room_for_another_layer_a_gap_takes_the_thinner_rest_above_it_or_is_closed(low, high, ends, made):
     """Layers 0 to -1 and -2 to -10 (in 1/1024 m) fill a column of two: the gap would be within the second."""
     world = world_of([(FLAT, (0, 0, 0), (1, 0, 0), UP)] * 2, layers=2, cells=(1, 1))
     world.dexels.heights[0, 0] = np.array([0, -1, -2, -10]) / 1024
-    world.dexels.names[0, 0, 1:] = NOBODY, 0, 0, NOBODY
-    take_out(world.dexels, (0, 0, 1), low / 1024, high / 1024)
+    world.dexels.names[0, 0, 1:] = NOBODY, 1, 1, NOBODY
+    take_out(world.dexels, (0, 0, 2), low / 1024, high / 1024)
     np.testing.assert_array_equal(world.dexels.heights[0, 0] * 1024, ends)
-    np.testing.assert_array_equal(world.dexels.names[0, 0, 1:], [NOBODY, 0, made, NOBODY])
+    np.testing.assert_array_equal(world.dexels.names[0, 0, 1:], [NOBODY, 1, made, NOBODY])
     assert world.dexels.lost[0] == 1
 
 
@@ -230,15 +230,15 @@ def test_a_run_follows_the_one_that_left_off_at_its_start_with_its_tool():
         ((FLAT, (1, 1, -1), (5, 1, -2), UP), False),
     ):
         runs = world_of([first, second]).runs
-        assert follows(runs, 1) == same
-        assert not follows(runs, 0)
+        assert follows(runs, 2) == same
+        assert not follows(runs, 1)
 
 
 @pytest.mark.parametrize(("one", "other"), [((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8)), ((0.0, 0.6, 0.8), (0.0, -0.6, 0.8))])
 def test_a_run_of_another_axis_does_not_follow(one, other):
     for second, same in ((one, True), (other, False)):
         runs = world_of([(FLAT, (1, 1, -1), (5, 1, -2), one), (FLAT, (5, 1, -2), (9, 1, -2), second)]).runs
-        assert follows(runs, 1) == same
+        assert follows(runs, 2) == same
 
 
 def test_a_run_grows_by_the_end_of_each_step():
@@ -260,7 +260,7 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
     """Where a line on either side of the body at the height of its full radius passes over the plan."""
     start, end = np.array([6.0, 6.0, -5.0]), np.array([17.0, 9.0, -5.5])
     world = world_of([(cutter, start, end, axis)])
-    note_rim(world, cutter.solid, 0, False)
+    note_rim(world, cutter.solid, 1, False)
     way = end - start
     side = np.cross(axis, way) / np.linalg.norm(np.cross(axis, way))
     share = np.linspace(0.0, 1.0, 4001)[:, None]
@@ -270,7 +270,7 @@ def test_sides_are_noted_in_the_cells_they_pass_through(cutter, axis):
         at = (line + sense * cutter.radius / MM * side)[:, :2] * MM
         i, j = np.floor(at / [dexels.dx, dexels.dy]).astype(int).T
         np.add.at(expected, (i, j), 1)
-    found = noted(world) == 0
+    found = noted(world) == 1
     length = np.linalg.norm(way) * MM / 4000
     assert not found[expected == 0].any()
     assert found[expected * length > 0.5 * min(dexels.dx, dexels.dy)].all()
@@ -307,18 +307,18 @@ def test_the_side_that_reaches_further_is_noted():
     wide_move, narrow_move = (FLAT, (2, 8, -2), (22, 8, -2), UP), (narrow, (2, 8, -2), (22, 8, -2), UP)
     for moves in ((wide_move, narrow_move), (narrow_move, wide_move)):
         world = world_of(moves, cells=(12, 8))
-        for r in range(2):
+        for r in (1, 2):
             see_move(world.runs[r])
-            note_rim(world, moves[r][0].solid, r, False)
+            note_rim(world, moves[r - 1][0].solid, r, False)
         names = noted(world)
         np.testing.assert_array_equal(np.flatnonzero(names[6] != NOBODY), [2, 5])
-        np.testing.assert_array_equal(names[2:10, [2, 5]], moves.index(wide_move))
+        np.testing.assert_array_equal(names[2:10, [2, 5]], 1 + moves.index(wide_move))
 
 
 def test_nothing_is_noted_above_the_stock_or_of_a_plunge():
     for start, end in (((5, 8, 1), (15, 8, 1)), ((5, 8, 0), (5, 8, -5))):
         world = world_of([(FLAT, start, end, UP)])
-        note_rim(world, FLAT.solid, 0, False)
+        note_rim(world, FLAT.solid, 1, False)
         assert (noted(world) == NOBODY).all()
 
 
@@ -330,7 +330,7 @@ def test_points_of_what_is_left_stand_as_deep_as_the_nearest_wall():
         (CUTTERS["bull"], (20, 20, -1), (20, 5, -4), UP),
     ]
     world = world_of(moves)
-    for r in range(len(moves)):
+    for r in range(1, len(world.runs)):
         cut_run(world, r, False)
     points = np.random.default_rng(8).uniform([-1 * MM, -1 * MM, -11 * MM], [25 * MM, 17 * MM, 1 * MM], (600, 3))
     x, y, z = points.T

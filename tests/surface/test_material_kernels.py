@@ -40,7 +40,7 @@ def test_points_of_a_stock_with_a_hole():
 
 def dexels(heights, slack):
     nx, ny, n = heights.shape
-    names = np.full((nx, ny, 1 + n), -1)
+    names = np.zeros((nx, ny, 1 + n), dtype=np.int32)
     return Dexels(heights, names, np.zeros(1, dtype=np.int64), 10.0, -4.0, 2.0, 0.5, slack)
 
 
