@@ -173,3 +173,26 @@ def test_what_no_number_may_exceed_is_itself_allowed():
         assert bool(quantities(Sample)["free"].allows(value)) == good
     for value, good in ((1e-12, True), (0.9999e-12, False), (0.0, False), (-1e-12, False)):
         assert bool(quantities(Sample)["width"].allows(to_si(value, "mm"))) == good
+    for value, good in ((0.9999e12, True), (1.0001e12, False)):
+        assert bool(quantities(Sample)["reach"].allows(to_si(value, "mm"))) == good
+
+
+def test_a_bound_that_is_not_nothing_is_left_out_where_it_says_so() -> None:
+    @dataclass
+    class Between:
+        size: float = quantity("Size", "mm", default=3e-3, above=to_si(2.0, "mm"), below=to_si(4.0, "mm"))
+
+    size = quantities(Between)["size"]
+    for value, good in ((1.9, False), (2.0, False), (2.001, True), (3.999, True), (4.0, False), (5.0, False)):
+        assert bool(size.allows(to_si(value, "mm"))) == good
+
+
+def test_a_joint_that_slides_has_the_unit_of_lengths_where_one_is_declared() -> None:
+    @dataclass
+    class Joint:
+        limit: float = quantity("Limit", "deg", sliding="mm", default=0.0)
+        sense: float = quantity("Sense", default=1.0)
+
+    limit, sense = quantities(Joint)["limit"], quantities(Joint)["sense"]
+    assert [limit.of_joint(slides).unit for slides in (False, True)] == ["deg", "mm"]
+    assert {sense.of_joint(slides).unit for slides in (False, True)} == {sense.unit}
