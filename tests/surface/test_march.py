@@ -148,3 +148,14 @@ def test_between_cells_heights_differ_by_what_the_sharpest_nose_leaves_there(cut
     assert march._slack(stock_grid(STOCK, 2e-4), layered) == pytest.approx(slack, rel=1e-6)
     wide = stock_grid(Stock((0, 0, -1), (0.01, 0.013, 0)), 4e-3)._replace(dx=1e-4, dy=2e-4)
     assert march._slack(wide, layered) == pytest.approx(slack, rel=1e-6)
+
+
+@pytest.mark.parametrize(("lean", "slack"), [(0.0, 0.01 * 2e-4), (0.1, 0.5 * 2e-4)])
+def test_columns_that_may_hold_layers_are_trusted_to_half_a_cell(lean, slack):
+    """Where cutters lean a column may have gaps, and room for them; a flat mill that stands upright leaves steps."""
+    p, cutting = passes(along(0.0, 0.002))
+    march = March(STOCK, 2e-4, TOOLS["flat"], p, np.array([0.0, np.sin(lean), np.cos(lean)]), cutting)
+    world, _ = march._state(np.ones(len(march.steps), dtype=bool))
+    assert (world.dexels.heights.shape[2] > 1) == (lean > 0.0)
+    assert world.dexels.slack == pytest.approx(slack, rel=1e-6)
+    np.testing.assert_allclose(world.dexels.heights[..., 0].max(), 0.0)
