@@ -93,20 +93,24 @@ CUTTERS = [
 @pytest.mark.parametrize("lean", [(0.0, 0.0), (0.2, 0.0), (0.1, -0.25)])
 @pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
 @pytest.mark.parametrize("end", [(0.012, -0.005, 0.0), (0.01, 0.004, -0.003), (0, 0, -0.004)])
-def test_what_a_run_sweeps_is_what_its_stamps_cover(cutter, lean, end):
-    """Height along the tool's axis above the swept surface: the highest of stamps along the move."""
+@pytest.mark.parametrize("above", [0.0, 0.05])
+def test_what_a_run_sweeps_is_what_its_stamps_cover(cutter, lean, end, above):
+    """Height along the tool's axis above the swept surface: the highest of stamps along the move; below 0 under its
+    tip, however high above the zero of the part."""
     k = np.array([np.sin(lean[0]), -np.sin(lean[1]) * np.cos(lean[0]), np.cos(lean[1]) * np.cos(lean[0])])
     run = np.zeros((1, RUN))
     run[0, :5] = cutter.solid
-    start, stop = np.array([0.001, 0.002, 0.0]), np.array([0.001, 0.002, 0.0]) + end
+    start = np.array([0.001, 0.002, above])
+    stop = start + end
     run[0, ENDS:AXIS] = [*start, *stop]
     run[0, AXIS : AXIS + 3] = k
     assert is_upright(run[0]) == (lean == (0.0, 0.0))
     see_move(run[0])
-    tips = start + np.linspace(0, 1, 4001)[:, None] * (stop - start)
+    tips = start + np.linspace(0, 1, 2001)[:, None] * (stop - start)
     rng = np.random.default_rng(6)
     checked = 0
     for point in rng.uniform([-0.006, -0.01, -0.005], [0.02, 0.012, 0.006], (150, 3)):
+        point[2] += above
         from_tip = point - tips
         along = from_tip @ k
         across = np.linalg.norm(from_tip - along[:, None] * k, axis=1)
@@ -116,6 +120,8 @@ def test_what_a_run_sweeps_is_what_its_stamps_cover(cutter, lean, end):
         if under.any() and along[under].max() > 2e-5:
             assert found == pytest.approx(truth, abs=3e-5)
             checked += 1
+        elif under.any() and along[under].max() < -2e-5:
+            assert found < 0.0
         elif not (across < cutter.radius + 2e-5).any():
             assert found == -np.inf
     assert checked > 10
