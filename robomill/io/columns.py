@@ -121,9 +121,12 @@ def read_cells(text: str, layout: Layout, name: str = "") -> list[tuple[str, dic
     Numbers have points in them, whatever the file wrote. Raises the layout's error for a row of another width.
     """
     body, _ = _body(text, layout, name)
+    for k in range(len(body.lines)):
+        _check_width(body, k)
+    if body.mark != ",":
+        _check_commas(body, [Column(at, written, "", written) for at, written in enumerate(body.names)])
     rows = []
     for k, line in enumerate(body.lines):
-        _check_width(body, k)
         cells = (cell.strip() for cell in _cells(line, body.mark))
         if body.mark != ",":
             cells = (cell.replace(",", ".") if _number(cell.replace(",", ".")) is not None else cell for cell in cells)
@@ -286,9 +289,11 @@ def _check_commas(body: _Body, wanted: list[Column]) -> None:
         cells = _cells(line, body.mark) if "," in line else []
         for column in wanted if cells else ():
             found = cells[column.at].strip()
-            if _THOUSANDS.fullmatch(found) is None and "," in found:
+            if "," not in found or _number(found.replace(",", ".")) is None:
+                continue
+            if _THOUSANDS.fullmatch(found) is None:
                 return
-            if "," in found and first is None:
+            if first is None:
                 ways = f"{found.replace(',', '.')} to some and {found.replace(',', '')} to others"
                 message = f"found {found!r:.40}, which is {ways}; write the table's numbers in one of these two ways."
                 first = body.place.refuse(message, int(body.row[k]), column.written)

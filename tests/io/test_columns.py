@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import robomill.io.columns as columns_module
 from robomill.errors import LoadTestError, SurfaceError
-from robomill.io.columns import LONGEST_NAME, MOST_COLUMNS, Layout, append_rows, read_columns, spelled
+from robomill.io.columns import LONGEST_NAME, MOST_COLUMNS, Layout, append_rows, read_cells, read_columns, spelled
 
 UNITS = {
     "fx": ("N", "kN"),
@@ -177,6 +177,15 @@ def test_a_comma_that_may_part_thousands_is_asked_where_no_other_says_what_it_is
     for clear in ("0,220", "1,22", "1234,500"):
         columns, _ = read_columns(asked.replace("4", clear), LAYOUT, "mine.csv")
         assert columns.values["m"].tolist() == [-1.22, float(clear.replace(",", "."))]
+
+
+def test_a_table_of_words_and_numbers_asks_the_same() -> None:
+    table = "who;Fx_N\nAna, the first;1,220\nBo;3\n"
+    with pytest.raises(SurfaceError, match="row 2, column Fx_N: found '1,220'"):
+        read_cells(table, LAYOUT, "mine.csv")
+    rows = read_cells(table.replace(";3", ";3,5"), LAYOUT, "mine.csv")
+    assert [cells["Fx_N"] for _, cells in rows] == ["1.220", "3.5"]
+    assert rows[0][1]["who"] == "Ana, the first"
 
 
 def test_the_refusal_is_of_the_layouts_kind_and_names_the_place_as_data() -> None:

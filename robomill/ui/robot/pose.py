@@ -73,7 +73,8 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         span = inputs.Span(low, high, 0.5, "%.1f°" if unit == "deg" else "%.1f mm")
         inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
     with box:
-        exact = float(theta[i]) if shown else 0.0
+        full = float(from_si(float(theta[i]), unit))
+        exact = float(theta[i]) if abs(full - round(full, 5)) < 1e-9 else to_si(shown, unit)  # typed, or computed
         inputs.value(f"pose.box.{i}", NumberBox(label, unit, 2, low=low, high=high, hidden=True), exact, turn)
 
 
