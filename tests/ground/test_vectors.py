@@ -1,6 +1,7 @@
 """Angles between directions against directions turned by known angles."""
 
 import numpy as np
+import pytest
 
 from robomill.vectors import angle_between
 
@@ -14,3 +15,12 @@ def test_the_angle_is_the_one_it_was_turned_by():
         turned = np.cos(angle) * x + np.sin(angle) * y
         np.testing.assert_allclose(angle_between(3.0 * x, 0.2 * turned), angle, rtol=1e-3, atol=1e-15)
     assert angle_between([0, 0, 1.0], [[0, 0, 2.0], [0, 5.0, 0], [0, 0, -1.0]]).tolist() == [0.0, np.pi / 2, np.pi]
+
+
+@pytest.mark.parametrize("shape", [(3,), (5, 3), (2, 4, 3), (2, 1, 3, 3)])
+def test_angles_of_batches_are_those_one_by_one(shape) -> None:
+    a, b = np.random.default_rng(1).normal(size=(2, *shape))
+    found = angle_between(a, b)
+    assert found.shape == shape[:-1]
+    for i in np.ndindex(*shape[:-1]):
+        assert found[i] == pytest.approx(np.arccos(a[i] @ b[i] / np.linalg.norm(a[i]) / np.linalg.norm(b[i])))
