@@ -20,6 +20,7 @@ from robomill.cutting.profile_kernels import (
     END,
     FLANK,
     FLAT,
+    NOSE,
     Place,
     Shape,
     beside_place,
@@ -30,7 +31,7 @@ from robomill.cutting.profile_kernels import (
 )
 from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.relief_kernels import UNKNOWN, told, tops_about
+from robomill.surface.relief_kernels import UNKNOWN, told, tops_about, tops_between
 from robomill.surface.rib_kernels import change_between, is_plain
 from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import (
@@ -42,6 +43,7 @@ from robomill.surface.turn_kernels import (
 )
 
 ENDS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
+NARROW = 0.3e-3  # m: so far apart a nose is looked at where material may end between its pieces' ends
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
@@ -228,8 +230,12 @@ def measure_stretch(
         deep_end = about_at(world, step, ray, end)
         while low.s < end.s:
             high, deep_high = end, deep_end
-            if not shut and (deep_low > 0.0) == (deep_high > 0.0):
-                share = hidden_place(world, seen, stretch, (low, high), deep_low > 0.0)
+            if (deep_low > 0.0) == (deep_high > 0.0):
+                share = 1.0
+                if not shut:
+                    share = hidden_place(world, seen, stretch, (low, high), deep_low > 0.0)
+                elif stretch == NOSE and deep_low <= 0.0:
+                    share = narrow_place(world, seen, (low, high))
                 if share < 1.0:
                     high = on_profile(shape, stretch, low.s + share * (end.s - low.s))
                     deep_high = engaged_at(world, step, ray, high)
@@ -269,6 +275,24 @@ def end_between(
         if abs(deep) < EXACT:
             return at, at
     return low, high
+
+
+@called
+def narrow_place(world: World, seen: tuple[Shape, Step, Ray], ends: tuple[Place, Place]) -> float:
+    """How far on between two places of a nose in the air it cuts, as a share; 1 where that is nowhere. What a finishing
+    pass meets may be narrower than a piece of the nose, though no rib is near."""
+    (shape, step, ray), (low, high) = seen, ends
+    if high.s - low.s <= NARROW:
+        return 1.0
+    a, b = point_at(step, ray, low), point_at(step, ray, high)
+    if told(world.relief, tops_between(world.relief, a, b), min(a[2], b[2]), max(a[2], b[2])) != UNKNOWN:
+        return 1.0
+    parts = math.ceil((high.s - low.s) / NARROW)
+    for n in range(1, parts):
+        share = n / parts
+        if engaged_at(world, step, ray, on_profile(shape, NOSE, low.s + share * (high.s - low.s))) > 0.0:
+            return share
+    return 1.0
 
 
 @part

@@ -7,9 +7,12 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
 from robomill.surface.engagement import engage as engage_march
 from robomill.surface.march import March
 from robomill.surface.stock import Stock
+from tests.cutting.brute_force import UPRIGHT, Cut, Floats, Move, axis, box, in_tool_axes
+from tests.simulation.cuts import AL7075, FEED, MM
 
 R = 0.004
 FLAT = Cutter("flat", 2 * R)
@@ -246,3 +249,37 @@ def test_from_a_gap_on_that_no_column_has_room_for_nothing_is_known(passes):
     gaps = np.cumsum(inside, axis=0).max(axis=1)  # most in a column after each slot
     assert gaps.max() == passes
     np.testing.assert_array_equal(found.part.known[1::2], np.concatenate([[True], gaps[:-1] <= 6]))
+
+
+def finishing(cutter: Cutter, k: Floats, tips: list[tuple[float, float]], cell: float) -> float:
+    """How far the force of the last of some passes along X, tips at (y, z) mm beside a block whose side is y = 0 and
+    whose top is z = 0, is off, as a share of it."""
+    low, high, ahead = np.array([-20.0, 0.0, -25.0]) * MM, np.array([20.0, 10.0, 0.0]) * MM, np.array([1.0, 0.0, 0.0])
+    ends = [np.array([[-30.0, y, z], [30.0, y, z]]) * MM for y, z in tips]
+    ends[-1] = np.vstack([ends[-1][0], [[2.5e-3, *ends[-1][0][1:]], [3e-3, *ends[-1][0][1:]]]])
+    p = np.concatenate(ends)
+    cutting = np.concatenate([np.arange(len(each)) > 0 for each in ends])
+    axes = np.tile(k, (len(p), 1))
+    part = engage(Stock(low, high), cell * MM, Tooling.of(cutter, len(p)), p, axes, cutting).part
+    found = part.force(AL7075, cutter, np.full(len(p), FEED))[-1]
+    moves = tuple(Move(cutter, each[0], each[-1] - 1e-8 * ahead, k) for each in ends)
+    cut = Cut(box(low, high), moves, 8 * MM, 1_000_000)
+    truth = in_tool_axes(cut.mean_force(cutter, AL7075, ends[-1][-1], FEED * ahead, k), ahead, k)
+    return float(np.linalg.norm(found - truth) / np.linalg.norm(truth))
+
+
+BALL10 = Cutter("ball", 10 * MM, flutes=5)
+DOWN_A_WALL = {"0.2 by 0.3": (0.2, 0.3), "0.1 by 0.3": (0.1, 0.3), "0.2 by 1": (0.2, 1.0), "0.05 square": (0.05, 0.05)}
+
+
+@pytest.mark.parametrize("cell", [0.1, 0.2])
+@pytest.mark.parametrize("bite", DOWN_A_WALL)
+def test_what_a_ball_takes_off_a_wall_is_narrower_than_a_piece_of_its_nose(bite: str, cell: float) -> None:
+    a_e, down = DOWN_A_WALL[bite]
+    tips = [(a_e - 5.0, -6.0 - down * n) for n in range(4)]
+    assert finishing(BALL10, UPRIGHT, tips, cell) < 0.05
+
+
+@pytest.mark.parametrize("aside", [-2.0, -2.5, -3.0, -3.3])
+def test_an_edge_of_the_stock_that_a_leaning_ball_takes_off(aside: float) -> None:
+    assert finishing(BALL10, axis(B=18), [(aside, -1.4)], 0.1) < 0.05
