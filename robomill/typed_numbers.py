@@ -79,7 +79,7 @@ def write_number(value: float, decimals: int | None = None) -> str:
         fixed = f"{shown:.{decimals}f}"
         if float(fixed) == shown or (not given and abs(shown) >= 10.0 ** (2 - decimals)):
             return fixed
-    return f"{shown if given else value:.{GIVEN if given else SHOWN}g}"
+    return f"{shown if given else float(f'{value:.{SHOWN}g}'):.{GIVEN}g}"
 
 
 def _on_one_line(text: str) -> str:

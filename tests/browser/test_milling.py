@@ -49,6 +49,10 @@ def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: An
     choose(page, "Model", "mechanistic")
     page.get_by_role("button", name="Where the tip is off most").first.click()
     page.wait_for_selector("text=Program")
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.rm-lead')].some(e => e.innerText.includes('(50.00, 0.00, −2.00)'))",
+        timeout=20_000,
+    )
     idle(page)
     assert "Line 7" in place(page)
     assert "(50.00, 0.00, −2.00)" in place(page)

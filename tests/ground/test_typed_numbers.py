@@ -218,6 +218,7 @@ def test_a_number_in_any_unit_of_the_kind_is_converted_and_in_none_other(value: 
 @example(60.900000000000006)
 @example(-1.65768417e-22)
 @example(25.4 / 7)
+@example(100000000.25)
 def test_what_is_written_is_read_back(value: float) -> None:
     for decimals in (None, 0, 3):
         text = write_number(value, decimals)
