@@ -46,7 +46,7 @@ def ellipsoid_traces(
     soft = axes[:, -1] * times * values[-1]
     if away is not None and soft @ away > 0:
         soft = -soft
-    end = np.asarray(centre) + 1.4 * soft
+    end = np.asarray(centre) + 1.15 * soft
     return [
         solids.trace([ellipsoid_mesh(C, centre, times)], p.caution, "compliance ellipsoid", opacity=0.32),
         solids.trace(
@@ -54,5 +54,5 @@ def ellipsoid_traces(
             p.caution,
             "soft direction",
         ),
-        solids.words([(end, "softest", p.caution)]),
+        solids.words([(end, "softest", p.caution)], textposition=f"{'bottom' if soft[2] < 0.0 else 'top'} center"),
     ]
