@@ -22,7 +22,7 @@ _SAME = str.maketrans(
     | dict.fromkeys("\u200b\u200e\u200f\u2060\ufeff")  # of no width
     | {"⁄": "/", "\t": " "}
 )
-_FRACTION = re.compile(r"([+-]?) ?(?:(\d+) )?([1-9]\d*) ?/ ?([1-9]\d*)(?![\d.,'/])")
+_FRACTION = re.compile(r"([+-]?) ?(?:(\d{1,9}) )?([1-9]\d{0,8}) ?/ ?([1-9]\d{0,8})(?![\d.,'/])")
 _NUMBER = re.compile(
     r"(?P<sign>[+-]?) ?"
     r"(?:10(?:\^|\*\*)(?P<power>[+-]?\d+)|(?P<body>\d+(?:[ ']\d{3}(?![\d/]))*[\d.,]*|[.,]\d+)"
