@@ -32,6 +32,7 @@ _NUMBER = re.compile(
 _PLAIN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 _GROUPED = re.compile(r"\d{1,3}(?P<mark>[ '])\d{3}((?P=mark)\d{3})*([.,]\d*)?")
 _PARTED = re.compile(r"[1-9]\d{0,2}(?P<mark>[.,])\d{3}((?P=mark)\d{3})*(?P<rest>(?!(?P=mark))[.,]\d*)?")
+_EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _HALF = re.compile(r"(?<=\d)(?=[¼½¾⅐-⅞])")
 
 
@@ -66,6 +67,13 @@ def read_number(text: str, unit: str = "1") -> TypedNumber:
     else:
         value = number
     return TypedNumber(value, _PLAIN.fullmatch(given) is not None, value != number or fraction is not None)
+
+
+def either_way(number: str, text: str) -> str:
+    """How a ``number`` with one comma is read in two ways, told of the whole ``text``; "" where it is not."""
+    if not _EITHER.fullmatch(number):
+        return ""
+    return f"{text.replace(',', '.')} to some and {text.replace(',', '')} to others"
 
 
 def write_number(value: float, decimals: int | None = None) -> str:
@@ -111,14 +119,11 @@ def _digits(body: str, line: str, unit: str) -> str:
         if not _GROUPED.fullmatch(body):
             raise NumberError(f"found {line!r:.40}, expected {_expected(unit)}, its thousands in groups of three.")
         return body.replace(" ", "").replace("'", "").replace(",", ".")
-    parted = _PARTED.fullmatch(body)
-    if marks == [","] and parted:
-        first, second = (line.replace(",", mark) for mark in (".", ""))
-        raise NumberError(
-            f"found {line!r:.40}, which is {first} to some and {second} to others: type it in one of these two ways."
-        )
+    if ways := either_way(body, line):
+        raise NumberError(f"found {line!r:.40}, which is {ways}: type it in one of these two ways.")
     if len(marks) < 2:
         return body.replace(",", ".")
+    parted = _PARTED.fullmatch(body)
     if not parted:
         raise NumberError(f"found {line!r:.40}, expected {_expected(unit)} with one decimal mark.")
     return body.replace(parted["mark"], "").replace(",", ".")

@@ -21,10 +21,10 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import RobomillError
 from robomill.files import TABLE
 from robomill.io.texts import read_text
+from robomill.typed_numbers import either_way
 from robomill.units import to_si
 
 MOST_COLUMNS = 300
-_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 LONGEST_NAME = 100  # characters of a column's name; a longer one is none that is known
 
 
@@ -291,10 +291,10 @@ def _check_commas(body: _Body, wanted: list[Column]) -> None:
             found = cells[column.at].strip()
             if "," not in found or _number(found.replace(",", ".")) is None:
                 continue
-            if _THOUSANDS.fullmatch(found) is None:
+            ways = either_way(found, found)
+            if not ways:
                 return
             if first is None:
-                ways = f"{found.replace(',', '.')} to some and {found.replace(',', '')} to others"
                 message = f"found {found!r:.40}, which is {ways}; write the table's numbers in one of these two ways."
                 first = body.place.refuse(message, int(body.row[k]), column.written)
     if first is not None:

@@ -19,7 +19,13 @@ def url() -> Iterator[str]:
 
 
 @pytest.fixture
-def page(url: str) -> Iterator[Any]:
+def language() -> str:
+    """The browser's language, "" for its own."""
+    return ""
+
+
+@pytest.fixture
+def page(url: str, language: str) -> Iterator[Any]:
     """A fresh page in a wide window; errors of the page's own scripts fail the test."""
     sync_api = pytest.importorskip("playwright.sync_api")
     if not Path(CHROMIUM).exists():
@@ -28,7 +34,8 @@ def page(url: str) -> Iterator[Any]:
         context = playwright.chromium.launch_persistent_context(
             home,
             executable_path=CHROMIUM,
-            args=ARGUMENTS,
+            args=[*ARGUMENTS, f"--lang={language}"] if language else ARGUMENTS,
+            locale=language or None,
             viewport={"width": 1440, "height": 1000},
             accept_downloads=True,
         )

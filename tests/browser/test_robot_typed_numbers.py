@@ -3,38 +3,26 @@
 from __future__ import annotations
 
 import re
-import tempfile
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
-from screenshots import ARGUMENTS, CHROMIUM, idle
+from screenshots import idle
 
 pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(params=["en-US", "de-DE", "fr-FR"])
-def page(url: str, request: pytest.FixtureRequest) -> Iterator[Any]:
+def language(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def page(page: Any, language: str) -> Any:
     """A page of a browser in another language."""
-    sync_api = pytest.importorskip("playwright.sync_api")
-    if not Path(CHROMIUM).exists():
-        pytest.skip("no Chromium: apt-get install -y chromium")
-    with sync_api.sync_playwright() as playwright, tempfile.TemporaryDirectory() as home:
-        context = playwright.chromium.launch_persistent_context(
-            home,
-            executable_path=CHROMIUM,
-            args=[*ARGUMENTS, f"--lang={request.param}"],
-            locale=request.param,
-            viewport={"width": 1440, "height": 1000},
-        )
-        made = context.new_page()
-        made.goto(url)
-        made.set_default_timeout(60_000)
-        assert made.evaluate("navigator.language") == request.param
-        idle(made)
-        yield made
-        context.close()
+    page.set_default_timeout(60_000)
+    assert page.evaluate("navigator.language") == language
+    idle(page)
+    return page
 
 
 def open_page(page: Any, name: str) -> None:
