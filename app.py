@@ -23,6 +23,7 @@ if result is None:
     st.stop()
 
 ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
+ui.open_question(result)
 ui.tiles(ui.verdict_tiles(result, unit))
 
 left, right = ui.split([1, 1.18], "pictures")

@@ -5,7 +5,7 @@ import streamlit as st
 from robomill import ui
 from robomill.ui import pieces
 from robomill.ui.running import path_of
-from robomill.ui.toolpath import details, view
+from robomill.ui.toolpath import details, question, view
 from robomill.ui.toolpath.lines import lines_inputs
 from robomill.ui.toolpath.part_zero import part_zero
 from robomill.ui.toolpath.picture import path_figure, stock_note
@@ -26,6 +26,7 @@ result = ui.attempt(ui.result, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
 view.tiles(source, path, reach, result, unit)
+question.panel(path, "" if result is None else result.verdict.premise)
 
 left, right = ui.split([1, 2] if source.kind == "program" else [1.2, 1.75], "steps", gap="large")
 with left:

@@ -20,5 +20,6 @@ if result is None or spread is None:
 with st.container(gap=None):
     ui.headline(f"Milling · {setup.name}", ui.verdict_sentence(result, unit))
     panel.verdict_link(result)
+    ui.open_question(result)
 ui.tiles(panel.tiles(result, ui.verdict_tiles(result, unit)))
 panel.workbench(setup.digest(), dark)

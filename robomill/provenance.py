@@ -1,5 +1,7 @@
 """Words that every floor uses: where a number comes from, and what was noticed about it."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -15,14 +17,29 @@ MANY = 3  # numbers that a sentence names
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a block of numbers comes from: a kind and the source in words."""
+    """Where a block of numbers comes from: a kind and the source in words.
+
+    ``carried_from`` names the set-up in which they were stated, where they now stand beside another path and nobody has
+    said yet that they hold there.
+    """
 
     kind: Kind
     source: str
+    carried_from: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise RobomillError(f"Provenance: kind is {self.kind!r}; expected one of {', '.join(KINDS)}.")
+
+    def carried(self, name: str) -> Provenance:
+        """The same numbers beside a path that they were not stated for in the set-up ``name``: an assumption there."""
+        if self.carried_from:
+            return self
+        return Provenance("assumed", f"carried over from {name!r}: {self.source}", name)
+
+    def record(self) -> dict[str, str]:
+        """As files carry it."""
+        return {name: value for name, value in vars(self).items() if value or name in ("kind", "source")}
 
 
 # What a block counts as until someone says more.

@@ -52,7 +52,7 @@ def map_to_table(field: MeasuredField) -> dict[str, Any]:
         "C_m_N": field.C.reshape(-1, 9).tolist(),
         "tilt_rad": field.AB.tolist(),
         "reach_m": field.reach,
-        "provenance": {"kind": field.provenance.kind, "source": field.provenance.source},
+        "provenance": field.provenance.record(),
     }
     if np.isfinite(field.stderr).all():
         data["stderr_m_N"] = field.stderr.reshape(-1, 9).tolist()

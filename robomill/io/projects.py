@@ -1,5 +1,6 @@
 """Set-ups as TOML files: one versioned format for samples, the command line and the app's saved projects."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -148,12 +149,14 @@ def _source(table: Table, beside: Beside) -> PathSource:
         )
     elif kinds == ["sketch"]:
         source = SketchSource(sketch_from_table(table.table("sketch")))
-    elif kinds == ["program"]:
-        source = program_from_bytes(*beside.read(table, "program", PROGRAM), table.text("dialect", "auto"))
     else:
-        source = GCodeSource(
-            table.text("program_text"), table.text("program_name", "program.nc"), table.text("dialect", "auto")
-        )
+        if kinds == ["program"]:
+            source = program_from_bytes(*beside.read(table, "program", PROGRAM), table.text("dialect", "auto"))
+        else:
+            source = GCodeSource(
+                table.text("program_text"), table.text("program_name", "program.nc"), table.text("dialect", "auto")
+            )
+        source = replace(source, n_s=read_quantity(table, quantities(GCodeSource)["n_s"]))
     table.finish()
     return source
 
@@ -209,7 +212,7 @@ def setup_to_toml(setup: SimulationSetup) -> str:
             for name in NUMERICS
             if getattr(setup, name) is not None
         },
-        "provenance": {key: {"kind": p.kind, "source": p.source} for key, p in setup.provenance.items()},
+        "provenance": {key: said.record() for key, said in setup.provenance.items()},
     }
     if setup.stock is not None:
         data["stock"] = stock_to_table(setup.stock)
@@ -240,7 +243,8 @@ def _robot_table(robot: Robot) -> dict[str, Any]:
 
 def _source_table(source: PathSource) -> dict[str, Any]:
     if source.kind == "program":
-        return {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
+        told = {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
+        return told | ({"spindle_1_min": shown(source.n_s, "1/min")} if source.n_s else {})
     if source.kind == "sketch":
         return {"sketch": sketch_to_table(source.sketch)}
     rows = np.hstack([source.start, source.end])

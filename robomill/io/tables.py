@@ -207,9 +207,9 @@ class Table:
         """An entry ``{ kind = "paper", source = "..." }``."""
         entry = self.table(key)
         kind = entry.choice("kind", KINDS)
-        source = entry.text("source")
+        source, carried_from = entry.text("source"), entry.text("carried_from", "")
         entry.finish()
-        return Provenance(kind, source)  # type: ignore[arg-type]
+        return Provenance(kind, source, carried_from)  # type: ignore[arg-type]
 
     def _si(self, key: str, value: Any, unit: str) -> float:
         label = "" if unit == "1" else f" in {unit}"

@@ -178,6 +178,12 @@ class SimulationSetup(Replaceable):
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
         return Stock.around(*path.extents, widest)
 
+    @property
+    def carried_from(self) -> str:
+        """The set-up for which the force was stated, where nobody has said yet that it holds for this path; else ""."""
+        said = self.provenance.get("force")
+        return "" if said is None else said.carried_from
+
     def in_base(self, p: FloatArray) -> FloatArray:
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""
         return np.asarray(p @ self.T_MW[:3, :3].T + self.T_MW[:3, 3])

@@ -9,7 +9,7 @@ from robomill.provenance import Finding, named
 from robomill.simulation.assumed import far_share
 from robomill.simulation.gauge import Gauge, Readings
 from robomill.simulation.seen import Run
-from robomill.simulation.verdict_words import Level, Reading, Verdict, said
+from robomill.simulation.verdict_words import Level, Reading, Verdict, premise, said
 
 
 def judge(result: Run, gauge: Gauge) -> Verdict:
@@ -22,7 +22,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
     gone = tuple(result.path.block[gauge.gone].tolist())
-    found = Verdict("ok", share, "", *readings, far, gone)
+    found = Verdict("ok", share, "", *readings, far, gone, premise(result))
     found = replace(found, level=_level(result, found))
     return replace(found, sentence=" ".join(words for words in said(result, found) if words))
 
@@ -36,7 +36,9 @@ def _level(result: Run, verdict: Verdict) -> Level:
         return "missed" if result.answered[result.path.cutting].any() else "unreached"
     if result.missed.any():
         return "unreached"
-    if (unknown and not verdict.decides) or ((unknown or result.rapids) and verdict.grade != "out"):
+    if verdict.premise or (unknown and not verdict.decides):
+        return "unjudged"
+    if (unknown or result.rapids) and verdict.grade != "out":
         return "unjudged"
     return verdict.grade
 

@@ -21,6 +21,7 @@ NOTHING: dict[Level, str] = {
     "unreached": "No point of the cut can be reached: move the part zero.",
 }
 WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep"), "end": ("along the feed",) * 2}
+UNSAID = "Nobody has said yet what this path cuts: not judged."
 RAPID = "a rapid runs through material that no cut removes"
 
 
@@ -59,6 +60,7 @@ class Verdict:
     end     along the feed, where a cut begins or ends in the material: how far its end wall is moved
             (``feed`` and ``end`` decide only where the feed has a tolerance of its own)
     gone    source lines that cut away a wall that should stand
+    premise what the readings rest on where nobody has said what is cut: ``"if the tool is pushed with 100 N"``; else ""
     far     the share of the tolerance used at the worse end of what is assumed of the force; NaN where nothing is
     """
 
@@ -71,6 +73,7 @@ class Verdict:
     end: Reading
     far: float = float("nan")
     gone: tuple[int, ...] = ()
+    premise: str = ""
 
     @property
     def grade(self) -> Level:
@@ -100,10 +103,22 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
         return NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
+    if verdict.premise and level == "unjudged":
+        return _sentence(f"{_measured(result, verdict, unit)}, {verdict.premise}"), f"{UNSAID} {beside}".rstrip()
     judged = f"{_measured(result, verdict, unit)}: {WORDS[verdict.grade]} ({_used(verdict)})"
     if level == "unreached":
         judged = f"{_missed(result)}; of the rest: {judged}"
     return _sentence(f"{judged}, where it is judged" if level == "unjudged" else judged), beside
+
+
+def premise(result: Run) -> str:
+    """What pushes the tool, where that was stated for another path; "" where it was stated for this one."""
+    force, i = result.setup.force, result.worst
+    if not result.setup.carried_from or i < 0:
+        return ""
+    if force.follows_cut:
+        return f"if it cuts {force.numbers}"
+    return f"if the tool is pushed with {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}"
 
 
 def way(name: str, reading: Reading) -> str:

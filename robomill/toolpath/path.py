@@ -13,6 +13,7 @@ from robomill.provenance import Finding
 from robomill.units import format_si, format_significant
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
+NO_SPINDLE = "no-spindle"  # the finding of a program that never turns its spindle
 ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 PER_MOVE: dict[str, type] = {
     "v_f": float,
@@ -108,6 +109,11 @@ class Toolpath:
         with np.errstate(divide="ignore", invalid="ignore"):
             dt = np.where(self.cutting & (self.v_f > 0), self.step_length / self.v_f, 0.0)
         return frozen(np.cumsum(dt))
+
+    @property
+    def turns(self) -> bool:
+        """Whether the spindle is ever said to turn, however fast."""
+        return bool(self.n_s.any())
 
     @property
     def extents(self) -> tuple[FloatArray, FloatArray]:

@@ -6,15 +6,16 @@ Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``b
 
 import threading
 from collections import OrderedDict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
+from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
-from robomill.toolpath.path import Toolpath, toolpath_from_lines
+from robomill.toolpath.path import NO_SPINDLE, Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
 from robomill.toolpath.tools import Tools
@@ -25,13 +26,27 @@ MAX_KEPT = 4
 
 @dataclass(frozen=True)
 class GCodeSource:
-    """A program as written: its text, the file's name and the dialect ("auto": guessed and said)."""
+    """A program as written: its text, the file's name and the dialect ("auto": guessed and said).
+
+    ``n_s`` (1/s) is how fast the spindle turns of a program that never says; 0 where that is not known.
+    """
 
     text: str
     name: str = "program.nc"
     dialect: str = "auto"
+    n_s: float = quantity(
+        "Spindle speed",
+        "1/min",
+        default=0.0,
+        least=0.0,
+        key="spindle_1_min",
+        hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
+    )
     kind: ClassVar[Literal["program"]] = "program"
     block_name: ClassVar[str] = "line"
+
+    def __post_init__(self) -> None:
+        settle(self, ToolpathError, "Program")
 
     def block_texts(self) -> list[str]:
         """Its lines, as every reader counts them."""
@@ -49,16 +64,28 @@ class GCodeSource:
             if key in _KEPT:
                 _KEPT.move_to_end(key)
                 return _KEPT[key]
-        from robomill.toolpath.apt import is_apt, read_apt  # the readers load only where a program is read
-        from robomill.toolpath.gcode import read_gcode
-
-        data = self.text.encode()
-        path = read_apt(data) if is_apt(data) else read_gcode(data, dialect=self.dialect, tools=tools)
+        path = self._read(tools) if self.n_s == 0.0 else _turning(replace(self, n_s=0.0).read(tools), self.n_s)
         with _LOCK:
             _KEPT[key] = path
             while len(_KEPT) > MAX_KEPT:
                 _KEPT.popitem(last=False)
         return path
+
+    def _read(self, tools: Tools | None) -> Toolpath:
+        from robomill.toolpath.apt import is_apt, read_apt  # the readers load only where a program is read
+        from robomill.toolpath.gcode import read_gcode
+
+        data = self.text.encode()
+        return read_apt(data) if is_apt(data) else read_gcode(data, dialect=self.dialect, tools=tools)
+
+
+def _turning(path: Toolpath, n_s: float) -> Toolpath:
+    """The path with its spindle at ``n_s`` (1/s) wherever it cuts; itself where the program says how fast."""
+    if path.turns:
+        return path
+    said = Finding("info", f"the spindle turns at {format_si(n_s, '1/min')}, as the set-up says", code="spindle-stated")
+    findings = (*(each for each in path.findings if each.code != NO_SPINDLE), said)
+    return replace(path, n_s=frozen(np.where(path.cutting, n_s, 0.0)), findings=findings)
 
 
 _KEPT: OrderedDict[tuple[GCodeSource, str], Toolpath] = OrderedDict()

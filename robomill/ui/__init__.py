@@ -45,7 +45,7 @@ from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thi
 from robomill.ui.project import Project, View
 from robomill.ui.running import result
 from robomill.ui.shell import begin, dark
-from robomill.ui.verdict import tip_tile, verdict_sentence, verdict_tiles
+from robomill.ui.verdict import open_question, tip_tile, verdict_sentence, verdict_tiles
 
 __all__ = [
     "Project",
@@ -59,6 +59,7 @@ __all__ = [
     "kept_figure",
     "note",
     "number",
+    "open_question",
     "result",
     "split",
     "thirds",

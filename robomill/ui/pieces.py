@@ -36,8 +36,8 @@ class Tile:
     """One number: ``value`` as formatted text with its unit after a space, ``was`` the value before the last change.
 
     ``change`` says by how much it moved; both take the place of ``note`` while they are there.
-    ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), ``kind`` a
-    provenance; ``ranges`` are lines that say between which ends the value may lie instead, and over what.
+    ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), or "open" (hatched);
+    ``kind`` is a provenance; ``ranges`` are lines that say between which ends the value may lie instead, and over what.
     """
 
     label: str

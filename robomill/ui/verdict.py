@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+import streamlit as st
 
 from robomill.arrays import digest
 from robomill.identification.knowledge import Knowledge
@@ -23,6 +24,7 @@ WORDS = {
     "missed": "Misses the stock",
 }
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
+OPEN = "open"  # hatched: nobody has said yet what is cut
 NOTHING = {"unreached": "nothing reached", "unjudged": "not judged"}
 NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
 
@@ -32,7 +34,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     old = previous(result)
     verdict, before = result.verdict, None if old is None else old.verdict
     share = share_words(verdict)
-    if verdict.level == "unjudged":
+    if verdict.level == "unjudged" and not verdict.premise:
         lost, total = int(result.not_judged.sum()), int(result.path.cutting.sum())
         share = f"{lost} of {format_count(total, 'point')} of the cut are not judged"
         share += " and a rapid through material" if result.rapids else ""
@@ -44,6 +46,8 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     }
     found = ranges_of(result)
     words = {name: [range_words(each, name, unit) for each in found] for name in made}
+    if verdict.premise:  # what was stated for another path is not shown as if it were known
+        made = {name: replace(tile, tone=tone(verdict)) for name, tile in made.items()}
     return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
 
 
@@ -74,13 +78,13 @@ def range_words(found: Range, name: str, unit: str) -> str:
 def share_words(verdict: Verdict) -> str:
     """How much of the tolerance is used, or why nobody knows."""
     if np.isfinite(verdict.share):
-        return f"{format_percent(verdict.share)} of the tolerance used"
+        return f"{format_percent(verdict.share)} of the tolerance used {verdict.premise}".rstrip()
     return NOTHING.get(verdict.level, "nothing cut")
 
 
 def tone(verdict: Verdict) -> str:
     """The coloured edge of a tile that says the verdict."""
-    return TONES.get(verdict.level, verdict.level)
+    return OPEN if verdict.premise else TONES.get(verdict.level, verdict.level)
 
 
 def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None, unit: str) -> Tile:
@@ -124,6 +128,12 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     """What a gauge would read on the part, for a foreman, and how much of the cut is not judged."""
     return " ".join(said(result, result.verdict, unit)).strip()
+
+
+def open_question(result: SimulationResult) -> None:
+    """The way to where it is said what the project's program cuts, while nobody has said it."""
+    if result.verdict.premise:
+        st.page_link("pages/5_Toolpath.py", label="Say what it cuts", icon=":material/help:")
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

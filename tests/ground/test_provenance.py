@@ -26,3 +26,13 @@ def test_numbers_are_named_once_in_order_and_not_all_of_many(numbers, words) -> 
 def test_a_provenance_is_of_a_kind() -> None:
     with pytest.raises(RobomillError, match="kind is 'guessed'; expected one of paper, "):
         Provenance("guessed", "a hunch")  # type: ignore[arg-type]
+
+
+def test_what_was_stated_for_another_path_is_assumed_there_and_keeps_where_it_came_from() -> None:
+    measured = Provenance("measured", "dynamometer")
+    once = measured.carried("Flute")
+    assert (once.kind, once.carried_from) == ("assumed", "Flute")
+    assert once.carried("Pocket") == once
+    assert measured.carried_from == ""
+    assert Provenance(**once.record()) == once
+    assert measured.record() == {"kind": "measured", "source": "dynamometer"}

@@ -161,7 +161,7 @@ def test_the_key_may_name_the_unit() -> None:
         (
             "p = { kind = 'paper', source = '', year = 1 }",
             lambda t: t.provenance("p"),
-            "f.toml, [p], year: this key is not known here; known are: kind, source.",
+            "f.toml, [p], year: this key is not known here; known are: carried_from, kind, source.",
         ),
     ],
 )

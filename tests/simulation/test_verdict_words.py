@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from robomill.provenance import Provenance
 from tests.simulation.test_gauge import pushed, run
 
 
@@ -29,3 +33,20 @@ def test_of_more_than_one_slot_the_lines_of_the_worst_wall_and_floor_are_named()
     wall, floor = said.split(" are up to ")[1:]
     assert all(word in wall for word in ("0.20 mm", "(line 4)"))
     assert all(word in floor for word in ("0.05 mm", "(line 8)"))
+
+
+def test_by_a_force_that_was_stated_for_another_path_nothing_is_judged():
+    """Neither green nor red; what would be measured stands under the condition."""
+    own = pushed(run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800"), left=0.12e-3)
+    carried = {"force": Provenance("measured", "dynamometer").carried("Flute")}
+    for tolerance in (0.1e-3, 0.3e-3):
+        setup = own.setup.replace(tolerance=tolerance)
+        known = replace(own, setup=setup).verdict
+        open_ = replace(own, setup=setup.replace(provenance=carried)).verdict
+        assert known.level == ("out" if tolerance < 0.12e-3 else "ok")
+        assert (open_.level, open_.red) == ("unjudged", True)
+        assert open_.share == known.share
+        force = float(np.linalg.norm(own.F[own.worst]))
+        assert "0.12 mm off in Y" in open_.sentence
+        assert f", if the tool is pushed with {force:.0f} N. Nobody has said yet what this path cuts" in open_.sentence
+        assert "tolerance" not in open_.sentence

@@ -70,3 +70,29 @@ def test_tables_that_are_none_are_refused(values: dict[str, object]) -> None:
     given = {"start": [[0.0, 0, 0]], "end": [[0.1, 0, 0]], "v_f": [0.01]}
     with pytest.raises(ToolpathError):
         LinesSource(**{**given, **values}).read()
+
+
+SILENT = TEXT.replace(" S600 M3", "")
+SAID = SILENT.replace("G1 ", "S600 M3\nG1 ")  # a change of tools stops the spindle
+
+
+def test_a_program_that_never_turns_its_spindle_cuts_with_the_speed_that_is_said() -> None:
+    """As if the words stood in it: 600 a minute are 10 a second."""
+    told, bare = GCodeSource(SILENT, n_s=10.0).read(), GCodeSource(SILENT).read()
+    written = GCodeSource(SAID).read()
+    assert not bare.turns
+    assert told.turns
+    np.testing.assert_array_equal(told.n_s[told.cutting], written.n_s[written.cutting])
+    np.testing.assert_array_equal(told.p, bare.p)
+    assert not told.n_s[~told.cutting].any()
+    assert {f.code for f in bare.findings} ^ {f.code for f in told.findings} == {"no-spindle", "spindle-stated"}
+    assert "600 min⁻¹" in told.findings[-1].message
+
+
+def test_a_program_that_says_its_speed_keeps_it() -> None:
+    assert GCodeSource(SAID, n_s=99.0).read() is GCodeSource(SAID).read()
+
+
+def test_a_speed_is_no_less_than_nothing() -> None:
+    with pytest.raises(ToolpathError, match="Spindle speed: found −60"):
+        GCodeSource(TEXT, n_s=-1.0)

@@ -18,7 +18,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import NO_SPINDLE, Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools
 from robomill.units import format_si, to_si
@@ -138,7 +138,7 @@ def _doubt_spindle(machine: Machine, program: Program) -> None:
         for line in program.line[still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
             machine.findings.add("spindle-stopped", "warning", int(line), message)
     elif len(still):
-        machine.findings.add("no-spindle", "info", 0, "the spindle never turns: no S with M3 or M4")
+        machine.findings.add(NO_SPINDLE, "info", 0, "the spindle never turns: no S with M3 or M4")
     if machine.selected and not program.tool.any() and program.at_feed.any():
         message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
         machine.findings.add("no-change", "warning", 0, message)

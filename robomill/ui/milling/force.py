@@ -1,6 +1,7 @@
 """The force on the tool: which model, its numbers, engagement and coupling."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,7 +18,9 @@ from robomill.errors import RobomillError
 from robomill.io.forces import read_forces
 from robomill.paper import SLOT
 from robomill.quantities import declared_types
-from robomill.ui import cached, declared, inputs, pieces, session
+from robomill.simulation.setup import SimulationSetup
+from robomill.ui import cached, declared, inputs, pieces, running, session
+from robomill.ui.job import Underway
 from robomill.ui.milling import materials as material_panel
 from robomill.units import format_count
 
@@ -47,7 +50,19 @@ def inputs_panel() -> None:
             pieces.note(force.hint)
         if force.stated:
             pieces.note(pieces.sourced(setup.provenance.get("force", force.provenance)))
+    if force is not None and force.follows_cut and _speed_unsaid(setup):
+        declared.field("source.n_s")
     _process_switches(force is not None and force.follows_cut)
+
+
+def _speed_unsaid(setup: SimulationSetup) -> bool:
+    """Whether the program turns its spindle nowhere, or the set-up says how fast in its place."""
+    source = setup.source
+    if source.kind != "program" or source.n_s:
+        return source.kind == "program"
+    with suppress(RobomillError, Underway):
+        return not running.path_of(setup).turns
+    return False
 
 
 def _write(name: str, value: Any) -> None:

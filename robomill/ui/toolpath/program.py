@@ -19,10 +19,10 @@ from robomill.ui.box import NumberBox
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
-from robomill.ui.toolpath.sources import put
+from robomill.ui.toolpath.sources import put, put_dropped
 
 EDITABLE_CHARACTERS = 200_000
-TEXT, MODE, REFUSED = "toolpath.text", "toolpath.mode", "toolpath.refused"
+TEXT, MODE, REFUSED, DROPPED = (f"toolpath.{name}" for name in ("text", "mode", "refused", "dropped"))
 MODES = {"code": "Code", "edit": "Edit"}
 
 
@@ -100,6 +100,7 @@ def take_program(data: bytes, name: str) -> None:
     if Path(name).suffix.lower() not in SUFFIXES:
         raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
     source = program_from_bytes(data, name)
+    session.keep(DROPPED, source)
     try:
         if reading.read(source):
             _accept(source)
@@ -108,7 +109,10 @@ def take_program(data: bytes, name: str) -> None:
 
 
 def _accept(source: GCodeSource) -> None:
-    put(source, f"program {source.name}")
+    if session.drop(DROPPED) is source:
+        put_dropped(source)
+    else:
+        put(source, f"program {source.name}")
     inputs.accept(TEXT)
     session.keep(MODE, "code")
 
@@ -142,6 +146,6 @@ def _take_text(text: str) -> None:
     old = session.project().setup.source
     if not text.strip():
         raise ToolpathError("The program is empty; type at least one G1 move.")
-    source = GCodeSource(text, old.name if old.kind == "program" else "program.nc")
+    source = dataclasses.replace(old, text=text) if old.kind == "program" else GCodeSource(text)
     if reading.read(source):
         put(source, f"program {source.name}, edited")

@@ -1,6 +1,6 @@
 """Where the path comes from: switching between program, table of lines and sketch without losing the path."""
 
-import dataclasses
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
@@ -8,15 +8,17 @@ import numpy as np
 
 from robomill.errors import RobomillError, ToolpathError
 from robomill.provenance import Provenance
+from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.ui import inputs, session
-from robomill.ui.toolpath import program_view
+from robomill.ui.toolpath import program_view, question
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
 MAX_ROWS = 200
+STATED = ("force", "cutter", "tolerance")  # blocks of a set-up that are of one cut
 
 
 def kind_switch() -> None:
@@ -28,14 +30,37 @@ def kind_switch() -> None:
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
     """Make ``source`` the project's path; ``words`` say where it comes from. Raises its refusal."""
     setup = session.project().setup
-    provenance = {**setup.provenance, "path": Provenance("user", words)}
-    force = setup.provenance.get("force")
+    provenance = {**setup.provenance, **more.pop("provenance", {}), "path": Provenance("user", words)}
+    force = provenance.get("force")
     if force is not None and force.kind in ("paper", "measured"):
         # What was measured on one cut is an assumption on another.
-        provenance["force"] = Provenance("assumed", f"carried over from {setup.name!r}: {force.source}")
+        provenance["force"] = replace(force.carried(setup.name), carried_from="")
     more.setdefault("name", PurePath(source.name).stem if source.kind == "program" else "Drawn here")
     session.change(source=source, provenance=provenance, from_editor=from_editor, **more)
     program_view.select_line(0)
+
+
+def put_dropped(source: GCodeSource) -> None:
+    """Make a program that somebody brought the project's path. What was not stated by a person stands open until
+    somebody says that it holds for this program, too; a stock that does not hold it goes. Raises its refusal."""
+    setup = session.project().setup
+    others = {name: said for name, said in setup.provenance.items() if name in STATED and said.kind != "user"}
+    carried = {name: said.carried(setup.name) for name, said in others.items()}
+    more: dict[str, Any] = {"engagement": True} if "force" in carried else {}
+    stated = setup.provenance.get("stock")
+    given = stated is None or stated.kind == "user"
+    if setup.stock is not None and not given and not _holds(setup.stock, source.read(setup.tools)):
+        more["stock"] = None
+        carried["stock"] = Provenance("computed", f"a block around the feed moves of {source.name}")
+    question.forget()
+    put(source, f"program {source.name}", provenance=carried, **more)
+
+
+def _holds(stock: Stock, path: Toolpath) -> bool:
+    """Whether every cut lies over the stock, and the lowest of them in it."""
+    low, high = path.extents
+    over = (low[:2] >= stock.lower[:2]).all() and (high[:2] <= stock.upper[:2]).all()
+    return bool(over and stock.lower[2] <= low[2] < stock.upper[2])
 
 
 def _convert(kind: str) -> None:
@@ -95,9 +120,9 @@ def sketch_source() -> SketchSource:
 def put_sketch(sketch: Sketch, words: str = "sketched by hand", from_editor: bool = False) -> None:
     """Replace the sketch; what only concerns drawing (snap, next feed and depth) is no step to undo."""
     held, source = session.store(), sketch_source()
-    changed = dataclasses.replace(source, sketch=sketch)
+    changed = replace(source, sketch=sketch)
     setup = held.project.setup
     if setup.replace(source=changed).digest() == setup.digest():
-        held.project = dataclasses.replace(held.project, setup=setup.replace(source=changed))
+        held.project = replace(held.project, setup=setup.replace(source=changed))
     else:
         put(changed, words, from_editor=from_editor)

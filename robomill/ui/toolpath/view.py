@@ -57,7 +57,7 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
     missed, length, _ = missed_blocks(reach)
     if missed:
         return f"{format_si(length, unit, 1)} of the cut cannot be reached."
-    if result is None or (result.worst < 0 and result.verdict.level != "unjudged"):
+    if result is None:
         return "The arm reaches all of the path."
     words = said(result, result.verdict, unit)[0] or "the cut is not judged."
     return f"All in reach; {words[0].lower()}{words[1:]}"

@@ -1,0 +1,118 @@
+"""What is it cutting? Asked in one row of a program that somebody brought, until somebody has said it."""
+
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import streamlit as st
+
+from robomill.cutting.force import ForceModel
+from robomill.cutting.forces import FORCES
+from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.tool import Cutter
+from robomill.errors import ToolpathError
+from robomill.io.materials import sample_materials
+from robomill.provenance import Provenance
+from robomill.quantities import quantities
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+from robomill.ui import declared, inputs, pieces, session, typed
+from robomill.ui.box import NumberBox, box_of
+
+KEY, MATERIAL = "toolpath.question", "material"
+SIZE = ("diameter", "flutes")
+BOXES = (*SIZE, "n_s", "tolerance")
+SAID = Provenance("user", "said of the program when it was brought")
+
+
+def panel(path: Toolpath | None, premise: str) -> None:
+    """The row, where nobody has said yet what the project's program cuts; ``premise`` is what its numbers rest on."""
+    setup = session.project().setup
+    if not setup.carried_from:
+        return
+    with st.container(border=True, key="toolpath-question"):
+        pieces.strong("What is it cutting?")
+        hold = f"hold {premise}, and nothing is judged" if premise else "say nothing of this program"
+        pieces.note(
+            pieces.badge("assumed"), f"Until you say it, the numbers are those of {setup.carried_from}: they {hold}."
+        )
+        boxes = _boxes(setup, path)
+        first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
+        with first:
+            titles = {name: row.title for name, row in _rows().items()}
+            inputs.pick("Material", f"{KEY}.{MATERIAL}", titles, _first(setup.force).name, inputs.LISTED)
+        with rest:
+            declared.in_row(list(boxes), lambda name: _box(name, *boxes[name]))
+        with typed.said_below(), st.container(horizontal=True, gap="small"):
+            inputs.button("This is what it cuts", f"{KEY}.answer", "check", _answer, path, type="primary")
+            if premise:
+                keep = f"Keep it: {premise.removeprefix('if ')}"
+                inputs.button(keep, f"{KEY}.keep", "", _accept, setup, type="tertiary")
+
+
+def _box(name: str, box: NumberBox, value: float | None) -> None:
+    key = f"{KEY}.{name}"
+    inputs.value(key, box, value, partial(session.keep, key))
+
+
+def forget() -> None:
+    """Nothing of an answer that was begun for another program."""
+    for name in (MATERIAL, *BOXES):
+        session.drop(f"{KEY}.{name}")
+
+
+def _boxes(setup: SimulationSetup, path: Toolpath | None) -> dict[str, tuple[NumberBox, float | None]]:
+    """The boxes beside the material with what is in them: the cutter's size where no tool table says it, the speed
+    where the program does not."""
+    said = {**quantities(SimulationSetup), **quantities(GCodeSource), **quantities(Cutter)}
+    first = {name: getattr(setup.cutter, name) for name in SIZE} | {"n_s": None, "tolerance": setup.tolerance}
+    names = [name for name in BOXES if not (name in SIZE and setup.tools)]
+    if path is None or path.turns or setup.source.kind != "program":
+        names.remove("n_s")
+    shown: dict[str, dict[str, Any]] = {"n_s": {"optional": True, "placeholder": "needed"}}
+    return {
+        name: (
+            box_of(said[name], unit=declared.in_view(said[name].unit), **shown.get(name, {})),
+            session.kept(f"{KEY}.{name}", first[name]),
+        )
+        for name in names
+    }
+
+
+def _rows() -> dict[str, Material]:
+    return {row.name: row for row in sample_materials()}
+
+
+def _first(force: ForceModel) -> Material:
+    """The row that is offered first: the one in force, or the example of the first model that takes rows."""
+    held = getattr(force, MATERIAL, None)
+    rows = _rows()
+    if held is not None and held.name in rows:
+        return rows[held.name]
+    return rows[next(model.example for model in FORCES.values() if model.takes is not None)]
+
+
+def _answer(path: Toolpath | None) -> None:
+    """What was said into the set-up, as one step back. Raises the refusal of what cannot be."""
+    setup = session.project().setup
+    found: dict[str, Any] = {name: value for name, (_, value) in _boxes(setup, path).items()}
+    if "n_s" in found and not found["n_s"]:
+        raise ToolpathError("Spindle speed: the program names none; type how fast it turns at the machine.")
+    rows = _rows()
+    row = rows[session.kept(f"{KEY}.{MATERIAL}", _first(setup.force).name)]
+    cutter = replace(setup.cutter, **{name: found[name] for name in SIZE if name in found})
+    model: Any = next(model for model in FORCES.values() if model.takes is type(row))
+    force = model(cutter=cutter, material=row, alternatives=alternatives(row, rows.values()))
+    changed: dict[str, Any] = {"cutter": cutter, "force": force, "engagement": True}
+    changed |= {"tolerance": found["tolerance"], "floor_tolerance": None, "feed_tolerance": None}
+    if "n_s" in found and setup.source.kind == "program":
+        changed["source"] = replace(setup.source, n_s=found["n_s"])
+    _accept(setup.replace(**changed))
+
+
+def _accept(setup: SimulationSetup) -> None:
+    """``setup`` with its numbers said by a person to be those of this program."""
+    said = {name: SAID if each.carried_from else each for name, each in setup.provenance.items()}
+    session.replace(session.project().replace(setup=setup.replace(provenance=said)))
+    forget()

@@ -1,0 +1,119 @@
+"""A program that somebody brings asks what it cuts; until that is said nothing is green by the force of another."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import box, errors, go, store, words
+from streamlit.testing.v1 import AppTest
+
+from robomill.io.projects import setup_from_toml, setup_to_toml
+from robomill.simulation.run import simulate
+from robomill.toolpath.source import GCodeSource
+
+POCKET = "G21 G90\nG0 X-20 Y0 Z5\nS8000 M3\nG1 Z-1 F300\nG1 X20 F600\nG0 Z20\nM2\n"
+SILENT = POCKET.replace("S8000 M3\n", "")
+ASKED = "What is it cutting?"
+
+
+def bring(app: AppTest, text: str, name: str = "own.nc") -> None:
+    """Drop a program on the toolpath page."""
+    go(app, "5_Toolpath")
+    next(b for b in app.file_uploader if b.label == "Program file").upload(name, text.encode(), "text/plain")
+    app.run()
+    assert not app.exception
+
+
+def verdict(app: AppTest) -> str:
+    """What the core says of the project as it stands."""
+    return simulate(store(app).project.setup).verdict.level
+
+
+def test_nobody_is_asked_of_the_paper(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    assert ASKED not in words(app)
+    assert "rm-tile open" not in words(app)
+
+
+@pytest.mark.parametrize("page", ["app", "5_Toolpath", "6_Milling"])
+def test_a_dropped_program_is_judged_by_nobody_elses_force(app: AppTest, page: str) -> None:
+    bring(app, POCKET)
+    assert ASKED in words(app)
+    go(app, page)
+    assert not app.exception
+    text = words(app)
+    assert "if the tool is pushed with 100 N" in text
+    assert "rm-tile open" in text
+    assert not any(f"rm-tile {tone}" in text for tone in ("tight", "out")) or page == "5_Toolpath"
+    assert "within tolerance" not in text.lower()
+    assert store(app).project.setup.engagement
+
+
+def test_the_answer_is_one_step_and_ends_the_question(app: AppTest) -> None:
+    bring(app, POCKET)
+    before = len(store(app).past)
+    box(app, "Diameter, mm").set_value(6.0).run()
+    app.button(key="toolpath.question.answer").click().run()
+    assert not app.exception
+    assert errors(app) == []
+    assert ASKED not in words(app)
+    setup = store(app).project.setup
+    assert setup.force.kind == "mechanistic"
+    assert setup.cutter.diameter == pytest.approx(6e-3)
+    assert setup.carried_from == ""
+    assert len(store(app).past) == before + 1
+    assert verdict(app) in ("ok", "tight", "out")
+
+
+def test_what_stands_may_be_kept(app: AppTest) -> None:
+    bring(app, POCKET.replace("G1 Z-1 F300", "G0 Z-1"))  # what pushes a cut sideways says nothing of a plunge
+    digest = store(app).project.setup.digest()
+    app.button(key="toolpath.question.keep").click().run()
+    assert ASKED not in words(app)
+    assert store(app).project.setup.digest() == digest
+    assert verdict(app) in ("ok", "tight", "out")
+
+
+def test_undo_asks_again(app: AppTest) -> None:
+    bring(app, POCKET)
+    app.button(key="toolpath.question.answer").click().run()
+    assert ASKED not in words(app)
+    app.button(key="undo").click().run()
+    assert ASKED in words(app)
+
+
+def test_a_speed_that_the_program_does_not_say_is_asked_for(app: AppTest) -> None:
+    bring(app, SILENT)
+    app.button(key="toolpath.question.answer").click().run()
+    assert "Spindle speed: the program names none" in errors(app)[0]
+    assert ASKED in words(app)
+    box(app, "Spindle speed, min⁻¹").set_value(8000.0).run()
+    app.button(key="toolpath.question.answer").click().run()
+    assert not app.exception
+    assert errors(app) == []
+    said = store(app).project.setup
+    told = said.replace(source=GCodeSource(POCKET))
+    for path in (said.toolpath, told.toolpath):
+        assert path.n_s[path.cutting] == pytest.approx(8000 / 60)
+    assert simulate(said).max_deviation == pytest.approx(simulate(told).max_deviation, rel=1e-12)
+
+
+def test_a_force_of_ones_own_is_not_asked_for_again(app: AppTest) -> None:
+    bring(app, POCKET)
+    app.button(key="toolpath.question.answer").click().run()
+    bring(app, POCKET.replace("X20", "X30"), "next.nc")
+    assert ASKED not in words(app)
+
+
+def test_a_program_beside_the_stock_brings_its_own(app: AppTest) -> None:
+    """The paper's blank ends at x = 64 mm; these cuts lie beyond it."""
+    bring(app, POCKET.replace("X-20", "X100").replace("X20", "X140"))
+    assert store(app).project.setup.stock is None
+    assert verdict(app) == "unjudged"
+
+
+def test_the_question_is_saved_with_the_project(app: AppTest) -> None:
+    bring(app, SILENT)
+    setup = store(app).project.setup
+    again = setup_from_toml(setup_to_toml(setup))
+    assert again.carried_from == setup.carried_from != ""
+    assert again.digest() == setup.digest()
