@@ -77,7 +77,8 @@ def read_stl_stock(
         solid = trimesh.load_mesh(io.BytesIO(data), file_type="stl")
         empty = len(solid.faces) == 0
     except Exception as exc:
-        raise SurfaceError(f"{label}: this is not an STL file that can be read ({type(exc).__name__}).") from exc
+        text = f"{label}: this is no STL file, or one that is damaged or cut off; export the stock again as STL."
+        raise SurfaceError(text) from exc
     if empty:
         raise SurfaceError(f"{label}: the STL holds no triangles; export the stock as a closed solid.")
     if not np.isfinite(solid.vertices).all():

@@ -38,6 +38,7 @@ from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, Sketc
 from robomill.toolpath.text import SUFFIXES
 
 FORMAT = "robomill-setup"
+OF_THE_APP = ("view", "maps", "experiments", "uncertainty")  # tables of a saved project that no run depends on
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
 ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as tolerance_mm: one number, or three
@@ -96,7 +97,7 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
-    top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit"))
+    top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit", *OF_THE_APP))
     top.finish()
     return setup
 

@@ -21,7 +21,7 @@ from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
 from robomill.io.declared import from_table, to_table
 from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
-from robomill.io.projects import load_setup, open_project, setup_to_toml
+from robomill.io.projects import OF_THE_APP, load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.paper import BOX
@@ -37,7 +37,6 @@ from robomill.workspace.quantities import map_quantities
 from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
-TABLES = ("view", "maps", "experiments", "uncertainty")
 SUFFIX = ".robomill.toml"
 DEFAULT_PRESET = "paper_flute"
 PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "digits": 2}  # in {M}
@@ -236,7 +235,7 @@ def project_from_toml(
     Raises ProjectError with the reason.
     """
     data = parse_toml(text, WHERE)
-    own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in TABLES if name in data}
+    own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in OF_THE_APP if name in data}
     setup = open_project(data, WHERE)
     known = None
     if "uncertainty" in own:

@@ -291,3 +291,9 @@ def test_the_spin_is_written_only_where_it_is_chosen(setup) -> None:
     ):
         data = parse_toml(setup_to_toml(setup.replace(spin=spin)), "x")
         assert {key: data[key] for key in data if key.startswith("spin")} == written
+
+
+def test_what_the_app_saves_beside_the_setup_is_nothing_to_a_run() -> None:
+    """Save in the browser, then the command line: the same numbers."""
+    text = setup_to_toml(load_setup(SAMPLE)) + '\n[view]\nunits = "in"\n\n[maps]\nrobot = "other"\n'
+    assert setup_from_toml(text).digest() == load_setup(SAMPLE).digest()

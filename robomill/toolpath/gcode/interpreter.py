@@ -13,7 +13,9 @@ from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
-"""Lines that may be executed beyond the length of the program: loops and subroutines."""
+"""Lines that may be executed beyond the length of the program: loops and subroutines,"""
+MAX_READ = 25_000
+"""and of those that are read anew each time they come: a second or two."""
 
 _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
@@ -24,8 +26,8 @@ class Interpreter(OWords):
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         super().__init__(machine, file, dialect)
-        self.steps = 0
-        self.budget = len(file.lines) + MAX_STEPS
+        self.steps, self.read = 0, 0
+        self.budget, self.reads = len(file.lines) + MAX_STEPS, len(file.lines) + MAX_READ
         self.percent = False
         self.stretches = Stretches(machine)
 
@@ -47,6 +49,7 @@ class Interpreter(OWords):
 
     def step(self, index: int) -> None:
         """Execute line ``index`` of the current file."""
+        self.read += 1
         self._count(1, index)
         raw = self.file.lines[index]
         machine = self.machine
@@ -103,10 +106,9 @@ class Interpreter(OWords):
         """So many lines more were executed, ``index`` is the last one."""
         before = self.steps
         self.steps += executed
-        if self.steps > self.budget:
-            raise GCodeError.at(
-                index + 1, f"more than {MAX_STEPS} lines were executed in loops; the program may not end."
-            )
+        most = MAX_STEPS if self.steps > self.budget else MAX_READ if self.read > self.reads else 0
+        if most:
+            raise GCodeError.at(index + 1, f"more than {most} lines were executed in loops; the program may not end.")
         if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
             share = min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0)
             checkpoint(share, "Reading the program")

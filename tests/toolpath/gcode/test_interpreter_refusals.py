@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import interpret, read_gcode
 
 FILES = sorted((Path(__file__).parent / "data" / "refused").glob("*.ngc"))
 SLOW = {"o_endless"}
@@ -26,6 +26,15 @@ def test_endless_loop_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("robomill.toolpath.gcode.interpreter.MAX_STEPS", 5000)
     with pytest.raises(GCodeError, match="may not end"):
         interpret(next(f for f in FILES if f.stem == "o_endless"))
+
+
+def test_a_loop_of_lines_that_are_read_anew_is_refused_sooner(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second or two is what anybody waits for; the rounds before it are not lost on a program that ends."""
+    monkeypatch.setattr("robomill.toolpath.gcode.interpreter.MAX_READ", 300)
+    text = "G21\nO1 repeat [{}]\nO2 if [#<_vmajor>]\nO2 endif\nO1 endrepeat\nG1 F100 X1\nM2\n"
+    assert read_gcode(text.format(300).encode()).p[-1, 0] == pytest.approx(1e-3)
+    with pytest.raises(GCodeError, match="more than 300 lines were executed in loops; the program may not end"):
+        read_gcode(text.format(320).encode())
 
 
 def test_there_are_many() -> None:
