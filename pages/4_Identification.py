@@ -17,8 +17,8 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
     robot = robot_of(kept)
     tests = result = refusal = None
     try:
-        tests = tests_of(kept, robot)
-        result = pieces.underway(fit_of, kept, robot)
+        tests = pieces.underway(tests_of, kept, robot)
+        result = None if tests is None else pieces.underway(fit_of, kept, robot)
     except RobomillError as exc:
         refusal = exc
     kicker = f"Identification · {kept.name}"

@@ -22,6 +22,7 @@ SLICES = 36
 INSTANTS = 120
 #: Cuts that are looked at together, to bound the memory.
 CASES = 2048
+TEETH = 4 * CASES  # teeth of all of them
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions, beyond_flutes
-from robomill.cutting.course import CASES, Course, force_over_pitch
+from robomill.cutting.course import CASES, TEETH, Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
@@ -202,7 +202,7 @@ class ProcessForce(ForceModel):
                 continue
             course, kind = Course.kinds(conditions, cutter, index)
             order = np.argsort(kind, kind="stable")
-            for cases in slices(len(course.c), "Force over a turn", CASES):
+            for cases in slices(len(course.c), "Force over a turn", max(TEETH // cutter.flutes, 1)):
                 turns = force_over_pitch(edge_terms(self.row, cutter), cutter, course.at(cases))
                 turns[..., 2] *= self.axial
                 turns -= turns.mean(axis=-2, keepdims=True)

@@ -19,6 +19,7 @@ from robomill.units import format_si, to_si
 #: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
+MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time
 
 Hand = Literal["right", "left"]
 HANDS = {"right": "right", "left": "left"}
@@ -65,7 +66,7 @@ class Cutter:
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
     diameter: float = quantity("Diameter", "mm", least=1e-6)
     corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0)
-    flutes: int = whole("Flutes", default=2, least=1)
+    flutes: int = whole("Flutes", default=2, least=1, most=MOST_FLUTES)
     helix: Hand = choice(
         "Helix",
         HANDS,

@@ -20,6 +20,7 @@ from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.lazy import cached_property
+from robomill.progress import checkpoint
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_percent, format_si
@@ -73,6 +74,7 @@ class MeasuredField:
         count = int(pose.max()) + 1
         C, where, spread = np.empty((count, 3, 3)), np.empty((count, 5)), np.empty((count, 3))
         for k in range(count):
+            checkpoint(k / count, "Poses of the map")
             here = np.flatnonzero(pose == k)
             F, moved = tests.wrench[here, :3], tests.vectors[here]
             if np.linalg.matrix_rank(F, tol=1e-6 * np.abs(F).max()) < 3 or not np.isfinite(moved).all():

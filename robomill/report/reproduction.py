@@ -12,6 +12,7 @@ from robomill.arrays import FloatArray
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.paper import BOX_SIZE
+from robomill.progress import checkpoint
 from robomill.report import reproduction_experiments as experiments
 from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction_row import STEP, Evidence, Found, Row
@@ -25,7 +26,8 @@ from robomill.workspace.reach import ReachBox
 def reproduction(evidence: Evidence) -> list[Row]:
     """All rows, in the paper's order."""
     rows = []
-    for statement in STATEMENTS:
+    for k, statement in enumerate(STATEMENTS):
+        checkpoint(k / len(STATEMENTS), "Statements of the paper")
         found = CHECKS[statement.code](evidence)
         reason = statement.reading.format(**found.numbers)
         rows.append(Row(statement, found.text, found.holds, reason, found.numbers))

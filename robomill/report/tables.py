@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.progress import slices
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 
@@ -59,5 +60,6 @@ def csv_text(columns: Columns) -> str:
     """Columns as CSV; NaN is an empty cell."""
     rows = np.column_stack(list(columns.values()))
     lines = [",".join(columns)]
-    lines += [",".join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in rows]
+    for some in slices(len(rows), "Rows"):
+        lines += [",".join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in rows[some]]
     return "\n".join(lines) + "\n"

@@ -6,13 +6,14 @@ Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``b
 
 import threading
 from collections import OrderedDict
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, digest, frozen
-from robomill.errors import ToolpathError
+from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
 from robomill.toolpath.path import NO_SPINDLE, Toolpath, toolpath_from_lines
@@ -56,19 +57,24 @@ class GCodeSource:
         """The path; raises GCodeError naming the line that cannot be read.
 
         ``tools`` is the table that its T, H and D words mean; none or an empty one accepts every tool, of unknown size.
-        The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again.
+        The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again, and
+        what one was refused with: that may take as long.
         """
         tools = tools or None
         key = (self, digest(tools))
         with _LOCK:
             if key in _KEPT:
                 _KEPT.move_to_end(key)
-                return _KEPT[key]
-        path = self._read(tools) if self.n_s == 0.0 else _turning(replace(self, n_s=0.0).read(tools), self.n_s)
-        with _LOCK:
-            _KEPT[key] = path
-            while len(_KEPT) > MAX_KEPT:
-                _KEPT.popitem(last=False)
+                found = _KEPT[key]
+                if isinstance(found, GCodeError):
+                    raise copy(found)
+                return found
+        try:
+            path = self._read(tools) if self.n_s == 0.0 else _turning(replace(self, n_s=0.0).read(tools), self.n_s)
+        except GCodeError as exc:
+            _keep(key, copy(exc))
+            raise
+        _keep(key, path)
         return path
 
     def _read(self, tools: Tools | None) -> Toolpath:
@@ -88,8 +94,15 @@ def _turning(path: Toolpath, n_s: float) -> Toolpath:
     return replace(path, n_s=frozen(np.where(path.cutting, n_s, 0.0)), findings=findings)
 
 
-_KEPT: OrderedDict[tuple[GCodeSource, str], Toolpath] = OrderedDict()
+_KEPT: OrderedDict[tuple[GCodeSource, str], Toolpath | GCodeError] = OrderedDict()
 _LOCK = threading.Lock()
+
+
+def _keep(key: tuple[GCodeSource, str], found: Toolpath | GCodeError) -> None:
+    with _LOCK:
+        _KEPT[key] = found
+        while len(_KEPT) > MAX_KEPT:
+            _KEPT.popitem(last=False)
 
 
 @dataclass(frozen=True, eq=False)

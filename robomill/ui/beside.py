@@ -8,8 +8,9 @@ from typing import Any
 import streamlit as st
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 
-from robomill.ui import inputs, job, pieces, session
+from robomill.ui import inputs, job, session
 from robomill.ui.job import Job, Underway
+from robomill.ui.markup import quiet
 from robomill.units import format_percent
 
 FIRST_S = 0.3  # any work is waited for so long, lest the page changes twice
@@ -77,12 +78,13 @@ def _stop(place: str) -> None:
 
 def _ask(place: str, name: Any, doing: str, seconds: float) -> None:
     with st.container(horizontal=True, vertical_alignment="center", gap="small", key=job.box(place)):
-        inputs.button("Run", f"{place}.ask", "play_arrow", _begin, place, name, type="primary")
+        inputs.button("Run", f"{place}.ask", "play_arrow", begin, place, name, type="primary")
         takes = f" This takes about {_long(seconds)}." if seconds else ""
-        pieces.note(f"{doing}: not computed yet.{takes}")
+        st.html(quiet(f"{doing}: not computed yet.{takes}"))
 
 
-def _begin(place: str, name: Any) -> None:
+def begin(place: str, name: Any) -> None:
+    """Have work of this ``name`` begun, which a button asks for."""
     session.drop(f"{place}.stopped")
     session.keep(f"{place}.asked", name)
 

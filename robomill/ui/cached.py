@@ -7,6 +7,7 @@ from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from robomill.arrays import digest
+from robomill.errors import RobomillError
 from robomill.kinematics.spin import OverSpin
 from robomill.simulation.enlarged import Enlarged, enlarged
 from robomill.simulation.result import SimulationResult
@@ -14,13 +15,15 @@ from robomill.simulation.run import deviation_over_spin, simulate
 from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
-from robomill.ui import beside
+from robomill.ui import beside, inputs, session
 from robomill.ui.commons import NOTHING, Commons
+from robomill.ui.job import Underway
 
 if TYPE_CHECKING:
     from robomill.viz.chart import Chart
 
 SPIN_SAMPLES = 400
+FILE = "file"  # the place of the one file that a session has made for it
 Function = TypeVar("Function", bound=Callable[..., Any])
 commons = Commons()
 
@@ -92,6 +95,24 @@ def groove(setup: SimulationSetup, station: float) -> GrooveSection:
 def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     """The surfaces for pictures with the displacement ``times`` times enlarged, from the cache."""
     return enlarged(result(setup), times)
+
+
+def asked_for(label: str, key: str, about: Any, make: Callable[[], Any]) -> Any:
+    """What ``make`` answers, which ``about`` tells apart: made beside the page, once the button ``label`` begins it.
+
+    ``key`` is the button's. Raises the refusal, and ``Underway`` while it is not there.
+    """
+    name = f"{FILE}.{key}", digest(about)
+    found = commons.find(name, NOTHING)
+    if found is not NOTHING:
+        return found
+    if session.kept(f"{FILE}.asked") != name:
+        raise Underway(partial(inputs.button, label, f"{key}.ask", "play_arrow", beside.begin, FILE, name))
+    try:
+        return beside.made(FILE, name, partial(commons.get, name, make), label)
+    except RobomillError:
+        session.drop(f"{FILE}.asked")
+        raise
 
 
 def kept_figure(name: str, key: Sequence[Any], make: Callable[[], Chart]) -> Chart:

@@ -26,6 +26,11 @@ def as_html(*parts: str) -> Html:
     return Html(" ".join(part if isinstance(part, Html) else html.escape(part) for part in parts))
 
 
+def quiet(*parts: str) -> Html:
+    """A quiet line of words and badges, as HTML."""
+    return Html(f'<p class="rm-note">{as_html(*parts)}</p>')
+
+
 def as_markdown(text: str) -> str:
     """One paragraph of Markdown that shows exactly these words: no style, link, picture, formula or foreign address."""
     words = " ".join(text.split())

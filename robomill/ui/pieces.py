@@ -12,17 +12,22 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.progress import slices
 from robomill.provenance import Provenance
+from robomill.ui import beside, cached
 from robomill.ui.job import Underway
-from robomill.ui.markup import Html, as_html, as_markdown
+from robomill.ui.markup import Html, as_html, as_markdown, quiet
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+
     from robomill.viz.chart import Chart
 
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
 ROW = 36  # pixels of a row of a table
+CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
 MIME = {
     **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml"},
@@ -93,7 +98,7 @@ def headline(kicker: str, title: str, lead: str = "") -> None:
 
 def note(*parts: str) -> None:
     """A quiet line of words and badges."""
-    st.html(f'<p class="rm-note">{as_html(*parts)}</p>')
+    st.html(quiet(*parts))
 
 
 def facts(rows: Sequence[tuple[str, str, str]]) -> None:
@@ -269,10 +274,45 @@ def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "")
         st.dataframe(shown, hide_index=True, height=rows_high(len(shown), 360), width=640)
         if len(frame) > len(shown):
             note(f"Showing {len(shown)} of {len(frame)} rows; the file has all of them.")
-        download("CSV", lambda: frame.to_csv(index=False), f"robomill-{name}.csv", f"csv:{name}")
+
+        def about() -> Any:
+            return tuple(frame.columns), pd.util.hash_pandas_object(frame).to_numpy()
+
+        making = Making(CELL_S * frame.size, about)
+        download("CSV", partial(_csv, frame), f"robomill-{name}.csv", f"csv:{name}", making)
 
 
-def download(label: str, data: Callable[[], Any] | Any, file_name: str, key: str) -> None:
-    """A download that is made only when it is asked for; what it holds is told from the end of its name."""
-    more: dict[str, Any] = {"icon": ":material/download:", "on_click": "ignore"}
-    st.download_button(label, data, file_name, MIME[file_name.rpartition(".")[2]], key, **more)
+def _csv(frame: DataFrame) -> str:
+    """The whole table, some rows at a time."""
+    parts = [frame[some].to_csv(index=False, header=not some.start) for some in slices(len(frame), "Rows")]
+    return "".join(parts) or frame.to_csv(index=False)
+
+
+@dataclass(frozen=True)
+class Making:
+    """How long a file takes to be made, s, about; and what tells it from others, asked only where that is long."""
+
+    seconds: float
+    about: Callable[[], Any]
+
+
+def download(
+    label: str,
+    data: Callable[[], Any] | Any,
+    file_name: str,
+    key: str,
+    making: Making | None = None,
+    **more: Any,
+) -> None:
+    """A download that is made only when it is asked for; what it holds is told from the end of its name.
+
+    Where ``making`` it takes longer than anyone waits, a button has it made beside the page; then it can be taken.
+    """
+    if making is not None and making.seconds > beside.FIRST_S:
+        data = attempt(cached.asked_for, label, key, making.about(), data)
+        if data is None:
+            return
+        label, more = f"Save {file_name}", {"type": "primary"} | more
+    more = {"icon": ":material/download:", "on_click": "ignore"} | more
+    made = data if callable(data) else lambda: data  # not looked through at every run
+    st.download_button(label, made, file_name, MIME[file_name.rpartition(".")[2]], key, **more)

@@ -73,6 +73,11 @@ def _picture(
         st.image(png, width="stretch", alt=alt)
 
 
+def there(key: Sequence[object]) -> bool:
+    """Whether a picture is drawn already."""
+    return commons.find(("png", *key)) is not None
+
+
 def now(place: str, key: Sequence[object], make: Callable[[], SurfacePicture]) -> bytes:
     """PNG bytes of a picture, waited for. Raises RenderError with the reason why it cannot be drawn."""
     png: bytes | None = commons.find(("png", *key))

@@ -4,6 +4,7 @@ only when asked for where it takes minutes. Until it is there, the page shows th
 import streamlit as st
 
 from robomill.arrays import digest
+from robomill.errors import ToolpathError
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -49,9 +50,19 @@ def path_of(setup: SimulationSetup) -> Toolpath:
     """The path, which a program that goes round in loops lets wait for: raises its refusal, and ``Underway``."""
     if "toolpath" in vars(setup):
         return setup.toolpath
-    name = digest(setup.source), digest(setup.tools)
-    path: Toolpath = beside.made(READING, name, lambda: setup.toolpath, "Reading the program")
+    path: Toolpath = beside.made(READING, _named(setup), lambda: setup.toolpath, "Reading the program")
     return path
+
+
+def wait_for_path(setup: SimulationSetup) -> None:
+    """For what is decided at once: raises ToolpathError while the program is read beside the page, or once that was
+    cancelled."""
+    if "toolpath" not in vars(setup) and (session.kept(READING) or session.kept(f"{READING}.stopped") == _named(setup)):
+        raise ToolpathError("The program is not read yet: wait until it is, or open another one.")
+
+
+def _named(setup: SimulationSetup) -> tuple[str, str]:
+    return digest(setup.source), digest(setup.tools)
 
 
 def there(setup: SimulationSetup) -> bool:

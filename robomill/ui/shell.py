@@ -11,7 +11,8 @@ from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import declared, inputs, rendered, session
+from robomill.ui import declared, inputs, pieces, rendered, session
+from robomill.ui.commons import weight
 from robomill.ui.keeping import autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
@@ -19,6 +20,7 @@ from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
+BYTE_S = 4e-8  # s that a byte of a project takes to be written
 CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
 <g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">
@@ -130,15 +132,16 @@ def _files(held: session.Store) -> None:
                 most_MB=MAX_PROJECT_MB,
                 fresh=held.revision,
             )
-        st.download_button(
+        pieces.download(
             "Save",
-            data=lambda: project_to_toml(project),
-            file_name=_file_name(project.setup.name),
-            mime="application/toml",
+            lambda: project_to_toml(project),
+            _file_name(project.setup.name),
+            "save",
+            pieces.Making(
+                BYTE_S * weight(project.setup), lambda: (project.digest(), project.view, project.preset, project.maps)
+            ),
             icon=":material/save:",
-            on_click="ignore",
             width="stretch",
-            key="save",
         )
     if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
         snapshots.show()
@@ -147,6 +150,10 @@ def _files(held: session.Store) -> None:
         error(waiting[1])
     if said := autosave.trouble():
         st.caption(as_markdown(said))
+
+
+def _written_of(project: Project) -> tuple[object, ...]:
+    return project.digest(), project.view, project.preset, project.maps
 
 
 def _open(data: bytes, name: str) -> None:

@@ -1,6 +1,7 @@
 """The force over a pitch: its mean, its peak, and what the helix does to both."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from robomill.cutting.course import force_over_pitch as over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.forces.mechanistic import MechanisticForce
-from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.tool import DISH, MOST_FLUTES, Cutter
 from tests.cutting.cutters import CHIP, CUTTERS, MILL, REF190, SLOT
 
 
@@ -48,6 +49,22 @@ def test_peak_is_at_least_the_mean_and_helix_smooths_it():
     assert (peak.low <= mean).all()
     steep = MechanisticForce(MILL.replace(helix_angle=math.radians(60)), REF190).peak(SLOT)
     assert steep.high[0, 1] < peak.high[0, 1]
+
+
+def test_many_teeth_in_many_cuts_take_bounded_memory():
+    """All cuts with all teeth at once would take more than a gigabyte."""
+    force = MechanisticForce(MILL.replace(flutes=MOST_FLUTES), REF190)
+    conditions = CutConditions.steady(0.03, 200.0, np.linspace(1e-3, 2e-3, 600))
+    tracemalloc.start()
+    try:
+        peak = force.peak(conditions)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 300e6
+    assert len(np.unique(peak.high[:, 1])) > 100
+    alone = force.peak(CutConditions.steady(0.03, 200.0, 1e-3))
+    np.testing.assert_allclose(peak.high[0], alone.high[0], rtol=2e-3)
 
 
 @pytest.mark.parametrize(("helix", "first", "last"), [("right", 1.0, 1.1 + 0.5774), ("left", 1.0 - 0.5774, 1.1)])

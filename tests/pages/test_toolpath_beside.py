@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import itertools
+import threading
 import time
 
 import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill import progress
+from robomill.errors import GCodeError
+from robomill.progress import checkpoint
 from robomill.toolpath.gcode import interpreter
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import beside
 from robomill.ui.job import Job
 
 ENDLESS = "o100 while [1 GT 0]\n G1 X1 F100\n G1 X0\no100 endwhile\nM2\n"
+NUMBER = itertools.count()
 
 
 def opened(app: AppTest, page: str) -> AppTest:
     """A project whose program never ends, on one of the pages."""
     held = store(app)
-    held.put(held.project.replace(setup=held.project.setup.replace(source=GCodeSource(ENDLESS, "endless.nc"))))
+    source = GCodeSource(f"{ENDLESS}({next(NUMBER)})\n", "endless.nc")  # nobody has read it, nor was it refused
+    held.put(held.project.replace(setup=held.project.setup.replace(source=source)))
     return go(app, page)
 
 
@@ -47,3 +54,55 @@ def test_it_is_refused_with_its_line(app: AppTest, monkeypatch: pytest.MonkeyPat
     opened(app, "5_Toolpath")
     assert not app.exception
     assert any("the program may not end" in said for said in errors(app))
+
+
+@pytest.mark.parametrize("page", ["3_Compliance", "4_Identification", "5_Toolpath", "6_Milling"])
+def test_nothing_on_the_page_reads_it_a_second_time(app: AppTest, monkeypatch: pytest.MonkeyPatch, page: str) -> None:
+    """What would read the program in the page's own thread stands still there until it is refused."""
+    reads: list[str] = []
+
+    def endless(*_: object, **__: object) -> object:
+        reads.append(threading.current_thread().name)
+        if progress._watching.get() is None:
+            raise AssertionError("an endless program in the page's own thread")
+        while True:
+            checkpoint(0.1, "Reading")
+            time.sleep(0.01)
+
+    monkeypatch.setattr(beside, "FIRST_S", 0.05)
+    monkeypatch.setattr(GCodeSource, "read", endless)
+    opened(app, page)
+    assert not app.exception
+    cancel = [button for button in app.button if button.key == "run.path.cancel"]
+    assert cancel
+    cancel[0].click().run()
+    assert not app.exception
+    assert app.button(key="run.path.ask")
+    app.run()
+    assert not app.exception
+    assert len(reads) == 1
+
+
+def test_a_program_that_is_not_read_yet_is_not_converted(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(beside, "FIRST_S", 0.05)
+    opened(app, "5_Toolpath")
+    app.button_group(key="toolpath.kind").set_value("lines").run()
+    assert not app.exception
+    assert store(app).project.setup.source.kind == "program"
+    assert any("not read yet" in said for said in errors(app))
+
+
+def test_a_refused_program_is_not_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interpreter, "MAX_STEPS", 5000)
+    source = GCodeSource(ENDLESS + "(once)\n", "once.nc")
+    with pytest.raises(GCodeError) as first:
+        source.read()
+    monkeypatch.setattr(interpreter, "MAX_STEPS", 1 << 40)  # it would never end
+    with pytest.raises(GCodeError) as second:
+        source.read()
+    assert (str(second.value), second.value.line, second.value.where) == (
+        str(first.value),
+        first.value.line,
+        first.value.where,
+    )
+    assert second.value is not first.value

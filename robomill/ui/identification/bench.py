@@ -86,7 +86,8 @@ def robot_of(bench: Bench) -> Robot:
 def tests_of(bench: Bench, robot: Robot) -> LoadTests | JointTests:
     """The tests as read, their poses checked against the robot. Raises LoadTestError with row and column."""
     # The line end makes a single typed line a text, never the name of a file on this machine.
-    return remembered(("tests", bench.text, robot.digest()), lambda: read_load_tests(bench.text + "\n", robot))
+    key = "tests", bench.text, robot.digest()
+    return remembered(key, lambda: read_load_tests(bench.text + "\n", robot), "Reading the load tests")
 
 
 def fit_of(bench: Bench, robot: Robot) -> IdentificationResult:
@@ -111,13 +112,16 @@ def comparison_of(bench: Bench, robot: Robot) -> Comparison:
 
 def field_of(bench: Bench, robot: Robot) -> MeasuredField:
     """The measured map. Raises LoadTestError."""
-    return remembered(("map", bench.map_text, robot.digest()), lambda: read_measured_map(bench.map_text + "\n", robot))
+    key = "map", bench.map_text, robot.digest()
+    return remembered(key, lambda: read_measured_map(bench.map_text + "\n", robot), "Reading the measured map")
 
 
 def lines_of(bench: Bench, robot: Robot) -> LinesOfPull | None:
     """Where the lines of pull meet; None for tests of single joints."""
     tests = used_tests(bench, robot)
-    return None if tests is None else remembered(("pull", *_choices(bench, robot)), lambda: lines_of_pull(robot, tests))
+    if tests is None:
+        return None
+    return remembered(("pull", *_choices(bench, robot)), partial(lines_of_pull, robot, tests), "Lines of pull")
 
 
 def used_tests(bench: Bench, robot: Robot) -> LoadTests | None:

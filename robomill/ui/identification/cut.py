@@ -1,5 +1,6 @@
 """What the compliances found mean for the project's cut: the deviation along its path with a band."""
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
 from robomill.ui import inputs, pieces, running, session, uncertainty
 from robomill.ui.bench import Bench
 from robomill.ui.identification.bench import field
@@ -24,19 +26,26 @@ from robomill.viz.deviation import band_figure
 
 def cut_of(robot: Robot) -> SimulationResult:
     """The project's cut by ``robot``. Raises the refusal of the simulation, and Underway."""
+    return running.computed(_setup_of(robot), "identification.cut")
+
+
+def _setup_of(robot: Robot) -> SimulationSetup:
     setup = session.project().setup
-    return running.computed(setup if setup.robot == robot else setup.replace(robot=robot), "identification.cut")
+    return setup if setup.robot == robot else setup.replace(robot=robot)
 
 
 def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str) -> tuple[str, str]:
     """Value and note of the tile on the cut: its worst deviation by the compliances found, with its band."""
     if not result.has_joints:
         return "no joints", "choose a model with joint springs"
-    try:
-        found, known = predicted(bench, robot, result)
-        now = cut_of(robot).max_deviation
-    except (RobomillError, Underway):
+    setup = session.project().setup
+    made = None
+    with suppress(RobomillError, Underway):
+        if pieces.underway(running.path_of, setup) is not None and _there(bench, robot, result):
+            made = predicted(bench, robot, result), cut_of(robot).max_deviation
+    if made is None:
         return "not computed", "see In the cut"
+    (found, known), now = made
     if found.worst < 0:
         return "out of reach", "no point of the cut is reached"
     half = worst_half(found, known)
@@ -44,10 +53,15 @@ def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str
         return "not known", "no residuals to judge the noise by"
     digits = uncertainty.band_digits(half)
     text = uncertainty.band_text(found.max_deviation, half, unit)
-    setup = session.project().setup
     if known.held_by(found.setup.robot, found.setup.springs).holds_for(setup.robot, setup.springs):
         return text, "95 % band; in force in the project"
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
+
+
+def _there(bench: Bench, robot: Robot, result: IdentificationResult) -> bool:
+    """Whether both runs are kept, or short: longer ones are begun where they can be cancelled."""
+    found = adopted(session.project().setup, robot, result, bench.name)
+    return running.there(found) and running.there(_setup_of(robot))
 
 
 def predicted(bench: Bench, robot: Robot, result: IdentificationResult) -> tuple[SimulationResult, Knowledge]:

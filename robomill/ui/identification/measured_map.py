@@ -18,14 +18,14 @@ from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, running, session, uncertainty
 from robomill.ui.bench import MAP_SAMPLES, OWN, Bench
-from robomill.ui.identification.bench import field_of, put_map, put_map_sample, robot_of
+from robomill.ui.identification.bench import field_of, put_map, put_map_sample, remembered, robot_of
 from robomill.ui.identification.inputs import robot_choice, upload
 from robomill.ui.project import View
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label
 from robomill.viz.deviation import both_figure
 from robomill.viz.maps import Map, MapSheet, Scale
 from robomill.viz.measured_maps import level_figure
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import ComplianceField, compliance_field
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import one_sign
 
@@ -36,26 +36,27 @@ RIM = 2
 def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     """The whole section: headline (at the ``top``), tiles, inputs, three maps."""
     robot = robot_of(bench)
-    field = refusal = None
-    sentence = "These measurements do not make a map yet."
+    field = check = refusal = None
     try:
-        field = field_of(bench, robot)
+        field = pieces.underway(field_of, bench, robot)
+        check = None if field is None else pieces.underway(check_of, bench, field, robot)
     except RobomillError as exc:
         refusal = exc
-    if field is not None:
-        check, cut = MapCheck.of(field, robot), CutByBoth.of(field, robot)
-        sentence = title(check)
     with top:
+        sentence = "These measurements do not make a map yet." if check is None else title(check)
         pieces.headline(f"Measured map · {bench.map_name}", sentence)
-    if field is not None:
+    if field is not None and check is not None:
+        cut = CutByBoth.of(field, robot)
         pieces.tiles(tiles(field, check, cut, view.length))
-    chosen = _inputs(bench, field, view.length)
+    component, z = _inputs(bench, field, view.length)
     if refusal is not None:
         pieces.error(refusal)
-    if field is not None:
+    if field is not None and check is not None:
         for finding in field.findings:
             pieces.said("warning", finding.message, "visibility")
-        _maps(field, robot, *chosen, view.length, dark)
+        level = pieces.attempt(level_of, bench, field, robot, z)
+        if level is not None:
+            _maps(field, level, component, view.length, dark)
         _cut(field, cut, view.length, dark)
         _use(field)
 
@@ -86,6 +87,31 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
             nearest = min(texts, key=abs)
             z = inputs.pick("Level Z in {M}", "identification.map.level", texts, nearest, inputs.LISTED)
     return component, z
+
+
+def check_of(bench: Bench, field: MeasuredField, robot: Robot) -> MapCheck:
+    """The map against the joint model."""
+    key = "check", bench.map_text, robot.digest()
+    return remembered(key, partial(MapCheck.of, field, robot), "Comparing the map with the joint model")
+
+
+@dataclass(frozen=True)
+class Level:
+    """Both methods over one level of the map: C (nx, ny, 3, 3) m/N as measured, and the joint model's field."""
+
+    measured: FloatArray
+    model: ComplianceField
+
+
+def level_of(bench: Bench, field: MeasuredField, robot: Robot, z: float) -> Level:
+    """The map and the joint model over the measured rectangle at level z."""
+
+    def make() -> Level:
+        grid = level_grid(field, z)
+        measured = field.symmetric().compliance(grid.points())[:, :, 0]
+        return Level(measured, compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))))
+
+    return remembered(("level", bench.map_text, robot.digest(), z), make, "Maps of this level")
 
 
 def title(check: MapCheck) -> str:
@@ -157,12 +183,11 @@ def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | 
         return None
 
 
-def _maps(field: MeasuredField, robot: Robot, component: str, z: float, unit: str, dark: bool) -> None:
-    grid = level_grid(field, z)
+def _maps(field: MeasuredField, level: Level, component: str, unit: str, dark: bool) -> None:
+    grid = level.model.grid
     i, j = ("xyz".index(c) for c in component[-2:])
-    measured = field.symmetric().compliance(grid.points())[:, :, 0, i, j]
-    model = compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))).values(component)[:, :, 0]
-    here = np.abs(field.p[:, 2] - z) < 1e-6
+    measured, model = level.measured[:, :, i, j], level.model.values(component)[:, :, 0]
+    here = np.abs(field.p[:, 2] - grid.z[0]) < 1e-6
     points = from_si(field.p[here][:, :2], unit)
     sizes = [from_si(v, "um/N") for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
     both, pair = sizes[:2], component[-2:]

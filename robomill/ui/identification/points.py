@@ -22,9 +22,12 @@ ICONS = {"suspicious": "visibility", "info": "info"}
 def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
     """What the forces alone say, what the fit found, and the offer to fit points."""
     rows = [_row(f"{TITLES[p.point].capitalize()}, fitted", p, unit) for p in result.points]
-    tests, lines = used_tests(bench, robot), lines_of(bench, robot)
-    if tests is None or lines is None:
+    tests = used_tests(bench, robot)
+    if tests is None:
         pieces.note("One joint at a time: there is no load point on the tool.")
+        return
+    lines = pieces.attempt(lines_of, bench, robot)
+    if lines is None:
         return
     by_lines, found = pull_report(lines, robot, tests, result)
     if by_lines is not None:

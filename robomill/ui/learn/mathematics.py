@@ -82,7 +82,7 @@ def _number(value: float, digits: int) -> str:
     return text.lstrip("-") if float(text) == 0 else text
 
 
-@st.cache_resource(show_spinner="Computing the paper's tables and figures")
+@cached.shared(lambda: "paper", "Computing the paper's tables and figures")
 def rows() -> list[Row]:
     """The reproduction table, computed once for the server."""
     return reproduction(evidence())
@@ -103,7 +103,9 @@ def evidence() -> Evidence:
 def reproduced() -> None:
     """The table, with what did not come out and why."""
     st.subheader("The paper, reproduced")
-    found = rows()
+    found = pieces.attempt(rows)
+    if found is None:
+        return
     pieces.note(summary(found))
     shown = [
         (

@@ -171,6 +171,8 @@ def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) ->
 def quiet_result(project: Project) -> SimulationResult | None:
     """The milling result of the project, or None where it is refused or long: this page works without one."""
     try:
+        if pieces.underway(running.path_of, project.setup) is None:
+            return None
         return cached.result(project.setup) if running.there(project.setup) else None
     except RobomillError:
         return None

@@ -8,7 +8,7 @@ from robomill.errors import RobomillError
 from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import declared, inputs, pieces, running, session
 from robomill.units import format_count, format_many
 
 STOCKS = {"path": "Around the path", "block": "Block", "stl": "From STL"}
@@ -51,6 +51,7 @@ def _size(stock: Stock) -> str:
 def _around(setup: SimulationSetup) -> str:
     """The size of the stock around the path; "" while the path is refused, which the page says."""
     try:
+        running.wait_for_path(setup)
         return _size(setup.stock_block)
     except RobomillError:
         return ""
@@ -62,6 +63,7 @@ def _switch_stock(kind: str) -> None:
     if kind == "path":
         session.change(stock=None)
     elif kind == "block":
+        running.wait_for_path(setup)
         block = setup.stock_block
         session.change(stock=Stock(np.round(block.lower, 9), np.round(block.upper, 9)))
     elif setup.stock is None or setup.stock.triangles is None:

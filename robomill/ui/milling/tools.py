@@ -18,7 +18,8 @@ from robomill.io.tables import Table
 from robomill.io.tool_tables import UNITS, read_tool_table, tools_from_table, tools_to_tables
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.tools import cutting_numbers
-from robomill.ui import declared, grid, inputs, pieces, session
+from robomill.toolpath.source import PathSource
+from robomill.ui import cached, declared, grid, inputs, pieces, running, session
 from robomill.ui.box import NumberBox, box_of
 from robomill.units import unit_label
 
@@ -51,10 +52,18 @@ def missing(tools: ToolTable, cut_with: Iterable[int]) -> list[int]:
 
 def _cut_with() -> IntArray:
     """Numbers of the tools that the program cuts with, read without a table: one that lacks a tool refuses it."""
+    setup = session.project().setup
     try:
-        return cutting_numbers(session.project().setup.source.read())
+        running.wait_for_path(setup)
+        found = pieces.underway(_numbers_of, setup.source)
     except RobomillError:
-        return np.zeros(0, dtype=np.int64)
+        found = None
+    return np.zeros(0, dtype=np.int64) if found is None else found
+
+
+@cached.shared(lambda source: source, "Reading the program's tools")
+def _numbers_of(source: PathSource) -> IntArray:
+    return cutting_numbers(source.read())
 
 
 def _ask(number: int) -> None:

@@ -13,7 +13,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
-from robomill.ui import inputs, session
+from robomill.ui import inputs, running, session
 from robomill.ui.toolpath import program_view, question
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
@@ -68,6 +68,7 @@ def _convert(kind: str) -> None:
     setup = session.project().setup
     if kind == setup.source.kind:
         return
+    running.wait_for_path(setup)
     if kind == "lines":
         put(lines_of_path(setup.toolpath), "converted to a table of lines")
     elif kind == "program":
