@@ -152,10 +152,6 @@ def _files(held: session.Store) -> None:
         st.caption(as_markdown(said))
 
 
-def _written_of(project: Project) -> tuple[object, ...]:
-    return project.digest(), project.view, project.preset, project.maps
-
-
 def _open(data: bytes, name: str) -> None:
     reason = session.open_text(read_text(data, ProjectError, SETUP, name)[0])
     if reason:
