@@ -80,6 +80,15 @@ def test_size_and_worst_by_loops(bent):
     assert bent.worst_block == bent.path.block[bent.worst]
     assert bent.answered.all()
 
+def test_of_a_tool_that_stands_in_the_material_the_mean_is_its_one_deviation():
+    """There is no length to weigh by."""
+    slot = program("G0 X-20 Y0 Z5", "G0 Z-1", "G1 X20 F1800", "G0 Z9")
+    m = len(slot.path)
+    still = dataclasses.replace(slot.path, p=np.tile([0.0, 0.0, -1e-3], (m, 1)))
+    bent = dataclasses.replace(slot, path=still, delta=np.tile([0.03e-3, -0.04e-3, 0.12e-3], (m, 1)))
+    assert bent.rms_deviation == pytest.approx(0.13e-3, rel=1e-12)
+    assert bent.max_deviation == pytest.approx(0.13e-3, rel=1e-12)
+
 
 def test_each_force_component_alone_bends_its_part(bent):
     for c, name in enumerate(("feed", "feed_normal", "axial")):

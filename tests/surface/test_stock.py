@@ -1,5 +1,9 @@
 """The block and its cells: cells that fill it, the smallest cell that fits, blocks round paths."""
 
+import itertools
+import math
+import re
+
 import numpy as np
 import pytest
 import shapely
@@ -136,3 +140,20 @@ def test_a_cell_that_is_next_to_nothing_is_refused(cell: float) -> None:
 @pytest.mark.parametrize(("n", "m"), [(100, 100), (50, 200), (3, 7)])
 def test_cells_that_use_the_whole_budget_fit(n, m):
     assert fitting_cell(n * 1e-3, m * 1e-3, n * m) == pytest.approx(1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize(("length", "width", "cell"), [(0.5, 0.3, 1e-4), (0.3, 0.5, 1e-4), (2.0, 0.01, 5e-5)])
+def test_the_refusal_counts_cells_and_names_the_smallest_size_that_fits(length, width, cell):
+    """Counted as rows times columns; of all sizes in steps of 0.1 um none below the one named fits."""
+    budget = 1_000_000
+
+    def count(tenths):
+        return math.ceil(round(length / (tenths * 1e-7), 6)) * math.ceil(round(width / (tenths * 1e-7), 6))
+
+    fits = next(tenths for tenths in itertools.count(1) if count(tenths) <= budget)
+    with pytest.raises(SurfaceError) as refused:
+        stock_grid(Stock((0, 0, 0), (length, width, 1)), cell, budget)
+    needed, said = re.search(r"needs (\S+) million .* use (\S+) mm or more", str(refused.value)).groups()
+    assert float(needed) == pytest.approx(round(length / cell) * round(width / cell) / 1e6, rel=1e-3)
+    assert float(said) * 1e-3 == pytest.approx(fits * 1e-7, rel=1.5e-3)
+    assert float(said) * 1e-3 >= fits * 1e-7 * (1 - 1e-3)
