@@ -171,9 +171,9 @@ def _measured(result: Run, verdict: Verdict, unit: str) -> str:
 
 
 def _aside(result: Run, wall: Reading) -> str:
-    """Where a straight groove goes: along an axis of the part where the feed follows the other one."""
-    p = result.path.p
-    x, y = np.abs(p[wall.worst] - p[wall.worst - 1])[:2]
+    """Where a straight groove goes: along an axis of the part where its cuts, all on one line, follow the other one."""
+    low, high = result.path.extents
+    x, y = (high - low)[:2]
     axis = "Y" if x > 0.999 * np.hypot(x, y) else "X" if y > 0.999 * np.hypot(x, y) else ""
     return f"in {axis}" if axis else way("wall", wall)
 

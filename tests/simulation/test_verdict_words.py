@@ -25,6 +25,21 @@ def test_a_straight_groove_is_off_along_the_axis_that_its_feed_does_not_follow(t
     assert ("left" in said) == (not axis)
 
 
+@pytest.mark.parametrize(("there", "axis"), [((20, 0), "Y"), ((0, 15), "X"), ((15, 15), "")])
+@pytest.mark.parametrize("line", [3, 4])
+def test_a_groove_that_begins_with_a_plunge_goes_where_its_feed_goes(there, axis, line):
+    """Also where its worst wall is the hole's, on line 3, or the groove's first, beside the plunge."""
+    x, y = there
+    made = run(f"G0 X{-x} Y{-y} Z5", "G1 Z-2 F300", f"G1 X{x} Y{y} F1800")
+    known = replace(made, F=np.nan_to_num(made.F), unjudged=())
+    first = np.flatnonzero((made.path.block == line) & pushed(known).judged)[0]
+    bent = pushed(known, left=np.where(np.arange(len(made.path)) == first, 0.2e-3, 0.0))
+    assert bent.path.block[bent.verdict.wall.worst] == line
+    said = bent.verdict.sentence
+    assert [name for name in ("X", "Y") if f"0.20 mm off in {name}" in said] == [axis] * bool(axis)
+    assert ("0.20 mm off to the left" in said) == (not axis)
+
+
 def test_of_more_than_one_slot_the_lines_of_the_worst_wall_and_floor_are_named():
     """The first is too far left, the second too deep."""
     made = run("G0 X-40 Y-8 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5", "G0 X-40 Y10", "G0 Z-1", "G1 X40")
