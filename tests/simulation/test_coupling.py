@@ -192,6 +192,25 @@ def test_evaluations_are_counted_over_all_steps():
     assert [took(1, rest).agreed for rest in (0.0, TOLERANCE, 1.001 * TOLERANCE, np.nan)] == [True, True, False, False]
 
 
+def test_what_is_said_of_steps_that_do_not_agree_is_the_worst_of_them():
+    """Not of those that agree, though they took more and rest on a steeper force."""
+    some = (
+        Settled(np.zeros(3), 0.5 * TOLERANCE, 37, 9.9, ()),
+        Settled(np.zeros(3), 2.5e-6, 21, 1.4, ()),
+        Settled(np.zeros(3), 7.5e-6, 22, 1.6, ()),
+        Settled(np.zeros(3), 4.5e-6, 23, 1.8, ()),
+    )
+    found = Coupling(some, (4, 9), 0.0).finding
+    assert (found.level, found.code) == ("warning", "coupling")
+    for words in ("on line 4", "9", "7.5", "after 22 ", "1.6 times"):
+        assert words in found.message
+    for share, level, words in ((0.0, "info", "no step"), (0.5, "info", "that is judged"), (1.0, "info", "every step (")):
+        found = Coupling(some[:1], (), 3.4e-6, share).finding
+        assert (found.level, words in found.message) == (level, True)
+        assert ("37.0 evaluations a step, at most 37" in found.message) == (share > 0.0)
+        assert ("3.4" in found.message) == (share > 0.0)
+
+
 def test_a_force_that_jumps_is_held_at_the_jump():
     """A wall at 30 um that pushes back 200 um as soon as it is touched: the tool rests on it with a part of that."""
 

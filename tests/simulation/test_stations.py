@@ -34,6 +34,27 @@ def test_place_is_on_the_path(result: SimulationResult) -> None:
         np.testing.assert_allclose(along, [1.0, 0.0, 0.0], atol=1e-12)
 
 
+def test_places_along_a_path_with_corners_and_a_rapid_are_found_by_walking_it() -> None:
+    """Every piece of a zigzag has a direction of its own; a rapid between does not count, and ends hold what is beyond."""
+    p = np.array([(0, 0, 1), (0, 0, 0), (3, 4, 0), (3, 9, 0), (20, 9, 5), (20, 9, 0), (14, 1, -1), (14, 1, -1), (15, 3, 1)])
+    p, cutting = p * 1e-3, np.array([False, True, True, True, False, False, True, True, True])
+    m = len(p)
+    zeros = np.zeros(m)
+    path = Toolpath(p, np.tile([0.0, 0.0, 1.0], (m, 1)), np.full(m, 0.01), cutting, np.arange(m), zeros, np.zeros(m, int))
+    passed = 0.0
+    for a, b, on in zip(p[:-1], p[1:], cutting[1:], strict=True):
+        length = float(np.linalg.norm(b - a))
+        if not on or length == 0.0:
+            continue
+        for share in (0.1, 0.5, 0.9):
+            point, along = place_at(path, passed + share * length)
+            np.testing.assert_allclose(point, a + share * (b - a), atol=1e-12)
+            np.testing.assert_allclose(along, (b - a) / length, atol=1e-12)
+        passed += length
+    for beyond, end in ((-1.0, p[0]), (passed + 1.0, p[-1])):
+        np.testing.assert_allclose(place_at(path, beyond)[0], end, atol=1e-12)
+
+
 def test_the_nearest_judged_sample(result: SimulationResult) -> None:
     judged = [i for i in range(len(result.path)) if result.judged[i]]
     for station in (0.0, 0.0333, 0.0334, 0.1, 1.0):
