@@ -81,3 +81,11 @@ def test_table_1_of_the_paper_at_zero():
         [[1, 0, 0, 0], [0, 1, 0, -1.1], [0, 0, 1, 1.22 - 0.3], [0, 0, 0, 1]],
         atol=1e-15,
     )
+
+
+def test_free_joints_are_given_in_degrees_and_those_that_slide_in_millimetres():
+    arm = rm.load_robot("planar_3r")
+    slides = arm.replace(prismatic=np.array([False, True, False]))
+    assert slides.joint_units == ("deg", "mm", "deg")
+    assert arm.joint_units == ("deg",) * 3
+    assert with_blocked(slides, 1, 0.1).joint_units == ("mm", "deg")

@@ -181,6 +181,15 @@ def test_a_law_of_three_slopes_is_closed_in_upon_in_short_steps(seed):
     assert np.linalg.norm(np.diff(asked[:-1], axis=0), axis=1).max() <= LONGEST * (1 + 1e-9)
 
 
+def test_a_force_that_is_no_number_ends_the_bracket_where_it_is_seen():
+    """At the tool's own place, or where it is bent to from there: nothing is asked any more."""
+    for g in (lambda x: x * np.nan, lambda x: x + 1e-5 if x[0] < 1e-5 else x * np.nan):
+        asked = []
+        found = _by_bracket(lambda x, g=g, asked=asked: asked.append(x) or g(x), np.zeros(3))
+        assert (found.evaluations, len(asked), np.isnan(found.rest), found.agreed) == (2, 2, True, False)
+        assert not found.x.any()
+
+
 def test_evaluations_are_counted_over_all_steps():
     def took(evaluations, rest=0.0):
         return Settled(np.zeros(3), rest, evaluations, 1.0, ())
@@ -204,7 +213,11 @@ def test_what_is_said_of_steps_that_do_not_agree_is_the_worst_of_them():
     assert (found.level, found.code) == ("warning", "coupling")
     for words in ("on line 4", "9", "7.5", "after 22 ", "1.6 times"):
         assert words in found.message
-    for share, level, words in ((0.0, "info", "no step"), (0.5, "info", "that is judged"), (1.0, "info", "every step (")):
+    for share, level, words in (
+        (0.0, "info", "no step"),
+        (0.5, "info", "that is judged"),
+        (1.0, "info", "every step ("),
+    ):
         found = Coupling(some[:1], (), 3.4e-6, share).finding
         assert (found.level, words in found.message) == (level, True)
         assert ("37.0 evaluations a step, at most 37" in found.message) == (share > 0.0)

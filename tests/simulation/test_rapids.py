@@ -100,7 +100,10 @@ def test_what_is_cut_only_later_is_said_in_the_verdict():
 )
 def test_where_the_first_rapid_ends_counts(first, line):
     setup = SETUP.replace(source=GCodeSource(f"G21 G90\n{first}\nG1 X60 F600\nM2\n", "part.nc"))
-    assert crashes(setup, setup.source.read()).first == line
+    found = crashes(setup, setup.source.read())
+    assert found.first == line
+    said = [(note.level, note.line) for note in found.notes() if note.code == "begins-in-material"]
+    assert said == [("warning", line)] * (line > 0)
 
 
 def test_a_table_of_lines_begins_with_a_cut():

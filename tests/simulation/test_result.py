@@ -80,6 +80,7 @@ def test_size_and_worst_by_loops(bent):
     assert bent.worst_block == bent.path.block[bent.worst]
     assert bent.answered.all()
 
+
 def test_of_a_tool_that_stands_in_the_material_the_mean_is_its_one_deviation():
     """There is no length to weigh by."""
     slot = program("G0 X-20 Y0 Z5", "G0 Z-1", "G1 X20 F1800", "G0 Z9")

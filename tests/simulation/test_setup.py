@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 
 from robomill.compliance.springs.spindle import SpindleSpring
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import SetupError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.surface.stock import BESIDE
+from robomill.toolpath.source import GCodeSource
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
 
@@ -63,3 +67,20 @@ def test_three_tolerances_come_in_their_order_or_by_their_names(given):
     assert (setup.tolerance, setup.floor_tolerance, setup.feed_tolerance) == (2e-4, 1e-4, 3e-4)
     only = SETUP.replace(tolerance={"wall": 2e-4})
     assert (only.tolerance, only.floor_tolerance, only.feed_tolerance) == (2e-4, None, None)
+
+
+def test_without_a_stock_the_block_stands_round_what_the_widest_cutter_that_cuts_makes():
+    """Tool 3 is wider, and only moved about; without a table the set-up's own cutter is taken."""
+    cutters = (Cutter("flat", 6e-3), Cutter("ball", 10e-3), Cutter("flat", 20e-3))
+    table = ToolTable(tuple(TableTool(n, cutter) for n, cutter in enumerate(cutters, 1)))
+    for tools, radius in (((1, 2), 5e-3), ((2, 1), 5e-3), ((1,), 3e-3), ((), SETUP.cutter.radius)):
+        cuts = [
+            line
+            for n in tools or (0,)
+            for line in (f"T{n} M6" * (n > 0), "G0 X-10 Y2 Z5", "G1 Z-1 F600", "G1 X30", "G0 Z5")
+        ]
+        text = "\n".join(["G21 G90 S9000 M3", *cuts, "T3 M6" * bool(tools), "G0 X90 Y90", "M2", ""])
+        block = SETUP.replace(stock=None, source=GCodeSource(text), tools=table if tools else ToolTable()).stock_block
+        np.testing.assert_allclose(block.lower[:2], [-10e-3 - radius - BESIDE, 2e-3 - radius - BESIDE], atol=1e-12)
+        np.testing.assert_allclose(block.upper[:2], [30e-3 + radius + BESIDE, 2e-3 + radius + BESIDE], atol=1e-12)
+    assert SETUP.stock_block is SETUP.stock

@@ -35,12 +35,16 @@ def test_place_is_on_the_path(result: SimulationResult) -> None:
 
 
 def test_places_along_a_path_with_corners_and_a_rapid_are_found_by_walking_it() -> None:
-    """Every piece of a zigzag has a direction of its own; a rapid between does not count, and ends hold what is beyond."""
-    p = np.array([(0, 0, 1), (0, 0, 0), (3, 4, 0), (3, 9, 0), (20, 9, 5), (20, 9, 0), (14, 1, -1), (14, 1, -1), (15, 3, 1)])
+    """Every piece of a zigzag has a direction of its own; a rapid does not count, and the ends hold what is beyond."""
+    p = np.array(
+        [(0, 0, 1), (0, 0, 0), (3, 4, 0), (3, 9, 0), (20, 9, 5), (20, 9, 0), (14, 1, -1), (14, 1, -1), (15, 3, 1)]
+    )
     p, cutting = p * 1e-3, np.array([False, True, True, True, False, False, True, True, True])
     m = len(p)
     zeros = np.zeros(m)
-    path = Toolpath(p, np.tile([0.0, 0.0, 1.0], (m, 1)), np.full(m, 0.01), cutting, np.arange(m), zeros, np.zeros(m, int))
+    path = Toolpath(
+        p, np.tile([0.0, 0.0, 1.0], (m, 1)), np.full(m, 0.01), cutting, np.arange(m), zeros, np.zeros(m, int)
+    )
     passed = 0.0
     for a, b, on in zip(p[:-1], p[1:], cutting[1:], strict=True):
         length = float(np.linalg.norm(b - a))

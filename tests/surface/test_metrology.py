@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from robomill.errors import SurfaceError
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_line
 
 
@@ -38,3 +39,9 @@ def test_a_measured_profile_beside_the_predicted_one():
     assert found.explained == pytest.approx(5 / 8)
     np.testing.assert_array_equal(found.station, [0.1, 0.15, 0.3])
     assert np.isnan(compare_profile(profile, [0.1, 0.3], [1e-4, -1e-4]).explained)
+
+
+def test_a_groove_that_was_measured_nowhere_is_compared_with_nothing():
+    s, lost = np.array([0.0, 0.1]), np.full(2, np.nan)
+    with pytest.raises(SurfaceError, match="no section of the predicted groove could be measured"):
+        compare_profile(GrooveProfile(s, lost, lost, lost, lost), s, s)

@@ -165,3 +165,10 @@ def test_walls_of_an_earlier_cutter_stand_where_a_later_one_does_not_cut():
     assert swapped.removed_volume == pytest.approx(union.area * 0.002, rel=1e-3)
     i, j = np.divmod(swapped.edge.index, swapped.z.shape[1])
     assert (shapely.distance(union.boundary, shapely.points(swapped.x[i], swapped.y[j])) < near).all()
+
+
+def test_where_no_move_is_reached_nothing_is_cut():
+    p = walk(5)
+    p[1::2] = np.nan  # every move has an end that is not
+    with pytest.raises(SurfaceError, match="no feed move of the path is reached"):
+        cut(STOCK, 1e-3, FLAT, p)
