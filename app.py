@@ -7,7 +7,7 @@ from robomill.simulation.stations import nearest_judged
 from robomill.ui.arm import arm_at
 from robomill.ui.start import story
 from robomill.ui.verdict import NOT_COUNTED
-from robomill.units import format_si
+from robomill.units import format_limit
 
 HEIGHT = 430
 
@@ -44,6 +44,6 @@ with right:
 st.subheader("Where to go from here")
 story.doors()
 ui.note(
-    f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_si(setup.tolerance, unit, 2)}. "
+    f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_limit(setup.tolerance, unit)}. "
     f"Fingerprint of this run: {setup.digest()[:12]}."
 )

@@ -119,6 +119,31 @@ def format_percent(share: SupportsFloat, digits: int = 0, sign: bool = False) ->
     return format_si(share, "%", digits, sign)
 
 
+def format_share(share: SupportsFloat) -> str:
+    """A share of what is allowed, in per cent: with the digits that tell on which side of all of it it lies."""
+    return format_beside(share, 1.0, "%", 0)
+
+
+def format_beside(value: SupportsFloat, limit: float, unit: str, digits: int | None = None, sign: bool = False) -> str:
+    """An SI value beside its ``limit``: with more decimals than ``digits`` (those of the unit where None; up to three
+    more) where these would show its size as the limit's or on the other side of it."""
+    digits = decimals(unit, digits)
+    size, allowed = abs(from_si(float(value), unit)), from_si(limit, unit)
+
+    def tells(n: int) -> bool:
+        shown = round(size, n) - rounded(allowed)
+        return shown * (size - allowed) > 0.0 or size == allowed
+
+    more = range(digits, digits + 4)
+    return format_si(value, unit, next((n for n in more if tells(n)), more[-1]), sign)
+
+
+def format_limit(limit: float, unit: str) -> str:
+    """What is allowed, with two decimals or as many as it has (up to four)."""
+    number = from_si(limit, unit)
+    return format_si(limit, unit, next((n for n in (2, 3) if abs(round(number, n) - number) < 1e-9), 4))
+
+
 def format_count(count: int, noun: str = "") -> str:
     """``1 cut``, ``12,400 cuts``; the number alone without a noun."""
     return f"{count:,} {noun}{'' if count == 1 else 's'}" if noun else f"{count:,}"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
-from robomill.units import format_percent, format_value, from_si
+from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
 
 AXES = "XYZ"
 
@@ -114,10 +114,11 @@ def _reading(found: dict[str, Any]) -> str:
     """One quantity of the verdict: its largest value, where, and how much of its tolerance it uses."""
     if found["line"] is None:
         return "none is left to measure"
-    value, allowed = format_value(found["value_mm"], "mm", sign=True), format_value(found["tolerance_mm"], "mm", 2)
+    size, limit = (float(to_si(found[name], "mm")) for name in ("value_mm", "tolerance_mm"))
+    value, allowed = format_beside(size, limit, "mm", sign=True), format_limit(limit, "mm")
     if not found["judged"]:
         return f"{value} at line {found['line']}, not judged by itself"
-    return f"{value} at line {found['line']}, {format_percent(found['share'])} of {allowed}"
+    return f"{value} at line {found['line']}, {format_share(found['share'])} of {allowed}"
 
 
 def map_lines(record: dict[str, Any]) -> list[str]:

@@ -7,7 +7,7 @@ import numpy as np
 from robomill.provenance import Provenance
 from robomill.robot.model import USER_SET
 from robomill.simulation.setup import SimulationSetup
-from robomill.units import format_many, format_si, format_significant, from_si
+from robomill.units import format_limit, format_many, format_si, format_significant, from_si
 
 NOT_STATED = Provenance("user", "not stated")
 MODEL = Provenance("assumed", "static force, stiff links, joints as linear springs, small deflections")
@@ -41,7 +41,7 @@ def sources(setup: SimulationSetup) -> list[Source]:
         Source("Cutter", setup.cutter.title, given.get("cutter", NOT_STATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
         Source("Stock", _stock(setup), given.get("stock", NOT_STATED)),
-        Source("Tolerance", format_si(setup.tolerance, "mm", 2), given.get("tolerance", NOT_STATED)),
+        Source("Tolerance", format_limit(setup.tolerance, "mm"), given.get("tolerance", NOT_STATED)),
         Source("Model", "C = J C_θ Jᵀ, δ = C F", MODEL),
     ]
 

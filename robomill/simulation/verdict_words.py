@@ -7,7 +7,7 @@ import numpy as np
 
 from robomill.provenance import named
 from robomill.simulation.seen import Run
-from robomill.units import format_count, format_percent, format_si
+from robomill.units import format_beside, format_count, format_percent, format_share, format_si
 
 TIGHT_FROM = 0.8
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
@@ -131,7 +131,7 @@ def _sentence(words: str) -> str:
 
 
 def _used(verdict: Verdict) -> str:
-    used = f"{format_percent(verdict.share)} of it used"
+    used = f"{format_share(verdict.share)} of it used"
     if verdict.far > 1.0 and verdict.grade == "tight":
         used += f", up to {format_percent(verdict.far)} at the ends of the share assumed of its force"
     return used
@@ -140,20 +140,18 @@ def _used(verdict: Verdict) -> str:
 def _measured(result: Run, verdict: Verdict, unit: str) -> str:
     """What a gauge would read, without the judgement."""
 
-    def size(value: float) -> str:
-        return format_si(abs(value), unit, 2)
+    def size(found: Reading) -> str:
+        return format_beside(abs(found.value), found.tolerance, unit, 2)
 
     def line(reading: Reading) -> str:
         return f"(line {int(result.path.block[reading.worst])})"
 
     wall, floor = verdict.wall, verdict.floor
     if result.path.on_one_line and wall.worst >= 0 and floor.worst >= 0:
-        parts = [
-            f"the groove is {size(wall.value)} off {_aside(result, wall)} and {size(floor.value)} {way('floor', floor)}"
-        ]
+        parts = [f"the groove is {size(wall)} off {_aside(result, wall)} and {size(floor)} {way('floor', floor)}"]
     else:
         parts = [
-            f"{name}s are up to {size(found.value)} {way(name, found)} {line(found)}"
+            f"{name}s are up to {size(found)} {way(name, found)} {line(found)}"
             for name, found in (("wall", wall), ("floor", floor))
             if found.worst >= 0
         ]
@@ -162,9 +160,9 @@ def _measured(result: Run, verdict: Verdict, unit: str) -> str:
     ]
     if along:
         _, name, found = max(along)
-        parts.append(f"the {name} is {size(found.value)} off along the feed {line(found)}")
+        parts.append(f"the {name} is {size(found)} off along the feed {line(found)}")
     if not parts:
-        off = size(result.max_deviation)
+        off = format_beside(result.max_deviation, verdict.wall.tolerance, unit, 2)
         parts = [f"no wall or floor is left to measure; the tip is {off} off (line {result.worst_block})"]
     gone = f"; a wall that should stand is cut away (line {named(verdict.gone)})" if verdict.gone else ""
     return ", ".join(parts) + gone

@@ -15,7 +15,7 @@ from robomill.simulation.verdict_words import WORDS as JUDGED
 from robomill.simulation.verdict_words import Reading, Verdict, said, way
 from robomill.ui import cached, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
-from robomill.units import format_count, format_many, format_percent, format_si
+from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
 WORDS = {
     **{level: words.capitalize() for level, words in JUDGED.items()},
@@ -70,7 +70,7 @@ def range_words(found: Range, name: str, unit: str) -> str:
     if not np.isfinite([low, high]).all() or (format_si(low, unit), low) == (format_si(high, unit), high):
         return ""
     if name == "share":
-        return f"{format_percent(low)} to {format_percent(high)}: {found.over}"
+        return f"{format_share(low)} to {format_share(high)}: {found.over}"
     ends = format_many((low, high), unit, between=" to ", sign=name != "tip", with_unit=False)
     return f"{ends}: {found.over}"
 
@@ -78,7 +78,7 @@ def range_words(found: Range, name: str, unit: str) -> str:
 def share_words(verdict: Verdict) -> str:
     """How much of the tolerance is used, or why nobody knows."""
     if np.isfinite(verdict.share):
-        return f"{format_percent(verdict.share)} of the tolerance used {verdict.premise}".rstrip()
+        return f"{format_share(verdict.share)} of the tolerance used {verdict.premise}".rstrip()
     return NOTHING.get(verdict.level, "nothing cut")
 
 
@@ -92,16 +92,16 @@ def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None
     reading: Reading = getattr(verdict, name)
     if reading.worst < 0:
         return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
-    allowed = format_si(reading.tolerance, unit, 2)
+    allowed = format_limit(reading.tolerance, unit)
     was = change = ""
     if before is not None and getattr(before, name).worst >= 0:
         was = format_si(getattr(before, name).value, unit, sign=True)
         change = format_si(reading.value - getattr(before, name).value, unit, sign=True)
-    value = format_si(reading.value, unit, sign=True)
+    value = format_beside(reading.value, reading.tolerance, unit, sign=True)
     return Tile(
         label,
         value,
-        f"{way(name, reading)} · {format_percent(reading.share)} of {allowed}",
+        f"{way(name, reading)} · {format_share(reading.share)} of {allowed}",
         was,
         change,
         kind="computed",

@@ -14,11 +14,14 @@ from hypothesis import strategies as st
 from robomill.typed_numbers import read_number
 from robomill.units import (
     UNITS,
+    format_beside,
     format_count,
+    format_limit,
     format_many,
     format_number,
     format_percent,
     format_plain,
+    format_share,
     format_short,
     format_short_count,
     format_si,
@@ -198,3 +201,41 @@ def test_a_number_of_a_file_is_the_nearest_decimal_without_anything_idle(value: 
     assert text != "-0"
     assert "e" not in text
     assert "." not in text or not text.endswith(("0", "."))
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [
+        (0.42, "42 %"),
+        (1.0, "100 %"),
+        (1.0033, "100.3 %"),
+        (0.9996, "99.96 %"),
+        (0.996, "99.6 %"),
+        (0.9949, "99 %"),
+        (1.0049, "100.5 %"),
+        (1.006, "101 %"),
+        (1.0000001, "100.000 %"),
+    ],
+)
+def test_a_share_shows_on_which_side_of_the_limit_it_lies(share, words) -> None:
+    assert format_share(share) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [(0.301, "0.301 mm"), (0.3, "0.30 mm"), (-0.2996, "−0.2996 mm"), (0.31, "0.31 mm"), (0.29, "0.29 mm")],
+)
+def test_a_value_beside_its_limit_lies_on_its_side_of_it(value, words) -> None:
+    assert format_beside(value * 1e-3, 0.3e-3, "mm", 2) == words
+
+
+def test_a_value_is_not_rounded_over_a_limit_of_more_digits() -> None:
+    assert format_beside(0.2290e-3, 0.2294e-3, "mm", 2) == "0.229 mm"
+    assert format_beside(0.2295e-3, 0.2294e-3, "mm", 2) == "0.23 mm"
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"), [(0.3, "0.30 mm"), (0.2294, "0.2294 mm"), (0.125, "0.125 mm"), (1 / 3, "0.3333 mm")]
+)
+def test_a_limit_is_shown_as_it_was_given(limit, words) -> None:
+    assert format_limit(to_si(limit, "mm"), "mm") == words
