@@ -176,9 +176,10 @@ def beside_place(shape: Shape, stretch: int, near: Place, s: float) -> Place:
     if stretch != NOSE or shape.kind == CHAMFER:
         return on_profile(shape, stretch, s)
     turn = (s - near.s) / shape.rc
-    square = turn * turn
-    c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))
-    d = turn * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))))
+    q = turn * turn
+    c = 1.0 - q * (1.0 / 2.0) * (1.0 - q * (1.0 / 12.0) * (1.0 - q * (1.0 / 30.0) * (1.0 - q * (1.0 / 56.0))))
+    d = 1.0 - q * (1.0 / 6.0) * (1.0 - q * (1.0 / 20.0) * (1.0 - q * (1.0 / 42.0) * (1.0 - q * (1.0 / 72.0))))
+    d *= turn
     sine, cosine = near.sine * c + near.cosine * d, near.cosine * c - near.sine * d
     return Place(s, shape.r0 + shape.rc * sine, shape.rc * (1.0 - cosine), sine, cosine)
 

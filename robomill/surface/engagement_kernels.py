@@ -31,7 +31,7 @@ from robomill.cutting.profile_kernels import (
 )
 from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.relief_kernels import UNKNOWN, told, tops_about, tops_between
+from robomill.surface.relief_kernels import UNKNOWN, Relief, told, tops_about, tops_between
 from robomill.surface.rib_kernels import change_between, is_plain
 from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import (
@@ -222,6 +222,7 @@ def measure_stretch(
         low = begin = on_profile(shape, stretch, facing)
     if to < stop.s:
         stop = on_profile(shape, stretch, to)
+    wide = stretch == NOSE and room.places[first + 1, 0] - room.places[first, 0] > NARROW
     deep_low = about_at(world, step, ray, low)
     for n in range(first + 1, first + pieces + 1):
         if low.s >= min(room.places[n, 0], stop.s):
@@ -232,10 +233,11 @@ def measure_stretch(
             high, deep_high = end, deep_end
             if (deep_low > 0.0) == (deep_high > 0.0):
                 share = 1.0
-                if not shut:
-                    share = hidden_place(world, seen, stretch, (low, high), deep_low > 0.0)
-                elif stretch == NOSE and deep_low <= 0.0:
-                    share = narrow_place(world, seen, (low, high))
+                if (not shut or (wide and deep_low <= 0.0)) and not told_between(world.relief, seen, (low, high)):
+                    if shut:
+                        share = narrow_place(world, seen, (low, high))
+                    else:
+                        share = hidden_place(world, seen, stretch, (low, high), deep_low > 0.0)
                 if share < 1.0:
                     high = on_profile(shape, stretch, low.s + share * (end.s - low.s))
                     deep_high = engaged_at(world, step, ray, high)
@@ -247,6 +249,14 @@ def measure_stretch(
             low, deep_low = high, deep_high
     if deep_low > 0.0:
         add_edge(room, row, shape, step, stretch, (begin, stop))
+
+
+@part
+def told_between(relief: Relief, seen: tuple[Shape, Step, Ray], ends: tuple[Place, Place]) -> bool:
+    """Whether the relief tells what stands between two places of a stretch."""
+    (_, step, ray), (low, high) = seen, ends
+    a, b = point_at(step, ray, low), point_at(step, ray, high)
+    return told(relief, tops_between(relief, a, b), min(a[2], b[2]), max(a[2], b[2])) != UNKNOWN
 
 
 @part
@@ -282,15 +292,10 @@ def narrow_place(world: World, seen: tuple[Shape, Step, Ray], ends: tuple[Place,
     """How far on between two places of a nose in the air it cuts, as a share; 1 where that is nowhere. What a finishing
     pass meets may be narrower than a piece of the nose, though no rib is near."""
     (shape, step, ray), (low, high) = seen, ends
-    if high.s - low.s <= NARROW:
-        return 1.0
-    a, b = point_at(step, ray, low), point_at(step, ray, high)
-    if told(world.relief, tops_between(world.relief, a, b), min(a[2], b[2]), max(a[2], b[2])) != UNKNOWN:
-        return 1.0
     parts = math.ceil((high.s - low.s) / NARROW)
     for n in range(1, parts):
         share = n / parts
-        if engaged_at(world, step, ray, on_profile(shape, NOSE, low.s + share * (high.s - low.s))) > 0.0:
+        if about_at(world, step, ray, on_profile(shape, NOSE, low.s + share * (high.s - low.s))) > 0.0:
             return share
     return 1.0
 

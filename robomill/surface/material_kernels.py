@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
-from robomill.cutting.profile_kernels import profile, shape_of
+from robomill.cutting.profile_kernels import profile_within, shape_of
 from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height
 from robomill.surface.relief_kernels import Relief, sides_about, tops_about
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
@@ -124,7 +124,7 @@ def place_in_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> tupl
         return z - move.az, within
     shape = shape_of(run)
     if move.m == 0.0:
-        return z - move.az - profile(shape, distance), within
+        return z - move.az - profile_within(shape, ex * ex + ey * ey), within
     return z - swept_height(shape, move, x, y), within
 
 

@@ -251,9 +251,6 @@ def change_between(world: World, run: int, ends: tuple[Point, Point], since: flo
     """How far on the straight way between two ends m, from the share ``since`` of it on, material is first met where
     there was none (or none where it ``cuts``), as a share; 1 where that is nowhere."""
     dexels, (a, b) = world.dexels, ends
-    tops = tops_between(world.relief, a, b)
-    if told(world.relief, tops, min(a[2], b[2]), max(a[2], b[2])) != UNKNOWN:
-        return 1.0
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     length = math.sqrt(dx * dx + dy * dy + dz * dz)
     if length <= 0.0:
@@ -263,12 +260,12 @@ def change_between(world: World, run: int, ends: tuple[Point, Point], since: flo
     while share + (finer if fine else coarse) < 1.0 or (to_side and not fine):
         there = share + (finer if fine else coarse)
         x, y, z = a[0] + there * dx, a[1] + there * dy, a[2] + there * dz
-        near = near_side(dexels, x, y)
+        i, j = cell_of(dexels, x, y)
+        near = dexels.names[i, j, 0] != NOBODY
         if (near or there >= 1.0) and not fine:
             fine = True
             continue
         share = there
-        i, j = cell_of(dexels, x, y)
         deep = 0.0 if near or beside(world.bounds, x, y) else in_column(dexels, i, j, z)
         if abs(deep) <= dexels.slack or z < world.bounds.z_low:
             deep = standing(world, (x, y, z), run)
