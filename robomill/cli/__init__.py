@@ -7,9 +7,11 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from robomill import __version__, compiled
+from robomill.cli.options import whole
 from robomill.cli.progress_line import ProgressLine
 from robomill.cli.serve import run_serve, serve_options, start_app
 from robomill.cli.verbs import run_gcode, run_identify, run_ik, run_map, run_pose, run_robots, run_simulate
@@ -136,4 +138,6 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
     fit.add_argument("--out", metavar="ROBOT.toml", help="write the robot with these compliances there")
     fit.add_argument("--sheet", metavar="SHEET.csv", help="write the tests to do next there, to be filled in")
-    fit.add_argument("--next", type=int, default=3, metavar="TESTS", help="how many tests to do next (default 3)")
+    fit.add_argument(
+        "--next", type=partial(whole, 100), default=3, metavar="TESTS", help="how many tests to do next (default 3)"
+    )

@@ -1,5 +1,6 @@
 """What the options say: numbers, joint coordinates, the points of an axis, a program's file; refused by their name."""
 
+import argparse
 import math
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,13 @@ def numbers(text: str, option: str, count: int | None, what: str) -> list[float]
 
 def wholes(text: str, option: str) -> tuple[int, ...]:
     return tuple(int(v) for v in numbers(text, option, None, "whole numbers"))
+
+
+def whole(most: int, text: str) -> int:
+    """A whole number from 1 on, as argparse takes it; raises its refusal."""
+    if not (text.isascii() and text.isdecimal() and len(text) < 9 and 0 < int(text) <= most):
+        raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {most}, found {text!r:.40}")
+    return int(text)
 
 
 def theta(robot: Any, text: str) -> Any:

@@ -2,11 +2,15 @@
 
 import argparse
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
+
+from robomill.cli.options import whole
+from robomill.errors import RobomillError
 
 LOOPBACK = "127.0.0.1"
 # What a server for others has: no file or line of the code is shown to visitors (its owner's log has them), forms and
@@ -37,11 +41,11 @@ def start_app(words: Sequence[str] = ()) -> int:
 def serve_options(serve: argparse.ArgumentParser) -> None:
     """The options of ``robomill serve``."""
     serve.add_argument("--address", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine)")
-    serve.add_argument("--port", type=partial(_whole, 65535), default=8501, help="port to listen on (default 8501)")
+    serve.add_argument("--port", type=partial(whole, 65535), default=8501, help="port to listen on (default 8501)")
     serve.add_argument("--host-name", metavar="NAME", help="name by which browsers reach it, behind a reverse proxy")
     serve.add_argument("--base-path", metavar="PATH", help="path under which a reverse proxy offers it")
     serve.add_argument(
-        "--max-upload-mb", type=partial(_whole, 100_000), default=100, metavar="MB", help="largest file (default 100)"
+        "--max-upload-mb", type=partial(whole, 100_000), default=100, metavar="MB", help="largest file (default 100)"
     )
     serve.add_argument("--autosave", choices=("on", "off"), help="keep people's work beyond the page (default on)")
     serve.add_argument("--autosave-folder", metavar="DIR", help="where, in a folder that nobody else can read")
@@ -59,6 +63,7 @@ def run_serve(arguments: Any) -> int:
         if said is not None:
             environment[f"{PREFIX}{name}"] = said
     Settings.of(environment)
+    _can_listen(arguments.address, arguments.port)
     words = [
         f"--server.address={arguments.address}",
         f"--server.port={arguments.port}",
@@ -84,7 +89,14 @@ def _become(command: list[str], environment: dict[str, str]) -> int:
     return subprocess.call(command, env=environment)
 
 
-def _whole(most: int, text: str) -> int:
-    if not (text.isascii() and text.isdecimal() and len(text) < 9 and 0 < int(text) <= most):
-        raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {most}, found {text!r:.40}")
-    return int(text)
+def _can_listen(address: str, port: int) -> None:
+    """Raise RobomillError where nothing can listen there: the server itself would say so in many lines."""
+    try:
+        family = socket.getaddrinfo(address, port, type=socket.SOCK_STREAM)[0][0]
+        socket.create_server((address, port), family=family).close()
+    except (OSError, UnicodeError) as exc:
+        why = getattr(exc, "strerror", None) or "it is no name of a machine"
+        raise RobomillError(
+            f"--address {address:.80}, --port {port}: nothing can listen there ({why}); give an address of this "
+            "machine and a port that is free."
+        ) from None

@@ -38,6 +38,8 @@ def run_pose(arguments: Any) -> int:
 def run_ik(arguments: Any) -> int:
     import numpy as np
 
+    from robomill.arrays import check_place
+    from robomill.errors import RobomillError
     from robomill.io.robots import load_robot
     from robomill.kinematics.inverse import inverse_kinematics
     from robomill.kinematics.transforms import pose_from_world
@@ -48,6 +50,7 @@ def run_ik(arguments: Any) -> int:
     robot = load_robot(arguments.robot)
     values = np.array(options.numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
     x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
+    check_place(x_M[:3], "--pose", RobomillError)
     record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
     return say(arguments, record, ik_lines(record))
 

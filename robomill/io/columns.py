@@ -21,6 +21,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import RobomillError
 from robomill.files import TABLE
 from robomill.io.texts import read_text
+from robomill.quantities import GREATEST
 from robomill.typed_numbers import either_way
 from robomill.units import to_si
 
@@ -260,7 +261,7 @@ def _numbers(body: _Body, wanted: list[Column], open_cells: frozenset[str]) -> F
         values = np.loadtxt(lines, delimiter=body.mark, usecols=places, ndmin=2, comments=None, quotechar='"')
     except ValueError:
         values = np.array([[math.nan]])
-    if np.isfinite(values).all():
+    if (np.abs(values) <= GREATEST).all():
         return values
     rows = [_cells(line, body.mark) for line in lines]
     return np.array(
@@ -313,7 +314,7 @@ def _cells(line: str, mark: str) -> list[str]:
 def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> float:
     found = text.strip()
     number = _number(found)
-    if number is not None and math.isfinite(number):
+    if number is not None and abs(number) <= GREATEST:
         return number
     if not found and is_open:
         return math.nan
@@ -321,6 +322,8 @@ def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> floa
         message = "the cell is empty, expected a number; measure it again or delete the row"
     elif number is None:
         message = f"found {found!r:.40}, expected a number; enter a plain one such as 0.125"
+    elif math.isfinite(number):
+        message = f"found {found!r:.40}, expected no more than {GREATEST:g}; measure it again or delete the row"
     else:
         message = f"found {found!r:.40}, expected a finite number; measure it again or delete the row"
     raise body.place.refuse(f"{message}.", int(body.row[k]), column.written)

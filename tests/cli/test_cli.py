@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import pty
 import re
 import shutil
@@ -402,7 +403,32 @@ def served(monkeypatch) -> list[tuple[list[str], dict[str, str]]]:
     """What ``robomill serve`` would have become."""
     became: list[tuple[list[str], dict[str, str]]] = []
     monkeypatch.setattr(serve, "_become", lambda command, environment: became.append((command, environment)) or 0)
+    monkeypatch.setattr(serve, "_can_listen", lambda address, port: None)
     return became
+
+
+def test_a_server_that_cannot_listen_says_so_in_a_sentence(capsys) -> None:
+    """An address that is none, one of another machine (for documentation, by RFC 5737), and a port that is taken."""
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        for words in ("--address nohost.invalid", "--address 192.0.2.1", f"--port {port}"):
+            assert main(["serve", *words.split()]) == 2
+            said = capsys.readouterr().err
+            assert said.startswith("robomill: --address ")
+            assert said.count("\n") == 1
+
+
+def test_a_pose_farther_than_any_machine_is_refused(capsys) -> None:
+    assert main(["ik", "slavkovic_5r", "--pose", "1e308,0,0,0,0"]) == 2
+    assert "--pose: it lies" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "100000", "two"])
+def test_as_many_tests_as_nobody_does_are_not_planned(capsys, count) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["identify", "slavkovic_5r", "tests.csv", "--next", count])
+    assert left.value.code == 2
+    assert "--next: expected a whole number from 1 to 100" in capsys.readouterr().err
 
 
 def test_a_server_for_others_shows_no_code_and_listens_on_this_machine_unless_told(served) -> None:

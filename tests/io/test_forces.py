@@ -58,6 +58,7 @@ def changed(i, row):
         (changed(4, "0.004,-56,abc,-20"), "row 6, column F_feed_normal_N: found 'abc', expected a number"),
         (changed(4, "0.004,nan,104,-20"), "row 6, column F_feed_N: found 'nan', expected a finite number"),
         (changed(4, "0.004,1e999,104,-20"), "row 6, column F_feed_N: found '1e999', expected a finite number"),
+        (changed(4, "0.004,1e308,104,-20"), "row 6, column F_feed_N: found '1e308', expected no more than 1e+12"),
         (changed(4, "0.004,-56,,-20"), "row 6, column F_feed_normal_N: the cell is empty"),
         (changed(4, "0.004,-56"), "row 6, column F_feed_normal_N: found 2 cells, expected 4"),
         (changed(4, "0.003,-56,104,-20"), "row 6, column t_s: 0.003 repeats the value before it (0.003)"),
