@@ -49,3 +49,18 @@ def test_an_elbow_that_is_up_stands_higher_than_one_that_is_down(name):
     assert both.sum() > 20
     height = [joint_frames(robot, each.theta[both])[:, 2, 2, 3] for each in (up, down)]
     assert (height[0] > height[1]).all()
+
+
+@pytest.mark.parametrize("gone", [("a", 1), ("d", 3)])
+def test_without_an_upper_arm_or_a_forearm_there_is_no_closed_form(gone):
+    """The elbow stands on the shoulder, or the wrist on the elbow: the arm is solved all the same."""
+    robot, (name, row) = rm.load_robot("slavkovic_5r"), gone
+    lengths = np.array(getattr(robot, name))
+    assert abs(lengths[row]) > 1.0
+    lengths[row] = 0.0
+    folded = robot.replace(**{name: lengths})
+    assert decoupled(folded) is None
+    theta = folded.home + np.random.default_rng(1).uniform(-0.2, 0.2, (5, 5))
+    found = rm.inverse_kinematics(folded, rm.tool_pose(folded, theta), near=theta)
+    assert found.reached.all()
+    np.testing.assert_allclose(rm.tool_pose(folded, found.theta), rm.tool_pose(folded, theta), atol=1e-8)
