@@ -61,3 +61,13 @@ def test_a_coupled_run_in_which_nothing_is_judged_does_not_say_that_it_agrees() 
     assert nothing.coupling is not None
     assert nothing.coupling.judged == 0.0
     assert nothing.coupling.finding.message != rm.simulate(setup.replace(coupling=True)).coupling.finding.message
+
+
+def test_along_the_feed_the_far_end_is_that_of_the_worst_point() -> None:
+    """Where the tolerance along the feed is the one that is used up first."""
+    low, high = (run(SLOT, share) for share in PUBLISHED["axial"])
+    along = [float(np.abs(each.delta_in_cut[each.judged, 0]).max()) for each in (low, high)]
+    least = float(np.abs(low.delta_in_cut[low.judged, 0]).min())
+    assert least < 0.9 * max(along)
+    wide = {"wall": 10e-3, "floor": 10e-3, "feed": 2.0 * max(along)}
+    assert run(SLOT, PUBLISHED["axial"][0], tolerance=wide).verdict.far == pytest.approx(0.5, rel=1e-3)

@@ -102,3 +102,14 @@ def test_a_tool_that_the_picture_lifts_off_the_part_leaves_it_whole(result: Simu
         result, setup=result.setup.replace(stock=beside), unjudged=(Unjudged("tool", cuts, "of another tool"),)
     )
     assert enlarged(nothing_known, 1.0).ideal.removed_volume == 0.0
+
+
+@pytest.mark.parametrize("station", [0.02, 0.05, 0.08])
+def test_the_cut_so_far_ends_one_radius_before_the_tip(slot: SimulationResult, station: float) -> None:
+    shown, k = enlarged(slot, 10.0), nearest_feed(slot, station)
+    tip, made = tip_drawn(slot, shown, k), so_far(slot, shown, k).drawn
+    row = int(np.argmin(np.abs(made.y - tip[1])))
+    cut = made.x[made.z[:, row] < -1e-6]
+    step = float(slot.path.step_length[k + 1])
+    assert step > made.cell  # else the sample that comes next could not be told
+    assert abs(cut.max() - (tip[0] + slot.setup.cutter.radius)) <= made.cell
