@@ -118,9 +118,13 @@ class Toolpath:
     @property
     def extents(self) -> tuple[FloatArray, FloatArray]:
         """Smallest and largest corner (3,) m over all points of feed moves (of all points without any)."""
-        ends = self.p[self.cutting | np.append(self.cutting[1:], False)]
-        ends = ends if len(ends) else self.p
+        ends = self._feed_ends if self.cutting.any() else self.p
         return ends.min(axis=0), ends.max(axis=0)
+
+    @property
+    def _feed_ends(self) -> FloatArray:
+        """(q, 3) m: all points that feed moves begin or end at."""
+        return np.asarray(self.p[self.cutting | np.append(self.cutting[1:], False)])
 
     @cached_property
     def goes_one_way(self) -> bool:
@@ -134,14 +138,13 @@ class Toolpath:
     def on_one_line(self) -> bool:
         """Whether all cuts lie on one line, seen from above, and one goes along it: then, and only then, there is one
         groove to speak of (holes in a row are none)."""
-        points = self.p[self.cutting][:, :2]
-        along = points[-1] - points[0]
-        length = float(np.linalg.norm(along))
         ways = np.diff(self.p[:, :2], axis=0)[self.cutting[1:]]
-        if length < ON_LINE or np.linalg.norm(ways, axis=1).max() < ON_LINE:
+        if not (np.linalg.norm(ways, axis=1) >= ON_LINE).any():
             return False
-        off = (points - points[0]) @ np.array([-along[1], along[0]]) / length
-        return bool(np.abs(off).max() <= ON_LINE)
+        points = self._feed_ends[:, :2] - self._feed_ends[0, :2]
+        length = np.linalg.norm(points, axis=1)
+        x, y = points[np.argmax(length)] / length.max()
+        return bool(np.abs(points @ np.array([-y, x])).max() <= ON_LINE)
 
     def digest(self) -> str:
         """SHA-256 of the motion (findings do not count)."""

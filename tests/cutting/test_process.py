@@ -116,3 +116,13 @@ def test_a_feed_per_tooth_far_from_any_test_is_said_and_beyond_sense_not_judged(
     assert [(each.code, each.line) for each in force.findings(conditions)] == [("feed-per-tooth", 5)] * said
     not_judged = [each.where.tolist() for each in force.unjudged(conditions)]
     assert not_judged == [[False, True, False]] * (not judged)
+
+
+def test_the_ends_of_an_assumed_share_push_as_rows_that_give_them():
+    found = KienzleForce(MILL, TURNED, radial_share=0.4, axial_share=0.2).at_ends(SLOT)
+    ends = itertools.product(PUBLISHED["radial"], PUBLISHED["axial"])
+    rows = [TURNED.replace(radial_ratio=radial, axial_ratio=axial) for radial, axial in ends]
+    truth = [KienzleForce(MILL, row).components(SLOT) for row in rows]
+    assert len(found) == len(truth)
+    for each in truth:
+        assert min(np.abs(each - other).max() for other in found) < 1e-9

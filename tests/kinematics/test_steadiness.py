@@ -6,7 +6,7 @@ import pytest
 import robomill as rm
 from robomill.kinematics.dexterity import determinant, near_singular
 from robomill.kinematics.forward import joint_frames
-from robomill.kinematics.steadiness import hasty_turns, passages
+from robomill.kinematics.steadiness import Passage, hasty_turns, passages
 from robomill.units import format_si
 
 ROBOT = rm.load_robot("slavkovic_5r")
@@ -127,3 +127,8 @@ def test_standing_still_is_no_haste():
     assert hasty_turns(line(here, here, 5)) == []
     x_M = np.vstack([np.tile(here, (3, 1)), np.linspace(here, there, 20), np.tile(there, (3, 1))])
     assert hasty_turns(rm.inverse_kinematics(ROBOT, rm.pose_from_world(x_M), near="path")) == []
+
+
+def test_a_passage_is_told_with_the_branches_it_leads_between():
+    assert "from 'front' to 'back'" in Passage(3, "front", "back").sentence()
+    assert " from " not in Passage(3, "front", "front").sentence()

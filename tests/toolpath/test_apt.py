@@ -128,3 +128,11 @@ def test_a_number_of_a_hundred_thousand_digits_is_refused_at_once():
     with pytest.raises(GCodeError):
         read_apt(f"GOTO/0,0,0\nGOTO/{'1' * 98_000}x,0,0\nGOTO/1,0,0\n")
     assert time.process_time() - began < 1.0
+
+
+@pytest.mark.parametrize(("said", "scale"), [("", 1e-3), ("UNITS/MM\n", 1e-3), ("UNITS/INCHES\n", 25.4e-3)])
+def test_without_a_word_about_units_lengths_are_millimetres_and_that_is_said(said: str, scale: float) -> None:
+    path = read_apt(f"PARTNO/X\n{said}FEDRAT/600\nFROM/0,0,9\nGOTO/1,2,3\nFINI\n")
+    np.testing.assert_allclose(path.p[-1], np.array([1, 2, 3]) * scale)
+    notes = [note.level for note in path.findings if "UNITS" in note.message]
+    assert notes == ["suspicious"] * (not said)

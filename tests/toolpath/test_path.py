@@ -85,3 +85,52 @@ def test_a_point_beyond_any_machine_is_refused_by_its_row(far: float) -> None:
     with pytest.raises(ToolpathError, match="Line 2"):
         line(far)
     assert line(1e4).s[-1] == 1e4
+
+
+def cuts(*points: tuple[float, ...]) -> Toolpath:
+    """Feed moves through points, mm; a fourth number that is 0 makes a point be reached by a rapid."""
+    m, rows = len(points), [(*point, 1.0)[:4] for point in points]
+    p, on = np.array([row[:3] for row in rows]) * 1e-3, np.array([row[3] > 0 for row in rows]) & (np.arange(m) > 0)
+    return Toolpath(p, [[0.0, 0.0, 1.0]] * m, np.full(m, 0.01), on, np.arange(m), np.zeros(m), np.zeros(m, dtype=int))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.0, -1.5])
+@pytest.mark.parametrize(
+    ("points", "line", "way"),
+    [
+        ([(0, 0, 0), (5, 0, 0), (9, 0, 0)], True, True),
+        ([(0, 0, 0), (5, 0, 0), (5, 0, 0), (1, 0, 0), (8, 0, 0)], True, True),  # stands, back, and on
+        ([(0, 0, 0), (5, 0, 0), (5, 0.0009, 0)], True, False),  # less than a micrometre aside
+        ([(0, 0, 0), (5, 0, 0), (0, 0, 0)], True, True),  # there and back
+        ([(0, 0, 0), (5, 0, 0, 0), (9, 3, 0, 0)], False, False),  # no cut at all
+        ([(0, 0, 0), (5, 0, 0), (9, 0.002, 0)], False, False),
+        ([(0, 0, 0), (5, 0, 0), (5, 3, 0), (9, 0, 0)], False, False),
+        ([(0, 0, 5), (0, 0, -1), (9, 0, -1)], True, False),  # a plunge first
+        ([(0, 0, 0), (4, 0, -1), (9, 0, 0)], True, False),  # down a ramp and up again, seen from above on one line
+        ([(0, 0, 0), (4, 0, -1), (8, 0, -2)], True, True),
+        ([(0, 0, 5), (0, 0, -1), (0, 0, 5, 0), (9, 0, 5, 0), (9, 0, -1)], False, True),  # two holes are no groove
+        (
+            [(0, 7, 0), (0, 0, 0, 0), (5, 0, 0), (9, 4, 0, 0), (6, 0, 0, 0), (8, 0, 0)],
+            True,
+            True,
+        ),  # by rapids
+        ([(0, 0, 0), (5, 0, 0), (0, 3, 0, 0), (5, 3, 0)], False, True),  # side by side
+    ],
+)
+def test_cuts_on_one_line_and_cuts_one_way(points, line, way, turn) -> None:
+    """Whatever way the whole is turned about Z and moved."""
+    path, (c, s) = cuts(*points), (np.cos(turn), np.sin(turn))
+    turned = replace(path, p=path.p @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + [0.03, -0.2, 0.1])
+    assert (turned.on_one_line, turned.goes_one_way) == (line, way)
+
+
+def test_a_path_without_points_or_with_a_feed_below_zero_is_refused() -> None:
+    path = cuts((0, 0, 0), (1, 0, 0))
+    with pytest.raises(ToolpathError, match="found no points"):
+        Toolpath(np.zeros((0, 3)), [0.0, 0.0, 1.0], *(np.zeros(0),) * 5)
+    for bad in (-1e-9, np.nan, np.inf):
+        with pytest.raises(ToolpathError, match="feeds must be 0 or more"):
+            replace(path, v_f=np.array([0.01, bad]))
+    assert replace(path, v_f=np.zeros(2)).t[-1] == 0.0
+    with pytest.raises(ToolpathError, match="found no rows"):
+        toolpath_from_lines(np.zeros((0, 3)), np.zeros((0, 3)), 0.03)

@@ -250,3 +250,32 @@ def test_a_lathe_tools_point_stands_beside_the_centre_of_its_nose(orientation):
     np.testing.assert_allclose(
         read(orientation) - read(0), np.broadcast_to(0.8 * np.array(NOSES[orientation]), (4, 2)), atol=1e-9
     )
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize(("radius", "fits"), [(0.9, False), (1.0, False), (1.2, True)])
+@pytest.mark.parametrize("first", [True, False])
+def test_an_arc_that_turns_about_the_cutters_side_is_larger_than_the_cutter(code, radius, fits, first):
+    """On line 4 where the arc is the first compensated move, else on line 5."""
+    way = 1 if code == "G41.1" else -1
+    lead = "" if first else "G1 X0 Y0\n"
+    start = "G0 X0 Y0" if first else "G0 X-8 Y0"
+    text = (
+        f"G21 G90 G17 F600\n{start}\n{code} D2\n{lead}"
+        f"G{3 if way > 0 else 2} X0 Y{2 * way * radius} I0 J{way * radius}\nG40\nG1 X-20\nM2\n"
+    )
+    if fits:
+        assert len(interpret(text).end)
+    else:
+        with pytest.raises(GCodeError, match="not larger than the cutter") as refused:
+            interpret(text)
+        assert refused.value.line == 4 + (not first)
+
+
+@pytest.mark.parametrize("code", ["G41", "G42"])
+def test_a_cutter_without_a_diameter_goes_on_the_path_and_is_noted(code):
+    moves = "G1 X0 Y0\nX20\nY10\nG2 X10 Y20 I-5 J5\nG40\nG1 X0 Y40\nM2\n"
+    plain = interpret(f"G21 G90 F600\nG0 X-8 Y0\n\n{moves}")
+    found = interpret(f"G21 G90 F600\nG0 X-8 Y0\n{code}.1 D0\n{moves}")
+    np.testing.assert_allclose(found.end[-6:], plain.end[-6:], atol=1e-12)
+    assert [(note.level, note.line) for note in found.findings if note.code == "zero-diameter"] == [("warning", 3)]
