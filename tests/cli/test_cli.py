@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import socket
 import pty
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
