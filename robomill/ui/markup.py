@@ -36,4 +36,6 @@ def as_markdown(text: str) -> str:
     words = " ".join(text.split())
     words = re.sub(r"[\\`*\[\]<~$|#]|(?<!\w)_|_(?!\w)|&(?=#?\w+;)|:(?=[A-Za-z])", r"\\\g<0>", words)
     words = re.sub(r"^(\d+)([.)])(?= )|^([-+>=])", lambda m: f"{m[1] or ''}\\{m[2] or m[3]}", words)
-    return re.sub(r"(?i)(://|\bwww(?=\.)|@|:(?=[\w/+-]+:))", rf"\1{_APART}", words)
+    # Between the colon and the slashes, and on both sides of an @: within a host's name it would be no end of a link.
+    words = re.sub(r":(?=//)|(?i:\bwww)(?=\.)|@|:(?=[\w/+-]+:)", rf"\g<0>{_APART}", words)
+    return words.replace("@", f"{_APART}@")

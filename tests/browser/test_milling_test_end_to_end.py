@@ -101,10 +101,11 @@ def test_a_broken_project_is_refused_and_the_current_one_stays(page: Any, tmp_pa
     page.wait_for_selector("text=0.23 mm off in Y", timeout=60_000)
     idle(page)
     broken = tmp_path / "broken.toml"
-    broken.write_text('format = "something else"\n')
+    broken.write_text('format = "http://foreign.example/x www.foreign.example a@foreign.example"\n')
     page.locator(".st-key-open button").first.click()
     page.locator("input[type=file]").first.set_input_files(str(broken))
     page.wait_for_selector("text=was not opened")
+    assert page.locator("a[href*='foreign']").count() == 0, "addresses in a file lead nowhere"
     assert page.locator(".rm-title").inner_text().startswith("The groove is 0.23 mm")
 
 

@@ -49,7 +49,7 @@ def put_dropped(source: GCodeSource) -> None:
     more: dict[str, Any] = {"engagement": True} if "force" in carried else {}
     stated = setup.provenance.get("stock")
     given = stated is None or stated.kind == "user"
-    if setup.stock is not None and not given and not _holds(setup.stock, source.read(setup.tools)):
+    if setup.stock is not None and not given and not _holds(setup.stock, source.read()):
         more["stock"] = None
         carried["stock"] = Provenance("computed", f"a block around the feed moves of {source.name}")
     question.forget()
