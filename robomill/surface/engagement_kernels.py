@@ -287,7 +287,7 @@ def end_between(
     return low, high
 
 
-@called
+@part
 def narrow_place(world: World, seen: tuple[Shape, Step, Ray], ends: tuple[Place, Place]) -> float:
     """How far on between two places of a nose in the air it cuts, as a share; 1 where that is nowhere. What a finishing
     pass meets may be narrower than a piece of the nose, though no rib is near."""

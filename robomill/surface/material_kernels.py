@@ -107,7 +107,7 @@ def see_move(run: FloatArray) -> Move:
     return move
 
 
-@called
+@part
 def place_in_run(runs: FloatArray, r: int, x: float, y: float, z: float) -> tuple[float, float]:
     """A point of {W} as the tool of a run passes it, m: its height above what the run leaves there, along the axis, and
     how far it lies within the track; the height is only about where it lies beside the track or below it."""
@@ -210,21 +210,21 @@ def has_side(dexels: Dexels, cells: tuple[int, int, int, int]) -> bool:
     return max(here, there) != NOBODY
 
 
-@part
+@called
 def in_runs(
-    world: World, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
+    names: Names3, runs: FloatArray, cells: tuple[int, int, int, int], point: tuple[float, float, float], but: int
 ) -> tuple[float, float]:
     """How high a point (x, y, z) is above the lowest of what the runs named by the cells around it leave there, and how
     deep it is in one of their bodies, up or to the side, m; < 0 outside of them, -inf if there are none, or none in
     whose track it lies. ``but`` one run is not asked."""
-    names, high, deep, last, before = world.dexels.names, -math.inf, -math.inf, NOBODY, NOBODY
+    high, deep, last, before = -math.inf, -math.inf, NOBODY, NOBODY
     for cell in range(4):
         i, j = cells[1] if cell > 1 else cells[0], cells[3] if cell % 2 else cells[2]
         for n in range(names.shape[2]):
             name = names[i, j, n]
             if name != NOBODY and name != last and name != before and name != but:
                 before, last = last, name
-                height, within = place_in_run(world.runs, name, point[0], point[1], point[2])
+                height, within = place_in_run(runs, name, point[0], point[1], point[2])
                 deep = max(deep, min(height, within))
                 if within > SKIN:
                     high = max(high, height)
@@ -235,12 +235,15 @@ def in_runs(
 def in_stock(bounds: Bounds, facets: Facets, point: tuple[float, float, float]) -> bool:
     """Whether the stock held a point (x, y, z) m before the first cut: of a mesh, by the faces above the point."""
     x, y, z = point
-    if beside(bounds, x, y):
+    if beside(bounds, x, y) or z < bounds.z_low or z > bounds.z_high:
         return False
-    if z < bounds.z_low or z > bounds.z_high:
-        return False
-    if len(facets.triangles) == 0:
-        return True
+    return len(facets.triangles) == 0 or in_mesh(bounds, facets, point)
+
+
+@called
+def in_mesh(bounds: Bounds, facets: Facets, point: tuple[float, float, float]) -> bool:
+    """Whether a point (x, y, z) m within the bounds of a mesh is in it, by its faces above the point."""
+    x, y, z = point
     across = int((bounds.y_high - bounds.y_low) / facets.size) + 1
     b = int((x - bounds.x_low) / facets.size) * across + int((y - bounds.y_low) / facets.size)
     inside = False
@@ -282,7 +285,7 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     if deep == 0.0:
         deep = -dexels.slack
         if in_stock(bounds, world.facets, point):
-            deep = min(2.0 * SKIN - in_runs(world, cells, point, run)[1], FAR)
+            deep = min(2.0 * SKIN - in_runs(dexels.names, world.runs, cells, point, run)[1], FAR)
     return min(deep, within + SKIN)
 
 
@@ -299,4 +302,5 @@ def top_over(world: World, x: float, y: float) -> float:
     low, high = lowest_and_highest(dexels, cells)
     if high - low <= SKIN and not has_side(dexels, cells):
         return high
-    return bounds.z_high - max(0.0, in_runs(world, cells, (x, y, bounds.z_high), NOBODY)[0])
+    height, _ = in_runs(dexels.names, world.runs, cells, (x, y, bounds.z_high), NOBODY)
+    return bounds.z_high - max(0.0, height)
