@@ -12,6 +12,7 @@ from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
 from robomill.ui import declared, inputs, pieces, rendered, session
+from robomill.ui.closing import settle
 from robomill.ui.commons import weight
 from robomill.ui.keeping import autosave, snapshots
 from robomill.ui.markup import as_markdown
@@ -83,6 +84,7 @@ def begin(title: str) -> Project:
     try:
         autosave.take_up()
         session.enter(title)
+        settle()
     except RobomillError as exc:
         error(exc)
         st.stop()

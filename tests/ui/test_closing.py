@@ -1,6 +1,7 @@
 """What a session holds goes with its browser; what it keeps stays."""
 
 import gc
+import itertools
 import weakref
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.ui import closing
 from robomill.ui.job import Job
+from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import KEY, Store
 
 
@@ -87,3 +89,24 @@ def test_rings_are_looked_for_now_and_then(app: AppTest, monkeypatch: pytest.Mon
         assert other() is not None, "a look takes its time: not at every close"
     finally:
         gc.enable()
+
+
+def test_what_stands_as_long_as_the_server_is_set_aside_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(closing, "_runs", itertools.count(1))
+    monkeypatch.setattr(closing, "SETTLED", 2)
+    before = gc.get_freeze_count()
+    try:
+        closing.settle()
+        assert gc.get_freeze_count() == before
+        closing.settle()
+        aside = gc.get_freeze_count()
+        assert aside > before + 10_000
+        ring = Store(Project(preset_setup("paper_flute")))
+        ring.values["itself"], gone = ring, weakref.ref(ring)
+        closing.settle()
+        assert gc.get_freeze_count() == aside
+        del ring
+        gc.collect()
+        assert gone() is None
+    finally:
+        gc.unfreeze()
