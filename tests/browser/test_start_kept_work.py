@@ -133,6 +133,27 @@ def test_two_tabs_keep_their_own_work_through_reloads_and_a_restart(browser: Any
         page.wait_for_selector(sign)
 
 
+def test_a_doubled_tab_takes_a_name_of_its_own_so_that_neither_loses_its_work(browser: Any, server: Server) -> None:
+    first = robot_page(browser, server)
+    choose(first, "Table 3", TABLE_3)
+    with browser.expect_page() as opened:  # a window that a page opens begins with a copy of all that the tab holds
+        first.evaluate("window.open(location.href)")
+    second = opened.value
+    second.wait_for_selector(TABLE_3)
+    idle(second)
+    second.wait_for_timeout(1500)
+    names = [page.evaluate("sessionStorage.getItem('robomill.tab')") for page in (first, second)]
+    assert len(set(names)) == 2
+    choose(second, "Table 2", TABLE_2)
+    for page, sign in ((first, TABLE_3), (second, TABLE_2), (first, TABLE_3)):
+        page.reload()
+        page.wait_for_selector(sign)
+        idle(page)
+        page.wait_for_timeout(1500)
+        page.wait_for_selector(sign)
+    assert [page.evaluate("sessionStorage.getItem('robomill.tab')") for page in (first, second)] == names
+
+
 def test_a_page_closed_in_the_middle_of_a_run_loses_nothing(browser: Any, server: Server) -> None:
     page = robot_page(browser, server)
     page.get_by_text("Table 3", exact=True).click()

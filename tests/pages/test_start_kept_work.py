@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -185,6 +186,25 @@ def test_a_server_that_cannot_write_says_so_where_one_saves(visit: Visit, writer
     rename(app, writer, "mine")
     assert "could not be kept on the server" in words(app.run())
     assert store(app).project.setup.name == "mine"
+
+
+def test_a_page_says_by_itself_that_its_edit_is_not_kept_and_so_does_one_that_comes_after(
+    visit: Visit, writer: Writer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(autosave, "SETTLED_S", 20.0)
+    app = visit()
+    other_preset(app)
+    assert "could not be kept" not in words(app)
+    assert writer.flush(20.0)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(writer.shelf, "_write", full)
+    store(app).values["autosave.line"].rests_until = 0.0
+    inches(app)
+    assert "could not be kept on the server: no space left on device. Save takes it away" in words(app)
+    assert "could not be kept on the server" in words(visit(OTHER))
 
 
 def test_a_browser_without_cookies_is_told_where_one_saves(visit: Visit, writer: Writer) -> None:

@@ -12,7 +12,36 @@ const kept = (value, name = 'tab') => {  // the tab's own, through reloads; the 
   } catch { return window[key] = value || window[key] || ''; }
 };
 
+// A doubled tab begins with the name of the one it was made of: it asks whether somebody has it, and takes another then.
+// Of two that ask at the same moment the one with the larger lot does.
+const WAIT_MS = 250;
+const alone = () => new Promise((resolve) => {
+  const tab = kept();
+  if (typeof BroadcastChannel === 'undefined' || !tab) { resolve(); return; }
+  const channel = new BroadcastChannel('robomill.tabs'), lot = made();
+  let asking = true;
+  const done = (taken) => {
+    if (!asking) return;
+    asking = false;
+    if (taken) kept(made());
+    resolve();
+  };
+  channel.onmessage = ({ data }) => {
+    if (data.asks === kept() && !(asking && data.lot < lot)) channel.postMessage({ has: data.asks, lot: data.lot });
+    else if (data.has === tab && data.lot === lot) done(true);
+  };
+  channel.postMessage({ asks: tab, lot });
+  setTimeout(done, WAIT_MS, false);
+});
+
 export default function ({ data, parentElement, setStateValue }) {
+  let left = false, leave = () => {};
+  window.robomillAlone ??= alone();
+  window.robomillAlone.then(() => { if (!left) leave = say(data, parentElement, setStateValue) ?? leave; });
+  return () => { left = true; leave(); };
+}
+
+function say(data, parentElement, setStateValue) {
   let tab = kept() || made();
   if (data.moved && data.moved[0] === `tab-${tab}`) tab = data.moved[1].slice(4);
   kept(tab);

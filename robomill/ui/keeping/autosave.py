@@ -34,6 +34,7 @@ LINE, NOTICE = "autosave.line", "autosave.notice"
 KEY_COOKIE, TAB_COOKIE = "robomill_key", "robomill_tab"
 OFF = "This server keeps no work beyond the page: Save takes yours away."
 NO_COOKIES = "This browser takes no cookies, so nothing is kept beyond the page: Save takes your work away."
+SETTLED_S = 0.05  # so long a page waits to hear whether the edit that it shows is kept
 CUT_OFF = "This page was cut off from its server."
 _page = st.components.v2.component(
     "robomill_tab",
@@ -74,8 +75,17 @@ def line() -> Line:
 
 
 def trouble() -> str:
-    """Why nothing is kept just now; "" where all is well."""
-    return line().trouble if writer() else OFF
+    """Why nothing is kept, as long as that lasts; "" where all is well."""
+    return (line().trouble if line().trouble == NO_COOKIES else "") if writer() else OFF
+
+
+def refusal() -> str:
+    """Why the last work was not kept, of this tab or, where the store is at fault, of anyone; "" where all is well."""
+    keeper, held = writer(), line()
+    if keeper is None or not held.key:
+        return ""
+    keeper.settle(held, SETTLED_S)
+    return held.trouble or keeper.trouble
 
 
 def clock(when: float) -> str:
@@ -201,6 +211,8 @@ def notices() -> None:
         )
         session.keep(NOTICE, Notice(words, instead=held.overtaken))
         held.overtaken = None
+    if why := refusal():
+        st.markdown(f":material/cloud_off: {as_markdown(f'{why} Save takes it away.')}")
     notice: Notice | None = session.kept(NOTICE)
     if session.drop(HEARD) and notice is not None:
         words = f"{notice.words} The change that was on its way is in it."

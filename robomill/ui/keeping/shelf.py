@@ -50,6 +50,10 @@ class OvertakenError(ProjectError):
         self.head = head
 
 
+class StoreError(ProjectError):
+    """The store itself cannot be read or written, whoever's work it is."""
+
+
 class Shelf:
     """The entries of all browsers. Every method raises ProjectError with one sentence where it cannot do its work."""
 
@@ -88,6 +92,15 @@ class Shelf:
             if self._bytes > self.settings.all_MB * 1e6 or abs(time.time() - self._swept) > SWEEP_S:
                 self.sweep()
         return head
+
+    def check(self) -> None:
+        """Whether anything can be kept here at all. Raises StoreError where not."""
+        with _said("kept"):
+            check = self.settings.folder / "check"
+            self._write(check, b"check" * 1000)
+            check.unlink()
+        with contextlib.suppress(OSError):
+            self.settings.folder.rmdir()  # refused unless it is empty
 
     def get(self, key: str, place: str) -> tuple[Head, list[str]]:
         """An entry with its texts: the project, then its earlier states. A damaged one is set aside."""
@@ -206,8 +219,8 @@ def _said(done: str) -> Iterator[None]:
     """A refusal of the file system as one sentence, without its path."""
     try:
         yield
-    except FileNotFoundError:
-        raise ProjectError("There is nothing kept there any more.") from None
     except (OSError, UnicodeError) as exc:
+        if isinstance(exc, FileNotFoundError) and done != "kept":
+            raise ProjectError("There is nothing kept there any more.") from None
         reason = exc.strerror if isinstance(exc, OSError) and exc.strerror else "it cannot be read"
-        raise ProjectError(f"Your work could not be {done} on the server: {reason.lower()}.") from None
+        raise StoreError(f"Your work could not be {done} on the server: {reason.lower()}.") from None

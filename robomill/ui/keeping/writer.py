@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 from robomill.errors import ProjectError
-from robomill.ui.keeping.shelf import Head, OvertakenError, Shelf
+from robomill.ui.keeping.shelf import Head, OvertakenError, Shelf, StoreError
 from robomill.ui.project import Project, project_to_toml
 
 EARLIER, EARLIER_BYTES = 20, 200_000  # states before the last one that are kept with it
@@ -57,10 +57,15 @@ class Writer:
 
     def __init__(self, shelf: Shelf) -> None:
         self.shelf = shelf
+        self.trouble = ""  # why nothing could be kept when it was last tried, whoever's it was
         self._waiting: dict[Line, Work] = {}
-        self._busy = False
+        self._busy: Line | None = None
         self._changed = threading.Condition()
         self._texts: WeakKeyDictionary[Project, str] = WeakKeyDictionary()
+        try:
+            shelf.check()
+        except StoreError as exc:
+            self._refused(exc)
         threading.Thread(target=self._run, daemon=True, name="robomill-writer").start()
         atexit.register(self.flush, 3.0)
 
@@ -71,21 +76,29 @@ class Writer:
                 self._waiting[line] = work
                 self._changed.notify_all()
 
+    def settle(self, line: Line, timeout_s: float) -> None:
+        """Wait until the work of ``line`` is written, unless it rests."""
+        with self._changed:
+            self._changed.wait_for(
+                lambda: self._busy is not line and (line not in self._waiting or line.rests_until > time.monotonic()),
+                timeout_s,
+            )
+
     def flush(self, timeout_s: float) -> bool:
         """Write all that waits, at once; False where that takes longer."""
         with self._changed:
             for line in self._waiting:
                 line.rests_until = 0.0
             self._changed.notify_all()
-            return self._changed.wait_for(lambda: not self._waiting and not self._busy, timeout_s)
+            return self._changed.wait_for(lambda: not self._waiting and self._busy is None, timeout_s)
 
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._busy = False
+                self._busy = None
                 self._changed.notify_all()
                 line = self._next()
-                work, self._busy = self._waiting.pop(line), True
+                work, self._busy = self._waiting.pop(line), line
             began = time.monotonic()
             try:
                 self._write(line, work)
@@ -115,8 +128,16 @@ class Writer:
             return
         except ProjectError as exc:
             line.trouble = str(exc)
+            if isinstance(exc, StoreError):
+                self._refused(exc)
             return
-        line.stamp, line.saved, line.trouble = head.stamp, head.time, ""
+        line.stamp, line.saved, line.trouble, self.trouble = head.stamp, head.time, "", ""
+
+    def _refused(self, exc: StoreError) -> None:
+        """Said to the owner once; to those whose work it is as long as it lasts."""
+        if self.trouble != str(exc):
+            logging.getLogger(__name__).warning("Work is not kept in %s: %s", self.shelf.settings.folder, exc)
+        self.trouble = str(exc)
 
     def _told(self, work: Work) -> list[str]:
         """The project as Save writes it, then the last small states before it, the newest first."""

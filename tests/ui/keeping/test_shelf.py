@@ -13,7 +13,7 @@ import pytest
 
 from robomill.errors import ProjectError
 from robomill.ui.keeping.settings import Settings
-from robomill.ui.keeping.shelf import OvertakenError, Shelf, place_of
+from robomill.ui.keeping.shelf import OvertakenError, Shelf, StoreError, place_of
 
 KEY, OTHER = "a1" * 32, "b2" * 32
 TAB, SECOND = "tab-" + "0" * 16, "tab-" + "1" * 16
@@ -197,3 +197,12 @@ def test_every_bound_can_be_set_and_nonsense_is_refused() -> None:
     for name, word in (("", "perhaps"), ("_DAYS", "-1"), ("_DAYS", "nan"), ("_TABS", "0"), ("_ALL_MB", "1e9")):
         with pytest.raises(ProjectError, match="expected"):
             Settings.of({f"ROBOMILL_AUTOSAVE{name}": word})
+
+
+def test_a_store_that_cannot_be_made_is_found_at_the_beginning_and_a_good_one_is_left_as_it_was(tmp_path: Path) -> None:
+    for folder in (Path("/proc/robomill"), tmp_path / "file" / "work"):
+        (tmp_path / "file").write_text("a file where a folder should be")
+        with pytest.raises(StoreError, match="could not be kept on the server"):
+            Shelf(Settings(folder=folder)).check()
+    Shelf(Settings(folder=tmp_path / "work")).check()
+    assert not (tmp_path / "work").exists()

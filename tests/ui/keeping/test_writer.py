@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -145,3 +147,45 @@ def test_nothing_is_written_before_the_tab_has_said_which_it_is(shelf: Slow) -> 
     writer.hand(Line("", PLACE), Work(named("mine")))
     assert writer.flush(5.0)
     assert shelf.heads(KEY) == []
+
+
+def test_a_store_that_cannot_be_written_is_everyones_trouble_and_is_logged_once(
+    shelf: Slow, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    writer, line = Writer(shelf), Line(KEY, PLACE)
+    monkeypatch.setattr(shelf, "_write", full)
+    for name in ("first", "second"):
+        writer.hand(line, Work(named(name)))
+        assert writer.flush(10.0)
+    assert line.trouble == writer.trouble == "Your work could not be kept on the server: no space left on device."
+    assert [each.levelname for each in caplog.records] == ["WARNING"]
+    assert str(shelf.settings.folder) in caplog.text
+    assert Writer(shelf).trouble == writer.trouble, "a server that begins so knows it at once"
+    monkeypatch.undo()
+    writer.hand(line, Work(named("third")))
+    assert writer.flush(10.0)
+    assert line.trouble == writer.trouble == ""
+
+
+def test_a_project_that_is_too_large_is_nobody_elses_trouble(shelf: Slow, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shelf, "settings", replace(shelf.settings, entry_MB=1e-4))
+    writer, line = Writer(shelf), Line(KEY, PLACE)
+    writer.hand(line, Work(named("large")))
+    assert writer.flush(10.0)
+    assert "at most" in line.trouble
+    assert writer.trouble == ""
+
+
+def test_who_waits_for_the_writing_waits_no_longer_than_it_takes(shelf: Slow) -> None:
+    writer, line = Writer(shelf), Line(KEY, PLACE)
+    writer.hand(line, Work(named("mine")))
+    writer.settle(line, 10.0)
+    assert shelf.has(KEY, PLACE)
+    line.rests_until = time.monotonic() + 60.0
+    writer.hand(line, Work(named("again")))
+    began = time.monotonic()
+    writer.settle(line, 10.0)
+    assert time.monotonic() - began < 5.0
