@@ -16,10 +16,9 @@ const kept = (value, name = 'tab') => {  // the tab's own, through reloads; the 
 // Of two that ask at the same moment the one with the larger lot does.
 const WAIT_MS = 250;
 const alone = () => new Promise((resolve) => {
-  const tab = kept();
-  if (typeof BroadcastChannel === 'undefined' || !tab) { resolve(); return; }
-  const channel = new BroadcastChannel('robomill.tabs'), lot = made();
-  let asking = true;
+  if (typeof BroadcastChannel === 'undefined') { resolve(); return; }
+  const channel = new BroadcastChannel('robomill.tabs'), tab = kept(), lot = made();
+  let asking = Boolean(tab);
   const done = (taken) => {
     if (!asking) return;
     asking = false;
@@ -30,6 +29,7 @@ const alone = () => new Promise((resolve) => {
     if (data.asks === kept() && !(asking && data.lot < lot)) channel.postMessage({ has: data.asks, lot: data.lot });
     else if (data.has === tab && data.lot === lot) done(true);
   };
+  if (!asking) { resolve(); return; }
   channel.postMessage({ asks: tab, lot });
   setTimeout(done, WAIT_MS, false);
 });
