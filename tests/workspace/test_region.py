@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.workspace.grid import PAPER_BOX_SIZE
+from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 from robomill.workspace.reach import reach
 from robomill.workspace.region import (
     FLAT,
@@ -122,3 +122,21 @@ def test_what_is_in_reach_lies_within_the_extent_and_a_cell_of_it_does_not() -> 
     step = max(np.diff(axis).max() for axis in (grid.x, grid.y, grid.z))
     assert (found.min(axis=0) - extent.lower < 2.5 * step).all()
     assert (extent.upper - found.max(axis=0) < 2.5 * step).all()
+
+
+@pytest.mark.parametrize(("tilt", "name"), [(0.0, "slavkovic_5r"), (0.5, "slavkovic_5r"), (0.0, "kuka_kr500")])
+def test_the_extent_is_one_cell_wider_than_what_is_reached(tilt: float, name: str) -> None:
+    """On the lines of the coarse grid, whose cells are as large as those of a box round random tips."""
+    robot = rm.load_robot(name)
+    extent = reach_extent(robot, A=tilt)
+    assert extent is not None
+    theta = np.random.default_rng(8).uniform(robot.limits[:, 0], robot.limits[:, 1], (20_000, robot.n))
+    edge = np.cbrt(np.prod(np.ptp(rm.tool_pose(robot, theta)[:, :3, 3], axis=0)) / coarse_cells(robot))
+    lines = [
+        np.linspace(low, high, round((high - low) / edge) + 1)
+        for low, high in zip(extent.lower, extent.upper, strict=True)
+    ]
+    found = np.argwhere(reach(robot, Grid(*lines), ((tilt, 0.0),)))
+    for first, last, count in zip(found.min(axis=0), found.max(axis=0), map(len, lines), strict=True):
+        assert first in (0, 1)
+        assert last in (count - 1, count - 2)
