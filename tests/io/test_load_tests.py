@@ -224,8 +224,8 @@ def test_loads_and_joint_numbers_at_the_edge_of_what_is_allowed():
     for load in ("0", "-1"):
         with pytest.raises(LoadTestError, match="Row 2, column load_N: expected a load above zero"):
             read_load_tests(f"{world},load_N,Cyy_um_N\n0,-1300,0,0,0,{load},2.3\n")
+        rows = "".join(f"{k},-1300,0,0,0,{n},2.3\n" for k, n in enumerate((100, 200, load, 300, load)))
         with pytest.raises(LoadTestError, match="Row 4, column load_N: expected a load above zero"):
-            rows = "".join(f"{k},-1300,0,0,0,{n},2.3\n" for k, n in enumerate((100, 200, load, 300, load)))
             read_load_tests(f"{world},load_N,Cyy_um_N\n{rows}")
     half = read_load_tests(f"{world},load_N,Cyy_um_N\n0,-1300,0,0,0,0.5,2\n")
     np.testing.assert_allclose((half.wrench[0, :3], half.displacement[0, :3]), [[0, 0.5, 0], [np.nan, 1e-6, np.nan]])
