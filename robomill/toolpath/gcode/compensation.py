@@ -336,6 +336,7 @@ class Compensation:
         centre = (eu + reach * math.cos(towards), ev + reach * math.sin(towards))
         if self.orientation not in (0, 9):
             self._hold(machine, block, (cu, cv, cw), full)
+            self.release(machine)  # the arc alone is still to be ended
             self.corner = (cu, cv)
         sweep = swept((cu, cv), (eu, ev), centre, turn, 0.0)
         self._hold(machine, block, (eu, ev, w), full, centre=centre, turn=turn, sweep=sweep)

@@ -252,6 +252,35 @@ def test_a_lathe_tools_point_stands_beside_the_centre_of_its_nose(orientation):
     )
 
 
+@pytest.mark.parametrize("orientation", NOSES)
+def test_a_lathe_tool_that_enters_by_an_arc_first_goes_straight_to_where_its_point_stands(orientation):
+    """Then along the same arc, whole, beside that of a tool without an orientation."""
+
+    def read(number):
+        lines = "G2 X20 Z10 I10 K0\nG1 Z-20\nG40\nG1 X40 Z-25\nM2\n"
+        program = interpret(f"G21 G90 G18 F100\nG0 X10 Z20\nG42.1 D1.6 L{number}\n{lines}")
+        return program.line[1:], program.start[1:, [2, 0]] * 1e3, program.end[1:, [2, 0]] * 1e3
+
+    (plain_line, plain_start, plain_end), (line, start, end) = read(0), read(orientation)
+    shift = 0.8 * np.array(NOSES[orientation])
+    more = len(line) - len(plain_line)
+    assert more == shift.any()
+    compensated = plain_line < 7
+    np.testing.assert_allclose(end[more:][compensated], plain_end[compensated] + shift, atol=1e-9)
+    np.testing.assert_allclose(start[more], plain_start[0] + shift, atol=1e-9)
+    np.testing.assert_allclose(start[0], [20.0, 10.0], atol=1e-9)
+
+
+def test_a_cutter_turns_back_outside_of_an_arc_and_is_refused_inside():
+    """Along an arc and back: about its end from one side of it to the other, or into the corner between the two."""
+    lines = "G1 X10 Y0\nG3 X0 Y10 I-10 J0\nG2 X10 Y0 I0 J-10\nG40\nG1 X30\nM2\n"
+    program = interpret(f"G21 G90 G17 F600\nG0 X10 Y-8\nG42.1 D2\n{lines}")
+    np.testing.assert_allclose(program.end[1:5, :2] * 1e3, [[11, 0], [0, 11], [0, 9], [9, 0]], atol=1e-9)
+    with pytest.raises(GCodeError, match="about one centre") as refused:
+        interpret(f"G21 G90 G17 F600\nG0 X10 Y-8\nG41.1 D2\n{lines}")
+    assert refused.value.line == 6
+
+
 @pytest.mark.parametrize("code", ["G41.1", "G42.1"])
 @pytest.mark.parametrize(("radius", "fits"), [(0.9, False), (1.0, False), (1.2, True)])
 @pytest.mark.parametrize("first", [True, False])
