@@ -20,7 +20,7 @@ push = now.delta([0.0, FORCE, 0.0])
 
 ui.headline(
     f"Robot · {robot.title or robot.name}",
-    f"At this pose {format_si(FORCE, 'N', 0)} along Y move the tip {format_si(abs(push[1]), view.length, 3)} in Y "
+    f"At this pose {format_si(FORCE, 'N', 0)} along Y moves the tip {format_si(abs(push[1]), view.length, 3)} in Y "
     f"and {format_si(abs(push[2]), view.length, 3)} in Z.",
 )
 tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)

@@ -242,7 +242,7 @@ STATEMENTS = (
             "analytically determined compliance from Figure 5 is 0.23 mm, while the calculated displacement from the "
             "experimentally determined compliance, Figure 13, is approximately 0.29 mm.",
         ),
-        f"{SLOT.force:.0f} N move the tip {_mm(SLOT.from_table_2)} in Y",
+        f"{SLOT.force:.0f} N moves the tip {_mm(SLOT.from_table_2)} in Y",
         "assumed",
         "One of the three assumed lengths is set by this number.",
     ),

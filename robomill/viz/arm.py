@@ -57,7 +57,8 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
     if scene.force is not None:
         vector = _sized(scene.force, 0.20 * reach)
         opaque += solids.arrow(tip - vector, vector * 0.96, p.accent, width)
-        said.append((tip - 1.12 * vector, scene.force_label, p.accent))
+        upright = max(float(vector[2]), 0.0) / 0.20 / reach  # its words stand over their point, and the arrow too
+        said.append((tip - (1.12 + 0.25 * upright) * vector, scene.force_label, p.accent))
     if scene.displacement is not None:
         vector = _sized(scene.displacement, 0.17 * reach)
         opaque += solids.arrow(tip, vector, p.warm, width)

@@ -14,7 +14,7 @@ from server import Server
 
 pytestmark = pytest.mark.browser
 NOTICE = ".st-key-autosave-notice"
-TABLE_2, TABLE_3 = "text=move the tip 0.230 mm in Y", "text=move the tip 0.264 mm in Y"
+TABLE_2, TABLE_3 = "text=moves the tip 0.230 mm in Y", "text=moves the tip 0.264 mm in Y"
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def robot_page(browser: Any, server: Server) -> Any:
     """A new tab on the Robot page that has said which tab it is."""
     page = browser.new_page()
     page.goto(f"{server.url}/Robot")
-    page.wait_for_selector("text=move the tip")
+    page.wait_for_selector("text=moves the tip")
     idle(page)
     page.wait_for_function("sessionStorage.getItem('robomill.tab')")
     page.wait_for_timeout(1500)

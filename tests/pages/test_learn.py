@@ -12,14 +12,14 @@ def test_the_lesson_asks_then_reveals(app: AppTest) -> None:
     go(app, LEARN)
     assert "Where does the tip go?" in words(app)
     assert "<b>0.102 mm</b>" not in words(app)
-    app.radio(key="learn.answer").set_value("y").run()
+    app.radio(key="learn.answer").set_value("alone").run()
     app.button(key="learn.reveal").click().run()
     said = words(app)
     assert "<b>0.102 mm</b> down" in said
     assert '<td class="off">−1.024</td>' in said, "the off-diagonal term lights up"
     assert "Look again" in said
-    app.radio(key="learn.answer").set_value("down").run()
-    assert "Right." in words(app)
+    app.radio(key="learn.answer").set_value("-2").run()
+    assert "Right:" in words(app)
 
 
 def test_the_ellipsoid_stretches_towards_the_edge(app: AppTest) -> None:

@@ -86,7 +86,7 @@ def test_compliance_sheets(app: AppTest, sheet: str) -> None:
 def test_the_milling_point_in_words(app: AppTest) -> None:
     go(app, COMPLIANCE)
     said = words(app)
-    assert "100 N along Y move the tip 0.230 mm in Y and 0.102 mm down; joint 3 gives most." in said
+    assert "100 N along Y moves the tip 0.230 mm in Y and 0.102 mm down; joint 3 gives most." in said
     assert "2.295" in said
     assert "1.134" in said
 

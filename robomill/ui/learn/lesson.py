@@ -1,4 +1,9 @@
-"""The lesson: push along Y, where does the tip go? One question, one picture, then the reason."""
+"""The lesson: push along an axis, where does the tip go? One question, one picture, then the reason.
+
+The push is along the axis that leads this robot aside most: along Y for the paper's.
+"""
+
+from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
@@ -20,7 +25,7 @@ from robomill.viz.arm import ArmScene, displacement_scale
 
 KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
-ANSWERS = {"y": "Along Y, nowhere else", "up": "Along Y and up", "down": "Along Y and down", "x": "Along Y and along X"}
+ASIDE = 0.02  # share of the displacement that counts as going somewhere
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
     "center": {"x": 0, "y": -0.13, "z": -0.04},
@@ -46,6 +51,57 @@ BIG = """<style>
   font-variant-numeric: tabular-nums; }
 .rm-det small { font-size: 1.2rem; font-weight: 500; opacity: .75; }
 </style>"""
+
+
+@dataclass(frozen=True)
+class Push:
+    """A push along axis ``along`` (0, 1, 2) that leads most aside along ``aside``, and ``other`` is the third axis."""
+
+    along: int
+    aside: int
+    other: int
+
+    @classmethod
+    def of(cls, C: FloatArray) -> Push:
+        """The push that leads aside most, by the compliance C (3, 3)."""
+        size = np.abs(C)
+        across = size - np.diag(np.diag(size))
+        share = across.max(axis=0) / np.maximum(np.linalg.norm(C, axis=0), np.finfo(float).tiny)
+        along = int(np.argmax(np.round(share, 9)))
+        first, second = (i for i in range(3) if i != along)
+        aside = first if across[first, along] > across[second, along] else second
+        return cls(along, aside, 3 - along - aside)
+
+    @property
+    def name(self) -> str:
+        return "XYZ"[self.along]
+
+    @property
+    def force(self) -> FloatArray:
+        """(3,) N."""
+        return FORCE * np.eye(3)[self.along]
+
+    @property
+    def answers(self) -> dict[str, str]:
+        """What one may say: nowhere else, to either side, or along the third axis."""
+        start = f"Along {self.name}"
+        sides = {f"{sign}{self.aside}": f"{start} and {_side(self.aside, sign == '+')}" for sign in "+-"}
+        return {"alone": f"{start}, nowhere else", **sides, "other": f"{start} and along {'XYZ'[self.other]}"}
+
+    def went(self, delta: FloatArray) -> str:
+        """Which of the answers is right for a displacement (3,) under this push."""
+        aside, other = abs(delta[self.aside]), abs(delta[self.other])
+        if max(aside, other) < ASIDE * np.linalg.norm(delta):
+            return "alone"
+        if other > aside:
+            return "other"
+        return f"{'+' if delta[self.aside] > 0 else '-'}{self.aside}"
+
+
+def _side(axis: int, plus: bool) -> str:
+    if axis == 2:
+        return "up" if plus else "down"
+    return f"towards {'+' if plus else '−'}{'XY'[axis]}"
 
 
 @dataclass(frozen=True)
@@ -78,87 +134,83 @@ def stand(robot: Robot) -> InHand:
 @st.fragment
 def question(found: InHand) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
-    st.html(BIG + '<p class="rm-ask">Push the tool along Y. Where does the tip go?</p>')
+    push = Push.of(found.pose.C)
+    st.html(BIG + f'<p class="rm-ask">Push the tool along {push.name}. Where does the tip go?</p>')
     now = progress()
     left, right = pieces.split([1.35, 1], "ask", gap="large")
     with right:
         with st.container(key="learn-answers"):
             look = inputs.Look(stacked=True, hidden=True)
-            inputs.choice("Your answer", "learn.answer", ANSWERS, now.answer, lambda a: go(answer=a), look)
+            answer = now.answer if now.answer in push.answers else None
+            inputs.choice("Your answer", "learn.answer", push.answers, answer, lambda a: go(answer=a), look)
         words, tone = ("Hide it again", "secondary") if now.revealed else ("Show where it goes", "primary")
         turn = partial(go, revealed=not now.revealed)
         inputs.button(words, "learn.reveal", "visibility", turn, width="stretch", type=tone)
-        _answer(found.pose.C, now)
+        _answer(found.pose.C, push, now)
     with left, st.container(border=True):
-        _push(found.pose, now.revealed)
+        _push(found.pose, push, now.revealed)
 
 
-def _answer(C: FloatArray, now: Lesson) -> None:
+def _answer(C: FloatArray, push: Push, now: Lesson) -> None:
     if not now.revealed:
         st.html('<p class="rm-say">Ask the class first. Then show.</p>')
         return
-    delta = displacement(C, [0.0, FORCE, 0.0])
-    truth = went(delta)
+    delta = displacement(C, push.force)
     unit = session.project().view.length
-    st.html(f'<p class="rm-say">{PUSH} along Y move the tip {_moves(delta, unit)}.</p>')
-    if now.answer is not None:
-        judged = "Right." if now.answer == truth else "Look again:"
-        said = (
-            f"You said: {ANSWERS[now.answer].lower()}. {judged} the second column of C says where a push along Y leads."
+    st.html(f'<p class="rm-say">{PUSH} along {push.name} moves the tip {_moves(delta, push, unit)}.</p>')
+    if now.answer in push.answers:
+        judged = "Right:" if now.answer == push.went(delta) else "Look again:"
+        column = ("first", "second", "third")[push.along]
+        pieces.note(
+            f"You said: {push.answers[now.answer]}. {judged} the {column} column of C says where a push along "
+            f"{push.name} leads."
         )
-        pieces.note(said)
-    st.html(compliance_table(C))
+    st.html(compliance_table(C, push.along))
     pieces.note(
         f"C in {unit_label('um/N')}. Blue: along the push. Orange, outlined: the off-diagonal terms, where the "
         f"push leads aside."
     )
 
 
-def went(delta: FloatArray) -> str:
-    """Which of the answers is right for a displacement (3,) under a push along Y."""
-    aside = np.abs(delta[[0, 2]])
-    if aside.max() < 0.02 * np.linalg.norm(delta):
-        return "y"
-    if aside[0] > aside[1]:
-        return "x"
-    return "down" if delta[2] < 0 else "up"
-
-
-def _moves(delta: FloatArray, unit: str) -> str:
-    words = ("along X", "along Y", "down" if delta[2] < 0 else "up")
+def _moves(delta: FloatArray, push: Push, unit: str) -> str:
     told = [
-        f"<b>{format_si(abs(float(delta[i])), unit)}</b> {words[i]}"
-        for i in (1, 0, 2)
-        if abs(delta[i]) > 0.02 * np.linalg.norm(delta)
+        f"<b>{format_si(abs(float(delta[i])), unit)}</b> "
+        + (f"along {push.name}" if i == push.along else _side(i, bool(delta[i] > 0)))
+        for i in (push.along, *(i for i in range(3) if i != push.along))
+        if abs(delta[i]) > ASIDE * np.linalg.norm(delta)
     ]
     return " and ".join(told) if told else "nowhere"
 
 
-def compliance_table(C: FloatArray) -> str:
-    """C in um/N as a large table with the column of the push lit, HTML."""
+def compliance_table(C: FloatArray, along: int) -> str:
+    """C in um/N as a large table with the column of the push along that axis lit, HTML."""
     rows = ""
     for i, name in enumerate("XYZ"):
         cells = ""
         for j in range(3):
             value = float(from_si(float(C[i, j]), "um/N"))
-            lit = "" if j != 1 else "on" if i == 1 else "off" if abs(value) > 5e-3 else ""
+            lit = "" if j != along else "on" if i == along else "off" if abs(value) > 5e-3 else ""
             cells += f'<td class="{lit}">{format_number(value, 3)}</td>'
         rows += f"<tr><th>tip {name}</th>{cells}</tr>"
     return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'
 
 
-def _push(pose: PoseReport, revealed: bool) -> None:
-    delta = pose.delta([0.0, FORCE, 0.0])
+def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
+    delta = pose.delta(push.force)
     unit = session.project().view.length
     scene = ArmScene(
         frames=pose.frames,
         joints=pose.robot.joint_numbers,
-        force=np.array([0.0, FORCE, 0.0]),
+        force=push.force,
         force_label=PUSH,
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit),
     )
     drawn = format_times(displacement_scale(delta, pose.frames))
-    caption = f"Seen from the side. Displacement shown {drawn}." if revealed else f"Seen from the side: {PUSH} along Y."
-    alt = f"The arm seen from the side with a force of {PUSH} along Y on the tool."
+    caption = (
+        f"Seen from the side. Displacement shown {drawn}."
+        if revealed
+        else f"Seen from the side: {PUSH} along {push.name}."
+    )
+    alt = f"The arm seen from the side with a force of {PUSH} along {push.name} on the tool."
     arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.lay_out(scene={"camera": SIDE})))

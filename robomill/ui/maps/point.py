@@ -47,7 +47,7 @@ def headline(found: InHand, unit: str) -> str:
     ]
     moved = ", ".join(ways[:-1]) + (" and " if len(ways) > 1 else "") + ways[-1] if ways else "not at all"
     push = format_si(FORCE, "N", 0)
-    return f"At {where}, {push} along Y move the tip {moved}; joint {pose.gives_most('yy')} gives most."
+    return f"At {where}, {push} along Y moves the tip {moved}; joint {pose.gives_most('yy')} gives most."
 
 
 def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:

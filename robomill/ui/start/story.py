@@ -57,7 +57,7 @@ def cause(result: SimulationResult, unit: str) -> str:
         for a, v in zip("XYZ", result.delta[i])
         if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
     )
-    return f"{force} on the tool move the tip by {moved}. Most of it comes from {blame}."
+    return f"{force} on the tool moves the tip by {moved}. Most of it comes from {blame}."
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
