@@ -409,3 +409,18 @@ def test_the_bottom_of_a_plunge_beside_the_block_is_a_floor(place):
     result = run("G0 X0 Y-40 Z5", f"G0 {place}", "G1 Z-3 F300")
     floors = pushed(result, along=0.1e-3, up=0.2e-3).gauge.floors
     assert floors.error[floors.worst] == pytest.approx(0.2e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_floors_of_a_sample_stand_for_its_length_together_and_so_does_each_wall(name):
+    """However many places and heights are looked at; the floor of a cut is as wide as the tool."""
+    bent = pushed(run(*PARTS[name]), left=0.1e-3, up=-0.05e-3)
+    found, length = bent.gauge, bent.path.step_length
+    places = np.bincount(found.floors.sample, minlength=len(length))
+    assert places.max() > 2
+    over = np.bincount(found.floors.sample, found.floors.length, minlength=len(length))
+    np.testing.assert_allclose(over[places > 0], length[places > 0], atol=1e-12)
+    assert found.floors.area() == pytest.approx(2 * R * length[places > 0].sum())
+    if name in ("slot", "spring pass", "rib"):  # both walls stand
+        beside = np.bincount(found.walls.sample, found.walls.length, minlength=len(length))
+        np.testing.assert_allclose(beside[places > 0], 2 * length[places > 0], atol=1e-12)
