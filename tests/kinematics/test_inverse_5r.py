@@ -76,3 +76,25 @@ def test_the_tool_axis_counts_for_five_axes_whatever_the_closed_form_says(robot)
     leaned[0, :3, :3] = T_MT[0, :3, :3] @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
     spun[0, :3, :3] = T_MT[0, :3, :3] @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     assert (near_enough(T_MT), near_enough(leaned), near_enough(spun)) == (True, False, True)
+
+
+@pytest.mark.parametrize("aside", [0.3, -0.2])
+@pytest.mark.parametrize("share", [0.3, 0.8])
+def test_an_arm_that_stands_aside_does_not_reach_what_lies_nearer_to_its_first_axis(robot, aside, share):
+    """A vertical tool's wrist centre is 0.3 m above its tip, and no nearer to the axis than the arm stands aside."""
+    d = np.array(robot.d)
+    d[1] = aside
+    T_MT = rm.pose_from_world([0.0, -share * abs(aside), -0.3, 0, 0])
+    found = rm.inverse_kinematics(robot.replace(d=d), T_MT)
+    missing = (1.0 - share) * abs(aside)
+    assert found.reason() == f"{missing:.2f} m inside the arm's lateral offset, too close to axis 1"
+
+
+def test_a_pose_that_only_another_branch_reaches_says_so(robot):
+    there = robot.home + np.array([0.1, 0.2, -0.1, 0.1, 0.2])
+    narrow = robot.replace(limits=np.column_stack([there - 0.05, there + 0.05]))
+    T_MT = rm.tool_pose(narrow, there)
+    assert rm.inverse_kinematics(narrow, T_MT, branch="elbow up").reached
+    for branch in ("back", "elbow down", "wrist -"):
+        other = rm.inverse_kinematics(narrow, T_MT, branch=branch)
+        assert other.reason() == f"only another branch than '{branch}' reaches it"
