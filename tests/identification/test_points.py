@@ -13,6 +13,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.crossvalidation import Folded
 from robomill.identification.folds import folds_of
 from robomill.identification.models import Model
+from robomill.identification.points import Factored
 from robomill.identification.system import build_system
 from tests.identification.cables import Arm, Rig, as_csv, in_tool, make, postures
 
@@ -271,3 +272,14 @@ def test_an_arm_of_seven_axes_is_as_good():
     inside = [held(p.ci95, t) for p, t in zip(result.points, (rig.load_point, rig.gauge_point), strict=True)]
     assert np.sum(inside) >= 5
     assert held(result.ci95, arm.C_theta).sum() >= 6
+
+
+@pytest.mark.parametrize("freed", [("force",), ("force", "gauge")])
+def test_where_nothing_moved_nothing_gives_and_no_point_is_seen(freed):
+    terms = 3 * 4 ** len(freed)
+    R = np.triu(np.random.default_rng(0).normal(size=(terms + 1, terms + 1)))
+    R[:, -1] = 0.0  # the readings
+    found = Factored(R, 100, np.zeros(3, dtype=bool), freed).fit()
+    assert not found.shift.any()
+    assert not found.fit.x.any()
+    assert found.fit.seen.tolist() == [True] * 3 + [False] * 3 * len(freed)

@@ -137,3 +137,20 @@ def test_as_many_numbers_as_unknowns_are_enough_and_one_less_is_not():
     turned = LoadTests(np.eye(3) * 100, np.column_stack([np.full((3, 3), np.nan), np.ones((3, 3))]), theta=THETA[:3])
     with pytest.raises(LoadTestError, match="nothing measured"):
         build_system(ROBOT, turned, Model("constant"))
+
+
+def test_by_size_a_test_counts_by_what_it_moved_but_what_hardly_moved_by_a_tenth_of_the_median():
+    """Root mean square of what was read, over the median of all tests; where nothing moved all count alike."""
+    theta, F = three_directions(THETA, 200.0)
+    moved = RNG.normal(size=(18, 3)) * 1e-3 * RNG.uniform(0.3, 3.0, (18, 1))
+    moved[4, 1] = moved[7, 0] = np.nan
+    moved[10] *= 1e-4
+    size = [float(np.sqrt(np.mean([v * v for v in row if v == v]))) for row in moved]
+    middle = sorted(size)[8:10]
+    counts = [max(each / (0.5 * sum(middle)), 0.1) for each in size]
+    assert 0.1 in counts
+    found = build_system(ROBOT, LoadTests(F, moved, theta=theta), Model(), by_size=True)
+    plain = build_system(ROBOT, LoadTests(F, moved, theta=theta), Model())
+    np.testing.assert_allclose(found.noise / plain.noise, np.array(counts)[found.test], rtol=1e-12)
+    still = build_system(ROBOT, LoadTests(F, 0.0 * moved, theta=theta), Model(), by_size=True)
+    np.testing.assert_array_equal(still.noise, plain.noise)
