@@ -202,3 +202,24 @@ def test_the_flange_is_the_tip_on_the_last_axis(tmp_path, way):
     np.testing.assert_allclose(robot.T_tool, np.eye(4), atol=1e-12)
     J = rm.geometric_jacobian(robot, [0.3, 0.0, 0.0])
     np.testing.assert_allclose(J[3:, 2], way * np.array([np.cos(0.3), np.sin(0.3), 0.0]), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("find", "put", "words"),
+    [
+        ('axis xyz="0 0 1"', 'axis xyz="0 1"', "joint '1' has axis xyz='0 1'; expected 3 numbers"),
+        ('axis xyz="0 0 1"', 'axis xyz="0 0 up"', "joint '1' has axis xyz='0 0 up'; expected 3 numbers"),
+        ('lower="-1"', 'lower="-1 2"', "joint '1' has limit lower='-1 2'; expected a number"),
+        ('upper="1"', 'upper="inf"', "joint '1' has limit upper='inf'; expected a number"),
+        ('<robot name="bad">', '<!DOCTYPE robot><robot name="bad">', "no <!DOCTYPE> and no entities"),
+        ("robot", "arm", "found <arm>, expected <robot>"),
+        ("</robot>", "", "this is not a URDF that can be read"),
+    ],
+)
+def test_what_is_written_wrong_is_refused_with_what_is_expected(tmp_path, find, put, words):
+    path = _write(tmp_path, LINKS + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "d"))
+    text = path.read_text()
+    path.write_text(text.replace(find, put) if find == "robot" else text.replace(find, put, 1))
+    with pytest.raises(RobotError) as refused:
+        read_urdf(path)
+    assert words in str(refused.value)
