@@ -56,13 +56,19 @@ def serve_options(serve: argparse.ArgumentParser) -> None:
 def run_serve(arguments: Any) -> int:
     """Serve until told to stop. Raises RobomillError where a bound of what is kept is none."""
     from robomill.ui.keeping.settings import PREFIX, Settings
+    from robomill.ui.keeping.shelf import Shelf, StoreError
 
     environment = ALLOCATOR | os.environ
     for option, name in (("", ""), ("_folder", "_FOLDER"), ("_mb", "_ALL_MB"), ("_days", "_DAYS")):
         said = getattr(arguments, f"autosave{option}")
         if said is not None:
             environment[f"{PREFIX}{name}"] = said
-    Settings.of(environment)
+    settings = Settings.of(environment)
+    if settings.on:
+        try:
+            Shelf(settings).check()
+        except StoreError as exc:
+            print(f"robomill: nothing can be kept in {settings.folder}; every page says so. {exc}", file=sys.stderr)
     _can_listen(arguments.address, arguments.port)
     words = [
         f"--server.address={arguments.address}",

@@ -442,6 +442,14 @@ def test_a_server_for_others_shows_no_code_and_listens_on_this_machine_unless_to
     assert Settings.of(environment) == Settings.of(dict(os.environ))
 
 
+def test_a_folder_that_cannot_be_written_is_said_before_anything_is_served(served, capsys) -> None:
+    assert main(["serve", "--autosave-folder", "/proc/robomill"]) == 0
+    assert "nothing can be kept in /proc/robomill; every page says so" in capsys.readouterr().err
+    assert main(["serve", "--autosave", "off", "--autosave-folder", "/proc/robomill"]) == 0
+    assert capsys.readouterr().err == ""
+    assert len(served) == 2
+
+
 def test_a_server_keeps_few_heaps_unless_its_owner_says_otherwise(served, monkeypatch) -> None:
     monkeypatch.setenv("MALLOC_ARENA_MAX", "7")
     assert main(["serve"]) == 0
