@@ -122,6 +122,9 @@ def test_what_cannot_be_measured_says_why():
     high_up = np.array([0, 0, 0.03])
     high = groove_sections(stock, FLAT, CutPath(p + high_up, p + high_up, np.array(cutting)), [0.03])[0]
     assert "above the stock" in high.note
+    for lifted, note in ((1.9e-3, ""), (2.1e-3, "the deflected tool cuts nothing here")):
+        moved = p + np.array([0, 0, lifted])
+        assert groove_section(stock, FLAT, p, moved, cutting, None, 0.03).note == note
 
 
 def test_metal_that_a_pass_without_a_number_takes_away_is_not_measured():
