@@ -424,3 +424,4 @@ def test_floors_of_a_sample_stand_for_its_length_together_and_so_does_each_wall(
     if name in ("slot", "spring pass", "rib"):  # both walls stand
         beside = np.bincount(found.walls.sample, found.walls.length, minlength=len(length))
         np.testing.assert_allclose(beside[places > 0], 2 * length[places > 0], atol=1e-12)
+        assert found.walls.area() == pytest.approx(2 * 2e-3 * length[places > 0].sum())  # the slots are 2 mm deep
