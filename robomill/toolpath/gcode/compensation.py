@@ -125,10 +125,6 @@ class Compensation:
         corner = self.corner
         for move in self.held:
             if move.turn:
-                before = math.hypot(move.end[0] - move.centre[0], move.end[1] - move.centre[1])
-                after = math.hypot(u - move.centre[0], v - move.centre[1])
-                if abs(before - after) > 10.0 * OVERSHOOT[machine.unit]:
-                    raise self._gouge(block, "the arc before it")
                 if move.sweep and corner is not None:
                     sweep = swept(corner, (u, v), move.centre, move.turn, 0.0)
                     if abs(sweep) > abs(move.sweep) + OVERSHOOT[machine.unit]:
