@@ -9,6 +9,7 @@ import random
 import pytest
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.value_rules import MAX_DEPTH
@@ -163,3 +164,15 @@ def test_a_whole_number_is_one_within_a_ten_thousandth(text, found):
     assert Reader(text, 1, Parameters()).integer("N") == found
     with pytest.raises(GCodeError, match="expected a whole number"):
         Reader("5.0002", 1, Parameters()).integer("N")
+
+
+SHORT = ["[2*", "[2* ", "[2**", "[2+", "[2-", "[2/", "[2 MOD", "[", "[2", "-", "#", "SIN", "ATAN[1]/", "#<a"]
+
+
+@pytest.mark.parametrize("text", SHORT)
+def test_a_value_that_the_end_of_its_line_cuts_short_is_refused_at_its_line(text):
+    """At the end of the file too, where nothing follows that could be looked at."""
+    for behind in ("\nM2\n", ""):
+        with pytest.raises(GCodeError) as refused:
+            interpret(f"G21 G90 F100\nG1 X{text}{behind}")
+        assert refused.value.line == 2
