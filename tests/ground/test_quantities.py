@@ -90,6 +90,8 @@ def test_bounds_hold_what_they_include(field: str, good: object) -> None:
         ("reach", -1e-3, "Sample, Reach: found −1 mm; expected more than 0 mm, or left out."),
         ("ratio", 1.5, "Sample, Ratio: found 1.5; expected 0 to 1."),
         ("ratio", -0.1, "Sample, Ratio: found −0.1; expected 0 to 1."),
+        ("ratio", 1e12, "Sample, Ratio: found 1e+12; expected 0 to 1."),
+        ("ratio", 1.1e12, "Sample, Ratio: found 1.1e+12; expected 0 to 1, and no larger than 1e+12."),
         ("left", 0.0, "Sample, Left: found 0 N; expected less than 0 N."),
         ("right", 1e-3, "Sample, Right: found 0.001 N; expected at most 0 N."),
         ("free", "much", "Sample, Free: found 'much'; expected a finite number."),
