@@ -64,3 +64,21 @@ def test_without_an_upper_arm_or_a_forearm_there_is_no_closed_form(gone):
     found = rm.inverse_kinematics(folded, rm.tool_pose(folded, theta), near=theta)
     assert found.reached.all()
     np.testing.assert_allclose(rm.tool_pose(folded, found.theta), rm.tool_pose(folded, theta), atol=1e-8)
+
+
+def test_the_spindle_is_on_the_last_axis_where_a_turn_about_it_leaves_axis_and_tip():
+    """Six axes, the tool along the last one and its tip on it."""
+    arm = rm.load_robot("kuka_kr500")
+    aside, tilted = np.array(arm.T_tool), np.array(arm.T_tool)
+    aside[:3, 3] += 0.01 * aside[:3, 0]
+    c, s = np.cos(0.1), np.sin(0.1)
+    tilted[:3, :3] = tilted[:3, :3] @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    for T_tool in (arm.T_tool, aside, tilted):
+        robot = arm.replace(T_tool=T_tool)
+        turned = robot.home + np.array([0, 0, 0, 0, 0, 0.4])
+        before, after = rm.tool_pose(robot, np.array([robot.home, turned]))
+        kept = np.allclose(before[:3, 2:], after[:3, 2:], atol=1e-9)
+        found = decoupled(robot)
+        assert found is not None
+        assert found.spindle_on_last_axis == kept
+    assert not decoupled(rm.load_robot("slavkovic_5r")).spindle_on_last_axis
