@@ -129,8 +129,6 @@ def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | Non
         st.rerun()
         return
     job.seen = time.monotonic()
-    with st.container(key=box(key)):
-        bar, cancel = st.columns([4, 1], vertical_alignment="center")
-        bar.progress(job.progress.share, words(job))
-        with cancel:
-            inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="stretch")
+    with st.container(key=box(key), horizontal=True, vertical_alignment="center", gap="medium"):
+        st.progress(job.progress.share, words(job), width="stretch")
+        inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="content")
