@@ -3,15 +3,20 @@
 Pages and the command line catch ``RobomillError`` only; anything else is a bug and must be seen.
 """
 
+import re
+
+_ENDLESS, _SHOWN = re.compile(r"\S{300,}"), 100
+
 
 class RobomillError(ValueError):
     """Input that robomill refuses. ``str(error)`` is the sentence a person reads.
 
-    ``where`` names the place (file, line, cell, joint, field) as data, for whoever wants to jump there.
+    ``where`` names the place (file, line, cell, joint, field) as data, for whoever wants to jump there. A word of
+    hundreds of characters is not quoted to its end.
     """
 
     def __init__(self, message: str, *, where: str | None = None) -> None:
-        super().__init__(message)
+        super().__init__(_ENDLESS.sub(lambda word: f"{word[0][:_SHOWN]}…", message))
         self.where = where
 
 

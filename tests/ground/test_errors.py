@@ -26,3 +26,9 @@ def test_the_place_is_data() -> None:
     assert GCodeError("no.").where is None
     assert GCodeError("no.").line == 0
     assert issubclass(GCodeError, ToolpathError)
+
+
+@pytest.mark.parametrize("kind", [RobomillError, GCodeError])
+def test_a_word_without_an_end_is_not_quoted_to_its_end(kind: type[RobomillError]) -> None:
+    said = str(kind(f"Line 3: {'A' * 5000} is not known; {'b' * 299} is."))
+    assert said == f"Line 3: {'A' * 100}… is not known; {'b' * 299} is."
