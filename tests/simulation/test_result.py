@@ -136,14 +136,20 @@ def largest_on_part(result) -> float:
 
 
 @pytest.mark.parametrize(
-    ("share", "level", "red"),
-    [(0.5, "ok", False), (0.799, "ok", False), (0.801, "tight", False), (0.999, "tight", False), (1.001, "out", True)],
+    ("share", "used", "level"),
+    [
+        (0.5, "50 %", "ok"),
+        (0.799, "80 %", "ok"),
+        (0.801, "80 %", "tight"),
+        (0.999, "99.9 %", "tight"),
+        (1.001, "100.1 %", "out"),
+    ],
 )
-def test_the_verdict_follows_the_share_of_the_tolerance(bent, share, level, red):
+def test_the_verdict_follows_the_share_of_the_tolerance(bent, share, used, level):
     judged = rm.simulate(bent.setup.replace(tolerance=largest_on_part(bent) / share)).verdict
-    assert (judged.level, judged.red) == (level, red)
+    assert (judged.level, judged.red) == (level, level == "out")
     assert judged.share == pytest.approx(share, abs=2e-4)
-    assert f"{100 * share:.0f} %" in judged.sentence
+    assert f" ({used} of it used)" in judged.sentence
 
 
 def test_what_uses_the_whole_tolerance_is_tight_and_just_four_fifths_too(bent):

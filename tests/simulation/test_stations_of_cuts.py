@@ -77,7 +77,7 @@ def test_one_way_and_one_groove(corner):
         False,
     ]
     grooves = [r.path.on_one_line for r in (slot, back, ramp, beside, corner, skew, there_and_back, holes)]
-    assert grooves == [True, True, True, False, False, False, False, False]
+    assert grooves == [True, True, True, False, False, False, True, False]
 
 
 def test_joint_shares_are_what_each_joint_moves_along_the_deviation(corner):
