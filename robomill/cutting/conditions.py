@@ -128,13 +128,9 @@ class CutConditions:
             bad = np.flatnonzero(engaged & (getattr(self, name) <= 0.0))
             if bad.size:
                 word = "S and M3" if name == "n_s" else "F"
-                if name == "n_s" and not self.n_s.any():
-                    word += " before the cut, or the set-up a spindle speed"
-                else:
-                    word += " before the cut"
-                raise CuttingError(
-                    f"{self.place(bad[0])}: {text} while the tool is in the material; give {word}.", where=name
-                )
+                more = ", or the set-up a spindle speed" if name == "n_s" and not self.n_s.any() else ""
+                where = f"{self.place(bad[0])}: {text} while the tool is in the material"
+                raise CuttingError(f"{where}; give {word} before the cut{more}.", where=name)
         result = np.zeros(len(self))
         return np.divide(self.v_f, self.n_s * np.asarray(flutes), out=result, where=engaged)
 

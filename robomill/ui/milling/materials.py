@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.cutting.forces import FORCES
+from robomill.cutting.forces import model_of
 from robomill.cutting.materials import Material
 from robomill.cutting.materials import alternatives as others_of
 from robomill.errors import CuttingError
@@ -49,7 +49,7 @@ def _use(material: Material, from_editor: bool = False) -> None:
     if force.takes is type(material):
         force = replace(force, **given)
     else:
-        model: Any = next(model for model in FORCES.values() if model.takes is type(material))
+        model: Any = model_of(material)
         force = model(cutter=setup.cutter, **given)
     session.change(force=force, from_editor=from_editor)
 

@@ -7,7 +7,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.cutting.force import ForceModel
-from robomill.cutting.forces import FORCES
+from robomill.cutting.forces import FORCES, model_of
 from robomill.cutting.materials import Material, alternatives
 from robomill.cutting.tool import Cutter
 from robomill.errors import ToolpathError
@@ -102,7 +102,7 @@ def _answer(path: Toolpath | None) -> None:
     rows = _rows()
     row = rows[session.kept(f"{KEY}.{MATERIAL}", _first(setup.force).name)]
     cutter = replace(setup.cutter, **{name: found[name] for name in SIZE if name in found})
-    model: Any = next(model for model in FORCES.values() if model.takes is type(row))
+    model: Any = model_of(row)
     force = model(cutter=cutter, material=row, alternatives=alternatives(row, rows.values()))
     changed: dict[str, Any] = {"cutter": cutter, "force": force, "engagement": True}
     changed |= {"tolerance": found["tolerance"], "floor_tolerance": None, "feed_tolerance": None}
