@@ -14,7 +14,7 @@ from robomill.units import UNITS, unit_label
 
 # What each simple unit measures, as (dimension, power).
 SIMPLE: dict[str, tuple[str, int]] = {
-    **dict.fromkeys(("m", "cm", "mm", "um", "in"), ("length", 1)),
+    **dict.fromkeys(("m", "cm", "mm", "um", "in", "thou", "ft", "uin"), ("length", 1)),
     **dict.fromkeys(("rad", "deg", "mrad", "urad"), ("angle", 1)),
     **dict.fromkeys(("s", "min"), ("time", 1)),
     **dict.fromkeys(("N", "kN"), ("force", 1)),
@@ -30,6 +30,10 @@ SPELLED = {
     '"': "in",
     "inch": "in",
     "inches": "in",
+    "mil": "thou",
+    "mils": "thou",
+    "foot": "ft",
+    "feet": "ft",
     "micron": "um",
     "microns": "um",
     "°": "deg",

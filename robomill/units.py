@@ -20,11 +20,15 @@ MINUS = "−"
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit of the edge: ``value_in_SI = value * factor``; ``digits`` are the decimals shown."""
+    """A unit of the edge: ``value_in_SI = value * factor``; ``digits`` are the decimals shown.
+
+    ``more`` decimals than the metric unit in whose place it stands (``INCHES``) say the same number.
+    """
 
     label: str
     factor: float
     digits: int
+    more: int = 0
 
 
 UNITS: dict[str, Unit] = {
@@ -34,7 +38,10 @@ UNITS: dict[str, Unit] = {
     "cm": Unit("cm", 1e-2, 2),
     "mm": Unit("mm", 1e-3, 3),
     "um": Unit("µm", 1e-6, 1),
-    "in": Unit("in", 25.4e-3, 4),
+    "in": Unit("in", 25.4e-3, 4, 2),
+    "thou": Unit("thou", 25.4e-6, 2, 1),
+    "uin": Unit("µin", 25.4e-9, 1),
+    "ft": Unit("ft", 0.3048, 3),
     "rad": Unit("rad", 1.0, 5),
     "deg": Unit("°", math.pi / 180.0, 2),
     "mrad": Unit("mrad", 1e-3, 3),
@@ -44,7 +51,10 @@ UNITS: dict[str, Unit] = {
     "mm/s": Unit("mm/s", 1e-3, 1),
     "mm/min": Unit("mm/min", 1e-3 / 60.0, 0),
     "in/min": Unit("in/min", 25.4e-3 / 60.0, 2),
+    "in/s": Unit("in/s", 25.4e-3, 2, 1),
+    "deg/in": Unit("°/in", math.pi / 180.0 / 25.4e-3, 0),
     "mm/tooth": Unit("mm/tooth", 1e-3, 4),
+    "in/tooth": Unit("in/tooth", 25.4e-3, 5, 2),
     "1/min": Unit("min⁻¹", 1.0 / 60.0, 0),
     "s": Unit("s", 1.0, 1),
     "Hz": Unit("Hz", 1.0, 1),
@@ -56,7 +66,12 @@ UNITS: dict[str, Unit] = {
     "kg": Unit("kg", 1.0, 2),
     "N/mm": Unit("N/mm", 1e3, 2),
     "N/mm2": Unit("N/mm²", 1e6, 1),
+    "N/in": Unit("N/in", 1.0 / 25.4e-3, 1),
+    "MPa": Unit("MPa", 1e6, 1),
     "um/N": Unit("µm/N", 1e-6, 3),
+    "uin/N": Unit("µin/N", 25.4e-9, 2, -1),
+    "in/N": Unit("in/N", 25.4e-3, 8, 2),
+    "N/thou": Unit("N/thou", 1.0 / 25.4e-6, 2),
     "mm/N": Unit("mm/N", 1e-3, 6),
     "m/N": Unit("m/N", 1.0, 9),
     "N/um": Unit("N/µm", 1e6, 3),
@@ -69,7 +84,38 @@ UNITS: dict[str, Unit] = {
     "m3": Unit("m³", 1.0, 3),
     "mm3": Unit("mm³", 1e-9, 1),
     "mm2": Unit("mm²", 1e-6, 2),
+    "ft2": Unit("ft²", 0.3048**2, 3),
+    "ft3": Unit("ft³", 0.3048**3, 2),
+    "in3": Unit("in³", 25.4e-3**3, 5, 4),
+    "in2": Unit("in²", 25.4e-3**2, 5, 3),
 }
+
+# What stands in the place of a unit where lengths are read in inches. MPa is N/mm² by another name.
+INCHES = {
+    "mm": "in",
+    "cm": "in",
+    "um": "thou",
+    "m": "ft",
+    "mm2": "in2",
+    "mm3": "in3",
+    "m2": "ft2",
+    "m3": "ft3",
+    "mm/min": "in/min",
+    "mm/s": "in/s",
+    "mm/tooth": "in/tooth",
+    "deg/mm": "deg/in",
+    "um/N": "uin/N",
+    "mm/N": "in/N",
+    "N/mm": "N/in",
+    "N/um": "N/thou",
+    "N/mm2": "MPa",
+}
+
+
+def in_lengths(unit: str, length: str) -> str:
+    """The key of ``UNITS`` in which a quantity of ``unit`` is shown where lengths are in ``length``, mm or in:
+    ``in_lengths("um/N", "in") == "uin/N"``. What holds no length stays as it is."""
+    return INCHES.get(unit, unit) if length == "in" else unit
 
 
 def to_si(value: Number, unit: str) -> Number:
@@ -164,12 +210,12 @@ def format_times(times: SupportsFloat, digits: int = 2) -> str:
 def decimals(unit: str, digits: int | None) -> int:
     """Decimals shown in ``unit``: ``digits``, or the unit's own. Of a length they are those in mm; inches show as much.
 
-    Two more then, but no more than an inch has: 0.23 mm are 0.0091 in.
+    Two more then, but no more than an inch has: 0.23 mm are 0.0091 in. Likewise what stands in the place of µm or N/mm.
     """
-    own = UNITS[unit].digits
+    own, more = UNITS[unit].digits, UNITS[unit].more
     if digits is None:
         return own
-    return max(digits, min(digits + 2, own)) if unit == "in" else digits
+    return max(digits, min(digits + more, own)) if more >= 0 else max(digits + more, 0)
 
 
 def format_value(

@@ -86,9 +86,8 @@ def _write_entry(array: Any, i: int, write: Callable[[Any], None], new: float) -
 
 
 def in_view(unit: str) -> str:
-    """Lengths and feeds are typed in the units of the view."""
-    view = session.project().view
-    return {"mm": view.length, "mm/min": view.feed}.get(unit, unit)
+    """Numbers that hold a length are typed in the units of the view."""
+    return session.project().view.of(unit)
 
 
 def in_row(items: Sequence[Item], show: Callable[[Item], None]) -> None:

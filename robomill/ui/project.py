@@ -31,7 +31,7 @@ from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
-from robomill.units import unit_label
+from robomill.units import in_lengths, unit_label
 from robomill.viz.picture import CAMERAS
 from robomill.workspace.quantities import map_quantities
 from robomill.workspace.region import holds_paper_box
@@ -68,7 +68,11 @@ class View:
     @property
     def feed(self) -> str:
         """Unit of feed rates."""
-        return "in/min" if self.units == "in" else "mm/min"
+        return self.of("mm/min")
+
+    def of(self, unit: str) -> str:
+        """The unit, a key of ``UNITS``, in which a quantity of ``unit`` is shown: ``view.of("um/N")``."""
+        return in_lengths(unit, self.units)
 
 
 @dataclass(frozen=True, eq=False)

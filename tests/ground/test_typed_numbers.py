@@ -174,7 +174,7 @@ def test_a_unit_of_another_kind_is_refused_with_those_that_fit(text: str, unit: 
 
 
 def test_what_fits_is_named() -> None:
-    with pytest.raises(NumberError, match="expected a number in mm, m, cm, µm or in;"):
+    with pytest.raises(NumberError, match="expected a number in mm, m, cm, µm, in, thou, µin or ft;"):
         read_number("5 N", "mm")
     with pytest.raises(NumberError, match="expected a number in kg;"):
         read_number("5 N", "kg")

@@ -70,14 +70,14 @@ def test_a_unit_that_no_field_has_is_made_of_those_that_it_names() -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["", " ", "foo", "nm", "mN", "M m m x", "mm)", "(mm", "mm/", "/", "mm//s", "5 mm", "ft", "mm 2", "N/()/"]
+    "words", ["", " ", "foo", "nm", "mN", "M m m x", "mm)", "(mm", "mm/", "/", "mm//s", "5 mm", "yd", "mm 2", "N/()/"]
 )
 def test_what_is_no_unit_has_no_meaning(words: str) -> None:
     assert meaning(words) is None
 
 
 def test_units_of_one_dimension_are_named_beside_each_other() -> None:
-    assert set(alike("mm")) == {"m", "cm", "µm", "in"}
+    assert set(alike("mm")) == {"m", "cm", "µm", "in", "thou", "µin", "ft"}
     assert set(alike("deg")) == {"rad", "mrad", "µrad"}
     assert alike("1") == ["%"]
     assert alike("1/min") == ["Hz"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from decimal import Decimal
 
 import numpy as np
@@ -12,7 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robomill.typed_numbers import read_number
+from robomill.unit_words import measure
 from robomill.units import (
+    INCHES,
     UNITS,
     format_beside,
     format_count,
@@ -29,6 +32,7 @@ from robomill.units import (
     format_times,
     format_value,
     from_si,
+    in_lengths,
     rounded,
     split_unit,
     to_si,
@@ -44,6 +48,21 @@ KNOWN = {
     "mm": (1 / 1000, "mm", 3),
     "um": (1 / 1000**2, "µm", 1),
     "in": (0.3048 / 12, "in", 4),
+    "thou": (0.3048 / 12 / 1000, "thou", 2),
+    "uin": (0.3048 / 12 / 1000**2, "µin", 1),
+    "ft": (0.3048, "ft", 3),
+    "in/s": (0.3048 / 12, "in/s", 2),
+    "deg/in": (math.radians(12 / 0.3048), "°/in", 0),
+    "in/tooth": (0.3048 / 12, "in/tooth", 5),
+    "N/in": (12 / 0.3048, "N/in", 1),
+    "MPa": (1000**2, "MPa", 1),
+    "uin/N": (0.3048 / 12 / 1000**2, "µin/N", 2),
+    "in/N": (0.3048 / 12, "in/N", 8),
+    "N/thou": (12 / 0.3048 * 1000, "N/thou", 2),
+    "ft2": (0.3048**2, "ft²", 3),
+    "ft3": (0.3048**3, "ft³", 2),
+    "in3": ((0.3048 / 12) ** 3, "in³", 5),
+    "in2": ((0.3048 / 12) ** 2, "in²", 5),
     "rad": (1, "rad", 5),
     "deg": (math.radians(1), "°", 2),
     "mrad": (1 / 1000, "mrad", 3),
@@ -79,6 +98,36 @@ KNOWN = {
     "mm3": (1 / 1000**3, "mm³", 1),
     "mm2": (1 / 1000**2, "mm²", 2),
 }
+
+
+# Decimals that inches show where so many are asked of the metric unit: never fewer, but for µin, and never idle ones.
+MORE = {
+    "in": lambda n: max(n, min(n + 2, 4)),
+    "thou": lambda n: max(n, min(n + 1, 2)),
+    "uin/N": lambda n: max(n - 1, 0),
+    "in/s": lambda n: max(n, min(n + 1, 2)),
+    "in/tooth": lambda n: max(n, min(n + 2, 5)),
+    "in/N": lambda n: max(n, min(n + 2, 8)),
+    "in2": lambda n: max(n, min(n + 3, 5)),
+    "in3": lambda n: max(n, min(n + 4, 5)),
+}
+
+
+@pytest.mark.parametrize("unit", sorted(INCHES))
+def test_inches_measure_what_the_metric_unit_measures_and_hold_none_of_it(unit: str) -> None:
+    shown = in_lengths(unit, "in")
+    assert measure(shown).dimensions == measure(unit).dimensions
+    assert in_lengths(unit, "mm") == unit
+    assert re.search(r"m", unit_label(shown).replace("min", "")) is None
+
+
+def test_every_unit_with_a_length_in_it_has_its_inches_and_no_other() -> None:
+    long = {unit for unit in UNITS if "length" in dict(measure(unit).dimensions)}
+    held = {unit for unit in long if not re.search(r"\bu?in($|/|\d)|ft|thou", unit)}
+    turning = {"N m", "kN m", "1e-7 rad/(N m)", "kN m/rad", "urad/(N m)"}  # torque, by convention
+    bare = {"m/N", "1e-9 m/N", "MPa", "N/mm2"}  # of linear joints; stress
+    assert held - turning - bare == set(INCHES) - {"N/mm2"}
+    assert all(in_lengths(unit, "in") == unit for unit in turning)
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -170,7 +219,7 @@ def test_several_values_carry_their_unit_once() -> None:
 @given(value=st.floats(-1e6, 1e6), unit=st.sampled_from(sorted(UNITS)), digits=st.integers(0, 6))
 def test_what_is_shown_can_be_read_back(value: float, unit: str, digits: int) -> None:
     text = format_value(value, unit, digits)
-    shown = {0: 2, 1: 3, 2: 4, 3: 4}.get(digits, digits) if unit == "in" else digits  # asked of a length in mm
+    shown = MORE.get(unit, lambda n: n)(digits)  # asked of the metric unit
     assert read_number(text, unit).value == pytest.approx(round(value, shown), rel=1e-14)
     assert not text.startswith("-")
     label = UNITS[unit].label
