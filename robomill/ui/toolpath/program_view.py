@@ -9,7 +9,7 @@ from robomill.arrays import digest
 from robomill.provenance import Finding
 from robomill.toolpath.text import split_lines
 from robomill.ui import session
-from robomill.ui.toolpath.component import component
+from robomill.ui.component import component
 from robomill.viz.theme import palette
 
 KEY = "toolpath.program"
