@@ -29,21 +29,21 @@ ui.tiles(
         dataclasses.replace(tip, label="Tip off its path in the cut"),
         ui.Tile(
             "C_yy at this pose",
-            format_si(now.component("yy"), "um/N", 3),
+            format_si(now.component("yy"), view.of("um/N"), 3),
             "direct compliance along Y",
-            format_si(old.component("yy"), "um/N", 3) if old else "",
+            format_si(old.component("yy"), view.of("um/N"), 3) if old else "",
         ),
         ui.Tile(
             "Softest direction",
-            format_si(now.principal[0][-1], "um/N", 3),
+            format_si(now.principal[0][-1], view.of("um/N"), 3),
             f"along ({format_many(now.principal[1][:, -1], '1', 2)}) in {{M}}",
-            format_si(old.principal[0][-1], "um/N", 3) if old else "",
+            format_si(old.principal[0][-1], view.of("um/N"), 3) if old else "",
         ),
         ui.Tile(
             "det(J)",
-            pose.det_value(now),
+            pose.det_value(now, view.of),
             pose.det_words(now),
-            pose.det_value(old),
+            pose.det_value(old, view.of),
         ),
     ]
 )

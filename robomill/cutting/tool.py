@@ -14,7 +14,7 @@ from robomill.cutting.profile_kernels import Shape, conical, heights, profile, r
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
 from robomill.quantities import choice, quantity, settle, whole
-from robomill.units import format_si, to_si
+from robomill.units import format_count, format_si, to_si
 
 #: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
@@ -211,8 +211,11 @@ class Cutter:
     @property
     def title(self) -> str:
         """For people, e.g. ``"8.00 mm flat end mill, 3 flutes"``."""
-        plural = "flute" if self.flutes == 1 else "flutes"
-        return f"{format_si(self.diameter, 'mm', 2)} {self.family.title}, {self.flutes} {plural}"
+        return self.called("mm")
+
+    def called(self, length: str) -> str:
+        """``title`` with its diameter in ``length``, a key of ``UNITS``."""
+        return f"{format_si(self.diameter, length, 2)} {self.family.title}, {format_count(self.flutes, 'flute')}"
 
     def profile(self, r: ArrayLike) -> FloatArray:
         """Height (m) of the cutting surface above the tip at radius ``r`` (...) m; inf for r < 0 or r > R."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from robomill.arrays import digest
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, pieces, shell
+from robomill.ui import cached, pieces, session, shell
 from robomill.units import format_times
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 from robomill.viz.views import arm_scene
@@ -28,7 +29,8 @@ def arm(
 
     ``more``: what else the figure depends on, and what adds it to the figure, light or dark.
     """
-    dark = shell.dark()
+    dark, view = shell.dark(), session.project().view
+    scene = replace(scene, unit=view.of("m"))
 
     def draw() -> Chart:
         fig = arm_figure(scene, dark=dark, height=height, revision=key, zoom=zoom)
@@ -42,7 +44,7 @@ def arm(
 
 def arm_at(result: SimulationResult, i: int, key: str, height: int, zoom: float = 1.0) -> None:
     """The arm as it stands at sample ``i`` of a run, with force and displacement."""
-    scene = arm_scene(result, i)
+    scene = arm_scene(result, i, session.project().view.length)
     drawn = format_times(displacement_scale(result.delta[i], scene.frames))
     lost = "" if result.reached.all() else " Grey dots: out of reach."
     caption = f"Blue: force on the tool. Orange: displacement, shown {drawn}.{lost}"

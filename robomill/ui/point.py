@@ -10,7 +10,7 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.paper import SLOT, Point
 from robomill.robot.model import Robot
-from robomill.ui import pieces
+from robomill.ui import pieces, session
 from robomill.ui.project import MapView
 from robomill.units import format_si, unit_label
 from robomill.workspace.fields import ComplianceField
@@ -36,8 +36,9 @@ def in_hand(robot: Robot, point: Point, A: float, B: float) -> InHand:
 
 def compliance_matrix(pose: PoseReport) -> None:
     """C at a pose, under its heading."""
-    st.markdown(f"**Compliance C** in {{M}}, {unit_label('um/N')}")
-    pieces.matrix([[format_si(v, "um/N", with_unit=False) for v in row] for row in pose.C], list("XYZ"))
+    unit = session.project().view.of("um/N")
+    st.markdown(f"**Compliance C** in {{M}}, {unit_label(unit)}")
+    pieces.matrix([[format_si(v, unit, with_unit=False) for v in row] for row in pose.C], list("XYZ"))
 
 
 def middle(box: ReachBox) -> Point:

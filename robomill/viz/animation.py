@@ -31,7 +31,7 @@ def film_frame(result: SimulationResult, shown: Enlarged, picture: SurfacePictur
     return replace(
         picture,
         z=from_si(now.drawn.z, "mm"),
-        error_um=from_si(now.error, "um"),
+        error=from_si(now.error, "um"),
         solids=posed(result, index, tip_drawn(result, shown, index), arm=False),
         captions=(*picture.captions, f"Line {result.path.block[index]}"),
     )

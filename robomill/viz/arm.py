@@ -1,11 +1,13 @@
 """The arm as a turnable figure: links as tubes, frames {M}, {W}, {T}, the part, the path, force and displacement."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.units import format_many, format_significant, from_si, to_si, unit_label
 from robomill.viz import solids
 from robomill.viz.chart import Chart, Trace, drawn
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
@@ -13,7 +15,7 @@ from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 @dataclass(frozen=True, eq=False)
 class ArmScene:
-    """What to draw, in m and in {M}; parts left at None are not drawn.
+    """What to draw, in m and in {M}; parts left at None are not drawn. ``unit`` is what the axes and words count in.
 
     frames (n+1, 4, 4): the frame before each joint (the joint turns about its z), then {T}.
     offset (n,): travel along each joint's z before the link goes across (the D-H d).
@@ -34,6 +36,7 @@ class ArmScene:
     ghost: FloatArray | None = None
     joints: tuple[int, ...] = ()
     bench: bool = True
+    unit: str = "m"
 
 
 def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0) -> Chart:
@@ -65,7 +68,7 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
     fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), solids.words(said)])
     fig.add_traces(_part_traces(scene, reach, dark))
-    fig.lay_out(scene=_scene_layout(_bounds(fig, reach), dark, revision, zoom), showlegend=False)
+    fig.lay_out(scene=_scene_layout(_bounds(fig, reach), scene.unit, dark, revision, zoom), showlegend=False)
     return fig
 
 
@@ -75,11 +78,16 @@ def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
     return 0.17 * solids.yardstick(frames) / size if size > 0 else 1.0
 
 
-def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
+def _scene_layout(bounds: FloatArray, unit: str, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
     span = np.ptp(bounds, axis=0)
     ratio = 2.3 * zoom * span / np.linalg.norm(span)
     axes = {
-        f"{name}axis": axis3d(f"{name.upper()}<sub>M</sub>, m", dark=dark, range=bounds[:, i].tolist())
+        f"{name}axis": axis3d(
+            f"{name.upper()}<sub>M</sub>, {unit_label(unit)}",
+            dark=dark,
+            range=bounds[:, i].tolist(),
+            **_ticks(bounds[:, i], unit),
+        )
         for i, name in enumerate("xyz")
     }
     return {
@@ -94,6 +102,16 @@ def _scene_layout(bounds: FloatArray, dark: bool, revision: str, zoom: float) ->
             "projection": {"type": "orthographic"},
         },
     }
+
+
+def _ticks(ends: FloatArray, unit: str) -> dict[str, Any]:
+    """Round numbers of ``unit`` along an axis whose coordinates are in m; the figure finds its own where that is m."""
+    if unit == "m":
+        return {}
+    low, high = from_si(ends, unit)
+    step = next(step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 500, math.inf) if (high - low) / step < 5)
+    at = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+    return {"tickvals": to_si(at, unit).tolist(), "ticktext": [format_significant(v) for v in at]}
 
 
 def _bounds(fig: Chart, reach: float) -> FloatArray:
@@ -117,6 +135,8 @@ def _arm(scene: ArmScene, dark: bool) -> list[solids.Painted]:
 def _joint_hover(scene: ArmScene, colour: str) -> Trace:
     x, y, z = scene.frames[:, :3, 3].T
     joints = scene.joints or range(1, len(scene.frames))
+    names = [*(f"joint {number}" for number in joints), "tool tip {T}"]
+    places = [format_many(point, scene.unit, 3) for point in scene.frames[:, :3, 3]]
     return drawn(
         "scatter3d",
         x=x,
@@ -125,8 +145,8 @@ def _joint_hover(scene: ArmScene, colour: str) -> Trace:
         mode="markers",
         showlegend=False,
         marker={"size": 9, "opacity": 0.0, "color": colour},
-        text=[*(f"joint {number}" for number in joints), "tool tip {T}"],
-        hovertemplate="%{text}<br>%{x:.3f}, %{y:.3f}, %{z:.3f} m<extra></extra>",
+        text=[f"{name}<br>{place}" for name, place in zip(names, places, strict=True)],
+        hovertemplate="%{text}<extra></extra>",
     )
 
 
@@ -166,7 +186,7 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
                         name=name,
                         showlegend=False,
                         line={"color": colour, "width": 5, "dash": "solid" if name == "path" else "dot"},
-                        hovertemplate=name + "<br>%{x:.4f}, %{y:.4f}, %{z:.4f} m<extra></extra>",
+                        hovertemplate=name + "<extra></extra>",
                     )
                 )
     return traces

@@ -22,10 +22,10 @@ class Solid:
 
 @dataclass(frozen=True, eq=False)
 class SurfacePicture:
-    """x (nx,), y (ny,) mm; z, ideal (nx, ny) mm heights, NaN where there is no material; error_um (nx, ny).
+    """x (nx,), y (ny,) mm; z, ideal (nx, ny) mm heights, NaN where there is no material; error (nx, ny), in ``unit``.
 
-    ``z`` is drawn (it may be exaggerated; then ``captions`` say by how much), ``error_um`` colours it between
-    +-``limit_um``; ``camera`` is one of ``CAMERAS``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm,
+    ``z`` is drawn (it may be exaggerated; then ``captions`` say by how much), ``error`` colours it between
+    +-``limit``; ``camera`` is one of ``CAMERAS``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm,
     where a section plane is drawn or, with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows
     ideal and machined side by side under one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand
     beside them (tool, arm), ``headroom`` mm above the block stays in the picture for them, with ``whole`` they are
@@ -36,9 +36,10 @@ class SurfacePicture:
     y: FloatArray
     z: FloatArray
     ideal: FloatArray
-    error_um: FloatArray
-    limit_um: float
+    error: FloatArray
+    limit: float
     bottom: float
+    unit: str = "µm"
     camera: str = "iso"
     dark: bool = False
     size: tuple[int, int] = (1280, 720)

@@ -82,7 +82,7 @@ def _fill(plotter: Any, picture: SurfacePicture, colours: Any, *, ideal: bool) -
     if ideal:
         stage.block(plotter, picture, picture.ideal, None, colours)
     else:
-        stage.block(plotter, picture, picture.z, picture.error_um, colours)
+        stage.block(plotter, picture, picture.z, picture.error, colours)
     stage.ideal_lines(plotter, picture)
     if picture.ghost:
         stage.ghost(plotter, picture)

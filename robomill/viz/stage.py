@@ -44,7 +44,7 @@ def block(plotter: Any, picture: SurfacePicture, z: FloatArray, error: FloatArra
             top,
             scalars="error",
             cmap=colours,
-            clim=(-picture.limit_um, picture.limit_um),
+            clim=(-picture.limit, picture.limit),
             nan_color=metal,
             show_scalar_bar=False,
             ambient=0.32,
@@ -191,7 +191,7 @@ def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float 
     import pyvista as pv
 
     p = palette(picture.dark)
-    limits = (-picture.limit_um, picture.limit_um)
+    limits = (-picture.limit, picture.limit)
     carrier = pv.PolyData(np.full((2, 3), [picture.x[0], picture.y[0], picture.bottom]))
     carrier["signed"] = np.array(limits)
     actor = plotter.add_mesh(
@@ -213,7 +213,7 @@ def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float 
     )
     size = font(picture, 11)
     for words, y, colour, less in (
-        ("Error, \u00b5m", 0.885, p.text, 0),
+        (f"Error, {picture.unit}", 0.885, p.text, 0),
         ("+ material left", 0.815, p.muted, 2),
         ("\u2212 cut too deep", 0.145, p.muted, 2),
     ):

@@ -4,7 +4,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.simulation.enlarged import Enlarged
-from robomill.units import from_si
+from robomill.units import decimals, from_si, in_lengths, unit_label
 from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
@@ -31,29 +31,31 @@ def surface_figure(
     It is seen as the ``camera`` has it until it is turned.
     """
     drawn = [from_si(v, unit) for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
-    x, y, z, error_um = thinned(*drawn, from_si(shown.error, "um"))
-    limit_um = float(from_si(limit, "um"))
+    small = in_lengths("um", unit)
+    x, y, z, error = thinned(*drawn, from_si(shown.error, small))
+    shown_limit = float(from_si(limit, small))
     p = palette(dark)
     revision = f"surface-{camera}"
     eye, up = EYES[camera]
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
-    colour = np.nan_to_num(error_um.T).astype(np.float32)
+    colour = np.nan_to_num(error.T).astype(np.float32)
     fig.add(
         "surface",
         x=x.astype(np.float32),
         y=y.astype(np.float32),
         z=z.T.astype(np.float32),
         surfacecolor=colour,
-        cmin=-limit_um,
-        cmax=limit_um,
+        cmin=-shown_limit,
+        cmax=shown_limit,
         colorscale=DIVERGING,
         lighting={"ambient": 0.62, "diffuse": 0.5, "specular": 0.08, "roughness": 0.8, "fresnel": 0.05},
         lightposition={"x": -400, "y": -800, "z": 1500},
         contours={a: {"highlight": False} for a in "xyz"},
-        colorbar=colour_bar("Error, µm (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
+        colorbar=colour_bar(f"Error, {unit_label(small)} (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
         customdata=colour,
         name="machined",
-        hovertemplate="x %{x:.2f}, y %{y:.2f}, z %{z:.3f} " + unit + "<br>error %{customdata:+.0f} µm<extra></extra>",
+        hovertemplate=f"x %{{x:.2f}}, y %{{y:.2f}}, z %{{z:.3f}} {unit}<br>"
+        f"error %{{customdata:+.{decimals(small, 0)}f}} {unit_label(small)}<extra></extra>",
     )
     height_span = max(float(np.nanmax(z) - np.nanmin(z)), 1e-9)
     span = max(float(np.ptp(x)), float(np.ptp(y)))

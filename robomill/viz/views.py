@@ -10,7 +10,7 @@ from robomill.simulation.enlarged import Enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import place_at
 from robomill.surface.groove import GrooveSection
-from robomill.units import format_si, from_si
+from robomill.units import format_si, from_si, unit_label
 from robomill.viz.arm import ArmScene
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.sections import SectionDrawing
@@ -22,12 +22,13 @@ def surface_picture(
     *,
     station: float | None = None,
     at: float | None = None,
+    error_unit: str = "um",
     **more: Any,
 ) -> SurfacePicture:
     """What the drawing process needs for the machined surface; ``station`` (m of length cut) marks the section.
 
     ``at`` (m of length cut, default the station or the middle) gives the direction that the camera presets go by;
-    ``more`` are fields of SurfacePicture, as camera, theme and size.
+    ``more`` are fields of SurfacePicture, as camera, theme and size. The colours count in ``error_unit``.
     """
     setup = result.setup
     middle = 0.5 * float(result.path.s[-1])
@@ -48,8 +49,9 @@ def surface_picture(
         y=from_si(shown.drawn.y, "mm"),
         z=from_si(shown.drawn.z, "mm"),
         ideal=from_si(shown.ideal.z, "mm"),
-        error_um=from_si(shown.error, "um"),
-        limit_um=float(from_si(setup.tolerance, "um")),
+        error=from_si(shown.error, error_unit),
+        limit=float(from_si(setup.tolerance, error_unit)),
+        unit=unit_label(error_unit),
         bottom=float(from_si(setup.stock_block.lower[2], "mm")),
         direction=(float(direction[0]), float(direction[1])),
         station=None if station is None else tuple(from_si(where, "mm").tolist()),
@@ -62,8 +64,8 @@ def headroom(result: SimulationResult) -> float:
     return 4.0 * float(from_si(max(cutter.diameter for cutter in result.tooling.cutters), "mm"))
 
 
-def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
-    """The arm at sample ``index`` of the run, with part, path, force and displacement."""
+def arm_scene(result: SimulationResult, index: int, length: str = "mm") -> ArmScene:
+    """The arm at sample ``index`` of the run, with part, path, force and displacement; its words in ``length``."""
     setup = result.setup
     path = result.path
     keep = path.cutting | np.append(path.cutting[1:], False)
@@ -78,9 +80,8 @@ def arm_scene(result: SimulationResult, index: int, **more: Any) -> ArmScene:
         force=F if np.isfinite(F).all() else None,
         displacement=delta if np.isfinite(delta).all() else None,
         force_label=format_si(float(np.linalg.norm(F)), "N", 0),
-        displacement_label=format_si(float(np.linalg.norm(delta)), "mm", 2),
+        displacement_label=format_si(float(np.linalg.norm(delta)), length, 2),
         cutter_radius=result.tooling.at(index).radius,
-        **more,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,29 @@ def test_the_joints_of_an_arm_with_a_held_axis_keep_their_numbers() -> None:
     robot = rm.load_robot("slavkovic_5r").replace(blocked=np.array([np.nan, 0.1, np.nan, np.nan, np.nan]))
     fig = arm_figure(ArmScene(joint_frames(robot, np.zeros(4)), joints=robot.joint_numbers), dark=False)
     (hover,) = [t for t in fig.figure.data if t.type == "scatter3d" and t.mode == "markers"]
-    assert list(hover.text) == ["joint 1", "joint 3", "joint 4", "joint 5", "tool tip {T}"]
+    assert [text.partition("<br>")[0] for text in hover.text] == [
+        "joint 1",
+        "joint 3",
+        "joint 4",
+        "joint 5",
+        "tool tip {T}",
+    ]
+
+
+def test_an_arm_in_feet_stands_in_the_same_place_between_round_numbers_of_feet() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    scene = ArmScene(joint_frames(robot, np.zeros(5)), joints=robot.joint_numbers)
+    metric, feet = (arm_figure(replace(scene, unit=unit), dark=False).figure for unit in ("m", "ft"))
+    for one, other in zip(metric.data, feet.data, strict=True):
+        np.testing.assert_array_equal(one.x, other.x)
+    axis = feet.layout.scene.zaxis
+    assert axis.title.text == "Z<sub>M</sub>, ft"
+    assert len(axis.tickvals) >= 2
+    np.testing.assert_allclose([0.3048 * float(text.replace("−", "-")) for text in axis.ticktext], axis.tickvals)
+    assert all(metric.layout.scene.zaxis.range[0] <= v <= metric.layout.scene.zaxis.range[1] for v in axis.tickvals)
+    (hover,) = [t for t in feet.data if t.type == "scatter3d" and t.mode == "markers"]
+    tip = [float(v.replace("−", "-")) for v in hover.text[-1].partition("<br>")[2].removesuffix(" ft").split(", ")]
+    np.testing.assert_allclose(0.3048 * np.array(tip), [hover.x[-1], hover.y[-1], hover.z[-1]], atol=2e-4)
 
 
 def test_the_arm_stands_where_its_kinematics_put_it(result: SimulationResult) -> None:
@@ -33,7 +57,7 @@ def test_the_arm_stands_where_its_kinematics_put_it(result: SimulationResult) ->
     def joints(theta: np.ndarray) -> np.ndarray:
         fig = arm_figure(ArmScene(frames=joint_frames(robot, theta)), dark=False)
         (hover,) = [t for t in fig.figure.data if t.type == "scatter3d" and t.mode == "markers"]
-        assert hover.text[-1] == "tool tip {T}"
+        assert hover.text[-1].startswith("tool tip {T}<br>")
         return np.stack([hover.x, hover.y, hover.z], axis=1).astype(float)
 
     here = joints(result.theta[i])

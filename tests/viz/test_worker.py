@@ -241,8 +241,8 @@ def groove(dark: bool, camera: str) -> SurfacePicture:
         y=y,
         z=z,
         ideal=ideal,
-        error_um=error,
-        limit_um=300.0,
+        error=error,
+        limit=300.0,
         bottom=-8.0,
         camera=camera,
         dark=dark,  # type: ignore[arg-type]

@@ -163,8 +163,8 @@ def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
         pieces.Tile("Readings left", f"{lab.budget}", f"{_taken(lab)} taken"),
         pieces.Tile(
             "Dial gauge",
-            f"± {format_si(lab.noise, 'um', 1)}",
-            f"one standard deviation; reads to {format_si(lab.resolution, 'um', 0)}",
+            f"± {format_si(lab.noise, session.project().view.of('um'), 1)}",
+            f"one standard deviation; reads to {format_si(lab.resolution, session.project().view.of('um'), 0)}",
             kind="assumed",
         ),
         least,
@@ -243,6 +243,7 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
         force=trial.F,
         force_label=f"{trial.load:g} N",
         joints=robot.joint_numbers,
+        unit=session.project().view.of("m"),
     )
     pieces.figure(
         arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9),

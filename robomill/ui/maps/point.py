@@ -7,7 +7,7 @@ from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.components import COMPONENTS
 from robomill.paper import Point
-from robomill.ui import fields, pieces, shell
+from robomill.ui import fields, pieces, session, shell
 from robomill.ui.arm import arm
 from robomill.ui.point import FORCE, InHand, compliance_matrix
 from robomill.units import (
@@ -145,7 +145,7 @@ def _joints(pose: PoseReport) -> None:
         for i, number in enumerate(robot.joint_numbers)
     ]
     rows += [
-        ("det(J)", format_si(pose.det_J, pose.det_J_unit, 3), ""),
+        ("det(J)", format_si(pose.det_J, session.project().view.of(pose.det_J_unit), 3), ""),
         ("to the limits", format_percent(pose.limit_distance), ""),
     ]
     pieces.facts(rows)

@@ -254,7 +254,7 @@ def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[Floa
     dark, robot, view = shell.dark(), region.robot, region.view
     p = palette(dark)
     fig = arm_figure(
-        ArmScene(frames=_standing(region), joints=robot.joint_numbers),
+        ArmScene(frames=_standing(region), joints=robot.joint_numbers, unit=session.project().view.of("m")),
         dark=dark,
         height=560,
         revision="workspace-solid",

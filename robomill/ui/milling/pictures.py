@@ -98,6 +98,7 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
         return surface_picture(
             result,
             so_far(result, shown, i) if "so_far" in extras else shown,
+            error_unit=view.of("um"),
             camera=view.camera,
             dark=dark,
             station=station if extras & {"plane", "away"} else None,
@@ -112,7 +113,7 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
 
     place = round(station, 6) if moves else None
     key = ("milling", result.setup.digest(), view.exaggeration, place, tuple(sorted(extras)), pair, view.camera)
-    return (*key, dark, SIZE), make
+    return (*key, dark, SIZE, view.units), make
 
 
 def downloads(result: SimulationResult, i: int) -> None:

@@ -1,5 +1,6 @@
 """A configuration of the arm, chosen with sliders and number boxes, and what holds at it."""
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -78,11 +79,11 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
         inputs.value(f"pose.box.{i}", NumberBox(label, unit, 2, low=low, high=high, hidden=True), exact, turn)
 
 
-def det_value(pose: PoseReport | None) -> str:
-    """det(J) of the arm's task with its unit; with more than six axes there is none."""
+def det_value(pose: PoseReport | None, shown: Callable[[str], str]) -> str:
+    """det(J) of the arm's task in the unit that is ``shown`` for its own; with more than six axes there is none."""
     if pose is None:
         return ""
-    return format_si(pose.det_J, pose.det_J_unit, 3) if pose.has_det_J else "not square"
+    return format_si(pose.det_J, shown(pose.det_J_unit), 3) if pose.has_det_J else "not square"
 
 
 def det_words(pose: PoseReport) -> str:

@@ -1,6 +1,7 @@
 """What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
 
 import html
+from typing import Any
 
 import numpy as np
 import streamlit as st
@@ -11,7 +12,7 @@ from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.ui import cached, evidence, pieces, rendered
+from robomill.ui import cached, evidence, pieces, rendered, session
 from robomill.ui.project import Project, View
 from robomill.units import format_percent, format_si, format_times
 from robomill.viz.picture import SurfacePicture
@@ -67,7 +68,8 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
     alt = "The machined groove coloured by its signed error against the ideal one."
 
     def scene() -> SurfacePicture:
-        return surface_picture(result, cached.pictured(setup, times), camera="iso", dark=dark, size=size, captions=())
+        how: dict[str, Any] = {"camera": "iso", "dark": dark, "size": size, "captions": ()}
+        return surface_picture(result, cached.pictured(setup, times), error_unit=view.of("um"), **how)
 
     def turnable() -> None:
         shown = pieces.attempt(cached.pictured, setup, times)
@@ -75,16 +77,19 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
             figure = surface_figure(shown, setup.tolerance, view.length, dark=dark, height=height)
             pieces.figure(figure, "start-surface", alt=alt)
 
-    rendered.picture("start.groove", (setup.digest(), times, "start", dark, size), scene, alt, turnable)
+    rendered.picture("start.groove", (setup.digest(), times, "start", dark, size, view.units), scene, alt, turnable)
     pieces.note(
         f"The groove as milled, displacement shown {format_times(times, 6)}. Colours end at the tolerance, "
-        f"± {format_si(setup.tolerance, 'um', 0)}."
+        f"± {format_si(setup.tolerance, view.of('um'), 0)}."
     )
 
 
 def where_from(setup: SimulationSetup) -> None:
     """Each block of numbers with its badge and its source."""
-    rows = [(s.what, pieces.subscripts(s.value), pieces.sourced(s.provenance)) for s in sources(setup)]
+    rows = [
+        (s.what, pieces.subscripts(s.value), pieces.sourced(s.provenance))
+        for s in sources(setup, session.project().view.length)
+    ]
     pieces.table(rows, "qv ")
 
 
@@ -107,8 +112,8 @@ def beside_the_paper(project: Project) -> None:
     ]
     pieces.table(rows, " bn")
     pieces.note(
-        f"Sideways error of the groove. {format_si(SLOT.from_map, 'mm', 2)} is read off a map whose raw data are "
-        "not printed; Table 3 alone cannot give it, and nothing here is tuned to match."
+        f"Sideways error of the groove. {format_si(SLOT.from_map, project.view.length, 2)} is read off a map whose "
+        "raw data are not printed; Table 3 alone cannot give it, and nothing here is tuned to match."
     )
 
 
