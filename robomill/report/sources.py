@@ -40,7 +40,7 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
         Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
         Source("Tool in the last axis", _tool(setup, length), given.get("tool", NOT_STATED)),
         Source("Path", f"{format_si(float(path.s[-1]), length, 0)} at feed", given.get("path", NOT_STATED)),
-        Source("Cutter", setup.cutter.title, given.get("cutter", NOT_STATED)),
+        Source("Cutter", setup.cutter.called(length), given.get("cutter", NOT_STATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
         Source("Stock", _stock(setup, length), given.get("stock", NOT_STATED)),
         Source("Tolerance", format_limit(setup.tolerance, length), given.get("tolerance", NOT_STATED)),

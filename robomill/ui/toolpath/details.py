@@ -13,7 +13,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
-from robomill.units import format_count, format_many, format_si, unit_label
+from robomill.units import format_count, format_many, format_si, in_lengths, unit_label
 
 DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
 
@@ -76,7 +76,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     )
     rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
     if summary.feeds:
-        rows.append(("Feed", _range(summary.feeds, "mm/min"), _range(summary.feeds, "mm/s")))
+        rows.append(("Feed", *(_range(summary.feeds, in_lengths(each, unit)) for each in ("mm/min", "mm/s"))))
     if summary.spindles:
         rows.append(("Spindle", _range(summary.spindles, "1/min"), ""))
     if setup.source.kind == "program":
