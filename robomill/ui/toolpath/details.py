@@ -76,7 +76,8 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     )
     rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
     if summary.feeds:
-        rows.append(("Feed", *(_range(summary.feeds, in_lengths(each, unit)) for each in ("mm/min", "mm/s"))))
+        minute, second = (_range(summary.feeds, in_lengths(each, unit)) for each in ("mm/min", "mm/s"))
+        rows.append(("Feed", minute, second))
     if summary.spindles:
         rows.append(("Spindle", _range(summary.spindles, "1/min"), ""))
     if setup.source.kind == "program":
