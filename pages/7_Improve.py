@@ -22,7 +22,7 @@ if ranked is None:
     st.stop()
 
 ui.headline(title, stiffen.sentence(ranked, joints, unit))
-ui.tiles(stiffen.tiles(ranked, joints, setup, unit))
+ui.tiles(stiffen.tiles(ranked, joints, unit))
 left, right = ui.split([1, 1.7], "page", gap="large")
 with left, st.container(border=True):
     st.markdown("**What would fix it?**")

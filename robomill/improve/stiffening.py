@@ -1,4 +1,4 @@
-"""What each joint alone, made stiffer, would leave of a cut's deviation."""
+"""What each joint alone, made stiffer, would leave of a cut's errors: ranked by what the verdict judges."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,23 +18,30 @@ TWICE = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Stiffening:
-    """before: largest deviation m as the robot is; after (n,) m with joint i alone ``factor`` times as stiff;
-    ``verdict`` of the part with the first of ``ranking``."""
+    """before: the verdict as the robot is; after: the n verdicts with joint i alone ``factor`` times as stiff.
 
-    before: float
-    after: FloatArray
-    verdict: Verdict
+    tip (1+n,) m: the largest deviation of the tip, as it is and with each joint.
+    """
+
+    before: Verdict
+    after: tuple[Verdict, ...]
+    tip: FloatArray
     factor: float = TWICE
 
     @property
+    def used(self) -> FloatArray:
+        """(n,) share of the tolerance that is used then; NaN where nothing is known."""
+        return np.array([verdict.share for verdict in self.after])
+
+    @property
     def saved(self) -> FloatArray:
-        """(n,) m: how much smaller the largest deviation becomes."""
-        return self.before - self.after
+        """(n,) how much less of the tolerance is used then."""
+        return self.before.share - self.used
 
     @property
     def ranking(self) -> IntArray:
-        """(n,) joints, 0-based, the one that saves most first."""
-        return np.argsort(self.after, kind="stable")
+        """(n,) joints, 0-based, the one that leaves the smallest share first."""
+        return np.argsort(self.used, kind="stable")
 
 
 def one_stiffer(robot: Robot, joint: int, factor: float = TWICE) -> Robot:
@@ -53,7 +60,7 @@ def stiffer_joints(
 
     ``run`` may keep results. Raises the refusal of the simulation.
     """
-    robots = [one_stiffer(setup.robot, joint, factor) for joint in range(setup.robot.n)]
+    robots = [setup.robot, *(one_stiffer(setup.robot, joint, factor) for joint in range(setup.robot.n))]
     results = [run(setup.replace(robot=robot)) for robot in robots]
-    after = frozen([result.max_deviation for result in results])
-    return Stiffening(run(setup).max_deviation, after, results[int(np.argmin(after))].verdict, factor)
+    before, *after = (result.verdict for result in results)
+    return Stiffening(before, tuple(after), frozen([result.max_deviation for result in results]), factor)

@@ -87,9 +87,15 @@ class Verdict:
         return self.level in ("out", "unjudged", "unreached", "missed")
 
     @property
+    def deciding(self) -> tuple[str, Reading] | None:
+        """What uses the largest share of its tolerance, by name; None where nothing decides."""
+        named = [(name, getattr(self, name)) for name in ("wall", "floor", "feed", "end")]
+        return max((each for each in named if each[1].decides), key=lambda each: each[1].share, default=None)
+
+    @property
     def decides(self) -> bool:
         """Whether anything that was measured decides."""
-        return any(reading.decides for reading in (self.wall, self.floor, self.feed, self.end))
+        return self.deciding is not None
 
 
 def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,14 +17,18 @@ def test_each_joint_leaves_what_the_linear_law_says() -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
     result = simulate(setup)
     ranked = stiffer_joints(setup)
-    assert ranked.before == result.max_deviation
+    assert ranked.before.sentence == result.verdict.sentence
+    assert ranked.tip[0] == result.max_deviation
     judged = result.judged
     left = np.linalg.norm(result.delta[judged, None] - 0.5 * result.delta_joint[judged], axis=-1).max(axis=0)
-    np.testing.assert_allclose(ranked.after, left, rtol=1e-9)
-    np.testing.assert_allclose(ranked.saved, result.max_deviation - left, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(ranked.tip[1:], left, rtol=1e-9)
     q = result.verdict.wall.worst
-    aside = result.delta_in_cut[q, 1] - 0.5 * (result.delta_joint[q, int(left.argmin())] @ result.R_MF[q, :, 1])
-    assert ranked.verdict.wall.value == pytest.approx(aside, rel=1e-3)
+    aside = result.delta_in_cut[q, 1] - 0.5 * (result.delta_joint[q] @ result.R_MF[q, :, 1])
+    np.testing.assert_allclose([verdict.wall.value for verdict in ranked.after], aside, rtol=1e-3)
+    down = result.delta_in_cut[q, 2] - 0.5 * (result.delta_joint[q] @ result.R_MF[q, :, 2])
+    used = np.maximum(np.abs(aside), np.abs(down)) / setup.tolerance
+    np.testing.assert_allclose(ranked.used, used, rtol=2e-3)
+    np.testing.assert_allclose(ranked.saved, result.verdict.share - used, atol=2e-3)
 
 
 def test_twice_as_stiff_is_half_the_compliance_of_that_joint_alone() -> None:
@@ -31,11 +37,25 @@ def test_twice_as_stiff_is_half_the_compliance_of_that_joint_alone() -> None:
     C[2] /= 2.0
     np.testing.assert_array_equal(one_stiffer(setup.robot, 2).C_theta, C)
     halved = simulate(setup.replace(robot=setup.robot.replace(C_theta=C))).max_deviation
-    assert stiffer_joints(setup).after[2] == pytest.approx(halved, rel=1e-12)
+    assert stiffer_joints(setup).tip[3] == pytest.approx(halved, rel=1e-12)
 
 
 def test_the_best_comes_first() -> None:
     verdict = simulate(load_setup(samples_dir() / "paper_flute" / "setup.toml")).verdict
-    ranked = Stiffening(3.0, np.array([2.5, 1.0, 3.5, 1.0]), verdict)
-    assert ranked.ranking.tolist() == [1, 3, 0, 2]
-    assert ranked.saved.tolist() == [0.5, 2.0, -0.5, 2.0]
+    left = tuple(replace(verdict, share=share) for share in (2.5, 1.0, float("nan"), 3.5, 1.0))
+    ranked = Stiffening(replace(verdict, share=3.0), left, np.zeros(6))
+    assert ranked.ranking.tolist() == [1, 4, 0, 3, 2]
+    assert ranked.saved[[0, 1, 3, 4]].tolist() == [0.5, 2.0, -0.5, 2.0]
+
+
+def test_a_floor_that_decides_is_what_is_ranked_not_the_tip() -> None:
+    """Where nobody limits the walls, the floor alone ranks the joints."""
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(tolerance=0.1, floor_tolerance=1e-4)
+    ranked = stiffer_joints(setup)
+    deciding = ranked.before.deciding
+    assert deciding is not None
+    assert deciding[0] == "floor"
+    result = simulate(setup)
+    q = result.verdict.floor.worst
+    down = result.delta_in_cut[q, 2] - 0.5 * (result.delta_joint[q] @ result.R_MF[q, :, 2])
+    np.testing.assert_allclose(ranked.used, np.abs(down) / 1e-4, rtol=2e-3)
