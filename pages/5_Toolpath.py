@@ -53,6 +53,8 @@ with right:
         if words:
             pieces.said("info", words, "my_location")
         stock_note(setup)
+        if result is not None:
+            st.page_link("pages/6_Milling.py", label="See the part that comes out", icon=":material/arrow_forward:")
     with st.container(border=True):
         st.markdown("**The path in figures**")
         details.path_facts(setup, unit)

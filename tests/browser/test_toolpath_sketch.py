@@ -99,10 +99,10 @@ def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board
     drag(page, board, (-40, 10), (40, 10))
     page.wait_for_selector(".rm-lead:has-text('1 shape within 80.0 × 0.0')", timeout=20_000)
     see(page, ["-40, 10; 40, 10"])
-    tile = page.locator(".rm-tile", has_text="Tip off its path").locator(".rm-value")
+    tile = page.locator(".rm-tile", has_text="Wall error").locator(".rm-value")
     slot = Sketch((Element("line", np.array([[-0.04, 0.01], [0.04, 0.01]]), 2e-3, 30e-3),))
     setup = load_setup(samples_dir() / "paper_flute").replace(source=SketchSource(slot), stock=None)
-    expected = f"{simulate(setup).max_deviation * 1e3:.3f}"
+    expected = f"{simulate(setup).verdict.wall.value * 1e3:+.3f}"
     shown = tile.inner_text().replace("\n", " ").split("mm")[0].strip()
     assert shown == expected, page.locator(".rm-title, .rm-lead, .rm-tile").all_inner_texts()
 

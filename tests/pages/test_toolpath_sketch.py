@@ -42,7 +42,7 @@ def test_the_program_becomes_a_sketch_of_the_same_slot(sketching: AppTest) -> No
     np.testing.assert_allclose(elements[0].points, [[-0.05, 0], [0.05, 0]])
     assert elements[0].depth == pytest.approx(2e-3)
     assert elements[0].v_f == pytest.approx(30e-3)
-    assert "0.251" in words(sketching)
+    assert "+0.230" in words(sketching)
     sketching.button(key="undo").click().run()
     assert isinstance(store(sketching).project.setup.source, GCodeSource)
 

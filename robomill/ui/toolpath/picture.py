@@ -34,7 +34,7 @@ SHAPES = {"plan": "From above", "turn": "Turnable", "arm": "With the arm"}
 
 def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResult | None, dark: bool) -> None:
     """The choices and the picture; beside the drawing board a lower one."""
-    unit, height = session.project().view.length, 300 if setup.source.kind == "sketch" else 420
+    unit, height = session.project().view.length, 300 if setup.source.kind == "sketch" else 380
     colour, seen = _choices(result is not None, len(cutting_numbers(reach.path)) > 1)
     key = f"toolpath.{seen}"
     if seen == "arm" and result is not None:

@@ -19,7 +19,7 @@ from robomill.ui.toolpath.summary import (
     worst_first,
     written_in,
 )
-from robomill.ui.verdict import tip_tile, tone
+from robomill.ui.verdict import reading_tile, tip_tile, tone
 from robomill.units import (
     format_count,
     format_many,
@@ -66,19 +66,13 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
 def tiles(
     source: PathSource, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str
 ) -> None:
-    """Length and time, reach, deviation, findings."""
+    """The error that decides the verdict, reach, length and time, findings."""
     if path is None:
-        pieces.tiles([pieces.Tile(label, "–") for label in ("At feed", "Reach", "Tip off its path", "Shapes")])
+        pieces.tiles([pieces.Tile(label, "–") for label in ("Wall error", "Reach", "At feed", "Shapes")])
         return
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
-    found = [
-        pieces.Tile(
-            "At feed",
-            format_si(float(path.s[-1]), unit, 1),
-            f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
-        )
-    ]
+    found = [_error_tile(result, unit)]
     if reach is None:
         found.append(pieces.Tile("Reach", "not computed"))
     else:
@@ -91,7 +85,13 @@ def tiles(
         found.append(
             pieces.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
         )
-    found.append(_deviation_tile(result, unit))
+    found.append(
+        pieces.Tile(
+            "At feed",
+            format_si(float(path.s[-1]), unit, 1),
+            f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
+        )
+    )
     if source.kind != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
         found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[source.kind], f"{summary.blocks:,}", words))
@@ -100,11 +100,16 @@ def tiles(
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in path.findings)
     words = finding_words(worst_first(path.findings)[0]) if count else "every word understood"
-    found.append(pieces.Tile("Findings", f"{count:,}", words, tone="tight" if alarming else ""))
+    found.append(pieces.Tile("Program warnings", f"{count:,}", words, tone="tight" if alarming else ""))
     pieces.tiles(found)
 
 
-def _deviation_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
+def _error_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
+    """The error that decides the verdict; the tip's deviation where no wall and no floor is left to be measured."""
     if result is None:
-        return pieces.Tile("Tip off its path", "–", "not simulated yet")
-    return dataclasses.replace(tip_tile(result, unit), tone=tone(result.verdict))
+        return pieces.Tile("Wall error", "–", "not simulated yet")
+    verdict = result.verdict
+    name = "" if verdict.deciding is None else verdict.deciding[0]
+    labels = {"wall": "Wall error", "floor": "Floor error"}
+    found = reading_tile(labels[name], name, verdict, None, unit) if name in labels else tip_tile(result, unit)
+    return dataclasses.replace(found, tone=tone(verdict))
