@@ -82,3 +82,17 @@ def test_an_unknown_name_lists_those_there_are():
         load_material("gold")
     with pytest.raises(CuttingError, match=r"gold\.toml"):
         load_material("gold.toml")
+
+
+def test_coefficients_of_no_law_or_of_two_are_refused():
+    head, rest = ROW.split("[coefficients]\n")
+    tail = rest[rest.index("[provenance]") :]
+    with pytest.raises(
+        CuttingError, match=r"\[coefficients\]: found no coefficient that is known; known are .*Ktc_N_mm2"
+    ):
+        material_from_toml(f"{head}[coefficients]\nhardness = 3\n{tail}")
+    both = ROW.replace("[provenance]", "kc11_N_mm2 = 700\n[provenance]")
+    with pytest.raises(
+        CuttingError, match=r"found Ktc_N_mm2, .* and kc11_N_mm2; a row is of one law, so make 2 rows of"
+    ):
+        material_from_toml(both)

@@ -182,3 +182,44 @@ def test_the_refusal_is_of_the_kind_asked_for_in_tables_inside_too() -> None:
 def test_provenance() -> None:
     found = table("p = { kind = 'paper', source = 'Table 2' }").provenance("p")
     assert found == Provenance("paper", "Table 2")
+
+
+@pytest.mark.parametrize(("deep", "stands"), [(12, True), (13, False)])
+@pytest.mark.parametrize("ends", ["[]", "{}"])
+def test_tables_and_lists_stand_at_most_twelve_deep(deep: int, stands: bool, ends: str) -> None:
+    inner = ends
+    for _ in range(deep - 2):
+        inner = f"[{inner}]"
+    if stands:
+        assert list(parse_toml(f"a = {inner}", "f.toml")) == ["a"]
+    else:
+        with pytest.raises(ProjectError, match=r"^f.toml, a: tables and lists stand more than 12 deep\.$"):
+            parse_toml(f"a = [{inner}]", "f.toml")
+
+
+@pytest.mark.parametrize("whole", [2**63 - 1, -(2**63)])
+def test_the_largest_whole_numbers_of_the_format_are_read(whole: int) -> None:
+    assert parse_toml(f"a = {whole}", "f.toml") == {"a": whole}
+    assert table(f"a = {2**63 - 1}").number("a", "1") == 2.0**63
+
+
+@pytest.mark.parametrize("whole", [2**63, -(2**63) - 1])
+@pytest.mark.parametrize(("text", "key"), [("b = {}", "b"), ("b = [1, {}]", "b"), ("[t]\nc = [[{}]]", "c")])
+def test_a_larger_whole_number_is_refused_at_its_key(whole: int, text: str, key: str) -> None:
+    with pytest.raises(ProjectError, match=f"^f.toml, {key}: a whole number is too large; expected fewer digits") as no:
+        parse_toml(text.format(whole), "f.toml")
+    assert no.value.where == "f.toml"
+
+
+@pytest.mark.parametrize("text", [".".join("a" * 65) + " = 1", "a = " + "9" * 5000])
+def test_what_takes_too_long_to_read_is_refused_unread(text: str) -> None:
+    with pytest.raises(
+        ProjectError, match=r"^f.toml: this is not a readable TOML file: a number is too long, or lists"
+    ):
+        parse_toml(text, "f.toml")
+
+
+def test_a_number_that_is_none_in_si_is_refused() -> None:
+    assert table("a = 1.7e305").number("a", "kN") == pytest.approx(1.7e308)
+    with pytest.raises(ProjectError, match=r"^f.toml, a: expected a number in kN of ordinary size, found 1.7e\+306\.$"):
+        table("a = 1.7e306").number("a", "kN")

@@ -223,3 +223,33 @@ def test_what_is_written_wrong_is_refused_with_what_is_expected(tmp_path, find, 
     with pytest.raises(RobotError) as refused:
         read_urdf(path)
     assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(("count", "words"), [(7, ""), (8, "found 8"), (20, "found 20"), (21, "has 21 moving joints")])
+def test_an_arm_has_seven_joints_at_most(tmp_path, count, words):
+    links = "".join(f'<link name="l{i}"/>' for i in range(count + 1))
+    joints = "".join(_joint(str(i), f"l{i}", f"l{i + 1}") for i in range(count))
+    path = _write(tmp_path, links + joints)
+    if words:
+        with pytest.raises(RobotError, match=words):
+            read_urdf(path)
+    else:
+        assert read_urdf(path).n == 7
+
+
+def test_neighbouring_frames_lie_on_the_common_perpendicular_of_their_axes():
+    """Two axes that pass each other: by the D-H convention x goes from one to the next, a is their distance."""
+    k = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+    for away in (0.3, -0.3):
+        p = np.array([[0.0, 0.0, 0.1], [away, 0.5, 0.4]])  # they pass at height 0.4, ``away`` apart along x
+        T_MT = np.eye(4)
+        T_MT[:3, 3] = [away, 0.9, 0.4]
+        T_MT[:3, :3] = np.column_stack([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])  # z along the last axis
+        dh = dh_from_axes(k, p, T_MT)
+        assert dh["a"][1] == pytest.approx(0.3)
+        np.testing.assert_allclose(
+            dh["T_base"], [[np.sign(away), 0, 0, 0], [0, np.sign(away), 0, 0], [0, 0, 1, 0.4], [0, 0, 0, 1]], atol=1e-15
+        )
+        np.testing.assert_allclose(dh["T_tool"], np.eye(4), atol=1e-15)
+        assert np.abs(dh["alpha"][1]) == pytest.approx(np.pi / 2)
+        assert dh["d"][1] == pytest.approx(0.9)

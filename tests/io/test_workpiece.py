@@ -99,3 +99,10 @@ def test_a_packed_mesh_that_inflates_beyond_what_it_says_is_refused_in_little_ro
         assert tracemalloc.get_traced_memory()[1] < 5 * len(packed) + 3 * 72 * told
     finally:
         tracemalloc.stop()
+
+
+@pytest.mark.parametrize("count", [0, -1, 1_600_001])
+def test_a_mesh_of_no_triangle_or_of_too_many_is_not_unpacked(count):
+    packed = base64.b64encode(zlib.compress(struct.pack("<9d", *range(9)))).decode()
+    with pytest.raises(ProjectError, match=rf"triangles_count: found {count}, expected 1 to 1,600,000 triangles"):
+        stock(lower_mm=[0, 0, 0], upper_mm=[9, 9, 9], triangles=packed, triangles_count=count)

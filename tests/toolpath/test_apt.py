@@ -136,3 +136,14 @@ def test_without_a_word_about_units_lengths_are_millimetres_and_that_is_said(sai
     np.testing.assert_allclose(path.p[-1], np.array([1, 2, 3]) * scale)
     notes = [note.level for note in path.findings if "UNITS" in note.message]
     assert notes == ["suspicious"] * (not said)
+
+
+@pytest.mark.parametrize("count", [4, 5, 6])
+def test_a_file_has_so_many_points_at_most(count: int, monkeypatch) -> None:
+    monkeypatch.setattr("robomill.toolpath.apt.MAX_POINTS", 5)
+    text = "UNITS/MM\nFEDRAT/100,MMPM\n" + "".join(f"GOTO/{k},0,0\n" for k in range(count)) + "FINI\n"
+    if count <= 5:
+        assert len(read_apt(text).p) == count
+    else:
+        with pytest.raises(GCodeError, match=r"^Line 8: more than 5 points; split the file\.$"):
+            read_apt(text)

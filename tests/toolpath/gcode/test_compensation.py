@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 
 R = 1.0  # mm
@@ -308,3 +308,32 @@ def test_a_cutter_without_a_diameter_goes_on_the_path_and_is_noted(code):
     found = interpret(f"G21 G90 F600\nG0 X-8 Y0\n{code}.1 D0\n{moves}")
     np.testing.assert_allclose(found.end[-6:], plain.end[-6:], atol=1e-12)
     assert [(note.level, note.line) for note in found.findings if note.code == "zero-diameter"] == [("warning", 3)]
+
+
+@pytest.mark.parametrize("code", ["G41", "G42"])
+@pytest.mark.parametrize("orientation", range(10))
+def test_only_a_lathe_tool_is_held_to_its_plane(code, orientation):
+    """0 and 9 are tools whose programmed point is the centre: they go in both planes."""
+    tools = {1: Tool(1, 2e-3, (0.0, 0.0, 0.0), orientation)}
+    text = f"G21 G90 F100\nT1 M6\nG{{}}\n{code}\nG1 X{{}}\nX40\nM2\n"
+    assert len(interpret(text.format(18, 20), tools=tools).end)
+    if orientation in (0, 9):
+        assert len(interpret(text.format(17, 20), tools=tools).end)
+    else:
+        with pytest.raises(GCodeError, match=rf"^Line 4: {code} with a lathe tool works in the plane G18 only\.$"):
+            interpret(text.format(17, 20), tools=tools)
+    with pytest.raises(GCodeError, match=rf"^Line 4: {code} works in the planes G17 and G18 only\.$"):
+        interpret(text.format(19, 20), tools=tools)
+
+
+@pytest.mark.parametrize("number", ["1.001", "0.9", "-1"])
+def test_the_cutter_is_named_by_the_number_of_a_tool(number):
+    tools = {1: Tool(1, 2e-3)}
+    with pytest.raises(GCodeError, match=rf"^Line 3: G41 has D{number}; expected the number of a tool\.$"):
+        interpret(f"G21 G90 F100\nT1 M6\nG41 D{number}\nG1 X20\nM2\n", tools=tools)
+    named = interpret("G21 G90 F100\nT1 M6\nG41 D1\nG1 X20\nX40\nM2\n", tools=tools)
+    np.testing.assert_array_equal(named.end, interpret("G21 G90 F100\nT1 M6\nG41\nG1 X20\nX40\nM2\n", tools=tools).end)
+    with pytest.raises(GCodeError, match=r"^Line 3: tool 7 is not in the tool table; add it\.$"):
+        interpret("G21 G90 F100\nT1 M6\nG41 D7\nG1 X20\nM2\n", tools=tools)
+    with pytest.raises(GCodeError, match=r"^Line 3: G41 needs the diameter of tool 1; give a tool table\.$"):
+        interpret("G21 G90 F100\nT1 M6\nG41\nG1 X20\nM2\n")

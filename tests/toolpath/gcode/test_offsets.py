@@ -142,3 +142,42 @@ def test_d_names_the_tool_whose_radius_keeps_off(code):
             interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code} {word}\nG1 X20\nM2\n", tools=tools)
     with pytest.raises(GCodeError, match="give a tool table"):
         interpret(f"G21 F100 T1 M6\nG0 X0 Y0\n{code}\nG1 X20\nM2\n")
+
+
+@pytest.mark.parametrize("kind", [1, 10, 11])
+def test_a_tool_that_the_table_does_not_have_is_not_set(kind):
+    text = f"G21 G90\nG10 L{kind} P{{}} R4 Z2\nM2\n"
+    with pytest.raises(GCodeError, match=r"^Line 2: tool 5 is not in the tool table; add it\.$"):
+        interpret(text.format(5), tools={3: Tool(3)})
+    for number in (0, -1):
+        with pytest.raises(GCodeError, match=rf"^Line 2: G10 L{kind} has P{number}; tool numbers start at 1\.$"):
+            interpret(text.format(number), tools={3: Tool(3)})
+    interpret(text.format(3), tools={3: Tool(3)})
+    interpret(text.format(5))  # without a table every tool may be set
+
+
+@pytest.mark.parametrize("kind", [1, 10, 11])
+def test_a_tool_of_which_nothing_is_said_is_not_set(kind):
+    with pytest.raises(GCodeError, match=rf"^Line 2: G10 L{kind} sets nothing; give Z, R or another word\.$"):
+        interpret(f"G21 G90\nG10 L{kind} P3\nM2\n")
+    interpret(f"G21 G90\nG10 L{kind} P3 Q2\nM2\n")
+
+
+@pytest.mark.parametrize("p", ["", "P1.001", "P0.9"])
+def test_what_is_set_needs_a_whole_number(p):
+    for kind in (1, 2, 10, 11, 20):
+        with pytest.raises(GCodeError, match=r"^Line 2: G10 needs P, a whole number\.$"):
+            interpret(f"G21 G90\nG10 L{kind} {p} X1\nM2\n")
+
+
+@pytest.mark.parametrize(("p", "stands"), [(-1, False), (0, True), (9, True), (10, False)])
+def test_there_are_nine_coordinate_systems_and_the_current_one(p, stands):
+    for kind in (2, 20):
+        text = f"G21 G90\nG10 L{kind} P{p} X1\nM2\n"
+        if stands:
+            interpret(text)
+        else:
+            with pytest.raises(GCodeError, match=rf"^Line 2: G10 L{kind} has P{p}; coordinate systems run from 1 to 9"):
+                interpret(text)
+    with pytest.raises(GCodeError, match=r"^Line 2: G10 L20 takes no R\.$"):
+        interpret("G21 G90\nG10 L20 P1 X1 R10\nM2\n")

@@ -93,3 +93,15 @@ def test_the_order_of_a_nurbs_is_what_its_largest_l_says():
     np.testing.assert_array_equal(third, plain)
     np.testing.assert_array_equal(later, fourth)
     assert np.abs(fourth - plain).max() > 1e-4
+
+
+@pytest.mark.parametrize("count", [7, 8, 9])
+def test_a_nurbs_has_so_many_control_points_at_most_its_start_with_them(count, monkeypatch):
+    monkeypatch.setattr("robomill.toolpath.gcode.splines.MAX_CONTROL_POINTS", 8)
+    moves = "\n".join(f"G5.2 X{2 + k} Y{k % 2} P1" for k in range(count - 1))
+    if count <= 8:
+        (points,) = (p for p in read(f"{moves}\nG5.3") if len(p))
+        np.testing.assert_allclose(points[-1], [count, (count - 2) % 2], atol=1e-9)
+    else:
+        with pytest.raises(GCodeError, match=r"^Line 10: a spline has more than 8 control points; split it\.$"):
+            read(f"{moves}\nG5.3")
