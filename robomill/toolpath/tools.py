@@ -7,12 +7,16 @@ from typing import Protocol
 
 @dataclass(frozen=True)
 class Tool:
-    """A tool, in m: ``offset`` x, y, z (z is the length), ``diameter``, lathe ``orientation`` 0..9."""
+    """A tool, in m: ``offset`` x, y, z (z is the length), ``diameter``, lathe ``orientation`` 0..9.
+
+    ``name`` is what programs call it by that have names for tools.
+    """
 
     number: int
     diameter: float = 0.0
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     orientation: int = 0
+    name: str = ""
 
 
 class Sized(Protocol):
@@ -24,6 +28,8 @@ class Sized(Protocol):
     def offset(self) -> tuple[float, float, float]: ...
     @property
     def orientation(self) -> int: ...
+    @property
+    def name(self) -> str: ...
 
 
 Tools = Mapping[int, Sized]
@@ -31,4 +37,6 @@ Tools = Mapping[int, Sized]
 
 def own_copy(tools: Tools) -> dict[int, Tool]:
     """The tools of a table, to be changed by G10."""
-    return {number: Tool(number, tool.diameter, tool.offset, tool.orientation) for number, tool in tools.items()}
+    return {
+        number: Tool(number, tool.diameter, tool.offset, tool.orientation, tool.name) for number, tool in tools.items()
+    }

@@ -1,12 +1,15 @@
 """Dialects: what a program looks like that was not written for LinuxCNC, and what it means then."""
 
 import re
+from collections.abc import Container
 from dataclasses import dataclass
+from decimal import Decimal
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.sinumerik import translated
 from robomill.toolpath.gcode.words import Block
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
@@ -26,6 +29,7 @@ HARMLESS: dict[str, frozenset[int]] = {
 """G words that move nothing, by dialect; they are counted as ignored."""
 
 _COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
+_VERBATIM_OR_CODE = re.compile(r"\([^()\n]*\)?|;.*|<[^>]*>?|\"[^\"]*\"?|[^(;<\"]+")
 
 
 def _words(*words: str) -> tuple[tuple[str, str], ...]:
@@ -66,9 +70,9 @@ class Dialect:
     def line(self, raw: str, number: int, machine: Machine) -> str:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
         findings = machine.findings
+        raw = _plain_numbers(raw, number, findings)
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
-            _check_absolute(raw, number, machine)
-            return _from_sinumerik(raw, number, findings)
+            return translated(raw, number, machine)
         if self.name == "fanuc":
             if _TIP.search(raw):
                 findings.add(
@@ -105,16 +109,17 @@ class Dialect:
             raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
         machine.note("unused-word", "ignored", f"{letter.upper()} without {use} is left out")
 
-    def subprogram(self, block: Block) -> tuple[int, int]:
-        """Number and repeats of M98 P... L...; Fanuc also writes them as P<repeats><number>."""
+    def subprogram(self, block: Block, code: int = 98, known: Container[str] = ()) -> tuple[int, int]:
+        """Number and repeats of M98 P L; Fanuc writes P<repeats><number> too, if that number is not ``known``."""
         p = block.words["p"]
         if abs(p - round(p)) > 1e-4 or p < 0:
-            raise block.refuse(f"M98 has P{p:g}; expected the number of a program.")
+            raise block.refuse(f"M{code} has P{p:g}; expected the number of a {'line' if code == 97 else 'program'}.")
         number, repeats = round(p), round(block.words.get("l", 1.0))
-        if self.name == "fanuc" and number > 9999 and "l" not in block.words:
+        whole = code == 97 or "l" in block.words or str(number) in known
+        if self.name == "fanuc" and number > 9999 and not whole:
             number, repeats = number % 10000, number // 10000
         if repeats > 1_000_000:
-            raise block.refuse(f"M98 has L{repeats}; at most 1000000 repeats are made.")
+            raise block.refuse(f"M{code} has L{repeats}; at most 1000000 repeats are made.")
         return number, repeats
 
 
@@ -138,52 +143,33 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
 
 
 _TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
-_SILENT = re.compile(
-    r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|STOPRE|CFTCP|CFC|ORIWKS|ORIAXES|ORIVECT)\b|"
-    r"\bCYCLE832\s*\([^()]*\)",
-    re.IGNORECASE,
-)
 _SMOOTHING = re.compile(r"\bG0?5\.1\s*Q[01]\b(?:\s*R\d+)?", re.IGNORECASE)
 _IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
 _G_WORD = re.compile(r"G0*(\d+(?:\.\d+)?)|M0*9[789]\b", re.IGNORECASE)
 _CYCLES = frozenset({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88", "89"})
 _MOVES = frozenset({"0", "1", "2", "3", "33", "80"})
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
-_UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
-_WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
+_EXPONENT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?(?:\d+\.?\d*|\.\d+))[eE]([-+]?\d{1,3})(?![\d.])")
+_USES_E = re.compile(r"\bG0*76\b|\bM0*6[678]\b", re.IGNORECASE)
 
 
-def _check_absolute(raw: str, number: int, machine: Machine) -> None:
-    """AC( ) says a place, whatever mode is in force: read where the mode says the same, and refused elsewhere."""
-    code = raw.partition(";")[0]
-    modes = re.findall(r"\bG9[01]\b(?!\.)", code, re.IGNORECASE)
-    absolute = machine.absolute if not modes else modes[-1].upper() == "G90"
-    for letter in re.findall(r"\b([XYZABCIJK])\s*=\s*AC\(", code, re.IGNORECASE):
-        centre = letter in "IJKijk"
-        if not (machine.arc_absolute if centre else absolute):
-            wanted = "G90.1" if centre else "G90"
-            message = f"{letter}=AC( ) is a place where steps count; write the step, or {wanted} before it."
-            raise GCodeError.at(number, message)
+def _plain_numbers(raw: str, number: int, findings: Findings) -> str:
+    """Numbers with an exponent (X-1.776e-15), as programs print them that know no better, written out."""
+    if ("e" not in raw and "E" not in raw) or not _EXPONENT.search(raw) or _USES_E.search(raw):
+        return raw
 
+    def written_out(found: re.Match[str]) -> str:
+        letter, value = found[1][0], found[1][1:].strip()
+        return f"{letter}{Decimal(f'{value}e{found[2]}'):f}"
 
-def _from_sinumerik(raw: str, number: int, findings: Findings) -> str:
-    code, mark, comment = raw.partition(";")
-    for found in _SILENT.findall(code):
-        findings.add("harmless-word", "ignored", number, f"{found.split('(')[0].upper()} is left out: it moves nothing")
-    code = _SILENT.sub("", code)
-    message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
-    if message is not None:
-        code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
-    code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
-    code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
-    code = re.sub(r"\b([XYZABCIJKFS])\s*=\s*AC\(([^()]*)\)", r"\1[\2]", code, flags=re.IGNORECASE)
-    code = re.sub(r"\b([XYZABCIJKFS])\d?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bM17\b", "M2", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bT\s*=?\s*\"[^\"]*\"", "", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
-    return code + (";" + comment if mark else "")
+    plain, changed = _VERBATIM_OR_CODE.subn(
+        lambda part: part[0] if part[0][0] in '(;<"' else _EXPONENT.sub(written_out, part[0]), raw
+    )
+    if plain != raw:
+        findings.add(
+            "exponent", "warning", number, "numbers with an exponent (X1.5e-3) are read; most controls refuse them"
+        )
+    return plain
 
 
 def _dwells(code: str, motion: int) -> bool:

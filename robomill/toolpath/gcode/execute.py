@@ -84,7 +84,7 @@ def _change_tool(machine: Machine, block: Block) -> None:
         if not 0 <= number <= MOST:
             raise block.refuse(f"M61 needs Q, a tool number of 0 or more, up to {MOST}.")
     else:
-        if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0:
+        if machine.selected == 0 and "t" not in block.words and machine.tool.number == 0 and not machine.tool_name:
             machine.note("no-tool", "warning", "M6 without a tool selected by T: no tool is in the spindle")
         machine.need_compensation_off(block, "M6")
         number = machine.selected

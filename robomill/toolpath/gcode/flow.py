@@ -120,12 +120,17 @@ def split(text: str) -> tuple[str, int, str] | None:
 
 
 def scan(lines: Lines, calls: Calls) -> Structure:
-    """The structure of a file. Mismatches become problems of their line, raised only if it is executed."""
+    """The structure of a file. Mismatches become problems of their line, raised only if it is executed.
+
+    What stands behind the % that ends the program belongs to none.
+    """
     structure = Structure(calls)
     scanner = _Scanner(structure)
     words, past = structure.words, 0
     for found in _MAYBE.finditer(lines.data):
         index = lines.index_at(found.start())
+        if lines.closing is not None and index > lines.closing:
+            break
         raw = lines[index]
         try:
             text = normalise(raw, index + 1)

@@ -3,13 +3,15 @@
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.owords import File, OWords
+from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.stretches import Stretches
+from robomill.toolpath.gcode.subprograms import CALLS, Subprograms
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
@@ -21,7 +23,7 @@ _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
 
-class Interpreter(OWords):
+class Interpreter(Subprograms):
     """Runs one program on one machine. ``file`` and ``pc`` are the line that comes next."""
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
@@ -56,6 +58,12 @@ class Interpreter(OWords):
         line = machine.line = index + 1
         if len(raw) > MAX_LINE:
             raise GCodeError.at(line, f"{len(raw)} characters long; at most {MAX_LINE} can be read.")
+        if self.dialect.name == "sinumerik":
+            code, mark, comment = raw.partition(";")
+            left = self.sinumerik_call(code.upper(), line)
+            if left is None:
+                return
+            raw = raw if left == code.upper() else left + mark + comment
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
@@ -76,7 +84,7 @@ class Interpreter(OWords):
     def execute(self, block: Block) -> None:
         """Check and execute a block."""
         machine = self.machine
-        if block.unknown_m or block.unknown_g:
+        if block.unknown_m or block.unknown_g or block.m.get(modal.USER) in CALLS:
             if self.fanuc_call(block):
                 return
             self.dialect.unknown(machine, block)

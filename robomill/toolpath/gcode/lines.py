@@ -1,5 +1,6 @@
 """The lines of a program, for those who ask for one and for the rules."""
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -8,6 +9,8 @@ import numpy as np
 from robomill.arrays import IntArray
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.records import Text
+
+_PERCENT = re.compile(rb"^[ \t]*%(?!_N_)", re.MULTILINE)
 
 
 class Lines(Sequence[str]):
@@ -32,6 +35,19 @@ class Lines(Sequence[str]):
     def index_at(self, place: int) -> int:
         """The index of the line that holds a place among the bytes."""
         return int(np.searchsorted(self.starts, place, "right")) - 1
+
+    @cached_property
+    def closing(self) -> int | None:
+        """The index of the line whose % ends the program; None where there is none.
+
+        A % on the first line that holds anything begins it. Headers of an archive (``%_N_NAME_SPF``) end nothing.
+        """
+        begun = False
+        for found in _PERCENT.finditer(self.data):
+            if begun or self.data[: found.start()].strip():
+                return self.index_at(found.start())
+            begun = True
+        return None
 
     @cached_property
     def longest(self) -> int:

@@ -38,7 +38,9 @@ class Machine:
     straight move that was recorded: after a tool change or an input the machine is asked where it stands and answers
     with that, as LinuxCNC's preview does. ``length_of`` is the tool whose length is in force (None: none, or one that
     the program itself says); ``lifts`` holds how far the tip stands from the point that is told (m), each with the
-    first move for which it holds.
+    first move for which it holds. ``tool_name`` is the tool that a program calls by name, while no table has it.
+    ``systems`` are the coordinate systems that are in force, each with the first move for which it is; ``placed`` those
+    that the program itself has placed, each with the line.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -58,6 +60,9 @@ class Machine:
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
+        self.tool_name = ""
+        self.systems: list[tuple[int, int]] = [(0, 1)]
+        self.placed: dict[int, int] = {}
         self.length_of: Tool | None = None
         self.lifts: list[tuple[int, list[float]]] = []
         self.mist = self.flood = False

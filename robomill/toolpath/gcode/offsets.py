@@ -49,6 +49,7 @@ def select_system(machine: Machine, block: Block, code: int) -> None:
     origin, rotation = stored_system(machine, system)
     machine.p = _in_system(machine, absolute, origin, rotation)
     machine.g5x, machine.rotation, machine.system = origin, rotation, system
+    machine.systems.append((len(machine.recorder), system))
     machine.store.numbered[5220] = float(system)
 
 
@@ -126,6 +127,7 @@ def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
     for axis in range(6):
         _store_axis(machine, system, axis, new[axis])
     machine.store.numbered[5210 + 20 * system] = new_rotation
+    machine.placed.setdefault(system, block.line)
     if system == machine.system:
         point = [p - n for p, n in zip(_unrotated(machine), new)]
         point[0], point[1] = rotate(point[0], point[1], -new_rotation)
@@ -166,7 +168,9 @@ def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
         if letter in words:
             offset[axis] = to_si(here[axis] + sign * words[letter], machine.unit)
     diameter = to_si(2.0 * words["r"], machine.unit) if "r" in words else tool.diameter
-    changed = Tool(number, diameter, (offset[0], offset[1], offset[2]), round(words.get("q", tool.orientation)))
+    changed = Tool(
+        number, diameter, (offset[0], offset[1], offset[2]), round(words.get("q", tool.orientation)), tool.name
+    )
     machine.tools[number] = changed
     if machine.tool.number == number:
         machine.tool = changed
@@ -242,8 +246,15 @@ def compensation_on(machine: Machine, block: Block) -> None:
             if abs(number - round(number)) > 1e-4 or number < 0:
                 raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
             tool = known_tool(machine, block, round(number))
-        if machine.tools is None and tool.number:
-            raise block.refuse(f"{name} needs the diameter of tool {tool.number}; give a tool table.")
+        if machine.tools is None:
+            which = (
+                f"tool {tool.number}"
+                if tool.number
+                else f'tool "{machine.tool_name[:40]}"'
+                if machine.tool_name
+                else ""
+            )
+            raise block.refuse(f"{name} needs the diameter of {which or 'the tool in the spindle'}; give a tool table.")
         radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
         if machine.plane != 18 and orientation not in (0, 9):
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")

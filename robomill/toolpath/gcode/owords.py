@@ -1,4 +1,4 @@
-"""O words and subroutines as the interpreter follows them: where ``flow_rules`` hands a line back, files, M98, M99."""
+"""O words and subroutines as the interpreter follows them: where ``flow_rules`` hands a line back, and files."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,16 +43,20 @@ class File:
 
 @dataclass
 class Call:
-    """A call that the rules cannot leave: it goes back into another file, or behind a line that has no O word."""
+    """A call that the rules cannot leave: it goes back into another file, or behind a line that has no O word.
+
+    ``start`` is the line (index) at which each of its ``repeats`` begins.
+    """
 
     label: str
     file: File
     pc: int
     repeats: int = 1
+    start: int = 0
 
 
 class OWords:
-    """Follows O words and M98/M99. ``file`` and ``pc`` are the line that comes next.
+    """Follows O words. ``file`` and ``pc`` are the line that comes next.
 
     ``foreign`` are the open calls that the rules cannot leave, by level; ``saved`` is what M70 and M73 have kept there.
     """
@@ -201,37 +205,3 @@ class OWords:
         self.machine.note("sub-file", "info", f"O{label} is read from {path.name} beside the program")
         self.others[label] = File(path.name, lines, folder)
         return self.others[label]
-
-    def fanuc_call(self, block: Block) -> bool:
-        """M98 calls the program O..., M99 returns from it (in the main program: ends it)."""
-        code = next((c for c in block.unknown_m if c in (98, 99)), None)
-        if code is None:
-            return False
-        if code == 99:
-            if self.machine.store.level == 0:
-                self.machine.note("m99-ends", "info", "M99 in the main program is taken as its end")
-                self.finish(block.line)
-                self.ended = True
-            else:
-                self._repeat_or_leave()
-            return True
-        if "p" not in block.words:
-            raise block.refuse("M98 needs P, the number of the program to call.")
-        number, repeats = self.dialect.subprogram(block)
-        target = self.o_words(self.main).bare.get(str(number))
-        if target is None:
-            raise block.refuse(f"M98 calls O{number}, but there is no O{number} in the program.")
-        if repeats > 0:
-            if rules.enter(self.machine.store.arrays, self.o_words(self.main).plain, -1, -1, 0):
-                raise block.refuse(SENTENCES[rules.TOO_MANY_LEVELS])
-            self._go_to(Call(str(number), self.file, self.pc, repeats), self.main, target + 1)
-        return True
-
-    def _repeat_or_leave(self) -> None:
-        level = self.machine.store.level
-        call = self.foreign.get(level)
-        if call is not None and call.repeats > 1:
-            call.repeats -= 1
-            self.pc = self.o_words(self.main).bare[call.label] + 1
-        else:
-            self._go_back(level, rules.leave(self.machine.store.arrays, self.o_words(self.file).plain))

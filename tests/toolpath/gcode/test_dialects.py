@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.dialects import LONGEST, NAMES, choose_dialect
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.words import Block
@@ -141,3 +141,65 @@ def test_lines_are_those_of_the_bytes(data: bytes) -> None:
         with pytest.raises(IndexError):
             lines[outside]
     assert list(lines.plain_text.starts) == lines.starts.tolist()
+
+
+@pytest.mark.parametrize("dialect", NAMES)
+@pytest.mark.parametrize(
+    ("word", "x"),
+    [("X-1.776e-15", 0.0), ("X1.5E1", 15.0), ("X-2e+1", -20.0), ("G0X.5e-1", 0.05), ("(X9e9) X3", 3.0)],
+)
+def test_exponents_are_read_in_every_dialect(dialect: str, word: str, x: float) -> None:
+    """As a language prints a float; most controls stop there, none takes -1.776 for it."""
+    found = interpret(f"G21 G90 G0 X1\n{word}\nM2\n", dialect=dialect)
+    assert found.end[-1, 0] * 1e3 == pytest.approx(x, abs=1e-12)
+    assert [f.line for f in found.findings if f.code == "exponent"] == ([2] if "(" not in word else [])
+
+
+def test_e_keeps_its_meaning_where_it_has_one() -> None:
+    assert not [f for f in interpret("G21 G0 X1\nM68 E0 Q1\nM2\n").findings if f.code == "exponent"]
+    assert interpret("G71\nG0 X=1.5EX2\nM2\n", dialect="sinumerik").end[-1, 0] == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize(
+    ("tool", "dialect", "named"),
+    [
+        ('T="MILL_10" D1\nM6', "sinumerik", 'tool "MILL_10"'),
+        ("T3 D1\nM6", "sinumerik", "tool 3"),
+        ("D1", "sinumerik", "the tool in the spindle"),
+        ("", "linuxcnc", "the tool in the spindle"),
+        ("T3 M6", "grbl", "tool 3"),
+    ],
+)
+def test_compensation_without_a_table_asks_for_one(tool: str, dialect: str, named: str) -> None:
+    with pytest.raises(GCodeError, match=f"G41 needs the diameter of {named}; give a tool table"):
+        interpret(f"G21 G90 F100\n{tool}\nG41 G1 X10 Y0\nX20\nM30\n", dialect=dialect)
+
+
+def test_a_tool_that_is_called_by_name_is_the_one_of_that_name() -> None:
+    """Straight along X with the tool to the left, G41: off to +Y by its radius."""
+    text = 'G71 G90 F100\nT="Mill_10" D1\nM6\nG41 G1 X10 Y0\nX20\nM30\n'
+    tools = {4: Tool(4, 6e-3), 7: Tool(7, 10e-3, name="MILL_10")}
+    program = interpret(text, dialect="sinumerik", tools=tools)
+    assert program.end[-1] * 1e3 == pytest.approx([20, 5, 0])
+    assert program.tool[-1] == 7
+    with pytest.raises(GCodeError, match='Line 2: tool "Mill_10" is not in the tool table; add it there'):
+        interpret(text, dialect="sinumerik", tools={4: Tool(4, 6e-3)})
+
+
+def test_a_zero_that_the_program_places_is_said() -> None:
+    program = interpret("G21 G90\nG10 L2 P1 X50 Y-20\nG0 X0 Y0\nG1 X10 F100\nM2\n")
+    assert program.end[-1] * 1e3 == pytest.approx([60, -20, 0])
+    assert [
+        (f.line, "places G54 at X50 Y-20 Z0" in f.message) for f in program.findings if f.code == "zero-placed"
+    ] == [(2, True)]
+    still = interpret("G21 G90\nG10 L2 P1 X0 Y0 Z0\nG10 L2 P2 X5\nG0 X0 Y0\nG1 X10 F100\nM2\n")
+    assert not [f for f in still.findings if f.code == "zero-placed"]
+
+
+def test_systems_that_nobody_has_placed_lie_over_one_another_and_that_is_said() -> None:
+    text = "G21 G90 F100\nG54 G1 X1\nG55 G1 X2\nM2\n"
+    said = [f.message for f in interpret(text).findings if f.code == "zeros-overlaid"]
+    assert len(said) == 1
+    assert "2 coordinate systems, and G54, G55 are nowhere placed" in said[0]
+    for alone in ("G55 G1 X2", "G54 G1 X1\nG55 G0 X2", "G10 L2 P1 X9\nG10 L2 P2 X99\nG54 G1 X1\nG55 G1 X2"):
+        assert not [f for f in interpret(f"G21 G90 F100\n{alone}\nM2\n").findings if f.code == "zeros-overlaid"], alone

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -46,16 +47,20 @@ def test_there_are_many() -> None:
     [
         ("G90 G0 X=AC(4)", 4.0),
         ("G91\nG90 X=AC(4)", 4.0),
-        ("G91 X=AC(4)", None),
-        ("G91\nX=AC(4) ; G90", None),
-        ("G1 F100\nG2 X3 I=AC(2) J0", None),
+        ("G91 X=AC(4)", 4.0),
+        ("G91\nX=AC(4) ; G90", 4.0),
+        ("X=IC(4)", 5.0),
+        ("G91\nX=IC(4)", 5.0),
+        ("G1 F100\nG2 X3 I=AC(2) J0", 3.0),
         ("G1 F100 G90.1\nG2 X3 I=AC(2) J=AC(0)", 3.0),
     ],
 )
-def test_a_place_where_steps_count_is_refused_on_a_sinumerik(line, x):
+def test_a_place_is_one_on_a_sinumerik_and_a_step_a_step_whatever_mode_is_in_force(line, x):
     program = f"G21 G90 G0 X1 Y0\n{line}\nM2\n"
-    if x is None:
-        with pytest.raises(GCodeError, match=r"Line \d: [XI]=AC"):
-            interpret(program, dialect="sinumerik")
-    else:
-        assert interpret(program, dialect="sinumerik").end[-1, 0] == pytest.approx(x * 1e-3)
+    assert interpret(program, dialect="sinumerik").end[-1, 0] == pytest.approx(x * 1e-3)
+
+
+def test_the_centre_of_a_full_circle_may_be_a_place_on_a_sinumerik() -> None:
+    circle = interpret("G71 G90 G0 X40 Y20\nG2 X40 Y20 I=AC(30) J=AC(20) F100\nM30\n", dialect="sinumerik")
+    assert circle.centre[-1, :2] * 1e3 == pytest.approx([30, 20])
+    assert circle.length[-1] * 1e3 == pytest.approx(20 * math.pi)

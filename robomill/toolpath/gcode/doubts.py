@@ -1,0 +1,114 @@
+"""What is doubted of a program that has been read: findings that a person should look at before trusting its path."""
+
+import numpy as np
+
+from robomill.provenance import Level
+from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.mode_rules import system_code
+from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.path import NO_SPINDLE
+from robomill.units import format_si, to_si
+
+LIKELY = (0.008, 3.0)
+"""m: parts smaller or larger than this are doubted."""
+MOST_SAID = 1000
+"""Stretches of a program that one finding counts."""
+LONG_DWELL = 60.0
+"""s, on average over a program: so long none waits, so the number is in another unit."""
+
+
+def doubt(machine: Machine, program: Program) -> None:
+    """Note all that is doubted."""
+    if machine.dwell_time > LONG_DWELL * machine.dwells:
+        text = (
+            f"the program waits {machine.dwell_time:g} s in {machine.dwells} dwells, as P counts seconds here; where "
+            "it counts milliseconds (Fanuc, without a point) choose that dialect."
+        )
+        machine.findings.add("long-dwell", "suspicious", 0, text)
+    _doubt_length(machine, program)
+    _doubt_spindle(machine, program)
+    _doubt_size(machine, program)
+    _doubt_spin(machine, program)
+    _doubt_zero(machine, program)
+
+
+def _doubt_zero(machine: Machine, program: Program) -> None:
+    """Say where the program places its own zero, and where systems that nobody has placed lie over one another."""
+    cuts = np.flatnonzero(program.at_feed)
+    first = np.array([row for row, _ in machine.systems])
+    used = [machine.systems[i][1] for i in np.unique(np.searchsorted(first, cuts, "right") - 1)]
+    for system in sorted(set(used) & set(machine.placed)):
+        origin = machine.store.values(5201 + 20 * system, 3)
+        if any(origin) or machine.store.numbered[5210 + 20 * system]:
+            shown = " ".join(f"{letter}{value:g}" for letter, value in zip("XYZ", origin))
+            text = (
+                f"the program itself places {g_name(system_code(system))} at {shown} (mm): the path lies that far from "
+                "part zero; remove the G10 where part zero is meant to be there"
+            )
+            machine.findings.add("zero-placed", "warning", machine.placed[system], text)
+    unset = [g_name(system_code(system)) for system in sorted(set(used) - set(machine.placed))]
+    if len(set(used)) > 1 and unset:
+        several = f"{', '.join(unset)} are" if len(unset) > 1 else f"{unset[0]} is"
+        text = (
+            f"the program cuts in {len(set(used))} coordinate systems, and {several} nowhere placed: they lie over one "
+            "another at part zero; place each with G10 L2 P1 X... Y... Z... (P2 for G55), or read them one at a time"
+        )
+        machine.findings.add("zeros-overlaid", "warning", 0, text)
+
+
+def _doubt_length(machine: Machine, program: Program) -> None:
+    """Warn of cuts with the length of another tool."""
+    wrong = np.flatnonzero(program.lift.any(axis=1) & program.at_feed) if machine.lifts else np.zeros(0, dtype=np.int64)
+    for tool in np.unique(program.tool[wrong]):
+        row = int(wrong[program.tool[wrong] == tool][0])
+        lifted = float(program.lift[row, 2])
+        off = f"{format_si(abs(lifted), 'mm')} {'higher' if lifted > 0.0 else 'lower'}"
+        message = f"tool {tool} cuts with the length of another tool (G43): its tip goes {off} than is said"
+        machine.findings.add("wrong-length", "warning", int(program.line[row]), message)
+
+
+def _doubt_spindle(machine: Machine, program: Program) -> None:
+    """Note cuts with a spindle that stands still, and tools that are chosen and never changed to."""
+    still = np.flatnonzero(program.at_feed & (program.n_s == 0.0))
+    if len(still) and program.n_s.any():
+        message = "cuts with the spindle stopped; start it with S and M3 or M4 before"
+        for line in program.line[still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
+            machine.findings.add("spindle-stopped", "warning", int(line), message)
+    elif len(still):
+        machine.findings.add(NO_SPINDLE, "info", 0, "the spindle never turns: no S with M3 or M4")
+    if machine.selected and not program.tool.any() and program.at_feed.any():
+        message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
+        machine.findings.add("no-change", "warning", 0, message)
+
+
+def _doubt_spin(machine: Machine, program: Program) -> None:
+    """Say how C is read where a cut has one: a machine whose table or head swivels by C stands otherwise."""
+    spun = np.flatnonzero(program.at_feed & (program.rotary[:, 2] != 0.0))
+    leans = spun[program.rotary[spun, :2].any(axis=1)]
+    if len(spun):
+        message = (
+            "C is read as a turn of the tool about its own axis, which changes no cut; a machine whose table or head "
+            "swivels by C stands otherwise: post the program with the tool's lean in A and B"
+        )
+        level: Level = "warning" if len(leans) else "info"
+        machine.findings.add("c-spins", level, int(program.line[(leans if len(leans) else spun)[0]]), message)
+
+
+def _doubt_size(machine: Machine, program: Program) -> None:
+    """Note a part that would have a likelier size in the other unit, 25.4 times off."""
+    if program.extents is None:
+        return
+    size = float(np.subtract(*program.extents[::-1]).max())
+    inch = to_si(1.0, "in") / to_si(1.0, "mm")
+    shown = format_si(size, "mm", 1)
+    if machine.unit_said != "in" and 0.0 < size < LIKELY[0]:
+        other = format_si(size * inch, "mm", 1)
+        machine.findings.add(
+            "size-doubt", "suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}"
+        )
+    elif size > LIKELY[1]:
+        other = format_si(size / inch, "mm", 1)
+        machine.findings.add(
+            "size-doubt", "suspicious", 0, f"the part is {shown} across; a unit taken wrongly would make it {other}"
+        )

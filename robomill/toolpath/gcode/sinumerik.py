@@ -1,0 +1,109 @@
+"""Lines of Sinumerik controls (840D, 828D) in LinuxCNC's words."""
+
+import re
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.tool_axis import angles_of
+
+_SILENT = re.compile(
+    r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
+    r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF)\b(?:[ \t]*\([^()]*\))?|"
+    r"\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
+    re.IGNORECASE,
+)
+_UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
+_WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+_EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
+_PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
+_VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)
+_ORIENTATION = re.compile(r"\b(?:([ABC])([24-7])[ \t]*=|(LEAD|TILT|THETA|AN[23])[ \t]*=)", re.IGNORECASE)
+_TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
+_MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
+
+
+def translated(raw: str, number: int, machine: Machine) -> str:
+    """The line in LinuxCNC's words; what is left out on the way is noted. Raises GCodeError naming the line."""
+    code, mark, comment = raw.partition(";")
+    for found in _SILENT.findall(code):
+        machine.findings.add("harmless-word", "ignored", number, f"{_name(found)} is left out: it moves nothing")
+    code = _SILENT.sub("", code)
+    message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
+    if message is not None:
+        code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
+    code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
+    code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
+    code = _tool_axis(code, number, machine)
+    code = _places(code, machine)
+    code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
+    code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
+    code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
+    code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
+    code = _TOOL.sub(lambda found: _named_tool(found[1], number, machine), code)
+    code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
+    return code + (";" + comment if mark else "")
+
+
+def _name(found: str) -> str:
+    return found.split("(")[0].strip().upper()
+
+
+def _absolute(code: str, machine: Machine) -> bool:
+    modes = _MODES.findall(code)
+    return machine.absolute if not modes else str(modes[-1]).upper() == "G90"
+
+
+def _tool_axis(code: str, number: int, machine: Machine) -> str:
+    """A3= B3= C3= is the tool axis, from the tip to its holder, of any length; what is not given is 0."""
+    other = _ORIENTATION.search(code)
+    if other is not None:
+        word = (f"{other[1]}{other[2]}" if other[1] else other[3]).upper()
+        text = f"{word}= gives the tool's orientation in a way that is not read; write its direction as A3= B3= C3=."
+        raise GCodeError.at(number, text)
+    found = {letter.upper(): float(value) for letter, value in _VECTOR.findall(code)}
+    if not found:
+        return code
+    axis = found.get("A", 0.0), found.get("B", 0.0), found.get("C", 0.0)
+    if max(map(abs, axis)) < 1e-9:
+        raise GCodeError.at(number, "the tool axis A3= B3= C3= is 0; expected a direction.")
+    before = machine.p[3], machine.p[4]
+    a, b = angles_of(axis, before)
+    if not _absolute(code, machine):
+        a, b = a - before[0], b - before[1]
+    return f"{_VECTOR.sub('', code)} A{a:.12f} B{b:.12f}"
+
+
+def _places(code: str, machine: Machine) -> str:
+    """AC( ) says a place and IC( ) a step, whatever mode is in force: as the mode in force counts."""
+    absolute = _absolute(code, machine)
+    compensation = machine.compensation
+    here = machine.p
+    if compensation is not None and compensation.programmed is not None:
+        here = compensation.programmed_point(machine)
+
+    def counted(found: re.Match[str]) -> str:
+        letter, way, value = found[1].upper(), found[2].upper(), float(found[3])
+        centre = letter in "IJK"
+        at = here["IJK".index(letter) if centre else "XYZABC".index(letter)]
+        places = machine.arc_absolute if centre else absolute
+        if (way == "AC") == places:
+            return f" {letter}[{found[3]}]"
+        return f" {letter}[{value + at if places else value - at:.15f}]"
+
+    return _PLACE.sub(counted, code)
+
+
+def _named_tool(name: str, number: int, machine: Machine) -> str:
+    """T="..." as the number that the tool table gives that name; none without a table."""
+    if machine.tools is None:
+        machine.tool_name = name
+        machine.findings.add(
+            "named-tool", "info", number, f'tool "{name[:40]}" is of unknown size: there is no tool table'
+        )
+        return ""
+    found = [tool.number for tool in machine.tools.values() if tool.name and tool.name.lower() == name.lower()]
+    if not found:
+        raise GCodeError.at(number, f'tool "{name[:40]}" is not in the tool table; add it there under that name.')
+    return f"T{found[0]}"

@@ -1,0 +1,150 @@
+"""Subprograms called by number, line or name: M97, M98, M198 with M99; L100, names and CALL with M17 and RET."""
+
+import re
+
+from robomill.errors import GCodeError
+from robomill.lazy import cached_property
+from robomill.toolpath.gcode import flow_rules as rules
+from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
+from robomill.toolpath.gcode.words import Block
+
+_LINE_NUMBER = re.compile(rb"^[/ \t]*N[ \t]*0*(\d{1,9})(?![\d.])", re.MULTILINE | re.IGNORECASE)
+_HEADER = re.compile(
+    rb"^[ \t]*(?:%_N_(\w+?)_(?:SPF|MPF)\b|(?:N\d+[ \t]*)?PROC[ \t]+(\w+))", re.MULTILINE | re.IGNORECASE
+)
+_NUMBERED = re.compile(r"L(\d{1,7})(?:[ \t]+P[ \t]*=?[ \t]*(\d{1,4}))?[ \t]*")
+_NAMED = re.compile(
+    r"(?:CALL[ \t]*\"(\w+)\"|([A-Z_]{2}\w*)(?:[ \t]*\([^()]*\))?)(?:[ \t]+P[ \t]*=?[ \t]*(\d{1,4}))?[ \t]*"
+)
+_LEAVES = re.compile(r"\b(?:M17|M0?2|M30|RET)\b(?:[ \t]*\([^()]*\))?")
+_N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
+CALLS = (97, 98, 198)
+
+
+class Subprograms(OWords):
+    """Follows calls of subprograms in the same file; ``OWords`` follows those of O words."""
+
+    def fanuc_call(self, block: Block) -> bool:
+        """M97, M98 and M198 call a subprogram, M99 returns from it (in the main program: ends it)."""
+        code = next((c for c in (*block.unknown_m, *block.m.values()) if c in (*CALLS, 99)), None)
+        if code is None:
+            return False
+        if code == 99:
+            self._return(block)
+            return True
+        if "p" not in block.words:
+            raise block.refuse(f"M{code} needs P, the {'line' if code == 97 else 'number of the program'} to call.")
+        bare = self.o_words(self.main).bare
+        number, repeats = self.dialect.subprogram(block, code, bare)
+        if code == 97:
+            start = self.line_numbered(number)
+            if start is None:
+                raise block.refuse(f"M97 calls line N{number}, but no line has that number; add it, or mend P.")
+        else:
+            at = bare.get(str(number))
+            if at is None:
+                raise block.refuse(self._missing(f"M{code}", f"O{number}", block.line))
+            start = at + 1
+        self._enter(block, str(number), start, repeats)
+        return True
+
+    def _missing(self, call: str, name: str, line: int) -> str:
+        """Why a subprogram cannot be called: it is not there, or stands where no control looks."""
+        end = self.main.lines.closing
+        behind = re.compile(rf"^[ \t]*(?:O|:)[ \t]*0*{name[1:]}[ \t]*(?:\(.*)?$", re.IGNORECASE)
+        if end is not None and any(behind.match(text) for text in self.main.lines[end:]):
+            return (
+                f"{call} calls {name}, which stands behind the % that ends the program, where a control reads no "
+                "further; move it before that %."
+            )
+        return f"{call} calls {name}, but there is no {name} in the program; paste it in behind the end (M30)."
+
+    def line_numbered(self, number: int) -> int | None:
+        """The index of line N``number``: the next one behind this line, else the first."""
+        places = self._line_numbers.get(number, [])
+        return next((place for place in places if place >= self.pc), places[0] if places else None)
+
+    @cached_property
+    def _line_numbers(self) -> dict[int, list[int]]:
+        found: dict[int, list[int]] = {}
+        lines = self.main.lines
+        for each in _LINE_NUMBER.finditer(lines.data):
+            found.setdefault(int(each[1]), []).append(lines.index_at(each.start()))
+        return found
+
+    def _enter(self, block: Block, label: str, start: int, repeats: int) -> None:
+        if repeats < 1:
+            return
+        if rules.enter(self.machine.store.arrays, self.o_words(self.main).plain, -1, -1, 0):
+            raise block.refuse(SENTENCES[rules.TOO_MANY_LEVELS])
+        self._go_to(Call(label, self.file, self.pc, repeats, start), self.main, start)
+
+    def _return(self, block: Block) -> None:
+        target = None
+        if "p" in block.words:
+            target = self.line_numbered(round(block.words["p"]))
+            if target is None:
+                raise block.refuse(f"M99 goes back to line N{block.words['p']:g}, but no line has that number.")
+        if self.machine.store.level > 0:
+            self._repeat_or_leave()
+        elif target is None:
+            self.machine.note("m99-ends", "info", "M99 in the main program is taken as its end")
+            self.finish(block.line)
+            self.ended = True
+        if target is not None:
+            self.pc = target
+
+    def _repeat_or_leave(self) -> None:
+        level = self.machine.store.level
+        call = self.foreign.get(level)
+        if call is not None and call.repeats > 1:
+            call.repeats -= 1
+            self.pc = call.start
+        else:
+            self._go_back(level, rules.leave(self.machine.store.arrays, self.o_words(self.file).plain))
+
+    # --- Sinumerik: by name
+    def sinumerik_call(self, code: str, line: int) -> str | None:
+        """Follow a call, or the end of a subprogram; what else the line says, None where it is done.
+
+        ``code`` is the line in capitals without its comment.
+        """
+        plain = _N.sub("", code).strip()
+        if plain[:1] in "%P" and _HEADER.match(plain.encode()):
+            if plain[0] == "%" and self.pc > 1 and self.machine.store.level == 0 and len(self.machine.recorder):
+                return "M2"  # the next program of an archive
+            if plain[0] == "%" and self.machine.store.level > 0:
+                self._repeat_or_leave()
+            return None
+        if self.machine.store.level > 0 and _LEAVES.search(plain):
+            rest = _LEAVES.sub("", plain).strip()
+            if rest:
+                raise GCodeError.at(
+                    line, f"found {rest[:20]!r} beside the end of a subprogram; put it on a line before."
+                )
+            self._repeat_or_leave()
+            return None
+        found = _NUMBERED.fullmatch(plain)
+        name = f"L{found[1]}" if found else ""
+        if found is None:
+            found = _NAMED.fullmatch(plain)
+            name = (found[1] or found[2]) if found else ""
+            if found is None or (found[1] is None and name not in self._names):
+                return code
+        start = self._names.get(name)
+        repeats = int(found[found.re.groups] or 1)
+        if start is None:
+            text = f"{name} calls a subprogram that is not in this file; paste it in behind the end, below a line "
+            raise GCodeError.at(line, f"{text}%_N_{name}_SPF, or let the CAM system write its moves out.")
+        if "(" in plain and re.search(r"\([^()]*\w[^()]*\)", plain):
+            raise GCodeError.at(
+                line, f"{name} is called with values, which is not read; let the CAM system write its moves out."
+            )
+        self._enter(Block(line), name, start, repeats)
+        return None
+
+    @cached_property
+    def _names(self) -> dict[str, int]:
+        lines = self.main.lines
+        found = ((each[1] or each[2], lines.index_at(each.start())) for each in _HEADER.finditer(lines.data))
+        return {name.decode("ascii", "replace").upper(): at + 1 for name, at in found}

@@ -1,0 +1,86 @@
+"""Subprograms by number, line and name: they run where the file holds them, and are refused by name where not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+
+def xs(text: str, dialect: str = "auto") -> list[float]:
+    return [round(float(x) * 1e3, 9) for x in interpret(text, dialect=dialect).end[:, 0]]
+
+
+HEAD = "%\nO00011\nG21 G90 G1 F100 X1.\n"
+RUN = [
+    # Haas Mill Operator's Manual, M97: the line of that number in the same program, L times, up to M99
+    (HEAD + "M97 P1000 L3\nX9.\nM30\nN1000 G91 X1.\nG90\nM99\n%\n", [1, 2, 3, 4, 9]),
+    (HEAD + "M97 P5\nM97 P5\nM30\nN5 G91 X2.\nG90\nM99\n%\n", [1, 3, 5]),
+    # Fanuc, M99 P: back to that line of the caller
+    (HEAD + "M98 P7\nX5.\nN20 X6.\nM30\nO7\nX2.\nM99 P20\n%\n", [1, 2, 6]),
+    (HEAD + "M198 P7\nX5.\nM30\nO7\nX2.\nM99\n%\n", [1, 2, 5]),
+    # a program of five digits (Haas) is no repeat of one of four
+    (HEAD + "M98 P20007\nX5.\nM30\nO20007\nX3.\nM99\n%\n", [1, 3, 5]),
+    (HEAD + "M98 P20007\nX5.\nM30\nO0007\nX3.\nG91 X1.\nG90\nM99\n%\n", [1, 3, 4, 3, 4, 5]),
+]
+
+
+@pytest.mark.parametrize(("text", "places"), RUN)
+def test_calls_by_number_and_line_are_followed(text: str, places: list[float]) -> None:
+    assert xs(text, "fanuc") == places
+
+
+SINUMERIK = [
+    ("L100 P2\nX9\nM30\n%_N_L100_SPF\nG91 X1\nG90\nM17\n", [1, 2, 3, 9]),
+    ("N20 L0100\nX9\nM30\n%_N_L0100_SPF\n;$PATH=/_N_SPF_DIR\nX4\nRET\n", [1, 4, 9]),
+    ("CONTOUR\nX9\nM30\n%_N_CONTOUR_SPF\nX4\nM17\n", [1, 4, 9]),
+    ("Contour() P=2\nX9\nM30\n%_N_CONTOUR_SPF\nX4\nX5\nM2\n", [1, 4, 5, 4, 5, 9]),
+    ('CALL "POCKET"\nX9\nM30\nPROC POCKET\nX4\nRET\n', [1, 4, 9]),
+    ("L1\nX9\nM30\n%_N_L1_SPF\nL2\nX3\nM17\n%_N_L2_SPF\nX2\nM17\n", [1, 2, 3, 9]),
+    ("X9\nM17\n", [1, 9]),
+]
+
+
+@pytest.mark.parametrize(("text", "places"), SINUMERIK)
+def test_calls_by_name_are_followed_on_a_sinumerik(text: str, places: list[float]) -> None:
+    for head in ("", "%_N_MAIN_MPF\n;$PATH=/_N_WKS_DIR\n"):
+        assert xs(f"{head}G71 G90 G1 F100 X1\n{text}", "sinumerik") == places
+
+
+REFUSED = [
+    (HEAD + "M97 P1000\nM30\n%\n", "fanuc", "Line 4: M97 calls line N1000, but no line has that number"),
+    (HEAD + "M97\nM30\n%\n", "fanuc", "Line 4: M97 needs P, the line to call"),
+    (HEAD + "M198 P55\nM30\n%\n", "fanuc", "Line 4: M198 calls O55, but there is no O55 in the program; paste it in"),
+    (HEAD + "M98 P2\nM30\n%\nO0002\nX9.\nM99\n", "fanuc", "Line 4: M98 calls O2, which stands behind the % that ends"),
+    (HEAD + "M99 P3\nM30\n%\n", "fanuc", "Line 4: M99 goes back to line N3, but no line has that number"),
+    ("G71 G1 F9 X1\nL100 P2\nM30\n", "sinumerik", "Line 2: L100 calls a subprogram that is not in this file; paste"),
+    ('G71 G1 F9 X1\nCALL "A1"\nM30\n', "sinumerik", "Line 2: A1 calls a subprogram that is not in this file"),
+    ("G71\nSUB(3)\nM30\n%_N_SUB_SPF\nX1\nM17\n", "sinumerik", "Line 2: SUB is called with values"),
+    ("G71\nSUB\nM30\n%_N_SUB_SPF\nX1 M17\n", "sinumerik", "Line 5: found 'X1' beside the end of a subprogram"),
+]
+
+
+@pytest.mark.parametrize(("text", "dialect", "says"), REFUSED)
+def test_a_subprogram_is_never_left_out(text: str, dialect: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        interpret(text, dialect=dialect)
+
+
+def test_what_stands_behind_the_closing_percent_is_not_called_by_o_words_either() -> None:
+    text = "%\nG21 G1 F9 X1\nO1 call\nM2\n%\nO1 sub\nX9\nO1 endsub\n"
+    with pytest.raises(GCodeError, match="Line 3: O1 is called, but there is no O1 sub"):
+        interpret(text)
+    assert xs(text.replace("%\nO1 sub", "O1 sub")) == [1, 9]
+
+
+def test_subprograms_that_call_themselves_are_refused() -> None:
+    for text, dialect in (("O5\nG21\nM98 P5\nM30\n", "fanuc"), ("N5 M97 P5\nM30\n", "fanuc")):
+        with pytest.raises(GCodeError, match="levels deep"):
+            interpret(text, dialect=dialect)
+
+
+def test_repeats_cut_as_often_as_they_are_said() -> None:
+    program = interpret(HEAD + "M97 P3 L4\nM30\nN3 G91 X1.\nG90 M99\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(program.end[:, 0] * 1e3, [1, 2, 3, 4, 5])
