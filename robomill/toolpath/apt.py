@@ -1,8 +1,8 @@
 """APT-CL (cutter location) files: GOTO points with tool axes, as CAM systems write them before post-processing.
 
-Read are GOTO, GODLTA, FROM, RAPID, FEDRAT, SPINDL, LOADTL, UNITS, MULTAX, CUTTER, PARTNO, PPRINT, COOLNT, TOOLNO,
-END and FINI. What may move the tool in another way (CIRCLE after a MOVARC, CYCLE, GOHOME) is refused; other words
-that move nothing are counted as ignored.
+Read are GOTO, GODLTA, FROM, RAPID, FEDRAT, SPINDL, LOADTL, LOAD/TOOL, TOOLNO, UNITS, UNIT, MULTAX, TLAXIS, CIRCLE,
+MOVARC, CYCLE, TRANS, MSYS, CSYS, DELAY and FINI. What may move the tool in another way (TRACUT, RETRCT, GOFWD) is
+refused; other words that move nothing are counted as ignored.
 """
 
 import math
@@ -11,24 +11,26 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
+from robomill.toolpath.apt_moves import NUMBER, Arc, Drilling, arc_of, drilling_of, feed_of, frame_of, numbers_of
 from robomill.toolpath.gcode.findings import NO_UNITS, Findings
+from robomill.toolpath.gcode.motion_rules import MOST
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.units import to_si
 
-_NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
 _MOVES = frozenset(
-    {
-        *("CIRCLE", "MOVARC", "ARC", "INDIRV", "INDIRP", "THREAD", "CYCLE", "GOHOME", "RETRCT"),
+    [
+        *("ARC", "INDIRV", "INDIRP", "THREAD", "RETRCT", "ROTATE", "ROTABL", "TRACUT", "COPY", "CALL", "MACRO"),
         *("GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
-        *("ROTATE", "ROTABL", "TRACUT", "COPY", "CALL", "MACRO"),
-    }
+    ]
 )
 _SILENT = frozenset(
     {
         *("PARTNO", "PPRINT", "REMARK", "INSERT", "MACHIN", "SEQNO", "LEADER", "FINI", "END", "STOP", "OPSTOP"),
-        *("COOLNT", "CUTTER", "SELCTL", "CATLOG", "TURRET", "PREFUN", "AUXFUN", "TLAXIS", "ORIGIN"),
+        *("COOLNT", "CUTTER", "SELCTL", "CATLOG", "TURRET", "PREFUN", "AUXFUN", "OPSKIP", "LOADTL", "TLDATA"),
+        *("TOOL PATH", "END-OF-PATH", "LOAD", "CLAMP", "HEAD", "ARCSLP"),
         *("INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT"),
     }
 )
@@ -37,6 +39,8 @@ MAX_POINTS = 5_000_000
 
 @dataclass
 class _State:
+    """What statements change. ``here`` is the last point as written; ``frame`` takes points into the first one."""
+
     unit: str = "mm"
     unit_said: str = ""
     feed: float = 0.0
@@ -46,6 +50,12 @@ class _State:
     tool: int = 0
     rapid: bool = False
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    here: tuple[float, ...] = ()
+    shift: tuple[float, ...] = (0.0, 0.0, 0.0)
+    first_frame: FloatArray | None = None
+    frame: FloatArray | None = None
+    arc: Arc | None = None
+    drilling: Drilling | None = None
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
 
@@ -112,84 +122,163 @@ def _statements(text: str) -> list[tuple[int, str]]:
     return out
 
 
-def _numbers(values: list[str], line: int, word: str) -> list[float]:
-    if not all(_NUMBER.match(v) for v in values):
-        bad = next(v for v in values if not _NUMBER.match(v))
-        raise GCodeError.at(line, f"{word} has {bad!r}; expected a number.")
-    numbers = [float(v) for v in values]
-    if not all(math.isfinite(n) for n in numbers):
-        raise GCodeError.at(line, f"{word} has a number that is too large.")
-    return numbers
-
-
 def _statement(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
     if word in ("GOTO", "FROM"):
-        _go(state, _numbers(values, line, word), line, is_start=word == "FROM")
+        _go(state, numbers_of(values, line, word), line, is_start=word == "FROM")
     elif word == "GODLTA":
-        numbers = _numbers(values, line, word)
+        numbers = numbers_of(values, line, word)
         if len(numbers) != 3 or not state.rows:
             raise GCodeError.at(line, "GODLTA needs three steps and a point before it.")
-        at = [float(v) / to_si(1.0, state.unit) for v in state.rows[-1][:3]]
-        _go(state, [a + n for a, n in zip(at, numbers)], line)
+        _go(state, [a + n for a, n in zip(state.here, numbers)], line)
     elif word == "RAPID":
         state.rapid = True
     elif word == "FEDRAT":
         _feed(state, values, line)
     elif word == "SPINDL":
         _spindle(state, values, line)
-    elif word == "UNITS":
+    elif word in ("UNITS", "UNIT"):
         _units(state, values, line)
-    elif word in ("LOADTL", "TOOLNO"):
-        state.tool = int(abs(_numbers(values[:1], line, word)[0])) if values else state.tool
     elif word == "DELAY":
         turns = "REV" in (v.upper() for v in values)
-        count = sum(_numbers([v for v in values if v.upper() != "REV"], line, word)[:1])
+        count = sum(numbers_of([v for v in values if v.upper() != "REV"], line, word)[:1])
         state.waited += count if not turns else count / state.speed if state.speed > 0.0 else 0.0
-    elif word == "MULTAX":
-        state.axis = state.axis if not values or values[0].upper() == "ON" else (0.0, 0.0, 1.0)
-    elif word in _MOVES:
-        raise GCodeError.at(line, f"{word} moves the tool in a way that is not read; write GOTO points.")
-    elif word not in _SILENT:
+    elif word in ("CIRCLE", "MOVARC"):
+        state.arc = arc_of(values, state.unit, line)
+    elif word == "CYCLE":
+        state.drilling = drilling_of(values, state.unit, state.speed, line)
+    elif word in ("TLAXIS", "MULTAX"):
+        _axis(state, findings, word, values, line)
+    elif word in ("TRANS", "MSYS", "CSYS"):
+        _frame(state, findings, word, values, line)
+    elif word in _MOVES or any(part in _MOVES for part in word.split(",")):
+        raise GCodeError.at(line, f"{word[:20]} moves the tool in a way that is not read; write GOTO points.")
+    else:
+        _other(state, findings, word, values, line)
+
+
+def _other(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
+    """Statements that move nothing by themselves."""
+    if word in ("LOADTL", "TOOLNO", "LOAD"):
+        if word == "LOAD" and values[:1] and values[0].upper() != "TOOL":
+            return
+        numbers = [v for v in values if NUMBER.match(v)]
+        if values and not numbers:
+            raise GCodeError.at(line, f"{word} has {values[0]!r}; expected a number.")
+        state.tool = int(min(abs(numbers_of(numbers[:1], line, word)[0]), MOST)) if numbers else state.tool
+    elif word == "GOHOME":
+        state.rapid = True
+        findings.add("home", "info", line, "GOHOME is left out: where the machine's home lies is not known here")
+    elif word == "MODE":
+        if "INCR" in (v.upper() for v in values):
+            text = "MODE/INCR says how a post-processor writes coordinates: GOTO points are places all the same"
+            findings.add("mode-incr", "warning", line, text)
+    elif word == "CUTCOM" and values[:1] and values[0].upper() in ("LEFT", "RIGHT", "ON"):
+        findings.add("cutcom", "warning", line, "CUTCOM is left out: points are taken as those of the tool's centre")
+    elif word == "ORIGIN" and any(numbers_of(values, line, word)):
+        findings.add("origin", "info", line, "ORIGIN is left out: points count from where the file counts them")
+    elif word not in _SILENT and word not in ("CUTCOM", "ORIGIN"):
         findings.add("unknown-word", "ignored", line, f"{word[:20]} is not known and is left out")
+
+
+def _axis(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
+    """TLAXIS/i,j,k is the tool axis from here on; with MULTAX/OFF the last one stays."""
+    if word == "MULTAX":
+        if values and values[0].upper() == "OFF" and math.dist(state.axis, (0.0, 0.0, 1.0)) > 1e-6:
+            text = "MULTAX/OFF keeps the last tool axis, which is not Z; write TLAXIS/0,0,1 after it where Z is meant"
+            findings.add("axis-kept", "warning", line, text)
+        return
+    numbers = numbers_of(values, line, word)
+    if len(numbers) != 3:
+        raise GCodeError.at(line, f"TLAXIS has {len(numbers)} numbers; expected a direction i,j,k.")
+    state.axis = _direction(numbers, line)
+
+
+def _frame(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
+    if word == "TRANS":
+        numbers = numbers_of(values, line, word)
+        if len(numbers) not in (1, 2, 3):
+            raise GCodeError.at(line, f"TRANS has {len(numbers)} numbers; expected a shift x,y,z.")
+        state.shift = tuple(to_si(v, state.unit) for v in [*numbers, 0.0, 0.0][:3])
+        if any(state.shift):
+            findings.add("trans", "warning", line, "TRANS shifts the points behind it, as a post-processor does")
+        return
+    found = frame_of(values, word, state.unit, line)
+    if state.first_frame is None and not state.rows:
+        state.first_frame = found
+        if not np.allclose(found, np.eye(4), atol=1e-9):
+            findings.add("frame", "info", line, f"part zero is that of {word}/, in which the points are given")
+        return
+    first = np.eye(4) if state.first_frame is None else state.first_frame
+    state.frame = None if np.allclose(found, first, atol=1e-9) else np.linalg.inv(first) @ found
+    if state.frame is not None:
+        findings.add("frame", "warning", line, f"{word}/ is another one: its points are taken into the first {word}/")
+
+
+def _direction(numbers: list[float], line: int) -> tuple[float, float, float]:
+    size = math.sqrt(sum(v * v for v in numbers))
+    if size < 1e-9:
+        raise GCodeError.at(line, "the tool axis i,j,k is 0; expected a direction.")
+    return numbers[0] / size, numbers[1] / size, numbers[2] / size
 
 
 def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) -> None:
     if len(numbers) not in (3, 6):
         raise GCodeError.at(line, f"found {len(numbers)} numbers; a point has x,y,z or x,y,z,i,j,k.")
     if len(numbers) == 6:
-        size = math.sqrt(sum(v * v for v in numbers[3:]))
-        if size < 1e-9:
-            raise GCodeError.at(line, "the tool axis i,j,k is 0; expected a direction.")
-        state.axis = (numbers[3] / size, numbers[4] / size, numbers[5] / size)
+        state.axis = _direction(numbers[3:], line)
+    before, state.here = state.here, tuple(numbers[:3])
+    point = np.array([to_si(v, state.unit) for v in numbers[:3]])
+    arc, state.arc = state.arc, None
+    if state.drilling is not None and not is_start:
+        axis = np.array(state.axis)
+        above = float((np.array([to_si(v, state.unit) for v in before]) - point) @ axis) if before else 0.0
+        if above > state.drilling.out:
+            _put(state, point + above * axis, 0.0, line)
+        for height, feed, dwell in state.drilling.moves():
+            state.waited += dwell
+            _put(state, point + height * axis, feed, line)
+        state.rapid = False
+        return
     cutting = bool(state.rows) and not state.rapid and not is_start
     if cutting and state.feed <= 0:
         raise GCodeError.at(line, "a cut needs a feed; FEDRAT comes first.")
-    point = [to_si(v, state.unit) for v in numbers[:3]]
     feed = state.feed if cutting else 0.0
+    points = [point]
+    if arc is not None and before and not is_start:
+        points = list(arc.points(np.array([to_si(v, state.unit) for v in before]), point, line))
+    for each in points:
+        _put(state, each, feed, line)
+    state.rapid = False
+
+
+def _put(state: _State, point: FloatArray, feed: float, line: int) -> None:
+    """A point as it is written becomes one of the path: shifted (TRANS), and in the first coordinate system."""
+    axis = np.array(state.axis)
+    if state.frame is not None:
+        point, axis = state.frame[:3, :3] @ point + state.frame[:3, 3], state.frame[:3, :3] @ axis
+    place = [float(v + s) for v, s in zip(point, state.shift)]
     turning = (state.speed, state.tool, state.ccw and state.speed > 0.0)
-    state.rows.append((*point, *state.axis, feed, cutting, line, *turning, state.waited))
-    state.rapid, state.waited = False, 0.0
+    if feed == 0.0 and state.rows and state.rows[-1][:6] == (*place, *map(float, axis)) and state.drilling is not None:
+        return
+    state.rows.append((*place, *map(float, axis), feed, feed > 0.0, line, *turning, state.waited))
+    state.waited = 0.0
 
 
 def _feed(state: _State, values: list[str], line: int) -> None:
     words = [v.upper() for v in values]
-    numbers = [v for v in values if _NUMBER.match(v)]
+    numbers = [v for v in values if NUMBER.match(v)]
     if "RAPID" in words:
         state.rapid = True
         return
     if len(numbers) != 1 or float(numbers[0]) < 0:
         raise GCodeError.at(line, f"FEDRAT has {','.join(values)!r}; expected one rate of 0 or more.")
-    if any(w in words for w in ("IPR", "MMPR", "PERREV")):
-        unit = "in" if "IPR" in words else "mm" if "MMPR" in words else state.unit
-        state.feed = to_si(float(numbers[0]), unit) * state.speed
-        return
-    unit = "in/min" if "IPM" in words else "mm/min" if "MMPM" in words else f"{state.unit}/min"
-    state.feed = to_si(float(numbers[0]), unit)
+    unit = next((w for w in ("IPR", "MMPR", "PERREV", "IPM", "MMPM") if w in words), "PERMIN")
+    state.feed = feed_of(float(numbers[0]), unit, state.unit, state.speed)
 
 
 def _spindle(state: _State, values: list[str], line: int) -> None:
     words = [v.upper() for v in values]
-    numbers = [v for v in values if _NUMBER.match(v)]
+    numbers = [v for v in values if NUMBER.match(v)]
     if "OFF" in words:
         state.speed = 0.0
         return

@@ -56,7 +56,7 @@ def test_apt_files_are_told_from_programs() -> None:
         ("GOTO/0,0,x\n", "Line 1: GOTO has 'x'"),
         ("GOTO/0,0,0,0,0,0\n", "Line 1: the tool axis"),
         ("GOTO/0,0,1e999\n", "Line 1: GOTO has a number that is too large"),
-        ("GOTO/0,0,0\nCYCLE/DRILL,5\n", "Line 2: CYCLE moves the tool"),
+        ("GOTO/0,0,0\nCYCLE/DRILL,5\n", "Line 2: CYCLE/DRILL needs its depth"),
         ("UNITS/FURLONGS\n", "Line 1: UNITS"),
         ("FEDRAT/-5\n", "Line 1: FEDRAT"),
         ("PARTNO/X\nFINI\n", "fewer than two"),
@@ -147,3 +147,125 @@ def test_a_file_has_so_many_points_at_most(count: int, monkeypatch) -> None:
     else:
         with pytest.raises(GCodeError, match=r"^Line 8: more than 5 points; split the file\.$"):
             read_apt(text)
+
+
+HEAD = "PARTNO/X\nUNITS/MM\nFEDRAT/600\n"
+
+
+@pytest.mark.parametrize("said", ["UNIT/INCH", "UNITS/INCH", "UNITS / INCHES", "UNIT/IN"])
+def test_inches_are_heard_however_they_are_said(said: str) -> None:
+    path = read_apt(f"PARTNO/X\n{said}\nFEDRAT/600\nFROM/0,0,1\nGOTO/1,2,3\nFINI\n")
+    np.testing.assert_allclose(path.p[-1], np.array([1, 2, 3]) * 25.4e-3)
+    assert path.units == "in"
+
+
+def test_tlaxis_is_the_axis_of_the_points_behind_it_and_multax_off_keeps_the_last() -> None:
+    path = read_apt(
+        f"{HEAD}FROM/0,0,9\nTLAXIS/0,3,4\nGOTO/1,0,0\nMULTAX/ON\nGOTO/2,0,0,0.8,0,0.6\nMULTAX/OFF\nGOTO/3,0,0\n"
+    )
+    np.testing.assert_allclose(path.k, [[0, 0, 1], [0, 0.6, 0.8], [0.8, 0, 0.6], [0.8, 0, 0.6]])
+    assert [f.line for f in path.findings if f.code == "axis-kept"] == [9]
+
+
+def test_trans_shifts_the_points_behind_it_and_says_so() -> None:
+    path = read_apt(f"{HEAD}FROM/0,0,9\nTRANS/10,-5,2\nGOTO/1,0,0\nTRANS/0,0,0\nGOTO/2,0,0\nFINI\n")
+    np.testing.assert_allclose(path.p[1:] * 1e3, [[11, -5, 2], [2, 0, 0]], atol=1e-12)
+    assert [(f.level, f.line) for f in path.findings if f.code == "trans"] == [("warning", 5)]
+
+
+MSYS = "MSYS/100,0,0,0,1,0,-1,0,0\n"
+"""An origin at X100, turned by a quarter about Z; as CSYS its rows are (0, -1, 0, 100), (1, 0, 0, 0), (0, 0, 1, 0)."""
+
+
+@pytest.mark.parametrize("other", [MSYS, "CSYS/0,-1,0,100,1,0,0,0,0,0,1,0\n"])
+def test_points_of_another_coordinate_system_are_taken_into_the_first(other: str) -> None:
+    alone = read_apt(f"{HEAD}{other}FROM/0,0,9\nGOTO/1,2,3\nFINI\n")
+    np.testing.assert_allclose(alone.p[-1] * 1e3, [1, 2, 3])
+    path = read_apt(f"{HEAD}MSYS/0,0,0,1,0,0,0,1,0\nFROM/0,0,9\n{other}GOTO/1,2,3,1,0,0\nFINI\n")
+    np.testing.assert_allclose(path.p[-1] * 1e3, [98, 1, 3], atol=1e-9)
+    np.testing.assert_allclose(path.k[-1], [0, 1, 0], atol=1e-12)
+    assert [f.level for f in path.findings if f.code == "frame"] == ["warning"]
+
+
+def test_tools_modes_and_homes() -> None:
+    path = read_apt(
+        f"{HEAD}LOAD/TOOL,12,ADJUST,1\nFROM/0,0,9\nGOTO/1,0,0\nMODE/INCR\nGOTO/2,0,0\nGOHOME\nGOTO/3,0,9\nFINI\n"
+    )
+    assert path.tool.tolist() == [12] * 4
+    np.testing.assert_allclose(path.p[:, 0] * 1e3, [0, 1, 2, 3])
+    assert path.cutting.tolist() == [False, True, True, False]
+    assert {f.code: f.line for f in path.findings} == {"mode-incr": 7, "home": 9}
+
+
+@pytest.mark.parametrize(
+    ("arc", "turn"),
+    [
+        ("CIRCLE/0,0,5,0,0,1,10", 90),
+        ("CIRCLE/0,0,5,0,0,-1,10,0.01,0.5,8,0", -270),
+        ("MOVARC/0,0,5,0,0,1,10,ANGLE,90", 90),
+        ("MOVARC/0,0,5,0,0,1,10,ANGLE,270", -270),
+        ("MOVARC/CENTER,0,0,5,AXIS,0,0,1,RADIUS,10", 90),
+        ("CIRCLE/0,0,5,0,0,2,10,TIMES,3", 810),
+    ],
+)
+def test_arcs_lead_round_their_axis_to_the_next_point(arc: str, turn: float) -> None:
+    """From (10, 0) to (0, 10), climbing by 6: every point lies on the helix, as long as sqrt((r a)^2 + h^2)."""
+    path = read_apt(f"{HEAD}FROM/10,0,5\n{arc}\nGOTO/0,10,11\nFINI\n")
+    p = path.p * 1e3
+    angle = np.unwrap(np.arctan2(p[:, 1], p[:, 0]))
+    assert np.degrees(angle[-1]) == pytest.approx(turn)
+    np.testing.assert_allclose(np.hypot(p[:, 0], p[:, 1]), 10.0, atol=1e-9)
+    np.testing.assert_allclose(p[:, 2], 5 + 6 * angle / angle[-1], atol=1e-9)
+    assert path.s[-1] * 1e3 == pytest.approx(np.hypot(10 * np.radians(turn), 6), rel=1e-3)
+    assert path.cutting.tolist() == [False] + [True] * (len(p) - 1)
+
+
+def test_an_arc_that_ends_where_it_starts_is_a_full_one() -> None:
+    path = read_apt(f"{HEAD}FROM/10,0,5\nCIRCLE/0,0,5,0,0,1,10\nGOTO/10,0,5\nFINI\n")
+    assert path.s[-1] * 1e3 == pytest.approx(20 * np.pi, rel=1e-3)
+
+
+CYCLES = [
+    ("DRILL, 20, MMPM, 120, 2", [(2, 0), (-20, 120), (2, 0)]),
+    ("DRILL, DEPTH, 20, MMPM, 120, CLEAR, 2", [(2, 0), (-20, 120), (2, 0)]),
+    ("DRILL, FEDTO, -20, RAPTO, 2, RTRCTO, 7, MMPM, 120", [(7, 0), (2, 0), (-20, 120), (2, 0), (7, 0)]),
+    ("BORE, DEPTH, 20, MMPM, 120, CLEAR, 2", [(2, 0), (-20, 120), (2, 120)]),
+    ("DEEP, DEPTH, 4, MMPM, 120, CLEAR, 2, STEP, 4", [(2, 0), (-2, 120), (2, 0), (-2, 0), (-4, 120), (2, 0)]),
+    ("DRILL,DEEP, DEPTH, 4, IPM, 5, CLEAR, 2, STEP, 9", [(2, 0), (-4, 127), (2, 0)]),
+]
+
+
+@pytest.mark.parametrize(("words", "moves"), CYCLES)
+def test_a_cycle_drills_at_every_point_along_the_tool(words: str, moves: list[tuple[float, float]]) -> None:
+    text = f"{HEAD}FROM/0,0,50\nCYCLE/{words}\nGOTO/10,0,0\nGOTO/30,0,0,1,0,0\nCYCLE/OFF\nGOTO/0,0,60,0,0,1\nFINI\n"
+    path = read_apt(text)
+    found = [(round(z, 9), round(v, 9)) for z, v in zip(path.p[:, 2] * 1e3, path.v_f * 6e4)]
+    assert found[:2] == [(50, 0), (50, 0)]
+    assert path.p[1] * 1e3 == pytest.approx([10, 0, 50])
+    assert found[2 : 2 + len(moves)] == [pytest.approx(move) for move in moves]
+    along_x = path.p[2 + len(moves) : -1, 0] * 1e3 - 30
+    assert [pytest.approx(height) for height, _ in moves] == list(along_x)[-len(moves) :]
+    assert path.cutting[-1]
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        ("TLON,GOFWD/ (CIRCLE/1,2,3,4),ON,2,INTOF,(LINE/1,2,3,4,5,6)", "Line 5: TLON,GOFWD moves the tool in a way"),
+        ("MOVARC/0,0,0,0,0,1,10,ANGLE,45\nGOTO/0,10,0", "Line 6: the arc turns by 45 degrees, which does not lead to"),
+        ("CIRCLE/0,0,0,0,0,1,9\nGOTO/0,10,0", "Line 6: the arc's ends lie 10.0000 mm and 10.0000 mm from its centre"),
+        ("CIRCLE/0,0,0,0,0,0,9", "an arc needs an axis i,j,k and a radius above 0"),
+        ("CIRCLE/0,0,0", "an arc needs its centre, axis and radius"),
+        ("CYCLE/MILL,5", "CYCLE/MILL is not read; expected DRILL"),
+        ("CYCLE/DRILL,5", "CYCLE/DRILL needs its depth and its feed"),
+        ("TLAXIS/0,0,0", "the tool axis i,j,k is 0"),
+        ("TLAXIS/0,1", "TLAXIS has 2 numbers"),
+        ("CSYS/1,2", "CSYS has 2 numbers"),
+        ("MSYS/0,0,0,1,0,0,1,0,0", "the axes of MSYS are not at right angles"),
+        ("RETRCT", "RETRCT moves the tool in a way that is not read"),
+    ],
+)
+def test_what_is_not_read_is_refused_by_name(lines: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        read_apt(f"{HEAD}FROM/10,0,0\n{lines}\nGOTO/1,0,0\nFINI\n")
+    assert says in str(caught.value)

@@ -1,0 +1,197 @@
+"""Arcs, drilling cycles and coordinate systems of APT-CL files, each a value that says where the tool goes (m).
+
+Vendors write the words of a cycle in two ways (ISO 4343:1978 by place, ISO 4343:2000 and NX by name); both are read:
+
+    CYCLE/DRILL, 20, MMPM, 100, 2                      CYCLE/DRILL, DEPTH, 20, MMPM, 100, CLEAR, 2
+    CYCLE/DEEP, FEDTO, -20, MMPM, 100, RAPTO, 2, STEP, 5
+"""
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
+from robomill.units import format_si, to_si
+
+NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
+_FEED_UNITS = ("MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV")
+_NAMED = frozenset(
+    ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RTRCTO", "RETURN", "STEP", "DWELL", "ORIENT", "ORIANT", *_FEED_UNITS)
+)
+"""Words of a cycle that a number follows."""
+_KINDS = frozenset(["DRILL", "FACE", "CSINK", "REAM", "BORE", "TAP", "DEEP", "BRKCHP", "THRU"])
+_OUT_AT_FEED = frozenset({"REAM", "BORE", "TAP"})
+OFF_CIRCLE = 1e-3
+"""Start and end of an arc may be off its radius by this share, or"""
+OFF_CIRCLE_LEAST = 2e-5  # m
+MAX_PECKS = 10_000
+
+
+@dataclass(frozen=True)
+class Arc:
+    """An arc about ``axis`` (unit vector), counter-clockwise as seen from its tip; ``angle`` (rad) where it is said."""
+
+    centre: FloatArray
+    axis: FloatArray
+    radius: float
+    angle: float | None
+    turns: int
+
+    def points(self, start: FloatArray, end: FloatArray, line: int) -> FloatArray:
+        """Chords (n, 3) from ``start`` (left out) to ``end``, climbing along the axis; refused off its circle."""
+        out, along = [], []
+        for point in (start, end):
+            height = float((point - self.centre) @ self.axis)
+            out.append(point - self.centre - height * self.axis)
+            along.append(height)
+        sizes = [float(np.linalg.norm(v)) for v in out]
+        if max(abs(size - self.radius) for size in sizes) > max(OFF_CIRCLE * self.radius, OFF_CIRCLE_LEAST):
+            shown = " and ".join(format_si(size, "mm", 4) for size in sizes)
+            radius = format_si(self.radius, "mm", 4)
+            raise GCodeError.at(line, f"the arc's ends lie {shown} from its centre; expected its radius, {radius}.")
+        cross = float(np.cross(out[0], out[1]) @ self.axis)
+        sweep = math.atan2(cross, float(out[0] @ out[1])) % (2.0 * math.pi)
+        if sweep < 1e-8 or 2.0 * math.pi - sweep < 1e-8:
+            sweep = 2.0 * math.pi
+        sweep = self._turned(sweep + 2.0 * math.pi * (self.turns - 1), line)
+        counts = chord_counts(np.array([sweep]), np.array([self.radius]), CHORD_ERROR)
+        t = np.linspace(0.0, 1.0, int(counts[0]) + 1)[1:, None]
+        angle = t * sweep
+        first = out[0] / sizes[0]
+        across = np.cross(self.axis, first)
+        size = sizes[0] + t * (sizes[1] - sizes[0])
+        level = along[0] + t * (along[1] - along[0])
+        points = self.centre + size * (np.cos(angle) * first + np.sin(angle) * across) + level * self.axis
+        points[-1] = end
+        return np.asarray(points)
+
+    def _turned(self, sweep: float, line: int) -> float:
+        """The signed angle: as it is said, where that is the way round to the end on one side or the other."""
+        if self.angle is None:
+            return sweep
+        for signed in (sweep, sweep - 2.0 * math.pi if sweep < 2.0 * math.pi else -sweep):
+            if abs(abs(signed) - abs(self.angle)) < math.radians(0.5):
+                return signed
+        text = f"the arc turns by {math.degrees(self.angle):g} degrees, which does not lead to its end; mend the file."
+        raise GCodeError.at(line, text)
+
+
+def arc_of(values: list[str], unit: str, line: int) -> Arc:
+    """CIRCLE/ and MOVARC/ x,y,z, i,j,k, r [, ...] [, ANGLE, degrees] [, TIMES, n]; also with CENTER, AXIS, RADIUS."""
+    words = [v for v in values if v.upper() not in ("CENTER", "AXIS", "RADIUS")]
+    named = {words[i].upper(): words[i + 1] for i in range(len(words) - 1) if words[i].upper() in ("ANGLE", "TIMES")}
+    count = next((i for i, v in enumerate(words) if v.upper() in ("ANGLE", "TIMES")), len(words))
+    numbers = _floats(words[:count], line)
+    if len(numbers) < 7:
+        raise GCodeError.at(line, "an arc needs its centre, axis and radius: x,y,z,i,j,k,r.")
+    size = math.sqrt(sum(v * v for v in numbers[3:6]))
+    if size < 1e-9 or numbers[6] <= 0.0:
+        raise GCodeError.at(line, "an arc needs an axis i,j,k and a radius above 0.")
+    angle = math.radians(_floats([named["ANGLE"]], line)[0]) if "ANGLE" in named else None
+    turns = round(_floats([named["TIMES"]], line)[0]) if "TIMES" in named else 1
+    if not 1 <= turns <= 10_000:
+        raise GCodeError.at(line, f"an arc turns {turns} times; expected 1 to 10000.")
+    centre = np.array([to_si(v, unit) for v in numbers[:3]])
+    return Arc(centre, np.array(numbers[3:6]) / size, to_si(numbers[6], unit), angle, turns)
+
+
+@dataclass(frozen=True)
+class Drilling:
+    """A cycle that each point is drilled with: lengths (m) from the point along the tool, feed in m/s, dwell in s."""
+
+    depth: float
+    feed: float
+    clear: float
+    out: float
+    step: float
+    dwell: float
+    feed_out: bool
+
+    def moves(self) -> list[tuple[float, float, float]]:
+        """(height above the point, feed, dwell before), in order; a feed of 0 is a rapid."""
+        moves = [(self.out, 0.0, 0.0), (self.clear, 0.0, 0.0)]
+        if self.step > 0.0:
+            pecks = math.ceil((self.clear + self.depth) / self.step)
+            for peck in range(1, min(pecks, MAX_PECKS)):
+                moves += [(self.clear - peck * self.step, self.feed, 0.0), (self.clear, 0.0, 0.0)]
+                moves.append((self.clear - peck * self.step, 0.0, 0.0))
+        moves.append((-self.depth, self.feed, 0.0))
+        moves.append((self.clear, self.feed if self.feed_out else 0.0, self.dwell))
+        return [*moves, (self.out, 0.0, 0.0)]
+
+
+def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilling | None:
+    """CYCLE/...; None for OFF. ``speed`` is the spindle's (1/s). Raises GCodeError for what is not read."""
+    words = [v.upper() for v in values]
+    if words[:1] in (["OFF"], ["NOMORE"]):
+        return None
+    kinds = [word for word in words if word in _KINDS]
+    if not kinds or words[0] not in _KINDS:
+        found = words[0] if words else "nothing"
+        raise GCodeError.at(line, f"CYCLE/{found[:20]} is not read; expected DRILL, DEEP, FACE, REAM, BORE or TAP.")
+    named: dict[str, float] = {}
+    places: list[float] = []
+    rest = iter([word for word in words if word not in _KINDS])
+    for word in rest:
+        if word in _NAMED:
+            named[word] = _floats([next(rest, "")], line)[0]
+        else:
+            places += _floats([word], line)
+    places = [*places, math.nan, math.nan][:2]
+    depth = abs(named.get("DEPTH", named.get("FEDTO", places[0])))
+    clear = named.get("CLEAR", places[0] if ("DEPTH" in named or "FEDTO" in named) else places[1])
+    clear, rapid = (0.0 if math.isnan(clear) else clear), named.get("RAPTO", 0.0)
+    feeds = [word for word in _FEED_UNITS if word in named]
+    if math.isnan(depth) or depth <= 0.0 or len(feeds) != 1 or named[feeds[0]] <= 0.0:
+        text = f"CYCLE/{words[0]} needs its depth and its feed, as in CYCLE/DRILL,DEPTH,20,MMPM,100,CLEAR,2."
+        raise GCodeError.at(line, text)
+    near = max(rapid, clear - rapid, 0.0)
+    away = max(near, clear, named.get("RTRCTO", 0.0), named.get("RETURN", 0.0))
+    lengths = [to_si(v, unit) for v in (depth, near, away, max(named.get("STEP", 0.0), 0.0))]
+    feed = feed_of(named[feeds[0]], feeds[0], unit, speed)
+    leaves = bool(_OUT_AT_FEED & set(kinds))
+    return Drilling(lengths[0], feed, lengths[1], lengths[2], lengths[3], max(named.get("DWELL", 0.0), 0.0), leaves)
+
+
+def feed_of(rate: float, word: str, unit: str, speed: float) -> float:
+    """A feed rate in m/s; ``word`` is its unit (IPM, MMPM, IPR, MMPR; PERMIN and PERREV count in ``unit``)."""
+    if word in ("IPR", "MMPR", "PERREV"):
+        return to_si(rate, {"IPR": "in", "MMPR": "mm"}.get(word, unit)) * speed
+    return to_si(rate, {"IPM": "in/min", "MMPM": "mm/min"}.get(word, f"{unit}/min"))
+
+
+def frame_of(values: list[str], word: str, unit: str, line: int) -> FloatArray:
+    """T (4, 4), m: where the coordinate system of MSYS/ (origin, x axis, y axis) or CSYS/ (three rows of four) lies."""
+    numbers = _floats(values, line)
+    T = np.eye(4)
+    if word == "CSYS" and len(numbers) == 12:
+        T[:3] = np.reshape(numbers, (3, 4))
+    elif word == "MSYS" and len(numbers) >= 9:
+        T[:3, 0], T[:3, 1], T[:3, 3] = numbers[3:6], numbers[6:9], numbers[:3]
+        T[:3, 2] = np.cross(T[:3, 0], T[:3, 1])
+    else:
+        text = f"{word} has {len(numbers)} numbers; expected 12 (CSYS) or an origin and two axes (MSYS)."
+        raise GCodeError.at(line, text)
+    if not np.allclose(T[:3, :3].T @ T[:3, :3], np.eye(3), atol=1e-4):
+        raise GCodeError.at(line, f"the axes of {word} are not at right angles and of length 1; mend the file.")
+    T[:3, 3] = [to_si(float(v), unit) for v in T[:3, 3]]
+    return T
+
+
+def numbers_of(values: list[str], line: int, word: str) -> list[float]:
+    """The values as numbers. Raises GCodeError naming the line and the word."""
+    if not all(NUMBER.match(v) for v in values):
+        bad = next(v for v in values if not NUMBER.match(v))
+        raise GCodeError.at(line, f"{word} has {bad!r}; expected a number.")
+    numbers = [float(v) for v in values]
+    if not all(math.isfinite(n) for n in numbers):
+        raise GCodeError.at(line, f"{word} has a number that is too large.")
+    return numbers
+
+
+def _floats(values: list[str], line: int) -> list[float]:
+    return numbers_of(values, line, "the statement")
