@@ -165,3 +165,16 @@ def test_a_slice_at_half_depth_shows_the_groove_where_it_is(kind, tmp_path):
     left, right = walls[walls > 0], walls[walls < 0]
     assert left == pytest.approx(4.2295, abs=3e-4)
     assert right == pytest.approx(-3.7705, abs=3e-4)
+
+
+def test_every_triangle_of_an_stl_says_which_way_is_out():
+    """Square to all its edges, of length one, and on a block (faced to its sides) away from its middle."""
+    raw = mesh_bytes(cut(STOCK, 2e-3, Cutter("flat", 0.08), np.array([[0.0, 0.01, -0.001], [0.03, 0.01, -0.001]])))
+    records = np.frombuffer(raw[84:], dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("unused", "<u2")])
+    assert len(records) == np.frombuffer(raw[80:84], "<u4")[0]
+    normal, corners = records["normal"].astype(float), records["corners"].astype(float)
+    edges = np.roll(corners, -1, axis=1) - corners
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, atol=1e-6)
+    np.testing.assert_allclose(np.einsum("ti,tei->te", normal, edges), 0.0, atol=1e-4)
+    out = corners.mean(axis=1) - 500.0 * (STOCK.lower + STOCK.upper)
+    assert np.einsum("ti,ti->t", normal, out).min() > 0.0
