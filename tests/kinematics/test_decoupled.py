@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.choice import every
+from robomill.kinematics.decoupled import decoupled, shortfall
 from robomill.kinematics.forward import joint_frames
 from tests.robot.written_otherwise import with_blocked
 
@@ -82,3 +83,63 @@ def test_the_spindle_is_on_the_last_axis_where_a_turn_about_it_leaves_axis_and_t
         assert found is not None
         assert found.spindle_on_last_axis == kept
     assert not decoupled(rm.load_robot("slavkovic_5r")).spindle_on_last_axis
+
+
+def crossing(p, k, q, m):
+    """The point nearest to two lines, by least squares."""
+    beside = np.eye(3) - np.array([np.outer(k, k), np.outer(m, m)])
+    return np.linalg.lstsq(np.concatenate(beside), np.concatenate([beside[0] @ p, beside[1] @ q]), rcond=None)[0]
+
+
+@pytest.mark.parametrize(("name", "aside"), [("slavkovic_5r", 0.0), ("kuka_kr500", 0.3), ("fanuc_r2000ic", -0.4)])
+def test_how_much_is_missing_to_a_place_is_measured_on_the_arm(name, aside):
+    """Lengths between the axes as they stand at some configuration; the wrist centre has to come between the circles
+    about the shoulder, in front or behind, in the plane of the arm."""
+    robot = rm.load_robot(name)
+    d = robot.d.copy()
+    d[1], d[3] = d[1] + aside, d[3] * (1.0 if aside == 0.0 else 0.5)  # beside axis 1, with a short forearm
+    robot = robot.replace(d=d)
+    rng = np.random.default_rng(4)
+    frames = joint_frames(robot, rng.uniform(0.2, 0.9, robot.n))
+    k, p = frames[:-1, :3, 2], frames[:-1, :3, 3]
+    tip, R = frames[-1, :3, 3], frames[-1, :3, :3]
+    centre = crossing(p[3], k[3], p[4], k[4])
+    y, z = k[1], k[0]
+    out = np.cross(y, z)
+
+    def flat(v):
+        return np.array([v @ out, v @ z])
+
+    shoulder, h = p[1] - p[0], y @ (centre - p[0])
+    upper, lower = np.hypot(*flat(p[2] - p[1])), np.hypot(*flat(centre - p[2]))
+    told = {"": 0, "beyond": 0, "inside": 0, "close": 0}
+    for turn in range(200):
+        side, size = rng.normal(size=3), (upper + lower) * rng.uniform(0.0, 1.4)
+        at = p[0] + z * (z @ shoulder) + size * side / np.linalg.norm(side)
+        if turn % 4 == 0:  # near the axis
+            at -= (1.0 - rng.uniform(0.0, 0.3)) * (at - p[0] - z * (z @ (at - p[0])))
+        if turn % 8 == 1:  # near the shoulder
+            at = p[1] + y * (y @ (centre - p[1])) + 0.9 * abs(upper - lower) * side / np.linalg.norm(side)
+        T = np.eye(4)
+        T[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        T[:3, 2] = np.cross(T[:3, 0], T[:3, 1])
+        T[:3, 3] = at + T[:3, :3] @ R.T @ (tip - centre)
+        words = shortfall(decoupled(robot), T)
+        rho, height = np.hypot(*np.cross(z, at - p[0])[:2]), z @ (at - p[1])
+        if rho < abs(h):
+            wanted, missing = "inside", abs(h) - rho
+        else:
+            reach = np.hypot(np.sqrt(rho**2 - h**2) * np.array([1.0, -1.0]) - out @ shoulder, height)
+            over, under = reach.min() - upper - lower, abs(upper - lower) - reach.max()
+            wanted, missing = ("beyond", over) if over > 0 else ("close", under) if under > 0 else ("", 0.0)
+        told[wanted] += 1
+        assert wanted in words
+        assert bool(words) == bool(wanted)
+        if words:
+            number, unit = words.split()[:2]
+            size = float(number) * {"m": 1.0, "mm": 1e-3}[unit]
+            assert (unit == "m") == (missing >= 0.01)
+            assert size == pytest.approx(missing, rel=0.05, abs=0.0051 if unit == "m" else 0.0)
+        _, sound = every(robot, decoupled(robot), T[None])
+        assert sound.any() == (not words)
+    assert all(count >= 5 or (kind == "inside" and aside == 0.0) for kind, count in told.items()), told

@@ -54,7 +54,7 @@ def best_of_all(theta, within, limits, home):
     return list(best), cheapest
 
 
-@pytest.mark.parametrize("gaps", [(), (0,), (2,), (0, 1, 4), (4,)])
+@pytest.mark.parametrize("gaps", [(), (0,), (2,), (0, 1, 4), (4,), (1, 2, 3, 4), (0, 1, 2, 3), (0, 1, 2, 3, 4)])
 @pytest.mark.parametrize("seed", range(3))
 def test_the_cheapest_sequence_of_all_is_taken(gaps, seed):
     rng = np.random.default_rng(seed)
