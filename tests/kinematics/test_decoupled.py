@@ -142,4 +142,4 @@ def test_how_much_is_missing_to_a_place_is_measured_on_the_arm(name, aside):
             assert size == pytest.approx(missing, rel=0.05, abs=0.0051 if unit == "m" else 0.0)
         _, sound = every(robot, decoupled(robot), T[None])
         assert sound.any() == (not words)
-    assert all(count >= 5 or (kind == "inside" and aside == 0.0) for kind, count in told.items()), told
+    assert min(told["beyond"], told[""], told["close" if aside == 0.0 else "inside"]) >= 5, told
