@@ -264,3 +264,19 @@ def test_numbers_are_written_as_the_app_has_them() -> None:
     ]
     assert write_number(1e308, 3) == "1e+308"
     assert write_number(math.inf) == "inf"
+
+
+@pytest.mark.parametrize("decimals", [0, 1, 2, 3, 5])
+def test_what_was_computed_keeps_to_its_decimals_where_they_hold_three_digits_of_it(decimals: int) -> None:
+    """From 10^(2 - decimals) on; below it six digits are written."""
+    digits = 0.123456789012345678  # a number of seventeen digits, which nobody typed
+    for power in range(-6, 6):
+        value = digits * 10.0**power
+        first = math.floor(math.log10(value))
+        written = write_number(value, decimals)
+        if first >= 2 - decimals:
+            assert written == f"{value:.{decimals}f}"
+        else:
+            assert float(written) == float(f"{value:.5e}")
+            assert written.lower().replace("e-0", "e-") == f"{value:.6g}".replace("e-0", "e-")
+        assert write_number(-value, decimals) == f"-{written}"
