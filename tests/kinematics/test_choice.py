@@ -6,6 +6,7 @@ import pytest
 import robomill as rm
 from robomill.errors import KinematicsError
 from robomill.kinematics.choice import SPIN_STEPS
+from robomill.kinematics.decoupled import branch_names
 from robomill.kinematics.transforms import rotation_z, transform
 
 
@@ -121,3 +122,38 @@ def test_along_a_path_the_tool_is_turned_back_to_where_the_joints_need_not_move(
     result = rm.inverse_kinematics(robot, T_MT, near="path")
     np.testing.assert_allclose(result.theta, theta, atol=1e-8)
     np.testing.assert_allclose(np.exp(1j * result.spin), np.exp(1j * turned), atol=1e-12)
+
+
+@pytest.mark.parametrize(("name", "held"), [("slavkovic_5r", False), ("kuka_kr500", True), ("fanuc_r2000ic", False)])
+def test_the_joint_that_hinders_is_told_by_the_stand_that_is_least_past_its_limits(name, held):
+    """Of every branch (and of every spin, 10 degrees apart): whichever joint is furthest past its limits there."""
+    wide, narrow = (
+        robot.replace(limits=np.column_stack([robot.home - reach, robot.home + reach]))
+        for robot in [rm.load_robot(name)]
+        for reach in (np.pi, 0.25)
+    )
+    rng = np.random.default_rng(7)
+    theta = wide.home + rng.uniform(-0.6, 0.6, (12, wide.n)) + 0.1
+    poses = rm.tool_pose(wide, theta)
+    for T_MT in poses:
+        result = rm.inverse_kinematics(narrow, T_MT)
+        if bool(result.reached):
+            continue
+        spins = np.radians(np.arange(0.0, 360.0, 10.0)) if wide.n == 6 else [0.0]
+        turned = np.array([T_MT @ transform(rotation_z(angle), np.zeros(3)) for angle in spins])
+        least, needed = np.inf, None
+        for branch in branch_names():
+            every = rm.inverse_kinematics(wide, turned, branch=branch, spin="fixed").theta
+            if held:
+                every[:, 5] = wide.home[5]
+            past = np.abs(every - wide.home) - 0.25
+            for stand, over in zip(every, past, strict=True):
+                if over.max() < least:
+                    least, needed = over.max(), (int(np.argmax(over)), stand)
+        joint, stand = needed
+        limit = narrow.limits[joint, int(stand[joint] > wide.home[joint])]
+        shown = [f"{np.degrees(value):.1f}".replace("-", "\N{MINUS SIGN}") for value in (stand[joint], least, limit)]
+        unit = "\N{DEGREE SIGN}"
+        assert result.reason() == (
+            f"joint {joint + 1} would need {shown[0]}{unit}, {shown[1]}{unit} past its limit of {shown[2]}{unit}"
+        )
