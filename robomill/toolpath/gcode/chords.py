@@ -22,12 +22,13 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
     """
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
-    is_arc, is_tap = program.is_kind("arc"), program.is_kind("tap")
+    is_arc = program.is_kind("arc") & ~program.unplaced
+    is_tap = program.is_kind("tap")
     counts = _pieces(program, np.flatnonzero(is_arc), chord_error)
     counts[is_tap] = 2
     first = np.cumsum(counts) - counts + 1
     p = np.empty((int(counts.sum()) + 1, 3))
-    start, end = program.start + program.lift, program.end + program.lift
+    start, end = _ends(program)
     p[0] = start[0]
     single = counts == 1
     p[first[single]] = end[single]
@@ -61,6 +62,26 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
         units=program.units or "mm",
         counts=(int((program.kind == 0).sum()), int((program.kind == 1).sum()), int((program.kind == 2).sum())),
     )
+
+
+def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
+    """Where each move starts and ends (m, 3), m, at the tip.
+
+    What only the machine knows is clear of the part: as high as the program ever goes, over where the tool was last.
+    """
+    start, end = program.start + program.lift, program.end + program.lift
+    if not program.away.any():
+        return start, end
+    known = np.vstack([start[:1], end])
+    away = np.vstack([np.zeros((1, 3), dtype=bool), program.away])
+    for axis in range(2):
+        last = np.maximum.accumulate(np.where(away[:, axis], 0, np.arange(len(known))))
+        known[:, axis] = known[last, axis]
+    top = float(known[~away[:, 2], 2].max())
+    known[away[:, 2], 2] = top
+    tap = program.is_kind("tap")
+    start = np.where(tap[:, None], start, known[:-1])
+    return start, known[1:]
 
 
 def _pieces(program: Program, rows: IntArray, chord_error: float) -> IntArray:

@@ -6,7 +6,7 @@ from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.mode_rules import system_code
-from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.path import NO_SPINDLE
 from robomill.units import format_si, to_si
 
@@ -31,6 +31,18 @@ def doubt(machine: Machine, program: Program) -> None:
     _doubt_size(machine, program)
     _doubt_spin(machine, program)
     _doubt_zero(machine, program)
+    _doubt_home(machine, program)
+
+
+def _doubt_home(machine: Machine, program: Program) -> None:
+    """Say which cuts go to or from a place that only the machine knows."""
+    lost = np.flatnonzero(program.unplaced & (program.kind != TRAVERSE))
+    if len(lost):
+        text = (
+            "this cut lies where only the machine knows (after G28, G30 or G53) and is left out of what is cut; write "
+            "a G0 with X, Y and Z before it"
+        )
+        machine.findings.add("cut-unplaced", "warning", int(program.line[lost[0]]), text, len(lost))
 
 
 def _doubt_zero(machine: Machine, program: Program) -> None:

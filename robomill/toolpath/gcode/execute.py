@@ -150,6 +150,7 @@ def _non_modal(machine: Machine, block: Block, code: int) -> None:
 
 def _move(machine: Machine, block: Block) -> None:
     code = block.motion
+    moves.place(machine, block)
     if not is_cycle(code):
         machine.initial_level = math.nan
     if code in (0, 10, 20, 30):

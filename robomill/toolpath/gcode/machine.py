@@ -40,7 +40,9 @@ class Machine:
     the program itself says); ``lifts`` holds how far the tip stands from the point that is told (m), each with the
     first move for which it holds. ``tool_name`` is the tool that a program calls by name, while no table has it.
     ``systems`` are the coordinate systems that are in force, each with the first move for which it is; ``placed`` those
-    that the program itself has placed, each with the line.
+    that the program itself has placed, each with the line. ``away`` says of which of x, y, z the place is not known, as
+    only the machine knows where its home lies; ``aways`` are those, each with the first move for which it holds, and
+    ``homes`` the homes that the program has stored itself (28, 30).
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -61,6 +63,9 @@ class Machine:
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
         self.tool_name = ""
+        self.away: tuple[bool, ...] = (False, False, False)
+        self.aways: list[tuple[int, tuple[bool, ...]]] = []
+        self.homes: set[int] = set()
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
         self.length_of: Tool | None = None
@@ -97,7 +102,7 @@ class Machine:
     @property
     def is_plain(self) -> bool:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
-        return self.compensation is None and not self.diameter_mode
+        return self.compensation is None and not self.diameter_mode and not any(self.away)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -167,6 +172,20 @@ class Machine:
             lift = [told - true for told, true in zip(tool.offset, self.tool.offset)]
         if lift != (self.lifts[-1][1] if self.lifts else [0.0, 0.0, 0.0]):
             self.lifts.append((len(self.recorder), lift))
+
+    # --- places that only the machine knows
+    def set_away(self, away: tuple[bool, ...]) -> None:
+        """Of x, y and z the place is not known (True) from the next move on."""
+        if away != self.away:
+            self.away = away
+            self.aways.append((len(self.recorder), away))
+
+    def place(self, words: dict[str, float]) -> None:
+        """A line says places: they are known from here on, unless they count as steps (G91)."""
+        if any(self.away) and self.absolute:
+            polar = "@" in words or "^" in words
+            said = [letter in words or (polar and letter != "z") for letter in "xyz"]
+            self.set_away(tuple(before and not now for before, now in zip(self.away, said)))
 
     # --- saved modes
     def save_modes(self) -> dict[str, Any]:

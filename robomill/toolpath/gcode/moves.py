@@ -112,6 +112,27 @@ def _machine_end(machine: Machine, words: dict[str, float]) -> list[float]:
     return end
 
 
+def place(machine: Machine, block: Block) -> None:
+    """What the words of a line's motion say of where the tool is: G53 says it in the machine, which is not known.
+
+    Where the program itself has said where its part zero lies there (G10 L2), it is.
+    """
+    if block.g.get(NON_MODAL) == 530 and machine.system not in machine.placed:
+        _leave(machine, "G53 goes to a place in the machine", [letter in block.words for letter in "xyz"])
+    else:
+        machine.place(block.words)
+
+
+def _leave(machine: Machine, what: str, axes: list[bool]) -> None:
+    if not any(axes):
+        return
+    text = (
+        f"{what}, which is not known here: the tool is taken to be clear of the part until X, Y and Z are given again"
+    )
+    machine.note("machine-place", "info", text)
+    machine.set_away(tuple(before or now for before, now in zip(machine.away, axes)))
+
+
 def move(machine: Machine, block: Block) -> None:
     """G0, G1, G2 and G3."""
     words = plain_words(block)
@@ -177,9 +198,14 @@ def home(machine: Machine, block: Block, code: int) -> None:
     """G28 and G30: by way of the point on the line to the stored point, which is 5161... or 5181... (mm)."""
     machine.need_compensation_off(block, f"G{code // 10}")
     end = find_end(machine, block)
+    machine.place(block.words)
     machine.go(TRAVERSE, block.line, end)
     stored = 5161 if code == 280 else 5181
     values = machine.store.values(stored, 6)
+    if code // 10 not in machine.homes and not any(values):
+        given = [letter in block.words for letter in "xyz"]
+        none = not any(letter in block.words for letter in XYZABC)
+        _leave(machine, f"G{code // 10} goes to the machine's home", [none or each for each in given])
     target = [machine.from_user(v) for v in values[:3]] + values[3:]
     target = _machine_end(machine, dict(zip(XYZABC, target)))
     chosen = [letter in block.words for letter in XYZABC]
@@ -193,6 +219,7 @@ def save_home(machine: Machine, block: Block, code: int) -> None:
     if machine.compensation is not None:
         raise block.refuse("a reference point cannot be stored with cutter compensation on; use G40 first.")
     stored = 5161 if code == 281 else 5181
+    machine.homes.add(code // 10)
     total = [machine.p[i] + machine.g5x[i] + machine.g92[i] for i in range(6)]
     lengths = [machine.to_user(total[i] + machine.length_offset[i]) for i in range(3)]
     machine.store.put(stored, [*lengths, *total[3:]])

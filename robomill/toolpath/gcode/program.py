@@ -50,6 +50,7 @@ class Program:
     dwell     (m,) s         stood still before the move
     tool      (m,) int       tool number in the spindle
     lift      (m, 3) m       from the programmed point to the tip of the tool that is there
+    away      (m, 3) bool    where the move ends along x, y, z is known to the machine alone (G28, G30, G53)
     """
 
     line: IntArray
@@ -70,6 +71,7 @@ class Program:
     dwell: FloatArray
     tool: IntArray
     lift: FloatArray
+    away: BoolArray = field(default_factory=lambda: np.zeros((1, 3), dtype=bool))
     units: str = ""
     dialect: str = "linuxcnc"
     lines: int = 0
@@ -97,8 +99,17 @@ class Program:
 
     @cached_property
     def at_feed(self) -> BoolArray:
-        """(m,) True for moves that cut: all but traverses and probes."""
-        return frozen((self.kind != TRAVERSE) & (self.kind != PROBE), bool)
+        """(m,) True for moves that cut: all but traverses, probes and those whose place is not known."""
+        return frozen((self.kind != TRAVERSE) & (self.kind != PROBE) & ~self.unplaced, bool)
+
+    @cached_property
+    def unplaced(self) -> BoolArray:
+        """(m,) True for moves that end or come from where only the machine knows; straight down from there is known."""
+        if not self.away.any():
+            return np.zeros(1, dtype=bool)
+        before = np.vstack([np.zeros((1, 3), dtype=bool), self.away[:-1]])
+        sideways = before[:, :2].any(axis=1) | (before.any(axis=1) & (self.kind == ARC))
+        return np.asarray(self.away.any(axis=1) | sideways)
 
     @cached_property
     def length(self) -> FloatArray:

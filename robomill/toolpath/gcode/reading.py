@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray, frozen
+from robomill.arrays import frozen
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
@@ -80,7 +80,8 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     program = Program(
         **columns,
-        lift=_lift(machine, columns),
+        lift=_since(machine.lifts, len(columns["line"]), np.zeros(3)),
+        away=_since(machine.aways, len(columns["line"]), np.zeros(3, dtype=bool)),
         units=machine.unit_said,
         dialect=dialect,
         lines=lines,
@@ -92,12 +93,11 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     return replace(program, findings=machine.findings.freeze())
 
 
-def _lift(machine: Machine, columns: dict[str, Any]) -> FloatArray:
-    """(m, 3) m: how far each move's tip stands from where it is told to go."""
-    count = len(columns["line"])
-    if not machine.lifts:
-        return np.broadcast_to(np.zeros(3), (count, 3))
-    lift = np.zeros((count, 3))
-    for first, value in machine.lifts:
-        lift[first:] = value
-    return frozen(lift)
+def _since(changes: list[tuple[int, Any]], count: int, first: Any) -> Any:
+    """(m, 3): for each move what holds since the last change at or before it; ``first`` before all."""
+    if not changes:
+        return np.broadcast_to(first, (count, 3))
+    out = np.zeros((count, 3), first.dtype)
+    for row, value in changes:
+        out[row:] = value
+    return frozen(out, out.dtype)

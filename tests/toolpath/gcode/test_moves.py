@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import interpret, read_gcode
 
 
 def end(text):
@@ -77,3 +77,48 @@ def test_a_stored_point_is_come_back_to_by_way_of_the_words(code):
     np.testing.assert_allclose(end(f"{away}\n{code} Z80"), [*far[:2], stored[2]], atol=1e-9)
     moves = interpret(f"G21 G90 F100\n{away}\n{code} Z80\nM2\n").end * 1e3
     np.testing.assert_allclose(moves[-2], [*far[:2], 81], atol=1e-9)
+
+
+def shown(text: str) -> list[tuple[float, float, float, bool]]:
+    path = read_gcode(text)
+    return [(*(round(float(v) * 1e3, 6) for v in p), bool(c)) for p, c in zip(path.p, path.cutting)]
+
+
+BEFORE = "G21 G90 G0 X10 Y10 Z50\nG1 Z-5 F100\nX40\n"
+AFTER = "G90 G0 X70 Y70\nZ3\nG1 Z-5\nM30\n"
+CUT = [(0, 0, 0, False), (10, 10, 50, False), (10, 10, -5, True), (40, 10, -5, True)]
+DOWN = [(70, 70, 50, False), (70, 70, 3, False), (70, 70, -5, True)]
+
+
+@pytest.mark.parametrize("line", ["G91 G28 Z0", "G91 G30 Z0", "G53 G0 Z0", "G53 G0 Z-12.7"])
+def test_a_home_that_only_the_machine_knows_is_clear_of_the_part(line: str) -> None:
+    """Straight up, as high as the program ever goes, and down again where Z is given: no dive to part zero."""
+    beyond = [(40, 10, -5, False)] * ("28" in line or "30" in line)
+    assert shown(f"{BEFORE}{line}\n{AFTER}") == [*CUT, *beyond, (40, 10, 50, False), *DOWN]
+
+
+def test_the_way_home_leads_by_the_point_that_is_given() -> None:
+    found = shown(f"{BEFORE}G28 X30 Y20 Z8\n{AFTER}")
+    assert found == [*CUT, (30, 20, 8, False), (30, 20, 50, False), *DOWN]
+    assert shown(f"{BEFORE}G0 Z9\nG28 X30 Y20\n{AFTER}")[-5:-2] == [
+        (30, 20, 9, False),
+        (30, 20, 9, False),
+        (70, 70, 9, False),
+    ]
+
+
+def test_a_home_that_the_program_stores_and_a_zero_that_it_places_are_known() -> None:
+    assert shown("G21 G90 G0 X1 Y2 Z30\nG28.1\nG1 F9 Z-5\nG91 G28 Z0\nM2\n")[-1] == (1, 2, 30, False)
+    assert shown("G21 G90 G10 L2 P1 Z5\nG1 F9 Z-5\nG53 G0 Z40\nM2\n")[-1] == (0, 0, 40, False)
+
+
+def test_cuts_from_where_only_the_machine_knows_are_no_cuts_and_that_is_said() -> None:
+    path = read_gcode(f"{BEFORE}G91 G28 Z0\nG90 G1 X99\nG91 X5\nG90 G0 Z5\nG1 Z-1\nM30\n")
+    assert [int(b) for b in path.block[path.cutting]] == [2, 3, 8]
+    assert [(f.level, f.line, f.count) for f in path.findings if f.code == "cut-unplaced"] == [("warning", 5, 2)]
+    assert [f.line for f in path.findings if f.code == "machine-place"] == [4]
+
+
+def test_sideways_from_a_home_in_x_and_y_nothing_is_cut() -> None:
+    path = read_gcode("G21 G90 G0 X1 Y1 Z-1\nG28 X5 Y5\nG1 X9 Y9 F100\nX12\nM30\n")
+    assert [int(b) for b in path.block[path.cutting]] == [4]
