@@ -35,15 +35,17 @@ def made(place: str, name: Any, make: Callable[[], Any], doing: str, seconds: fl
         job.give_up(place)
         stopped = session.kept(f"{place}.stopped") == name
         if stopped or (seconds > ASK_S and session.kept(f"{place}.asked") != name):
-            raise Underway(partial(_ask, place, name, doing, seconds))
+            raise Underway(partial(_ask, place, name, doing, seconds), place)
         _supersede(group)
         now = Job(make, name, group)
         job.begin(place, now)
         session.hold(place, now)  # what it makes is kept for everyone, too
-    now.run = session.store().runs
-    ended = job.finished(place, FIRST_S)
+    runs = session.store().runs
+    waited = now.run == runs  # this run of the page has waited for it once
+    now.run = runs
+    ended = job.finished(place, 0.0 if waited else FIRST_S)
     if ended is None:
-        raise Underway(partial(job.waiting, place, partial(words, doing), partial(_stop, place)))
+        raise Underway(partial(job.waiting, place, partial(words, doing), partial(_stop, place)), place)
     session.drop(place)
     if ended.error is not None:
         raise ended.error

@@ -19,6 +19,7 @@ from robomill.ui.asked import heed_pages
 from robomill.ui.turns import Turn
 
 EVERY_S = 0.4
+TOLD = "bar.tells"  # the place of the work that the bar of this page speaks of
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
 
 heed_pages()
@@ -27,9 +28,14 @@ heed_pages()
 class Underway(Exception):  # noqa: N818 - no error
     """What a part of a page needs is being made beside it, or was stopped; ``show`` says so in its place."""
 
-    def __init__(self, show: Callable[[], Any]) -> None:
+    def __init__(self, show: Callable[[], Any], place: str = "") -> None:
         super().__init__()
-        self.show = show
+        self._show, self.place = show, place
+
+    def show(self) -> None:
+        """Say so; what the bar speaks of is not said twice."""
+        if not self.place or session.kept(TOLD) != self.place:
+            self._show()
 
 
 @dataclass(eq=False)
@@ -43,7 +49,7 @@ class Job:
     work: Callable[[], Any]
     about: Any
     group: str = ""
-    run: int = 0
+    run: int = -1
     made: Any = None
     error: RobomillError | None = None
     bug: BaseException | None = None

@@ -93,7 +93,7 @@ def sourced(said: Provenance) -> Html:
 def headline(kicker: str, title: str, lead: str = "") -> None:
     """The page's one sentence."""
     lead_html = f'<p class="rm-lead">{as_html(lead)}</p>' if lead else ""
-    st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><p class="rm-title">{html.escape(title)}</p>{lead_html}')
+    st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><h1 class="rm-title">{html.escape(title)}</h1>{lead_html}')
 
 
 def note(*parts: str) -> None:

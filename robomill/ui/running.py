@@ -1,10 +1,13 @@
 """A run on a page: at once where it is short; beside the page where it is long, with its progress and a way to stop it;
 only when asked for where it takes minutes. Until it is there, the page shows the run before it, greyed."""
 
+from collections.abc import Callable
+from typing import Any, TypeVar
+
 import streamlit as st
 
 from robomill.arrays import digest
-from robomill.errors import ToolpathError
+from robomill.errors import RobomillError, ToolpathError
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -12,6 +15,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.ui import beside, cached, job, session
 from robomill.ui.job import Underway
 
+Value = TypeVar("Value")
 SHORT_S = 0.3  # a run that takes about so long is waited for
 PLACE, LAST, READING = "run", "run.last", "run.path"
 GREYED = """<style>[data-testid="stMain"] :is(.rm-tiles, .rm-title, .rm-lead, .rm-facts, .rm-matrix,
@@ -28,30 +32,57 @@ def result(setup: SimulationSetup) -> SimulationResult | None:
         except Underway as now:
             now.show()
             st.html(GREYED)
-            return _before(setup)
+            return before(setup)
+    take(found)
+    return found
+
+
+def take(found: SimulationResult) -> None:
+    """``found`` is the run that the page shows: nothing else is under way for it, and it is the one before the next."""
     job.give_up(PLACE)
     session.hold(LAST, found)
-    return found
 
 
 def computed(setup: SimulationSetup, place: str = PLACE) -> SimulationResult:
     """The run of ``setup``, kept or made. Raises its refusal, and ``Underway`` where it goes on beside the page."""
     path_of(setup)
-    if there(setup):
-        return cached.result(setup)
-    seconds = run_seconds(setup)
-    made: SimulationResult = beside.made(
-        place, cached.by_setup(setup), lambda: cached.result(setup), "Simulating", seconds
-    )
-    return made
+
+    def made() -> SimulationResult:
+        if there(setup):
+            return cached.result(setup)
+        seconds = run_seconds(setup)
+        found: SimulationResult = beside.made(
+            place, cached.by_setup(setup), lambda: cached.result(setup), "Simulating", seconds
+        )
+        return found
+
+    return cached.held(setup) or _refused_once(place, cached.by_setup(setup), made)
 
 
 def path_of(setup: SimulationSetup) -> Toolpath:
     """The path, which a program that goes round in loops lets wait for: raises its refusal, and ``Underway``."""
     if "toolpath" in vars(setup):
         return setup.toolpath
-    path: Toolpath = beside.made(READING, _named(setup), lambda: setup.toolpath, "Reading the program")
-    return path
+
+    def made() -> Toolpath:
+        path: Toolpath = beside.made(READING, _named(setup), lambda: setup.toolpath, "Reading the program")
+        return path
+
+    return _refused_once(READING, _named(setup), made)
+
+
+def _refused_once(place: str, name: Any, make: Callable[[], Value]) -> Value:
+    """What ``make`` answers. A refusal is not kept: without this, the bar and the page would have it worked out twice,
+    and where that goes on beside the page, without end."""
+    asked = session.store().runs, digest(name)
+    told = session.kept(f"{place}.refused")
+    if told is not None and told[0] == asked:
+        raise told[1]
+    try:
+        return make()
+    except RobomillError as exc:
+        session.keep(f"{place}.refused", (asked, exc))
+        raise
 
 
 def wait_for_path(setup: SimulationSetup) -> None:
@@ -72,11 +103,11 @@ def there(setup: SimulationSetup) -> bool:
 
 def shown(setup: SimulationSetup) -> SimulationResult | None:
     """What ``result`` has answered, for a part of the page that is run by itself."""
-    return cached.held(setup) or _before(setup)
+    return cached.held(setup) or before(setup)
 
 
-def _before(setup: SimulationSetup) -> SimulationResult | None:
-    """The run before, where it is of the same path and of an arm with as many joints."""
+def before(setup: SimulationSetup) -> SimulationResult | None:
+    """The run before ``setup``'s, where it is of the same path and of an arm with as many joints."""
     last: SimulationResult | None = session.kept(LAST)
     if last is None or last.setup.robot.n != setup.robot.n or digest(last.setup.source) != digest(setup.source):
         return None

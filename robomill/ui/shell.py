@@ -11,7 +11,7 @@ from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import declared, inputs, pieces, rendered, session
+from robomill.ui import bar, declared, inputs, menu, pieces, rendered, session
 from robomill.ui.closing import settle
 from robomill.ui.commons import weight
 from robomill.ui.keeping import autosave, snapshots
@@ -21,6 +21,7 @@ from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
+SIDEBAR = 248  # pixels wide
 BYTE_S = 4e-8  # s that a byte of a project takes to be written
 CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
@@ -71,8 +72,11 @@ _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css=
 
 def begin(title: str) -> Project:
     """Start a page: the first call of every page. Returns the project of this session."""
-    st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide")
-    st.html(CSS)
+    st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide", initial_sidebar_state=SIDEBAR)
+    if menu.group_pages():
+        st.rerun()
+    ground = palette(dark()).background
+    st.html(f"{CSS}<style>:root {{ --rm-ground: {ground}; }}</style>")
     rendered.queue().worker.start()
     if not _ready.is_set():
         if compiled.missing():
@@ -88,6 +92,7 @@ def begin(title: str) -> Project:
     except RobomillError as exc:
         error(exc)
         st.stop()
+    bar.show()
     autosave.notices()
     with st.sidebar:
         _sidebar()

@@ -31,6 +31,13 @@ NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
+    made, found = plain_tiles(result, unit), ranges_of(result)
+    words = {name: [range_words(each, name, unit) for each in found] for name in made}
+    return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
+
+
+def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
+    """The tiles "wall", "floor", "tip" and "share", without the ends between which their numbers may lie."""
     old = previous(result)
     verdict, before = result.verdict, None if old is None else old.verdict
     share = share_words(verdict)
@@ -44,11 +51,9 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
         "tip": tip_tile(result, unit),
         "share": Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
     }
-    found = ranges_of(result)
-    words = {name: [range_words(each, name, unit) for each in found] for name in made}
     if verdict.premise:  # what was stated for another path is not shown as if it were known
         made = {name: replace(tile, tone=tone(verdict)) for name, tile in made.items()}
-    return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
+    return made
 
 
 def ranges_of(result: SimulationResult) -> tuple[Range, ...]:

@@ -1,0 +1,142 @@
+"""The bar that stays on every page: what is cut, how far off against the tolerance, the verdict, the force and who says
+so, what it was before, and what is running. It says what the tiles say, of the same verdict, in the same words."""
+
+import html
+from collections.abc import Sequence
+
+import numpy as np
+import streamlit as st
+
+from robomill.errors import RobomillError
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.verdict_words import TIGHT_FROM, Reading, Verdict
+from robomill.ui import job, pieces, running, session, verdict
+from robomill.ui.job import Underway
+from robomill.ui.markup import Html
+from robomill.ui.pieces import Tile
+from robomill.units import format_beside, format_limit, format_share, format_si
+
+ENDS_AT = 1.25  # of the tolerance: where the gauge ends
+MILLING = "pages/6_Milling.py"
+
+
+def show() -> None:
+    """The bar of the project in force; its run is begun here where it is not there yet."""
+    setup, unit = session.project().setup, session.project().view.length
+    session.drop(job.TOLD)
+    with st.container(key="bar", horizontal=True, vertical_alignment="center", gap="small"):
+        try:
+            found = running.computed(setup)
+        except Underway as now:
+            st.html(words(setup, running.before(setup), unit, "not computed yet"))
+            now.show()
+            session.keep(job.TOLD, now.place)
+        except RobomillError as exc:
+            st.html(words(setup, None, unit, str(exc)))
+        else:
+            running.take(found)
+            st.html(words(setup, found, unit))
+            _to_worst(found)
+
+
+def _to_worst(result: SimulationResult) -> None:
+    """The way to where the tip is off most."""
+    if result.worst < 0:
+        return
+    if st.button(
+        f"Go to worst: line {result.worst_block}",
+        key="bar.worst",
+        icon=":material/my_location:",
+        type="tertiary",
+        width="content",
+        on_click=stand_at_worst,
+        args=(result,),
+    ):
+        st.switch_page(MILLING)
+
+
+def stand_at_worst(result: SimulationResult) -> None:
+    """Move the position along the cut to where the tip is off most."""
+    total = float(result.path.s[-1])
+    if result.worst >= 0 and total > 0:
+        session.look(station=min(max(float(result.path.s[result.worst]) / total, 0.0), 1.0))
+
+
+def words(setup: SimulationSetup, result: SimulationResult | None, unit: str, why: str = "") -> Html:
+    """The bar as HTML; ``why`` says that ``result`` is not that of ``setup``: it is greyed, or left out."""
+    name = _cell(setup.source.name, setup.name, "rm-name")
+    if result is None:
+        parts = [name, _gauge(None, unit), _cell(why, "Not computed", "rm-said")]
+        return _bar(parts, "unjudged")
+    tone = verdict.tone(result.verdict)
+    tiles = verdict.plain_tiles(result, unit)
+    shown = [name, _gauge(result.verdict, unit), _verdict(result, tiles["share"], why)]
+    shown += [_tile(tiles[each], said) for each, said in (("wall", "Wall"), ("floor", "Floor"), ("tip", "Tip"))]
+    return _bar([*shown, _force(result)], f"{tone} rm-old" if why else tone)
+
+
+def _bar(parts: Sequence[Html], look: str) -> Html:
+    return Html(f'<div class="rm-top {look}" role="region" aria-label="Verdict of the cut">{"".join(parts)}</div>')
+
+
+def _cell(label: str | Html, value: str | Html, look: str = "") -> Html:
+    """Two lines: what it is, small, and what it says."""
+    said = "" if isinstance(label, Html) else f' title="{html.escape(label, quote=True)}"'
+    small, large = (each if isinstance(each, Html) else html.escape(each) for each in (label, value))
+    return Html(f'<div class="rm-cell {look}"{said}><small>{small}</small><b>{large}</b></div>')
+
+
+def _was(old: str) -> Html:
+    return Html(f' <span class="rm-was" title="before the last edit">{html.escape(old)}</span>') if old else Html("")
+
+
+def _tile(tile: Tile, label: str) -> Html:
+    """A tile in short: its name, its value, and the value before the last edit."""
+    return _cell(label + _was(tile.was if tile.was != tile.value else ""), tile.value, f"rm-{label.lower()}")
+
+
+def _verdict(result: SimulationResult, tile: Tile, why: str) -> Html:
+    old = verdict.previous(result)
+    before = "" if old is None else verdict.WORDS[old.verdict.level]
+    note = f"{why}; this was before" if why else tile.note
+    return _cell(note + _was(before if before != tile.value else ""), tile.value, "rm-said")
+
+
+def _force(result: SimulationResult) -> Html:
+    """How hard it pushes where the tip is off most, and who says so."""
+    setup, i = result.setup, result.worst
+    said = setup.provenance.get("force", setup.force.provenance)
+    value = format_si(float(np.linalg.norm(result.F[i])), "N", 0) if i >= 0 else "–"
+    inner = f"<small>Force {pieces.badge(said.kind)}</small><b>{html.escape(value)}</b>"
+    return Html(f'<div class="rm-cell" title="{html.escape(said.source, quote=True)}">{inner}</div>')
+
+
+def deciding(found: Verdict) -> Reading | None:
+    """The reading on which the verdict rests: the one that uses most of its tolerance; None where nothing is read."""
+    read = [each for each in (found.wall, found.floor, found.end, found.feed) if each.decides]
+    return max(read, key=lambda each: each.share, default=None)
+
+
+def _gauge(found: Verdict | None, unit: str) -> Html:
+    """A track from nothing to beyond the tolerance, and how far the worst reading comes on it."""
+    rests = None if found is None else deciding(found)
+    if found is None or rests is None or not np.isfinite(found.share):
+        return Html(
+            '<div class="rm-gauge" role="img" aria-label="Nothing is measured against the tolerance">'
+            '<div class="rm-track"></div><div class="rm-scale"><span>0</span></div></div>'
+        )
+    allowed = format_limit(rests.tolerance, unit)
+    value = format_beside(abs(rests.value), rests.tolerance, unit)
+    hatched = ", not judged" if found.level == "unjudged" else ""
+    said = f"{value} of {allowed} allowed, {format_share(found.share)}{hatched}"
+    at = 100 * min(found.share, ENDS_AT) / ENDS_AT
+    tight, full = (100 * each / ENDS_AT for each in (TIGHT_FROM, 1.0))
+    return Html(
+        f'<div class="rm-gauge" role="meter" aria-label="{html.escape(said, quote=True)}" '
+        f'title="{html.escape(said, quote=True)}" aria-valuemin="0" aria-valuemax="{100 * ENDS_AT:.0f}" '
+        f'aria-valuenow="{100 * min(found.share, ENDS_AT):.0f}">'
+        f'<div class="rm-track" style="--tight:{tight:.1f}%;--full:{full:.1f}%"><i style="width:{at:.1f}%"></i>'
+        f'<b style="left:{at:.1f}%"></b></div>'
+        f'<div class="rm-scale"><span>0</span><span style="left:{full:.1f}%">{html.escape(allowed)}</span></div></div>'
+    )

@@ -1,0 +1,57 @@
+"""The menu of pages: named and grouped by what one wants of them.
+
+Streamlit makes it of the names of the files, in their order, and calls the first page "app". Its own menu is kept (the
+links are there before a page has run, and a screen reader knows it as navigation); what it is made of is handed to it
+in groups.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
+from typing import Any
+
+import streamlit as st
+from streamlit.commands import navigation
+from streamlit.navigation.page import StreamlitPage
+
+START = "Start"
+GROUPS = {
+    "Result": (START, "Milling"),
+    "Set-up": ("Robot", "Toolpath"),
+    "Analyse": ("Workspace", "Compliance", "Identification", "Improve"),
+    "Teach": ("Learn",),
+}
+
+
+def grouped(pages: Sequence[StreamlitPage]) -> Mapping[str, list[StreamlitPage]]:
+    """The pages in their groups, the first one named; a page of no group comes last, under no heading."""
+    left = {START if page._default else page.title: page for page in pages}
+    groups: dict[str, list[StreamlitPage]] = {}
+    for group, titles in {**GROUPS, "": tuple(left)}.items():
+        found = [left.pop(title) for title in titles if title in left]
+        if found:
+            groups[group] = [_named(page, START) if page._default else page for page in found]
+    return groups
+
+
+def _named(page: Any, title: str) -> StreamlitPage:
+    return st.Page(page._page, title=title, default=True)
+
+
+def in_groups(make: Callable[..., Any]) -> Callable[..., Any]:
+    """``make`` (of the menu, from a list of pages) with the pages in their groups."""
+
+    @wraps(make)
+    def made(pages: Any, **more: Any) -> Any:
+        own = isinstance(pages, list) and any(page.title == "Milling" for page in pages)
+        return make(grouped(pages) if own else pages, **more)
+
+    return made
+
+
+def group_pages() -> bool:
+    """Have the menus of this server made so. True where they were not yet: the page in hand was made with the other
+    one."""
+    if hasattr(navigation._navigation, "__wrapped__"):
+        return False
+    navigation._navigation = in_groups(navigation._navigation)
+    return True

@@ -1,0 +1,67 @@
+"""The bar stays at the top of every page while one scrolls, at any width, and nothing in it is cut."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from screenshots import idle, page_paths, served
+
+pytestmark = pytest.mark.browser
+
+LOOK = """() => {
+  const bar = document.querySelector('.st-key-bar'), box = bar.getBoundingClientRect();
+  const middle = document.elementFromPoint(box.left + box.width / 2, box.top + 6);
+  const cut = [...bar.querySelectorAll('.rm-cell:not(.rm-name) b, .rm-scale span')].filter((each) => {
+    const it = each.getBoundingClientRect();
+    return it.width > 0 && (each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline'
+      || it.right > window.innerWidth || it.bottom > box.bottom + 2);
+  }).map((each) => each.textContent);
+  return { top: box.top, height: box.height, seen: bar.contains(middle) || middle.contains(bar), cut,
+    bars: document.querySelectorAll('.rm-top').length, heads: document.querySelectorAll('h1').length };
+}"""
+
+
+def scrolled(page: Any) -> None:
+    page.evaluate("document.querySelector('[data-testid=\"stMain\"]').scrollTo(0, 600)")
+    page.wait_for_timeout(150)
+
+
+@pytest.mark.parametrize(("width", "most"), [(1440, 48), (1024, 92), (800, 92), (390, 92)])
+def test_the_bar_stays_on_every_page(page: Any, url: str, width: int, most: int) -> None:
+    page.set_viewport_size({"width": width, "height": 850})
+    for name, path in page_paths().items():
+        page.goto(url + path)
+        page.wait_for_selector(".rm-top", timeout=60_000)
+        idle(page)
+        for move in (lambda _page: None, scrolled):
+            move(page)
+            found = page.evaluate(LOOK)
+            assert 0 <= found["top"] <= 1, (name, found)
+            assert 44 <= found["height"] <= most, (name, found)
+            assert found["seen"], (name, found)
+            assert found["cut"] == [], (name, found)
+            assert found["bars"] == 1, name
+
+
+def test_a_deep_link_on_a_fresh_server_has_its_page_its_bar_and_the_named_menu(page: Any) -> None:
+    with served() as fresh:
+        page.goto(f"{fresh}/Robot")
+        page.wait_for_selector(".rm-kicker:has-text('Robot ·')", timeout=60_000)
+        idle(page)
+        links = page.get_by_test_id("stSidebarNavLink").all_inner_texts()
+        assert links[:2] == ["Start", "Milling"]
+        assert len(links) == len(page_paths())
+        assert page.locator(".rm-top").count() == 1
+        page.get_by_test_id("stSidebarNavLink").first.click()
+        page.wait_for_url(f"{fresh}/", timeout=30_000)
+        page.goto("about:blank")
+
+
+def test_go_to_worst_leads_to_milling_from_another_page(page: Any, url: str) -> None:
+    page.goto(f"{url}/Compliance")
+    page.wait_for_selector(".rm-top", timeout=60_000)
+    idle(page)
+    page.get_by_role("button", name="Go to worst: line 7").click()
+    page.wait_for_selector(".rm-kicker:has-text('Milling ·')", timeout=60_000)
+    assert page.url.endswith("/Milling")
