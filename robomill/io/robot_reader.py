@@ -33,7 +33,7 @@ def robot_from_toml(text: str, where: str = "robot") -> Robot:
         raise top.refuse("version", f"expected format {FORMAT!r}, version {VERSION}; found {found[0]!r}, {found[1]}.")
     joints = top.tables("joint")
     if not joints:
-        raise top.refuse("joint", "found no joints; write one [[joint]] table for each of 2 to 7 joints.")
+        raise top.refuse("joint", "found no joints; write one [[joint]] table for each of 1 to 7 joints.")
     if not top.data.get("compliance"):
         raise top.refuse("compliance", "missing; give [compliance] with use = '<set>' and [compliance.<set>].")
     provenance = top.table("provenance", {})

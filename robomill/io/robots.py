@@ -11,7 +11,16 @@ from robomill.io.texts import read_text
 from robomill.io.urdf import read_urdf
 from robomill.robot.model import Robot
 
-__all__ = ["load_robot", "read_robot", "read_urdf", "robot_folder", "robot_from_toml", "robot_names", "robot_to_toml"]
+__all__ = [
+    "is_urdf",
+    "load_robot",
+    "read_robot",
+    "read_urdf",
+    "robot_folder",
+    "robot_from_toml",
+    "robot_names",
+    "robot_to_toml",
+]
 
 
 def robot_folder() -> Path:
@@ -34,8 +43,13 @@ def load_robot(name_or_path: str | Path) -> Robot:
     return read_robot(read_file(path, ROBOT, RobotError), path.name)
 
 
+def is_urdf(name: str) -> bool:
+    """Whether a file of this name is read as a URDF."""
+    return Path(name).suffix.lower() in (".urdf", ".xml", ".xacro")
+
+
 def read_robot(data: bytes, name: str) -> Robot:
     """The robot of a file's bytes: URDF or TOML, as its ``name`` ends. Raises RobotError."""
-    if Path(name).suffix.lower() in (".urdf", ".xml"):
+    if is_urdf(name):
         return read_urdf(data, where=name)
     return robot_from_toml(*read_text(data, RobotError, ROBOT, name))

@@ -1,6 +1,6 @@
 """A URDF file as a serial chain: joint axes become a modified D-H table, and every pose stays."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,11 +14,10 @@ from robomill.files import ROBOT
 from robomill.io.texts import read_text
 from robomill.kinematics.transforms import rotation_x, rotation_y, rotation_z, transform
 from robomill.provenance import Provenance
+from robomill.robot.joints import ASSUMED_COMPLIANCE
 from robomill.robot.model import Robot
 
 MOVING = ("revolute", "continuous", "prismatic")
-# A URDF holds no compliances: 1 um/N at a metre for every joint, marked assumed, until the user gives better ones.
-DEFAULT_COMPLIANCE = 1e-6
 PARALLEL = 1e-9
 MOST_JOINTS = 20  # before a D-H table is made of them; the robot says how many it may have
 
@@ -51,11 +50,46 @@ def read_urdf(
     Raises RobotError for branches (name the tip), missing links or joints, closed loops, mimic and floating joints.
     Meshes are not looked at, and a file that declares entities is refused: no other file is ever opened.
     """
+    name, joints, links, where = _read(given, where)
+    return _robot(_serial_chain(joints, links, tip, where), name, where)
+
+
+@dataclass(frozen=True)
+class Tips:
+    """Links of a URDF file that may be the tip, each with the joints that lead there from the root.
+
+    ``chains`` are in the order of the file; ``ends`` are the links on which nothing hangs; ``only`` is the tip that is
+    taken where none is named, None where the arm branches.
+    """
+
+    chains: Mapping[str, tuple[Joint, ...]]
+    ends: tuple[str, ...]
+    only: str | None
+
+
+def tips_of_urdf(given: str | Path | bytes, where: str = "") -> Tips:
+    """The links of a URDF file to which at least one moving joint leads. Raises RobotError as ``read_urdf``."""
+    _, joints, links, where = _read(given, where)
+    by_child, above = _by_child(joints, links, where), {joint.parent for joint in joints}
+    ways = {link: tuple(_walk_up(by_child, link, where)) for link in links}
+    chains = {link: way for link, way in ways.items() if any(joint.type != "fixed" for joint in way)}
+    try:
+        taken = _serial_chain(joints, links, None, where)
+    except RobotError:
+        taken = []
+    ends = tuple(link for link in chains if link not in above)
+    return Tips(chains, ends, taken[-1].child if taken and taken[-1].child in chains else None)
+
+
+def _read(given: str | Path | bytes, where: str) -> tuple[str, list[Joint], list[str], str]:
+    """Name, joints and links of a file, and how it is called in refusals."""
     text, where = read_text(given, RobotError, ROBOT, where)
     root = _root(text, where)
     links = [link.get("name", "") for link in root.findall("link")]
-    chain = _serial_chain([_joint(each, where) for each in root.findall("joint")], links, tip, where)
-    return _robot(chain, root.get("name") or Path(where).stem, where)
+    joints = [_joint(each, where) for each in root.findall("joint")]
+    if not joints and any("xacro" in each.tag for each in root.iter()):
+        raise RobotError(f"{where}: this is a xacro template; make the URDF of it first (xacro FILE > arm.urdf).")
+    return root.get("name") or Path(where).stem, joints, links, where
 
 
 def _root(text: str, where: str) -> ElementTree.Element:
@@ -107,9 +141,8 @@ def _joint(element: ElementTree.Element, where: str) -> Joint:
     )
 
 
-def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where: str) -> list[Joint]:
-    """Joints from the root to the tip, in order."""
-    children: dict[str, list[Joint]] = {}
+def _by_child(joints: list[Joint], links: list[str], where: str) -> dict[str, Joint]:
+    """The joint that every link hangs on, but the root; links that are not there and closed loops are refused."""
     parents: dict[str, Joint] = {}
     there = set(links)
     for joint in joints:
@@ -122,9 +155,17 @@ def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where:
                 f"{where}: link {joint.child!r:.60} hangs on two joints, a closed loop; only a serial arm can be read."
             )
         parents[joint.child] = joint
+    return parents
+
+
+def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where: str) -> list[Joint]:
+    """Joints from the root to the tip, in order."""
+    parents = _by_child(joints, links, where)
+    children: dict[str, list[Joint]] = {}
+    for joint in joints:
         children.setdefault(joint.parent, []).append(joint)
     if tip is not None:
-        if tip not in there:
+        if tip not in links:
             raise RobotError(f"{where}: has no link {tip!r}; its links are {_listed(links)}.")
         return _walk_up(parents, tip, where)
     roots = [link for link in links if link not in parents]
@@ -194,9 +235,9 @@ def _robot(chain: list[Joint], name: str, where: str) -> Robot:
         points.append(T_M[:3, 3].copy())
         moving.append(joint)
     if not moving:
-        raise RobotError(f"{where}: has no moving joints; a robot needs 2 to 7.")
+        raise RobotError(f"{where}: has no moving joints; a robot needs 1 to 7.")
     if len(moving) > MOST_JOINTS:
-        raise RobotError(f"{where}: has {len(moving)} moving joints in a row; a robot needs 2 to 7.")
+        raise RobotError(f"{where}: has {len(moving)} moving joints in a row; a robot needs 1 to 7.")
     prismatic = np.array([joint.type == "prismatic" for joint in moving])
     sign = np.ones(len(moving))
     if float(axes[-1] @ T_M[:3, 2]) < PARALLEL - 1.0:  # the last joint turns about -z of the tip
@@ -210,7 +251,7 @@ def _robot(chain: list[Joint], name: str, where: str) -> Robot:
         sign=sign,
         prismatic=prismatic,
         limits_all=np.array([_limits(joint, where) for joint in moving]),
-        C_theta_all=np.full(len(moving), DEFAULT_COMPLIANCE),
+        C_theta_all=np.full(len(moving), ASSUMED_COMPLIANCE),
         provenance={
             "geometry": file,
             "limits": file,

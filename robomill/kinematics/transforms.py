@@ -109,3 +109,22 @@ def axis_from_tilt(A: ArrayLike, B: ArrayLike) -> FloatArray:
     """Unit tool axes k_T (..., 3) of the tilts A, B (rad)."""
     A, B = np.broadcast_arrays(np.asarray(A, dtype=np.float64), np.asarray(B, dtype=np.float64))
     return np.stack([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)], axis=-1)
+
+
+def rotation_from_turns(turns: ArrayLike) -> FloatArray:
+    """R_x(A) R_y(B) R_z(C) (..., 3, 3) of angles (A, B, C) (..., 3) rad: about x, the new y, the new z."""
+    A, B, C = np.moveaxis(as_floats(turns, "turns", (3,), error=KinematicsError), -1, 0)
+    R = rotation_x(A) @ rotation_y(B) @ rotation_z(C)
+    return np.where(np.abs(R) < 1e-16, 0.0, R)
+
+
+def turns_from_rotation(R: ArrayLike) -> FloatArray:
+    """(A, B, C) rad (..., 3) that ``rotation_from_turns`` leads back to R (..., 3, 3).
+
+    B is in [-pi/2, pi/2]; at its ends any A will do and A = 0 is given.
+    """
+    R = as_floats(R, "R", (3, 3), error=KinematicsError)
+    tilt = tilt_from_axis(R[..., 2])
+    Q = rotation_x(-tilt[..., 0]) @ R
+    C = np.arctan2(Q[..., 1, 0], Q[..., 1, 1])
+    return np.concatenate([tilt, C[..., None]], axis=-1)

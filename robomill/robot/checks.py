@@ -8,7 +8,7 @@ from robomill.arrays import BoolArray, FloatArray, check_place
 from robomill.errors import RobotError
 from robomill.quantities import Quantity
 
-MIN_JOINTS, MAX_JOINTS = 2, 7
+MIN_JOINTS, MAX_JOINTS = 1, 7
 
 
 def column(value: Any, declared: Quantity, rows: int | None, where: str, slides: BoolArray | None = None) -> FloatArray:

@@ -24,7 +24,7 @@ TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A serial arm of 2 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
+    """A serial arm of 1 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
 
     The table has one row a joint (``rows``): alpha, theta_offset in rad, a, d in m, sign +-1, prismatic. A joint turns
     by theta_DH = sign * theta + theta_offset; a prismatic one slides by d_DH = sign * theta + d at the fixed angle

@@ -30,7 +30,8 @@ class Sheet:
     """How a table is edited: its columns of ``numbers``, each with one box or one a row, and Streamlit's own others.
 
     ``heads`` are other headings than the columns' names, ``width`` is that of the columns of numbers in pixels, and
-    ``where`` names a row, counted from 0, in a refusal. Columns may be ``locked``, rows be added.
+    ``where`` names a row, counted from 0, in a refusal. Columns may be ``locked``, rows be added. A table in which one
+    cell says what another one does is ``linked``: it starts afresh after every edit.
     """
 
     numbers: Mapping[str, NumberBox | Sequence[NumberBox]] = field(default_factory=dict)
@@ -39,6 +40,7 @@ class Sheet:
     width: int | Mapping[str, int] | None = None
     where: Callable[[int], str] = lambda row: f"Row {row + 1}"
     locked: tuple[str, ...] = ()
+    linked: bool = False
     dynamic: bool = False
     height: int | Literal["auto"] = "auto"
 
@@ -207,7 +209,7 @@ def _take(name: str, key: str, write: Callable[[pd.DataFrame], None], sheet: She
         frame, words = held.refused.get(name, (None, ""))
         refuse(name, frame, " ".join([_few(now.refused), words]).strip())
     held.read_as[name] = name, _few(now.understood)
-    if now.refused or now.converted:
+    if now.refused or now.converted or sheet.linked:
         session.keep(_turn(name), session.kept(_turn(name), 0) + 1)
 
 

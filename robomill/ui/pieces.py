@@ -30,7 +30,7 @@ ROW = 36  # pixels of a row of a table
 CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
 MIME = {
-    **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml"},
+    **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml", "urdf": "application/xml"},
     **{"png": "image/png", "gif": "image/gif", "mp4": "video/mp4"},
     **{"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"},
 }

@@ -130,7 +130,7 @@ def test_zero_joints_and_too_many():
     row = tail.replace("[7.14, 10.12, 12.30, 17.32, 91.35]", str([1] * 8)).replace(
         "[9.03, 11.17, 14.74, 27.65, 97.58]", str([1] * 8)
     )
-    with pytest.raises(RobotError, match="2 to 7 joints, found 8"):
+    with pytest.raises(RobotError, match="1 to 7 joints, found 8"):
         robot_from_toml(head + joint * 8 + row)
 
 

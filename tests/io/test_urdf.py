@@ -112,7 +112,7 @@ def test_the_tip(tmp_path):
     assert read_urdf(path, tip="c").n == 2
     with pytest.raises(RobotError, match=r"bad.urdf: has no link 'x'; its links are a, b, c, d"):
         read_urdf(path, tip="x")
-    with pytest.raises(RobotError, match="a robot needs 2 to 7"):
+    with pytest.raises(RobotError, match="a robot needs 1 to 7"):
         read_urdf(path, tip="a")
     with pytest.raises(RobotError, match=r"none.urdf: cannot be opened"):
         read_urdf(tmp_path / "none.urdf")

@@ -11,6 +11,7 @@ from robomill.kinematics.transforms import (
     invert,
     pose_from_world,
     rotation_about,
+    rotation_from_turns,
     rotation_x,
     rotation_y,
     rotation_z,
@@ -18,6 +19,7 @@ from robomill.kinematics.transforms import (
     transform,
     translation,
     turn_between,
+    turns_from_rotation,
     world_from_pose,
 )
 
@@ -65,3 +67,12 @@ def test_world_coordinates_are_a_point_and_turns_about_x_then_the_new_y():
     np.testing.assert_allclose(axis_from_tilt(*x_M.T[3:]), T[..., :3, 2], atol=1e-15)
     along_x = tilt_from_axis([[1.0, 0.0, 0.0], [-1.0, 1e-13, 0.0]])
     np.testing.assert_allclose(along_x, [[0.0, np.pi / 2], [0.0, -np.pi / 2]], atol=1e-12)
+
+
+def test_turns_about_x_the_new_y_and_the_new_z_lead_there_and_back():
+    turns = np.vstack(
+        [RNG.uniform(-3, 3, (200, 3)), np.pi / 2 * np.array([[0, 1, 0], [1, -1, 2], [2, 0, 1], [1, 1, 1]])]
+    )
+    R = rotation_from_turns(turns)
+    np.testing.assert_allclose(R, Rotation.from_euler("XYZ", turns).as_matrix(), atol=1e-15)
+    np.testing.assert_allclose(rotation_from_turns(turns_from_rotation(R)), R, atol=1e-14)

@@ -21,7 +21,7 @@ def halve_joint_5(app: AppTest) -> None:
     kept = store(app)
     robot = kept.project.setup.robot
     frame = tables.compliance_frame(robot)
-    frame.loc[4, "value"] = 45.675e-7
+    frame.loc[4, "compliance"] = 45.675e-7
     new = kept.project.setup.replace(robot=tables.with_compliance(robot, frame))
     kept.past, kept.project = [kept.project], Project(new, kept.project.view, kept.project.preset)
 

@@ -55,7 +55,8 @@ def controls(project: Project, theta: FloatArray, result: SimulationResult | Non
         inputs.button("Home", "pose.home", "home", home, type="tertiary")
     for i, number in enumerate(robot.joint_numbers):
         with said_below():
-            _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, robot.joint_units[i], robot)
+            unit = project.view.of(robot.joint_units[i])
+            _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, unit, robot)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:
@@ -71,7 +72,8 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
     name, slider, box = st.columns([0.14, 1, 0.5], vertical_alignment="center")
     name.markdown(f"**{label}**")
     with slider:
-        span = inputs.Span(low, high, 0.5, "%.1f°" if unit == "deg" else "%.1f mm")
+        step = 0.02 if unit == "in" else 0.5
+        span = inputs.Span(low, high, step, "%.1f°" if unit == "deg" else f"%.{1 if unit == 'mm' else 2}f {unit}")
         inputs.slider(label, f"pose.slider.{i}", span, shown, lambda v: turn(to_si(v, unit)), inputs.HIDDEN)
     with box:
         full = float(from_si(float(theta[i]), unit))

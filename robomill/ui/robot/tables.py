@@ -9,17 +9,17 @@ from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.robot.stiffness import is_stiffness, meant, of_joint, shown
+from robomill.robot.stiffness import COMPLIANCE, is_stiffness, meant, of_joint, shown
 from robomill.ui.box import NumberBox
 from robomill.ui.cells import Cells
-from robomill.units import from_si, unit_label
+from robomill.units import in_lengths, unit_label
 
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
 DECLARED = quantities(Robot)
 GEOMETRY = {name: DECLARED[name] for name in ("alpha", "a", "d", "theta_offset", "sign")}
-HEADINGS = {name: ", ".join(filter(None, (said.label, unit_label(said.unit)))) for name, said in GEOMETRY.items()}
-LENGTHS = Cells(tuple(HEADINGS.values()), [said.unit for said in GEOMETRY.values()], RobotError)
 LIMIT = DECLARED["limits_all"]
+FILED = (*GEOMETRY, "title", "convention", "prismatic", "blocked", "limits_all", "T_base", "T_tool")
+SPOKEN = {"compliance": COMPLIANCE.unit, "stiffness": "kN m/rad"}
 SOFTEST = 1.0  # rad/(N m), m/N: no joint that gives more carries an arm
 
 
@@ -28,6 +28,13 @@ def tool_axis(robot: Robot) -> str:
     k = robot.T_tool[:3, 2]
     i = int(np.argmax(np.abs(k)))
     return f"{'+' if k[i] > 0 else '-'}{'xyz'[i]}" if abs(abs(k[i]) - 1.0) < 1e-9 else ""
+
+
+def same_arm(robot: Robot, known: Robot) -> bool:
+    """Whether two robots are the same whatever their joints give."""
+    return all(
+        np.array_equal(getattr(robot, name), getattr(known, name), equal_nan=name == "blocked") for name in FILED
+    )
 
 
 def with_tool_axis(robot: Robot, axis: str) -> Robot:
@@ -44,8 +51,8 @@ def with_tool_axis(robot: Robot, axis: str) -> Robot:
 
 
 def compliance_frame(robot: Robot) -> pd.DataFrame:
-    """One row a joint with its compliance."""
-    return pd.DataFrame({"joint": _names(robot), "value": robot.C_theta_all})
+    """One row a joint: how much it gives, to be said as a compliance and as a stiffness."""
+    return pd.DataFrame({"joint": _names(robot)} | dict.fromkeys(SPOKEN, robot.C_theta_all))
 
 
 def compliance_boxes(robot: Robot, unit: str) -> list[NumberBox]:
@@ -53,26 +60,38 @@ def compliance_boxes(robot: Robot, unit: str) -> list[NumberBox]:
     stiff = is_stiffness(unit)
     box = NumberBox("stiffness" if stiff else "compliance", low=0.0, said=shown, meant=meant)
     units = [of_joint(unit, bool(slides)) for slides in robot.prismatic]
-    return [replace(box, unit=each, high=None if stiff else float(from_si(SOFTEST, each))) for each in units]
+    ends = [float(shown(SOFTEST, each)) for each in units]
+    if stiff:
+        return [replace(box, unit=each, low=end) for each, end in zip(units, ends, strict=True)]
+    return [replace(box, unit=each, high=end) for each, end in zip(units, ends, strict=True)]
 
 
 def with_compliance(robot: Robot, frame: pd.DataFrame) -> Robot:
-    """``robot`` with the table's compliances. Raises RobotError naming the joint that cannot be."""
-    C = frame["value"].to_numpy(dtype=float)
+    """``robot`` with what was typed into either column of the table. Raises RobotError naming the joint."""
+    told, other = (frame[name].to_numpy(dtype=float) for name in SPOKEN)
+    C = np.where(told != robot.C_theta_all, told, other)
     same = [k for k, known in robot.compliance_sets.items() if np.allclose(known, C, rtol=1e-9, atol=0.0)]
     if same:
         return robot.with_compliance_set(same[0])
     return robot.replace(C_theta_all=C)
 
 
-def geometry_frame(robot: Robot) -> pd.DataFrame:
+def geometry(length: str = "mm") -> Cells:
+    """The cells of the D-H table, with lengths in ``length``."""
+    units = [in_lengths(said.unit, length) for said in GEOMETRY.values()]
+    named = zip(GEOMETRY.values(), units, strict=True)
+    heads = [", ".join(filter(None, (said.label, unit_label(unit)))) for said, unit in named]
+    return Cells(heads, units, RobotError)
+
+
+def geometry_frame(robot: Robot, length: str = "mm") -> pd.DataFrame:
     """The D-H table, one row a joint."""
-    return LENGTHS.frame(np.column_stack([getattr(robot, name) for name in GEOMETRY]), joint=_names(robot))
+    return geometry(length).frame(np.column_stack([getattr(robot, name) for name in GEOMETRY]), joint=_names(robot))
 
 
-def with_geometry(robot: Robot, frame: pd.DataFrame) -> Robot:
+def with_geometry(robot: Robot, frame: pd.DataFrame, length: str = "mm") -> Robot:
     """``robot`` with the table's D-H constants. Raises RobotError naming joint and column."""
-    return robot.replace(**dict(zip(GEOMETRY, LENGTHS.read(frame, joint).T, strict=True)))
+    return robot.replace(**dict(zip(GEOMETRY, geometry(length).read(frame, joint).T, strict=True)))
 
 
 def limits_frame(robot: Robot) -> pd.DataFrame:
@@ -85,9 +104,10 @@ def with_limits(robot: Robot, frame: pd.DataFrame) -> Robot:
     return robot.replace(limits_all=limits(robot).read(frame, joint))
 
 
-def limits(robot: Robot) -> Cells:
-    """The cells of the joint limits: degrees, mm where a joint slides."""
-    return Cells(LIMIT.axes, [[LIMIT.of_joint(bool(slides)).unit] for slides in robot.prismatic], RobotError)
+def limits(robot: Robot, length: str = "mm") -> Cells:
+    """The cells of the joint limits: degrees, a length where a joint slides."""
+    units = [in_lengths(LIMIT.of_joint(bool(slides)).unit, length) for slides in robot.prismatic]
+    return Cells(LIMIT.axes, [[unit] for unit in units], RobotError)
 
 
 def joint(row: int) -> str:
@@ -96,4 +116,9 @@ def joint(row: int) -> str:
 
 
 def _names(robot: Robot) -> list[str]:
-    return [f"{i + 1}" + (" (slides)" if robot.prismatic[i] else "") for i in range(robot.rows)]
+    return [", ".join([f"{i + 1}", *_remarks(robot, i)]) for i in range(robot.rows)]
+
+
+def _remarks(robot: Robot, i: int) -> list[str]:
+    said = {"slides": robot.prismatic[i], "held": not robot.free[i], "rigid": robot.C_theta_all[i] == 0.0}
+    return [word for word, holds in said.items() if holds]

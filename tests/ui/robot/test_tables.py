@@ -24,7 +24,7 @@ UNITS = ["1e-7 rad/(N m)", "kN m/rad"]
 
 def shown(robot: Robot, unit: str) -> list[str]:
     """The compliances as their cells show them."""
-    values = tables.compliance_frame(robot)["value"]
+    values = tables.compliance_frame(robot)["stiffness" if unit == "kN m/rad" else "compliance"]
     return [
         box.written(value, cell=True) for box, value in zip(tables.compliance_boxes(robot, unit), values, strict=True)
     ]
@@ -34,7 +34,9 @@ def with_typed(robot: Robot, unit: str, texts: list[str]) -> Robot:
     """The robot with compliances typed one a joint."""
     boxes = tables.compliance_boxes(robot, unit)
     frame = tables.compliance_frame(robot)
-    frame["value"] = [box.read(text) for box, text in zip(boxes, texts, strict=True)]
+    frame["stiffness" if unit == "kN m/rad" else "compliance"] = [
+        box.read(text) for box, text in zip(boxes, texts, strict=True)
+    ]
     return tables.with_compliance(robot, frame)
 
 
@@ -82,8 +84,8 @@ def test_stiffness_is_the_inverse(robot: Robot) -> None:
         (UNITS[0], "7.14e-", "compliance: found '7.14e-', expected a number"),
         (UNITS[0], "7.14 rad", "compliance: found '7.14 rad', expected a number in ×10⁻⁷ rad/(N m)"),
         (UNITS[0], "1,012", "compliance: found '1,012', which is 1.012 to some and 1012 to others"),
-        ("kN m/rad", "0", "stiffness: found 0, expected more than 0 kN m/rad"),
-        ("kN m/rad", "-5", "stiffness: found -5, expected 0 or more kN m/rad"),
+        ("kN m/rad", "0", "stiffness: found 0, expected 0.001 or more kN m/rad"),
+        ("kN m/rad", "-5", "stiffness: found -5, expected 0.001 or more kN m/rad"),
         ("kN m/rad", "nan", "stiffness: found 'nan', expected a number in kN m/rad"),
         ("kN m/rad", "", "stiffness: the box is empty"),
     ],
@@ -96,7 +98,7 @@ def test_a_bad_compliance_is_quoted(robot: Robot, unit: str, text: str, word: st
 @pytest.mark.parametrize("value", [-1e-7, np.inf, np.nan])
 def test_a_compliance_that_cannot_be_names_its_joint(robot: Robot, value: float) -> None:
     frame = tables.compliance_frame(robot)
-    frame.loc[1, "value"] = value
+    frame.loc[1, "compliance"] = value
     with pytest.raises(RobotError, match="joint 2: compliance"):
         tables.with_compliance(robot, frame)
 
@@ -119,7 +121,7 @@ def test_a_compliance_that_cannot_be_names_its_joint(robot: Robot, value: float)
         ("1400", "kN m/rad", 1 / 1.4e6),
         ("1.4e3", "kN m/rad", 1 / 1.4e6),
         ("1,4e6 Nm/rad", "kN m/rad", 1 / 1.4e6),
-        ("5e-4", "kN m/rad", 1 / 0.5),
+        ("5e-3", "kN m/rad", 1 / 5.0),
         ("∞", "kN m/rad", 0.0),
     ],
 )
@@ -141,6 +143,29 @@ def test_a_rigid_joint_stays_rigid_in_either_unit(robot: Robot) -> None:
     for unit, text in (("kN m/rad", "∞"), (UNITS[0], "0")):
         assert shown(rigid, unit)[1] == text
         assert with_typed(rigid, unit, shown(rigid, unit)).C_theta[1] == 0.0
+
+
+def test_either_column_says_the_compliance(robot: Robot) -> None:
+    frame = tables.compliance_frame(robot)
+    np.testing.assert_array_equal(frame["compliance"], frame["stiffness"])
+    for column in tables.SPOKEN:
+        typed = frame.copy()
+        typed.loc[3, column] = 2e-6
+        changed = tables.with_compliance(robot, typed)
+        np.testing.assert_array_equal(changed.C_theta, np.where(np.arange(5) == 3, 2e-6, robot.C_theta))
+    rigid = frame.copy()
+    rigid.loc[0, "stiffness"] = tables.compliance_boxes(robot, "kN m/rad")[0].read("∞")
+    still = tables.with_compliance(robot, rigid)
+    assert still.C_theta[0] == 0.0
+    assert tables.compliance_frame(still)["joint"][0] == "1, rigid"
+
+
+def test_lengths_of_the_table_are_typed_in_the_units_of_the_view(robot: Robot) -> None:
+    cells = tables.geometry("in")
+    assert list(cells.heads) == ["α, °", "a, in", "d, in", "θ₀, °", "sign"]
+    frame = tables.geometry_frame(robot, "in")
+    frame.loc[1, "a, in"] = cells.boxes()["a, in"].read("48")
+    assert tables.with_geometry(robot, frame, "in").a[1] == pytest.approx(1.2192, rel=1e-12)
 
 
 def test_a_bad_table_cell_names_joint_and_column(robot: Robot) -> None:
