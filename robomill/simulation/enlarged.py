@@ -38,7 +38,7 @@ def enlarged(result: SimulationResult, times: float) -> Enlarged:
 
     def at(factor: float) -> ZMap:
         p = path.p + factor * (result.p_machined - path.p)
-        touches = factor == 0.0 and not result.not_judged.any()
+        touches = factor == 0.0 and bool(result.removes.any()) and not result.not_judged.any()
         return cut(setup.stock_block, cell, result.tooling, p, path.k, result.removes, must_touch=touches)
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
