@@ -37,11 +37,12 @@ IRB_120: list[Any] = [
     ((0.302, 0.0, 0.0), (0, 1, 0), (-2.094395, 2.094395)),
     ((0.072, 0.0, 0.0), (1, 0, 0), (-6.98132, 6.98132)),
 ]
+TEMPLATE = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><xacro:macro name="b"/></robot>'
 TOOL = (0.0, 1.57079632679, 0.0)
 
 
 def urdf(joints: list[Any], more: str = "") -> str:
-    """A URDF of revolute joints (origin, axis, limits), with a turned tool0 at the end, and ``more`` links and joints."""
+    """A URDF of revolute joints (origin, axis, limits), a turned tool0 at the end, and ``more`` links and joints."""
     links = ["base_link", *(f"link_{i + 1}" for i in range(len(joints))), "tool0"]
     text = "".join(f'<link name="{link}"/>' for link in links)
     for i, ((parent, child), (origin, axis, (low, high))) in enumerate(zip(pairwise(links[:-1]), joints, strict=True)):
@@ -128,7 +129,11 @@ def test_the_tip_of_a_urdf_with_two_arms_is_asked(app: AppTest) -> None:
         ("a.urdf", urdf([*IRB_120, *IRB_120[:2]]), "expected 1 to 7 joints, found 8"),
         ("a.urdf", urdf(IRB_120).replace('name="joint_2" type="revolute"', 'name="joint_2" type="planar"'), "'planar'"),
         ("a.urdf", urdf(IRB_120).replace("<axis xyz", '<mimic joint="joint_1"/><axis xyz', 2), "mimics another"),
-        ("a.xacro", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><xacro:macro name="b"/></robot>', "this is a xacro template"),
+        (
+            "a.xacro",
+            '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><xacro:macro name="b"/></robot>',
+            "this is a xacro template",
+        ),
         ("a.toml", "name = 3", "a.toml"),
         ("a.txt", "hello", "a.txt"),
     ],
@@ -286,12 +291,11 @@ def test_theta_2_of_999_is_refused_in_a_sentence_and_the_arm_stays(app: AppTest)
 
 @pytest.mark.parametrize("name", ["kuka_kr270", "fanuc_r2000ic", "slavkovic_5r", "planar_2r"])
 def test_det_j_is_one_number_on_every_page(app: AppTest, name: str) -> None:
-    """The determinant by numpy of the Jacobian of a numeric derivative's rows; Learn shows the same at its start."""
+    """The determinant by numpy of the rows of J in which the arm moves."""
     go(app, "1_Robot")
     app.selectbox(key="robot.name").set_value(name).run()
     robot = robot_of(app)
     theta = np.clip(np.full(robot.n, 0.4), *robot.limits.T)
-    store(app).project = store(app).project.replace(view=store(app).project.view)
     for i, angle in enumerate(theta):
         number(app, f"pose.box.{i}:deg").set_value(float(np.degrees(angle))).run()
     J = rm.geometric_jacobian(robot, np.array(store(app).project.view.theta))

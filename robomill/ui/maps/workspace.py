@@ -48,7 +48,8 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceField, un
     largest, looked = fields.box_there(robot, view.A, view.B)
     size, note = ("none", "nothing in reach at this tilt") if looked else ("…", "not computed yet")
     if largest is not None:
-        size = format_many((v for v in largest.size if v > 1e-6), "m", 1, " × ")
+        spans = [v for v in largest.size if v > 1e-6]  # none: an arm of one joint stands still at a tilt
+        size = format_many(spans, "m", 1, " × ") if spans else "one point"
         note = _against(largest, robot, unit)
     singular = bool(near_singular(robot, det).any())
     return [
