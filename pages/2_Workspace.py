@@ -29,7 +29,7 @@ else:
         ]
     )
 
-left, right = ui.thirds()
+left, right = ui.split([1, 2.7], "page")
 with left:
     workspace.controls(robot, view)
 if known is not None:

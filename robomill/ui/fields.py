@@ -4,27 +4,41 @@ import dataclasses
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray, digest
 from robomill.compliance.posture import over_posture
 from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares, stiffened
 from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.transforms import pose_from_world
+from robomill.paper import Point
+from robomill.progress import slices
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
+from robomill.ui import session
 from robomill.ui.cached import commons, name_of, shared
 from robomill.ui.commons import NOTHING
+from robomill.ui.cut import middle_of_cut
 from robomill.ui.project import MapView
-from robomill.units import format_si
+from robomill.units import format_si, from_si, to_si
+from robomill.viz.maps import Scale
+from robomill.viz.planes import Codes, coded
 from robomill.workspace.fields import ComplianceField, compliance_field
-from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
+from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid, box_grid
 from robomill.workspace.lines import LineDeviation, border_and_middle_lines
+from robomill.workspace.quantities import map_quantity
 from robomill.workspace.reach import ReachBox
 from robomill.workspace.region import FLAT, coarse_grid, flat_axis, largest_region, reach_extent
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.5)
 PLANE_CELLS = 1900
 DRAWN_CELLS = 60_000
+PLANES, FEW_PLANES = 50, 25  # about so many go to the browser; few of an arm that is solved numerically
+SENT_CODES = 1_500_000  # of all maps and planes of a picture: 4 MB on their way
+BOX_CELLS = 400_000  # of a picture's planes
+SOLVED_CELLS = 30_000  # solved at once: what is known of a cell takes half a kilobyte until it is coded
 NORMALS = quantities(MapView)["normal"].options
 
 
@@ -43,7 +57,12 @@ def region(robot: Robot, view: MapView) -> ReachBox:
         return ReachBox(view.lower, view.upper)
     if view.region == "paper":
         return ReachBox(*PAPER_BOX)
-    found = proposed(robot, view.region, view.A, view.B)
+    if view.region == "cut":
+        centre = cut_in_reach(robot, view)
+        if centre is not None:
+            half = 0.5 * PAPER_BOX_SIZE
+            return ReachBox(np.array(centre) - half, np.array(centre) + half)
+    found = proposed(robot, "reach" if view.region == "reach" else "largest", view.A, view.B)
     if found is None:
         tilt = f"A = {format_si(view.A, 'deg', 1)}, B = {format_si(view.B, 'deg', 1)}"
         raise WorkspaceError(
@@ -51,6 +70,20 @@ def region(robot: Robot, view: MapView) -> ReachBox:
             f"the limits."
         )
     return found
+
+
+def cut_in_reach(robot: Robot, view: MapView) -> Point | None:
+    """The middle of the project's cut, m in {M}; None where there is none, or the arm does not get there."""
+    centre = middle_of_cut(session.project().setup)
+    if centre is None or not gets_to(robot, centre, view.A, view.B):
+        return None
+    return centre
+
+
+@shared(lambda robot, point, A, B: (geometry_key(robot), point, A, B))
+def gets_to(robot: Robot, point: Point, A: float, B: float) -> bool:
+    """Whether the arm brings its tool to ``point`` at this tilt."""
+    return bool(inverse_kinematics(robot, pose_from_world([*point, A, B])).reached)
 
 
 @shared(geometry_key)
@@ -78,20 +111,20 @@ def plane_at(robot: Robot, view: MapView, box: ReachBox) -> tuple[str, float]:
     return normal, round(0.5 * (low + high), 3)
 
 
-def plane_step(robot: Robot, view: MapView, box: ReachBox, normal: str) -> float:
-    """Spacing of the cells, m: as typed, or about 1900 cells (fewer for arms solved numerically)."""
+def plane_step(robot: Robot, view: MapView, box: ReachBox, normal: str, share: float = 1.0) -> float:
+    """Spacing of the cells, m: as typed, or about 1900 cells (fewer for arms solved numerically), or a ``share``."""
     if view.step is not None:
         return view.step
     span = np.delete(box.size, "xyz".index(normal))
     wide = span[span > FLAT]
-    cells = PLANE_CELLS if decoupled(robot) is not None else 320
+    cells = share * (PLANE_CELLS if decoupled(robot) is not None else 320)
     raw = float((np.prod(wide) / cells) ** (1.0 / len(wide))) if len(wide) else 0.1
     return next((s for s in STEPS if s >= 0.97 * raw), STEPS[-1])
 
 
-def plane(robot: Robot, view: MapView, box: ReachBox, normal: str, at: float) -> Grid:
+def plane(robot: Robot, view: MapView, box: ReachBox, normal: str, at: float, share: float = 1.0) -> Grid:
     """The grid of the plane. Raises WorkspaceError where it has more cells than a picture takes."""
-    step = plane_step(robot, view, box, normal)
+    step = plane_step(robot, view, box, normal, share)
     low, high = np.array(box.lower), np.array(box.upper)
     low["xyz".index(normal)] = high["xyz".index(normal)] = at
     grid = box_grid(low, high, step)
@@ -103,6 +136,63 @@ def plane(robot: Robot, view: MapView, box: ReachBox, normal: str, at: float) ->
             f"finer maps."
         )
     return grid
+
+
+def planes(robot: Robot, view: MapView, box: ReachBox, normal: str, unit: str, maps: int) -> Grid:
+    """The cells of a picture of so many ``maps`` over the whole region: planes at round numbers of ``unit``, as many
+    as the browser may hold. Raises WorkspaceError where a plane has more cells than a picture takes."""
+    flat_grid = plane(robot, view, box, normal, 0.0, min(1.0, 6 / maps))
+    i = "xyz".index(normal)
+    low, high = (float(from_si(float(end), unit)) for end in (box.lower[i], box.upper[i]))
+    most = PLANES if decoupled(robot) is not None else FEW_PLANES
+    most = max(1, min(most, SENT_CODES // (flat_grid.cells * maps), BOX_CELLS // flat_grid.cells))
+    at = np.array([0.5 * (low + high)])
+    if high - low > 1e-9:
+        step = float(f"{(high - low) / most:.1g}")
+        found = step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
+        at = np.round(found, 9) if len(found) else at
+    return Grid(*(to_si(at, unit) if axis == normal else getattr(flat_grid, axis) for axis in "xyz"))
+
+
+@shared(lambda robot, grid, normal, A, B, names: (robot.digest(), grid.x, grid.y, grid.z, normal, A, B, names), "Maps")
+def coded_maps(
+    robot: Robot, grid: Grid, normal: str, A: float, B: float, names: tuple[str, ...]
+) -> Mapping[str, Codes]:
+    """The quantities of these ``names`` over all planes of ``grid``, as the browser gets them, from the cache."""
+    values = values_of(robot, grid, normal, A, B, names)
+    return {name: coded(values.pop(name)) for name in names}
+
+
+@shared(
+    lambda one, other, grid, normal, tilt, name: (
+        *(one.digest(), other.digest(), grid.x, grid.y, grid.z),
+        *(normal, tilt, name),
+    ),
+    "Differences",
+)
+def coded_difference(one: Robot, other: Robot, grid: Grid, normal: str, tilt: tuple[float, float], name: str) -> Codes:
+    """By how much the quantity ``name`` of the ``other`` robot is larger than that of ``one``, over all planes."""
+    first, second = (values_of(robot, grid, normal, *tilt, (name,))[name] for robot in (one, other))
+    return coded(second - first)
+
+
+def values_of(
+    robot: Robot, grid: Grid, normal: str, A: float, B: float, names: tuple[str, ...]
+) -> dict[str, NDArray[np.float32]]:
+    """Quantities (nw, nv, nu) in SI over the planes of ``grid``; numbers of joints as places among the robot's own."""
+    i = "xyz".index(normal)
+    axes = {axis: getattr(grid, axis) for axis in "xyz"}
+    w, u, v = axes[normal], *(axes[axis] for axis in "xyz" if axis != normal)
+    found = {name: np.empty((len(w), len(v), len(u)), np.float32) for name in names}
+    for some in slices(len(w), "Maps", max(1, SOLVED_CELLS // (len(u) * len(v)))):
+        known = compliance_field(robot, Grid(**{**axes, normal: w[some]}), A, B)
+        for name in names:
+            what = map_quantity(robot, name)
+            values = what.law(known)
+            if what.colours == "joints":
+                values = Scale("", 0, 1, "joints", robot.joint_numbers).shade(values)
+            found[name][some] = np.moveaxis(values, i, 0).transpose(0, 2, 1)
+    return found
 
 
 def solid(robot: Robot, box: ReachBox, cells: int | None = None) -> Grid:

@@ -17,6 +17,7 @@ from robomill.workspace.fields import ComplianceField
 from robomill.workspace.reach import ReachBox
 
 FORCE = SLOT.force  # N
+SLACK = 1e-6  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +48,15 @@ def middle(box: ReachBox) -> Point:
     return x, y, z
 
 
-def default_point(view: MapView, box: ReachBox, known: ComplianceField) -> Point:
-    """The point in hand: as clicked, else the paper's milling test, else the reached cell nearest the middle."""
+def default_point(view: MapView, box: ReachBox, known: ComplianceField, cut: Point | None = None) -> Point:
+    """The selected point: as clicked, else the middle of the project's ``cut`` where the region holds it and the arm
+    gets there, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:
         x, y, z = view.point.tolist()
         return x, y, z
+    inside = cut is not None and ((box.lower - SLACK <= cut) & (cut <= box.upper + SLACK)).all()
+    if cut is not None and inside and in_hand(known.robot, cut, view.A, view.B).pose.reached:
+        return cut
     if view.region == "paper" and view.A == view.B == 0:
         return SLOT.point
     centre = middle(box)

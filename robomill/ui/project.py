@@ -86,7 +86,8 @@ class MapView:
     region: str = choice(
         "Region",
         {
-            "paper": "The paper's box",
+            "paper": "Reference box (Slavkovic 2013)",
+            "cut": "Around the cut",
             "largest": "Largest box in reach",
             "reach": "Everything in reach",
             "own": "My own numbers",
@@ -103,7 +104,7 @@ class MapView:
     pair: FloatArray | None = number("Planes at", "mm", shape=(2,), optional=True)
     point: FloatArray | None = number("At", optional=True, **PLACE)
     quantity: str = "det_J"
-    picture: str = choice("Picture", {"plane": "Plane", "pair": "Two planes (Fig. 4)", "solid": "3-D"}, default="plane")
+    picture: str = choice("Picture", {"plane": "Plane", "pair": "Two planes", "solid": "3-D"}, default="plane")
     level: float = number("Cells from", least=0.0, most=1.0, default=0.5)
     sheet: str = choice(
         "Picture",
@@ -111,16 +112,16 @@ class MapView:
             "nine": "3 × 3 maps",
             "one": "One map",
             "shares": "By joint",
-            "dominant": "Who gives most",
+            "dominant": "Largest contributor",
             "lines": "Path lines",
             "compare": "Compare",
         },
         default="nine",
     )
-    component: str = choice("Component for comparing and ranking", {c: f"C_{c}" for c in COMPONENTS}, default="yy")
+    component: str = choice("Component to compare", {c: f"C_{c}" for c in COMPONENTS}, default="yy")
     one: str = "C_soft"
-    shares: str = choice("Components", {"direct": "Direct (Fig. 6)", "cross": "Cross (Fig. 7)"}, default="direct")
-    common: bool = switch("One scale for the 3 × 3 maps", default=True)
+    shares: str = choice("Components", {"direct": "Direct terms", "cross": "Cross terms"}, default="direct")
+    common: bool = switch("One scale for all nine maps", default=False)
     factors: FloatArray | None = number("Times its stiffness", shape=(None,), above=0.0, optional=True)
     against: tuple[str, ...] = ()
 
@@ -132,7 +133,7 @@ class MapView:
         name = f"{robot.name}/{robot.n}"  # not its compliances, which are what one plays with
         if self.robot == name:
             return self
-        region = "paper" if robot.n == 5 and holds_paper_box(robot) else "largest"
+        region = "paper" if robot.n == 5 and holds_paper_box(robot) else "cut" if robot.n >= 5 else "largest"
         return MapView(name, region, picture=self.picture, quantity=self.quantity, sheet=self.sheet)
 
     def stiffening(self, robot: Robot) -> FloatArray:

@@ -10,7 +10,7 @@ from robomill.units import format_number, format_significant
 from robomill.viz.chart import Chart, Trace
 from robomill.viz.theme import ABOVE, axis, figure, joint_colours, palette, say
 
-SHARES_HEIGHT, LINES_HEIGHT = 388, 480
+SHARES_HEIGHT, LINES_HEIGHT = 300, 480  # px
 
 
 def share_bars(
@@ -42,6 +42,7 @@ def share_bars(
         }
         for j, number in enumerate(joints)
     ]
+    fig.lay_out(legend={"entrywidth": 44, "font": {"size": 12}})
     total = shares.sum(axis=0)
     if old is not None and not np.allclose(old, total, rtol=1e-6, atol=1e-12):
         data.append(_marks("sum before", names, old, p.muted, unit))
@@ -66,7 +67,7 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
         "mode": "markers",
         "name": name,
         "hovertemplate": name + " %{x:+.4f} " + unit + "<extra></extra>",
-        "marker": {"symbol": "line-ns-open", "size": 26, "color": colour, "line": {"width": 3, "color": colour}},
+        "marker": {"symbol": "line-ns-open", "size": 20, "color": colour, "line": {"width": 3, "color": colour}},
     }
 
 
@@ -75,48 +76,30 @@ def _amount(value: float, top: float) -> str:
     return format_significant(value, 3) if abs(value) > 1e-3 * top else "0"
 
 
-def gain_bars(
-    groups: Sequence[tuple[str, FloatArray, str]], joints: Sequence[int], *, dark: bool, height: int = 250
-) -> Chart:
-    """What a stiffer joint buys: one group of bars a place (title, gain (n,), unit), one bar a joint."""
-    p = palette(dark)
-    colours = joint_colours(7, dark)
-    margin = {"l": 8, "r": 24, "t": 34 + 16 * ("<br>" in groups[0][0]), "b": 8}
-    fig = figure(dark=dark, height=height, revision="gains", bargap=0.3, showlegend=False, margin=margin)
-    count, gap = len(groups), 0.07
-    width = (1 - gap * (count - 1)) / count
-    data: list[Trace] = []
-    for g, (title, gain, unit) in enumerate(groups):
-        suffix = "" if g == 0 else str(g + 1)
-        start = g * (width + gap)
-        top = float(np.nanmax(gain, initial=0.0)) or 1.0
-        low = float(np.nanmin(gain, initial=0.0))
-        data.append(
-            {
-                "type": "bar",
-                "y": [f"joint {j}" for j in joints],
-                "x": gain,
-                "orientation": "h",
-                "xaxis": f"x{suffix}",
-                "yaxis": f"y{suffix}",
-                "marker": {"color": [colours[j % 7] for j in range(len(joints))]},
-                "text": [_amount(v, top) for v in gain],
-                "textposition": "outside",
-                "cliponaxis": False,
-                "textfont": {"color": p.text, "size": 12.5},
-                "hovertemplate": f"%{{y}}: %{{x:.4g}} {unit}<extra></extra>",
-            }
-        )
-        fig.layout[f"xaxis{suffix}"] = axis(unit, dark=dark, nticks=4, anchor=f"y{suffix}") | {
-            "domain": [start, min(start + width, 1.0)],
-            "range": [1.3 * low if low < 0 else 0.0, 1.28 * top],
-        }
-        fig.layout[f"yaxis{suffix}"] = axis("", dark=dark, autorange="reversed", anchor=f"x{suffix}", ticks="") | {
-            "title": None,
-            "showticklabels": g == 0,
-        }
-        say(fig, f"<b>{title}</b>", start, 1.0, p.text, size=13, yshift=8, align="left", **ABOVE)
-    fig.add_traces(data)
+def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *, dark: bool, height: int) -> Chart:
+    """What a stiffer joint buys, gain (n,) in ``unit``: one bar a joint in the joint's colour, the best on top."""
+    p, colours = palette(dark), joint_colours(7, dark)
+    order = np.argsort(-gain, kind="stable")
+    top, low = float(np.nanmax(gain, initial=0.0)) or 1.0, float(np.nanmin(gain, initial=0.0))
+    fig = figure(dark=dark, height=height, revision="gains", bargap=0.25, showlegend=False)
+    fig.layout["margin"] = {"l": 58, "r": 24, "t": 22, "b": 34, "autoexpand": False}
+    fig.add(
+        "bar",
+        y=[f"joint {joints[i]}" for i in order],
+        x=gain[order],
+        orientation="h",
+        marker={"color": [colours[i % 7] for i in order]},
+        text=[f"{_amount(gain[i], top)} {unit}" if gain[i] > 1e-3 * top else "0" for i in order],
+        textposition="outside",
+        cliponaxis=False,
+        textfont={"color": p.text, "size": 12.5},
+        hovertemplate=f"%{{y}}: %{{x:.4g}} {unit}<extra></extra>",
+    )
+    span = [1.3 * low if low < 0 else 0.0, 1.16 * top]
+    fig.layout["xaxis"] = axis(unit, dark=dark, nticks=6, range=span, automargin=False)
+    fig.layout["xaxis"]["title"]["standoff"] = 2
+    fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", automargin=False) | {"title": None}
+    say(fig, f"<b>{title}</b>", 0.0, 1.0, p.text, size=13, yshift=2, align="left", **ABOVE)
     return fig
 
 

@@ -24,6 +24,8 @@ AXIS_COLOURS_DARK = {"x": "#F0803C", "y": "#33BE95", "z": "#4BA3DB"}
 DIVERGING = [[0.0, "#08457E"], [0.25, "#4E93C8"], [0.5, "#ECECE8"], [0.75, "#E8954A"], [1.0, "#A33E00"]]
 DIVERGING_DARK = [[0.0, "#6FC1FF"], [0.25, "#2F7DB5"], [0.5, "#3A444B"], [0.75, "#D07A2C"], [1.0, "#FFB368"]]
 CIVIDIS = ["#00224E", "#123570", "#3B496C", "#575D6D", "#707173", "#8A8678", "#A59C74", "#C3B369", "#E1CC55", "#FEE838"]
+# What is able is dark, as what is stiff is in cividis: bright is where care is needed. A single hue of its own.
+ABLE = [[0.0, "#EEF6F4"], [0.25, "#B5D9D2"], [0.5, "#6DB0A8"], [0.75, "#2B7F7C"], [1.0, "#0B4A4E"]]
 SEQUENTIAL = [[k / (len(CIVIDIS) - 1), colour] for k, colour in enumerate(CIVIDIS)]
 
 Point = tuple[float, float]

@@ -28,7 +28,8 @@ class MapQuantity:
 
     ``unit`` is a key of ``UNITS``; ``law`` gives the values (nx, ny, nz) of a solved grid in SI, NaN where not reached.
     ``colours``: "sequential" for sizes, "diverging" for signed values (symmetric about zero), "joints" for numbers of
-    joints, "reach" for yes and no. ``rests_on``: "geometry" alone, or on the joints' "compliance", too.
+    joints, "reach" for yes and no. ``able``: the more of it, by size, the better. ``rests_on``: "geometry" alone, or on
+    the joints' "compliance", too.
     """
 
     name: str
@@ -39,6 +40,7 @@ class MapQuantity:
     law: Callable[[SolvedGrid], FloatArray]
     colours: Colours = "sequential"
     rests_on: Basis = "geometry"
+    able: bool = False
 
     @property
     def label(self) -> str:
@@ -99,6 +101,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
         "Zero is a singularity: a direction in which the tool cannot be moved.",
         lambda field: field.det_J,
         colours="diverging",
+        able=True,
     )
     yield MapQuantity(
         "manipulability",
@@ -107,6 +110,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
         f"√det(J Jᵀ), rows {named}",
         "Yoshikawa's measure: the size of what unit joint speeds can do.",
         lambda field: np.abs(field.det_J),
+        able=True,
     )
     yield MapQuantity(
         "inverse_condition",
@@ -115,6 +119,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
         f"σ_min / σ_max, rows {named}",
         "1 is equally able in every direction, 0 is singular.",
         lambda field: field.where_reached(field.singular_values[:, -1] / field.singular_values[:, 0]),
+        able=True,
     )
     yield MapQuantity(
         "smallest_singular_value",
@@ -123,6 +128,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
         f"σ_min(J), rows {named}",
         "How fast the tool moves in its worst direction at unit joint speed.",
         lambda field: field.where_reached(field.singular_values[:, -1]),
+        able=True,
     )
     yield MapQuantity(
         "limit_distance",
@@ -131,6 +137,7 @@ def _of_the_geometry(robot: Robot) -> Iterator[MapQuantity]:
         "min_i (distance to the nearer limit) / (half range)",
         "100 % is mid-range in every joint, 0 is at a limit.",
         lambda field: field.where_reached(dexterity.limit_distance(field.robot, field.theta[field.reached])),
+        able=True,
     )
 
 
@@ -139,25 +146,25 @@ CANCEL = "Parts of different signs cancel: without this joint the cross-complian
 _DIRECTIONS = (
     MapQuantity(
         "C_soft",
-        "softest direction",
+        "largest compliance",
         "um/N",
         "largest eigenvalue of C",
-        "How far 1 N moves the tip in the direction in which it gives most.",
+        "How far 1 N moves the tip in the direction in which it moves most.",
         lambda field: field.where_reached(field.principal[:, -1]),
         rests_on="compliance",
     ),
     MapQuantity(
         "C_stiff",
-        "stiffest direction",
+        "smallest compliance",
         "um/N",
         "smallest eigenvalue of C",
-        "How far 1 N moves the tip in the direction in which it gives least.",
+        "How far 1 N moves the tip in the direction in which it moves least.",
         lambda field: field.where_reached(field.principal[:, 0]),
         rests_on="compliance",
     ),
     MapQuantity(
         "dominant",
-        "joint that gives most",
+        "largest contributor",
         "1",
         "argmax_i trace C_i",
         "The joint with the largest part of C_xx + C_yy + C_zz.",
@@ -186,7 +193,7 @@ def _dominant(c: str) -> MapQuantity:
     k = COMPONENTS.index(c)
     return MapQuantity(
         f"dominant_C_{c}",
-        f"joint that gives most in C_{c}",
+        f"largest contributor to C_{c}",
         "1",
         f"argmax_i |C_i,{c}|",
         f"Where to stiffen first, if it is C_{c} that matters."

@@ -6,91 +6,15 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.arrays import FloatArray
 from robomill.units import UNITS
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.ellipsoid import ellipsoid_mesh, ellipsoid_scale, ellipsoid_traces
 from robomill.viz.lesson import ray_figure
-from robomill.viz.maps import Map, MapSheet, Scale, hover_text, picked_point, sheet_figure, symmetric_limit
+from robomill.viz.maps import Scale, symmetric_limit
 from robomill.viz.shares import LinePanel, gain_bars, line_panels, share_bars
+from robomill.viz.theme import JOINT_COLOURS
 from robomill.viz.voxels import outer_faces, voxel_trace, widen, wire_box
 from robomill.workspace.quantities import map_quantity
-
-U, V = np.linspace(-600, 600, 13), np.linspace(-1600, -1000, 7)
-
-
-def values(seed: int = 0) -> FloatArray:
-    return np.random.default_rng(seed).normal(size=(13, 7))
-
-
-def nine(**more: object) -> MapSheet:
-    rows = [[Map(f"C{i}{j}", values(3 * i + j), unit="µm/N") for j in range(3)] for i in range(3)]
-    return MapSheet(rows, U, V, "X, mm", "Y, mm", {"main": Scale("C", -4, 3, "diverging")}, **more)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("dark", [False, True])
-def test_a_sheet_is_a_figure_that_plotly_accepts(dark: bool) -> None:
-    """The figure is made without plotly's own checks for speed; here they are made."""
-    sheet = nine(point=(0.0, -1300.0))
-    fig = sheet_figure(sheet, dark=dark, panel_height=100, revision="a")
-    checked = fig.figure
-    assert checked.layout.dragmode == "pan", "clicks arrive only with dragmode pan or zoom"
-    assert checked.layout.uirevision == "a"
-
-
-def test_nine_maps_share_one_scale_centred_on_zero() -> None:
-    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    maps = [t for t in fig.figure.data if t.type == "heatmap"]
-    assert len(maps) == 9
-    assert {t.coloraxis for t in maps} == {"coloraxis"}
-    assert (fig.figure.layout.coloraxis.cmin, fig.figure.layout.coloraxis.cmax) == (-4, 4)
-
-
-def test_the_first_index_of_a_map_runs_across() -> None:
-    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    np.testing.assert_allclose(fig.figure.data[0].z, values(0).T, rtol=1e-6)
-    np.testing.assert_array_equal(fig.figure.data[0].x, U)
-
-
-def test_over_every_map_lie_points_to_click() -> None:
-    fig = sheet_figure(nine(), dark=False, panel_height=100, revision="a")
-    picks = [t for t in fig.figure.data if t.type == "scatter"]
-    assert len(picks) == 9
-    assert all(len(t.x) == 91 and t.marker.opacity == 0 for t in picks)
-    assert all("customdata" not in t.to_plotly_json() for t in picks)
-
-
-def test_a_large_plane_has_few_points_to_click() -> None:
-    u, v = np.linspace(0, 1, 121), np.linspace(0, 1, 61)
-    sheet = MapSheet([[Map("a", np.zeros((121, 61)))]], u, v, "u", "v", {"main": Scale("a", 0, 1)})
-    fig = sheet_figure(sheet, dark=False, panel_height=100, revision="a")
-    assert len(fig.figure.data[1].x) <= 220
-
-
-def test_two_scales_have_a_bar_each() -> None:
-    scales = {"main": Scale("a", 0, 1), "difference": Scale("b", -1, 1, "diverging")}
-    sheet = MapSheet([[Map("a", values()), Map("b", values(), "difference")]], U, V, "u", "v", scales)
-    fig = sheet_figure(sheet, dark=False, panel_height=300, revision="a")
-    bars = [fig.figure.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
-    assert bars[0].len == bars[1].len == 0.5
-    assert bars[0].y != bars[1].y
-    # In a low sheet they stand side by side, each as high as the sheet.
-    low = sheet_figure(sheet, dark=False, panel_height=130, revision="a")
-    bars = [low.figure.layout[name].colorbar for name in ("coloraxis", "coloraxis2")]
-    assert bars[0].len == bars[1].len == 1.0
-    assert bars[1].xpad - bars[0].xpad >= 80
-    assert low.figure.layout.margin.r == 2 * fig.figure.layout.margin.r
-
-
-def test_a_pick_snaps_to_the_grid() -> None:
-    assert picked_point(U, V, 48.0, -1290.0) == (0.0, -1300.0)
-
-
-def test_hover_words() -> None:
-    assert hover_text(float("nan"), "µm/N", Scale("", 0, 1)) == "not reached"
-    assert hover_text(-1.0244, "µm/N", Scale("", 0, 1)) == "−1.024 µm/N"
-    assert hover_text(3.0, "", Scale("", 0, 1, "joints", joints=(1, 3))) == "joint 3"
-    assert hover_text(1.0, "", Scale("", 0, 1, "reach")) == "reached"
 
 
 @pytest.mark.parametrize("name", ["det_J", "C_yy", "C_xy", "reach", "dominant", "limit_distance"])
@@ -102,45 +26,34 @@ def test_the_scale_of_a_quantity_holds_its_values(name: str) -> None:
         assert scale.title == what.label
         assert scale.digits == UNITS[what.unit].digits
         signed = name in ("det_J", "C_xy")
+        size = "able" if name in ("det_J", "limit_distance") else "sequential"
         expected = {"reach": "reach", "dominant": "joints"}.get(
-            name, "diverging" if signed and shown[0, 0] < 0 else "sequential"
+            name, "diverging" if signed and shown[0, 0] < 0 else size
         )
         assert scale.kind == expected
-        sheet = MapSheet([[Map("q", shown)]], np.arange(2.0), np.arange(2.0), "X", "Y", {"main": scale})
-        shades = sheet_figure(sheet, dark=False, panel_height=90, revision="q").figure.layout.coloraxis
+        shades = scale.colours(dark=False)
         if expected == "diverging":
-            assert -shades.cmin == shades.cmax == 5.0  # white is zero
-        elif expected == "sequential":
-            assert (shades.cmin, shades.cmax) == (scale.low, scale.high)
+            assert -shades["cmin"] == shades["cmax"] == 5.0  # white is zero
+        elif expected == size:
+            assert (shades["cmin"], shades["cmax"]) == (scale.low, scale.high)
     nowhere = Scale.of(what, np.full((2, 2), np.nan), (1, 3))
     assert (nowhere.low, nowhere.high) == (0.0, 1.0)
 
 
-def test_a_joint_has_its_own_colour_and_number_where_numbers_skip() -> None:
-    numbers = np.array([[1.0, 3.0], [np.nan, 4.0]])
-    scale = Scale("", 0, 1, "joints", joints=(1, 3, 4))
-    fig = sheet_figure(
-        MapSheet([[Map("who", numbers)]], np.arange(2.0), np.arange(2.0), "X", "Y", {"main": scale}),
-        dark=False,
-        panel_height=90,
-        revision="who",
-    )
-    heat, points = fig.figure.data
-    steps = fig.figure.layout.coloraxis.colorscale
-    span = fig.figure.layout.coloraxis.cmax - fig.figure.layout.coloraxis.cmin
+def brightness(colour: str) -> float:
+    return sum(share * int(colour[k : k + 2], 16) for share, k in zip((0.30, 0.59, 0.11), (1, 3, 5), strict=True))
 
-    def colour(place: float) -> str:
-        share = (place - fig.figure.layout.coloraxis.cmin) / span
-        return next(c for (a, c), (b, _) in zip(steps[::2], steps[1::2], strict=True) if a <= share <= b)
 
-    shown = {numbers[i, j]: colour(heat.z[j][i]) for i, j in ((0, 0), (0, 1), (1, 1))}
-    assert len(set(shown.values())) == 3
-    ticks = dict(
-        zip(fig.figure.layout.coloraxis.colorbar.tickvals, fig.figure.layout.coloraxis.colorbar.ticktext, strict=True)
-    )
-    assert {ticks[int(heat.z[j][i])] for i, j in ((0, 0), (0, 1), (1, 1))} == {"joint 1", "joint 3", "joint 4"}
-    assert np.isnan(heat.z[0][1])
-    assert list(points.text) == ["joint 1", "joint 3", "not reached", "joint 4"]
+def test_dark_is_stiff_and_dark_is_able() -> None:
+    """One rule for every map of sizes: the bright end is the one to beware of."""
+    robot = rm.load_robot("slavkovic_5r")
+    soft = Scale.of(map_quantity(robot, "C_yy"), np.array([1.0, 4.0]), (1,)).colours(dark=False)["colorscale"]
+    able = Scale.of(map_quantity(robot, "det_J"), np.array([0.2, 2.0]), (1,)).colours(dark=False)["colorscale"]
+    turned = Scale.of(map_quantity(robot, "det_J"), np.array([-2.0, -0.2]), (1,)).colours(dark=False)["colorscale"]
+    assert brightness(soft[0][1]) < brightness(soft[-1][1])
+    assert brightness(able[0][1]) > brightness(able[-1][1])
+    assert brightness(turned[0][1]) < brightness(turned[-1][1]), "the lowest is the largest by size"
+    assert [share for share, _ in turned] == [share for share, _ in able]
 
 
 def test_symmetric_limit_of_what_is_nowhere_reached() -> None:
@@ -223,10 +136,9 @@ def test_no_ghost_without_a_change() -> None:
 
 
 def test_gains_and_lines_are_drawn() -> None:
-    gains = gain_bars(
-        [("point", np.array([0.1, 0.0]), "µm/N"), ("path", np.array([2.0, -1.0]), "µm")], (1, 2), dark=False
-    )
-    assert len(gains.figure.data) == 2
+    gains = gain_bars("saved", np.array([0.1, 2.0, -1.0]), "µm", (1, 3, 4), dark=False, height=200)
+    assert list(gains.figure.data[0].y) == ["joint 3", "joint 1", "joint 4"], "the best on top"
+    assert list(gains.figure.data[0].marker.color) == [JOINT_COLOURS[k] for k in (1, 0, 2)], "in the joint's colour"
     s = np.linspace(0, 1, 5)
     by_joint = np.stack([s, 2 * s], axis=-1)
     panels = [LinePanel(f"line {i}", s, by_joint.sum(axis=1), by_joint, old=s) for i in range(6)]

@@ -115,7 +115,9 @@ def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) 
     """The bars with their table."""
     pieces.figure(
         gain_bars(
-            [("Saved of the tolerance", from_si(ranked.saved, "%"), unit_label("%"))],
+            "Saved of the tolerance",
+            from_si(ranked.saved, "%"),
+            unit_label("%"),
             joints,
             dark=dark,
             height=88 + 34 * len(joints),

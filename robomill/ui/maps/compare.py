@@ -1,22 +1,23 @@
 """Up to three robots or compliance sets side by side, with the difference to the first."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError, WorkspaceError
+from robomill.improve.sensitivity import stiffened
 from robomill.io.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import fields, inputs, pieces, session
+from robomill.ui.maps.board import Planes
 from robomill.ui.project import MapView
-from robomill.units import NOT_REACHED, format_number, format_percent, format_value, from_si, unit_label
-from robomill.viz.maps import Map, Scale, symmetric_limit
-from robomill.viz.theme import plain
-from robomill.workspace.fields import ComplianceField
+from robomill.units import UNITS, format_percent, format_value, from_si
+from robomill.viz.maps import Scale
+from robomill.viz.planes import Codes, PlaneMap, ends, means
 from robomill.workspace.quantities import one_sign
 
-UM = "um/N"
 MOST = 3
 
 
@@ -50,76 +51,97 @@ def controls(robot: Robot, view: MapView) -> None:
     )
 
 
-def panels(
-    robot: Robot, view: MapView, known: ComplianceField, normal: str
-) -> tuple[list[list[Map | None]], dict[str, Scale], list[tuple[str, str, str]], dict[str, Any]]:
-    """Maps, scales, rows of text and columns of the comparison over the plane of ``known``."""
-    names = candidates(robot, view)
-    name = f"C_{view.component}"
-    values: dict[str, FloatArray] = {}
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What is compared by key, the first one what the others are held against; rows of maps and their scales."""
+
+    robots: dict[str, Robot]
+    names: dict[str, str]
+    component: str
+    unit: str
+    rows: list[list[PlaneMap | None]]
+    scales: dict[str, Scale]
+
+    def _values(self, planes: Planes) -> dict[str, FloatArray]:
+        """The component over the plane in force."""
+        name = f"C_{self.component}"
+        return {key: from_si(planes.known(robot).values(name), self.unit) for key, robot in self.robots.items()}
+
+    def columns(self, planes: Planes) -> dict[str, Any]:
+        """The table twin."""
+        label = UNITS[self.unit].label
+        return {f"{self.names[key]}, {label}": v.ravel() for key, v in self._values(planes).items()}
+
+    def words(self, planes: Planes) -> list[tuple[str, str, str]]:
+        """The mean of each over the plane in force, and how it differs from the first."""
+        values = self._values(planes)
+        first, *_ = self.robots
+        rows = []
+        for key, shown in values.items():
+            both = np.isfinite(shown) & np.isfinite(values[first])
+            if not both.any():
+                rows.append((self.names[key], "not reached", "no cell in common with the first"))
+                continue
+            mean, base = float(shown[both].mean()), float(values[first][both].mean())
+            against = "" if key == first or abs(base) < 1e-9 else f" against {self.names[first]}"
+            change = f"{format_percent(mean / base - 1, sign=True)}{against}" if against else ""
+            rows.append((self.names[key], format_value(mean, self.unit, 3), f"mean over the plane {change}"))
+        return rows
+
+
+def panels(planes: Planes, unit: str) -> Compared:
+    """The maps of what is compared over all planes, and their differences to the first. Raises WorkspaceError."""
+    robot, view = planes.region.robot, planes.region.view
+    names, name = candidates(robot, view), f"C_{view.component}"
+    robots: dict[str, Robot] = {}
+    codes: dict[str, Codes] = {}
     for key in chosen(robot, view):
         try:
-            values[key] = from_si(_field(key, robot, view, known).values(name), UM).squeeze(axis="xyz".index(normal))
+            other = _robot(key, robot, view)
+            codes[key] = planes.codes([name], other)[name]
+            robots[key] = other
         except RobomillError as exc:
             pieces.error(exc)
-    keys = list(values)
-    if not keys:
+    if not robots:
         raise WorkspaceError("Nothing to compare: choose a robot or a compliance set that can be computed here.")
-    cross = not one_sign(view.component)
-    every = [v for v in values.values() if np.isfinite(v).any()]
-    low = min((float(np.nanmin(v)) for v in every), default=0.0)
-    label = f"C<sub>{view.component}</sub>, {unit_label(UM)}"
-    first = values[keys[0]]
-    differences = {key: values[key] - first for key in keys[1:]}
+    first, *others = robots
+    apart = {key: _apart(planes, robots[first], robots[key], name) for key in others}
+    label, every = UNITS[unit].label, ends(codes.values(), unit)
+    low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
     scales = {
-        "main": Scale.signed(label, every) if cross else Scale(label, low, symmetric_limit(every)),
-        "difference": Scale.signed(f"difference, {unit_label(UM)}", list(differences.values())),
+        "main": Scale(f"{name}, {label}", low, high)
+        if one_sign(view.component)
+        else Scale.signed(f"{name}, {label}", [every]),
+        "difference": Scale.signed(f"difference, {label}", [ends(apart.values(), unit)]),
     }
-    rows: list[list[Map | None]] = [
-        [Map(f"<b>{plain(names[key])}</b>  {_mean(values[key])}", values[key], unit=unit_label(UM)) for key in keys]
+    rows: list[list[PlaneMap | None]] = [
+        [
+            PlaneMap(
+                names[key], codes[key], unit, notes=[f"mean {words}" for words in means(codes[key], unit)], low=False
+            )
+            for key in robots
+        ]
     ]
-    apart: list[Map | None] = [
-        Map(f"{plain(names[key])} − {plain(names[keys[0]])}", differences[key], "difference", unit_label(UM))
-        for key in keys[1:]
+    differences: list[PlaneMap | None] = [
+        PlaneMap(f"{names[key]} − {names[first]}", each, unit, "difference", low=False) for key, each in apart.items()
     ]
-    if len(apart) == 1:
-        rows[0] += apart
-    elif apart:
-        rows.append([None, *apart])
-    return rows, scales, _text(names, values, keys), _columns(names, values, keys)
+    if len(differences) == 1:
+        rows[0] += differences
+    elif differences:
+        rows.append([None, *differences])
+    used = {panel.scale for row in rows for panel in row if panel is not None}
+    return Compared(robots, names, view.component, unit, rows, {k: v for k, v in scales.items() if k in used})
 
 
-def _field(key: str, robot: Robot, view: MapView, known: ComplianceField) -> ComplianceField:
+def _apart(planes: Planes, first: Robot, other: Robot, name: str) -> Codes:
+    view = planes.region.view
+    return fields.coded_difference(first, other, planes.grid, planes.normal, (view.A, view.B), name)
+
+
+def _robot(key: str, robot: Robot, view: MapView) -> Robot:
     if key == "now":
-        return known
+        return robot
     if key == "what-if":
-        return fields.stiffer(known, view.stiffening(robot))
+        return stiffened(robot, view.stiffening(robot))
     kind, _, name = key.partition(":")
-    other = robot.with_compliance_set(name) if kind == "set" else load_robot(name)
-    return fields.field(other, known.grid, view.A, view.B)
-
-
-def _mean(values: FloatArray) -> str:
-    return f"mean {format_number(np.nanmean(values), 3)}" if np.isfinite(values).any() else NOT_REACHED
-
-
-def _text(names: dict[str, str], values: dict[str, FloatArray], keys: list[str]) -> list[tuple[str, str, str]]:
-    first = values[keys[0]]
-    rows = []
-    for key in keys:
-        both = np.isfinite(values[key]) & np.isfinite(first)
-        if not both.any():
-            rows.append((names[key], "not reached", "no cell in common with the first"))
-            continue
-        mean, base = float(values[key][both].mean()), float(first[both].mean())
-        change = (
-            ""
-            if key == keys[0] or abs(base) < 1e-9
-            else f"{format_percent(mean / base - 1, sign=True)} against {names[keys[0]]}"
-        )
-        rows.append((names[key], format_value(mean, UM, 3), f"mean over the plane {change}"))
-    return rows
-
-
-def _columns(names: dict[str, str], values: dict[str, FloatArray], keys: list[str]) -> dict[str, Any]:
-    return {f"{names[key]}, um/N": values[key].ravel() for key in keys}
+    return robot.with_compliance_set(name) if kind == "set" else load_robot(name)

@@ -1,5 +1,6 @@
 """The compliance page's tiles, its left column, what-if factors and what stiffness buys."""
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -23,63 +24,109 @@ from robomill.ui.maps import plane
 from robomill.ui.maps.point import place
 from robomill.ui.point import InHand
 from robomill.ui.project import MapView, Project
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_many, format_si, format_significant, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceField
 
 UM = "um/N"
 
 
+@dataclass(frozen=True, eq=False)
+class Saved:
+    """What each joint ``STIFFER`` times as stiff alone saves, gain (n,) in SI of ``unit``, of ``before``.
+
+    ``of_cut``: of the largest deviation of the project's cut; else of the component at the selected point.
+    """
+
+    before: float
+    gain: FloatArray
+    unit: str
+    of_cut: bool
+
+    @property
+    def best(self) -> int:
+        """Index of the joint that saves most."""
+        return int(np.argmax(self.gain))
+
+
+def saved_by(found: InHand, result: SimulationResult | None, view: MapView) -> Saved | None:
+    """Which joint to stiffen for this cut; for the selected point where the cut has no result; None where that is not
+    reached either."""
+    robot = found.pose.robot
+    along = _along_path(result, view, robot)
+    if along is not None:
+        largest = float(along.before.max())
+        left = (along.before[:, None] - along.gain).max(axis=0)
+        return Saved(largest, largest - left, "um", True)
+    if not found.pose.reached:
+        return None
+    at_point = compliance_sensitivity(found.pose.C_joint, view.component, joint_numbers=robot.joint_numbers)
+    return Saved(float(at_point.before), np.asarray(at_point.gain), UM, False)
+
+
 def tiles(
-    found: InHand, old: PoseReport, now: ComplianceField, before: ComplianceField, view: MapView, unit: str
+    found: InHand,
+    old: PoseReport,
+    now: ComplianceField,
+    before: ComplianceField,
+    saved: Saved | None,
+    view: MapView,
 ) -> list[pieces.Tile]:
-    """The component at the point, the softest direction there, the softest place, where stiffness pays."""
-    component, pose = view.component, found.pose
-    point = place(found.point, unit)
-    gain = compliance_sensitivity(now.C_joint(), component, joint_numbers=pose.robot.joint_numbers)
-    best = int(gain.ranking[0])
-    known = bool(now.reached.any())
-    saved = float(gain.mean[best])
+    """The component at the point, the largest compliance there and in the region, the joint to stiffen."""
+    component, pose, unit = view.component, found.pose, session.project().view.length
     soft = now.values("C_soft")
-    worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if known else None
+    worst = np.unravel_index(int(np.nanargmax(soft)), soft.shape) if now.reached.any() else None
     where = tuple(float(axis[i]) for axis, i in zip((now.grid.x, now.grid.y, now.grid.z), worst)) if worst else None
+    values, axes = pose.principal if pose.reached else (np.zeros(3), np.zeros((3, 3)))
+    way = axes[:, -1] * (-1.0 if axes[np.abs(axes[:, -1]).argmax(), -1] < 0 else 1.0)
     return [
         pieces.Tile(
-            f"C_{component} at the point",
+            f"C_{component} at the selected point",
             _um(pose.component(component)) if pose.reached else "not reached",
-            f"at {point}",
+            f"at {place(found.point, unit)}",
             _um(old.component(component)) if old.reached else "",
             kind="computed",
         ),
         pieces.Tile(
-            "Softest direction there",
-            _um(pose.principal[0][-1]) if pose.reached else "not reached",
-            "what 1 N moves the tip at most",
+            "Largest compliance there",
+            _um(values[-1]) if pose.reached else "not reached",
+            f"in direction ({format_many(way, '1', 2, with_unit=False)})" if pose.reached else "",
             _um(old.principal[0][-1]) if old.reached else "",
         ),
         pieces.Tile(
-            "Softest place of the region",
+            "Largest in the region",
             _um(float(soft[worst])) if worst else "not reached",
             f"at {place(where, unit)}" if where else "",  # type: ignore[arg-type]
-            _um(float(np.nanmax(before.values("C_soft")))) if known else "",
+            _um(float(np.nanmax(before.values("C_soft")))) if before.reached.any() else "",
         ),
-        pieces.Tile(
-            "Stiffness pays most in",
-            f"joint {pose.robot.joint_numbers[best]}" if known else "nothing reached",
-            f"10 % stiffer: |C_{component}| less {_um(saved)} over the region" if known else "",
-        ),
+        _best(saved, pose.robot.joint_numbers, component),
     ]
 
 
+def _best(saved: Saved | None, joints: tuple[int, ...], component: str) -> pieces.Tile:
+    label = "Best joint to stiffen"
+    if saved is None:
+        return pieces.Tile(label, "–", "neither the cut nor the point is reached")
+    if not saved.gain[saved.best] > 0:
+        return pieces.Tile(label, "none", "no joint alone makes it smaller")
+    of = "of this cut" if saved.of_cut else f"of C_{component} at the point"
+    return pieces.Tile(label, f"joint {joints[saved.best]}", f"10 % stiffer saves {_in_words(saved, saved.best)} {of}")
+
+
+def _in_words(saved: Saved, joint: int) -> str:
+    unit = session.project().view.of(saved.unit)
+    return f"{format_significant(from_si(float(saved.gain[joint]), unit), 3)} {unit_label(unit)}"
+
+
 def _um(value: float) -> str:
-    return format_si(value, UM, 3)
+    return format_si(value, session.project().view.of(UM), 3)
 
 
 def controls(robot: Robot, view: MapView, found: InHand) -> None:
     """Region, tilt, plane; component; point; scale."""
     plane.controls(robot, view)
     declared.seen("maps.component", inputs.LISTED)
-    st.markdown("**The point in hand**")
+    st.markdown("**Selected point**")
     declared.draw(quantities(MapView)["point"], "maps.point", found.point, lambda point: session.see(point=point))
     declared.seen("maps.common")
 
@@ -119,41 +166,32 @@ def _adopt(robot: Robot) -> None:
     session.see(factors=None)
 
 
-def where_it_pays(
-    found: InHand, now: ComplianceField, result: SimulationResult | None, view: MapView, unit: str
-) -> None:
-    """What 10 % more stiffness in one joint takes off: at the point, along the path of the project, over the region."""
-    robot = found.pose.robot
-    joints = robot.joint_numbers
-    groups: list[tuple[str, FloatArray, str]] = []
-    if found.pose.reached:
-        at_point = compliance_sensitivity(found.pose.C_joint, view.component, joint_numbers=joints)
-        groups.append((f"|C<sub>{view.component}</sub>|<br>at the point", from_si(at_point.gain, UM), unit_label(UM)))
-    along = _along_path(result, view, robot)
-    micro = "um"
-    if along is not None:
-        groups.append(("deviation<br>on the path", from_si(along.mean, micro), f"{unit_label(micro)}, mean"))
-    if now.reached.any():
-        over = compliance_sensitivity(now.C_joint(), view.component, joint_numbers=joints)
-        groups.append(
-            (f"|C<sub>{view.component}</sub>|<br>in region", from_si(over.mean, UM), f"{unit_label(UM)}, mean")
-        )
-    if not groups:
-        pieces.note("Nothing is reached here, so nothing can be ranked.")
+def best_joint(found: InHand, saved: Saved | None, view: MapView) -> None:
+    """The joints from best to least: what each, 10 % stiffer, takes off the largest deviation of this cut."""
+    joints = found.pose.robot.joint_numbers
+    if saved is None:
+        pieces.note("Neither the cut nor the selected point is reached, so no joint can be ranked.")
         return
-    with st.container(border=True):
-        pieces.figure(
-            gain_bars(groups, joints, dark=shell.dark(), height=104 + 34 * len(joints)),
-            "gains",
-            table=lambda: {"joint": list(map(str, joints)), **{f"{_plain(t)}, {u}": g for t, g, u in groups}},
-            alt="How much smaller compliance and deviation become with each joint 10 % stiffer.",
-            caption="What each joint 10 % stiffer takes off. Exact: C is linear in the joints' compliances, eq. (13)."
-            + ("" if along is not None else " The path of this project has no result to rank by."),
-        )
-
-
-def _plain(title: str) -> str:
-    return title.replace("<sub>", "_").replace("</sub>", "").replace("<br>", " ")
+    unit = session.project().view.of(saved.unit)
+    gain = from_si(saved.gain, unit)
+    whole = format_si(saved.before, session.project().view.of("mm") if saved.of_cut else unit)
+    of = f"the largest deviation of this cut, {whole}" if saved.of_cut else f"C_{view.component} here, {whole}"
+    said = ", ".join(f"joint {joints[i]} {_in_words(saved, i)}" for i in np.argsort(-saved.gain, kind="stable"))
+    more = "" if saved.of_cut else " The cut of this project has no result to rank by."
+    pieces.figure(
+        gain_bars(
+            f"Each joint 10 % stiffer saves, of {of.replace(f'C_{view.component}', f'C<sub>{view.component}</sub>')}",
+            gain,
+            unit_label(unit),
+            joints,
+            dark=shell.dark(),
+            height=64 + 21 * len(joints),
+        ),
+        "gains",
+        table=lambda: {"joint": list(map(str, joints)), f"saved_{unit}": gain},
+        alt=f"What each joint 10 % stiffer saves of {of}: {said}.",
+        caption="Exact where the force stays: the displacement is linear in each joint's compliance, eq. (13)." + more,
+    )
 
 
 def _along_path(result: SimulationResult | None, view: MapView, robot: Robot) -> Sensitivity | None:

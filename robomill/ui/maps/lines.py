@@ -23,7 +23,7 @@ def show(region: Region) -> None:
         raise WorkspaceError("The six lines lie in a plane of constant Z_M; this arm moves in another plane.")
     across = region.view.normal == "z"
     at = region.at()[1] if across else min(max(0.0, float(box.lower[2])), float(box.upper[2]))
-    plane.slider(region, "z", at)
+    plane.slider(region, at)
     found = fields.lines(robot, box, region.at()[1] if across else at)
     scale = region.factors
     changed = bool((scale != 1.0).any())

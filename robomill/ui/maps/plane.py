@@ -1,7 +1,9 @@
 """What both map pages look at: region, tilt, plane and the slider that moves it."""
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
@@ -12,7 +14,6 @@ from robomill.ui.project import MapView
 from robomill.units import decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
 from robomill.workspace.fields import ComplianceField
-from robomill.workspace.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,23 +34,17 @@ class Region:
         """(normal, coordinate m) of the plane in force, after its slider was moved."""
         return fields.plane_at(self.robot, session.maps(), self.box)
 
-    def grid(self, normal: str, at: float) -> Grid:
-        """The cells of a plane."""
-        return fields.plane(self.robot, self.view, self.box, normal, at)
-
-    def field(self, grid: Grid) -> ComplianceField:
-        """Everything over ``grid`` at the tilt in force."""
-        return fields.field(self.robot, grid, self.view.A, self.view.B)
-
     def overview(self) -> ComplianceField:
         """A coarse field over the whole region."""
         return fields.overview(self.robot, self.view, self.box)
 
 
-def picture(name: str, show: Callable[[Region], None]) -> None:
-    """The choice ``name`` between the pictures of a page, and what ``show`` makes of the region in force."""
+def picture(name: str, show: Callable[[Region], None], above: Any = None) -> None:
+    """The choice ``name`` between the pictures of a page (in the container ``above``), and what ``show`` makes of the
+    region in force."""
     project = session.project()
-    declared.seen(f"maps.{name}", inputs.HIDDEN)
+    with above or contextlib.nullcontext():
+        declared.seen(f"maps.{name}", inputs.HIDDEN)
     robot, view = project.setup.robot, session.maps()
     pieces.attempt(lambda: show(Region(robot, view, fields.region(robot, view), project.view.length)))
 
@@ -62,6 +57,8 @@ def controls(robot: Robot, view: MapView) -> None:
         declared.seen("maps.lower", at=None)
         declared.seen("maps.upper", at=None)
         declared.seen("maps.step", inputs.Look(placeholder="chosen by robomill"))
+    if view.region == "cut" and fields.cut_in_reach(robot, view) is None:
+        pieces.note("The tool does not get to the cut at this tilt: this is the largest box in reach.")
     declared.in_row(("maps.A", "maps.B"), lambda tilt: declared.seen(tilt, point=None))
     known = fields.normals(robot)
     if len(known) == 1:
@@ -71,7 +68,7 @@ def controls(robot: Robot, view: MapView) -> None:
     if robot.n > 6:
         pieces.note(
             f"This arm has {robot.n} axes and holds a place in many postures: a map shows one of them. How far the "
-            "compliance ranges over the others is said at the point in hand of the page Compliance."
+            "compliance ranges over the others is said at the selected point of the page Compliance."
         )
 
 
@@ -82,30 +79,22 @@ def tilt_note(robot: Robot) -> str:
     return "A, B turn the tool about X and then Y: k_T = (sin B, −sin A cos B, cos A cos B)."
 
 
-def slider(
-    region: Region, normal: str, at: float, name: str = "at", side: str = "", move: Callable[..., None] | None = None
-) -> None:
-    """The slider that moves the plane (of two, the one on this ``side``) through the region, by ``move``."""
-    i, unit = "xyz".index(normal), region.unit
-    low, high = (float(from_si(float(v), unit)) for v in (region.box.lower[i], region.box.upper[i]))
-    label = f"{normal.upper()}ₘ{side}, {unit_label(unit)}"
-    put = move or (lambda at: session.see(at=at, normal=normal))
+def slider(region: Region, at: float) -> None:
+    """The slider of the server that moves a plane normal to Z through the region, for pictures that are no maps."""
+    unit = region.unit
+    low, high = (float(from_si(float(v), unit)) for v in (region.box.lower[2], region.box.upper[2]))
+    label = f"Zₘ, {unit_label(unit)}"
     if high - low < 1e-9:
         pieces.note(f"{label}: {format_si(at, unit, 1)}; the region has no depth here.")
         return
     step = float(f"{(high - low) / 50:.1g}")
     inputs.slider(
         label,
-        f"maps.{name}.{normal}:{unit}",
+        f"maps.at.z:{unit}",
         inputs.Span(round(low, 3), round(high, 3), step, f"%.{decimals(unit, 0)}f"),
         round(float(from_si(at, unit)), 3),
-        lambda v: put(to_si(v, unit)),
+        lambda v: session.see(at=to_si(v, unit), normal="z"),
     )
-
-
-def title(normal: str, at: float, unit: str) -> str:
-    """``Z_M = 0 mm`` as people read it."""
-    return f"{normal.upper()}<sub>M</sub> = {format_si(at, unit, 0)}"
 
 
 def _take_region(kind: str, robot: Robot, view: MapView) -> None:

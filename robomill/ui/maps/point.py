@@ -47,27 +47,23 @@ def headline(found: InHand, unit: str) -> str:
     ]
     moved = ", ".join(ways[:-1]) + (" and " if len(ways) > 1 else "") + ways[-1] if ways else "not at all"
     push = format_si(FORCE, "N", 0)
-    return f"At {where}, {push} along Y moves the tip {moved}; joint {pose.gives_most('yy')} gives most."
+    return f"{push} along Y moves the tip {moved}, most of it by joint {pose.gives_most('yy')}."
 
 
 def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
-    """The report: arm and ellipsoid, shares, C; tables beneath."""
-    st.subheader(f"The pose at {place(found.point, unit)}")
+    """The arm as it stands there with its ellipsoid, and folded the numbers: joints, C, six by six, Jacobian."""
+    st.subheader(f"At the selected point {place(found.point, unit)}")
     if not found.pose.reached:
         pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
         return
     _posture_note(found.pose, component)
-    left, right = pieces.split([1, 1.05], "point")
+    left, right = pieces.split([1.3, 1], "point")
     with left, st.container(border=True, height="stretch"):
         _arm(found.pose, component, unit)
-    with right, st.container(border=True, height="stretch"):
-        _shares(found.pose, old)
-    one, two, three = pieces.split([1, 1.15, 1.6], "point-tables", gap="large")
-    with one:
+    with right:
         _joints(found.pose)
-    with two:
         _matrix(found.pose, old)
-    with three:
+    with st.expander("Full matrices: C with rotations, and the Jacobian"):
         _six(found.pose)
 
 
@@ -77,7 +73,7 @@ def _posture_note(pose: PoseReport, component: str) -> None:
     if C is not None and len(C):
         a, b = ("xyz".index(axis) for axis in component)
         values = np.append(C[:, a, b], pose.C[a, b])  # the one that is shown is one of them
-        ends = format_many((values.min(), values.max()), "um/N", between=" to ")
+        ends = format_many((values.min(), values.max()), session.project().view.of("um/N"), between=" to ")
         words = f"Over {len(C)} postures that hold the tool here, C_{component} ranges from {ends}."
         pieces.note("What stands here holds for one posture.", pieces.subscripts(words))
 
@@ -108,29 +104,35 @@ def _arm(pose: PoseReport, component: str, unit: str) -> None:
     arm(scene, "point-arm", (caption, alt), 430, 0.95, (pose.C, finish))
 
 
-def _shares(pose: PoseReport, old: PoseReport) -> None:
-    st.markdown("**Which joint gives, by component**")
+def bars(found: InHand, old: PoseReport, unit: str) -> None:
+    """Which joint contributes how much to each component at the selected point."""
+    where = place(found.point, unit)
+    st.markdown(f"**At the selected point**<br>{where}", unsafe_allow_html=True)
+    if not found.pose.reached:
+        pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
+        return
+    pose, um = found.pose, session.project().view.of("um/N")
     names = [f"C<sub>{c}</sub>" for c in COMPONENTS]
-    before = np.array([from_si(old.component(c), "um/N") for c in COMPONENTS])
+    before = np.array([from_si(old.component(c), um) for c in COMPONENTS])
+    shares = _by_component(pose, um)
+    said = ", ".join(f"C_{c} {format_si(pose.component(c), um, 3)}" for c in COMPONENTS)
     pieces.figure(
-        share_bars(
-            names, _by_component(pose), pose.robot.joint_numbers, unit_label("um/N"), dark=shell.dark(), old=before
-        ),
+        share_bars(names, shares, pose.robot.joint_numbers, unit_label(um), dark=shell.dark(), old=before),
         "point-shares",
         table=lambda: share_columns(pose),
-        alt="Joint shares of each compliance component at this pose.",
-        caption="Bars add up to the sum, eq. (13). A grey mark is the sum before the change.",
+        alt=f"Shares of the joints in each compliance component at {where}: {said}.",
+        caption="Share of each joint",
     )
 
 
-def _by_component(pose: PoseReport) -> FloatArray:
-    """(n, 6) um/N: each joint's share of each component."""
-    return from_si(np.stack([pose.shares(c) for c in COMPONENTS], axis=-1), "um/N")
+def _by_component(pose: PoseReport, unit: str) -> FloatArray:
+    """(n, 6) in ``unit``: each joint's share of each component."""
+    return from_si(np.stack([pose.shares(c) for c in COMPONENTS], axis=-1), unit)
 
 
 def share_columns(pose: PoseReport) -> dict[str, object]:
     """The table twin of the bars."""
-    shares = _by_component(pose)
+    shares = _by_component(pose, "um/N")
     columns: dict[str, object] = {"joint": [*map(str, pose.robot.joint_numbers), "sum"]}
     for k, c in enumerate(COMPONENTS):
         columns[f"C_{c}_um/N"] = [*shares[:, k], shares[:, k].sum()]
@@ -153,16 +155,15 @@ def _joints(pose: PoseReport) -> None:
 
 def _matrix(pose: PoseReport, old: PoseReport) -> None:
     compliance_matrix(pose)
-    change = from_si(pose.C - old.C, "um/N")
+    um = session.project().view.of("um/N")
+    change = from_si(pose.C - old.C, um)
     if np.abs(change).max() > 5e-4:
         pieces.note("Change by the factors:")
         pieces.matrix(_numbers(change, sign=True), list(AXES))
     values, axes = pose.principal
     pieces.note("Principal compliances and their directions:")
-    shown = [
-        [format_si(values[i], "um/N", with_unit=False), *(format_number(v, 2) for v in axes[:, i])] for i in (2, 1, 0)
-    ]
-    pieces.matrix(shown, ["softest", "middle", "stiffest"], [unit_label("um/N"), *AXES])
+    shown = [[format_si(values[i], um, with_unit=False), *(format_number(v, 2) for v in axes[:, i])] for i in (2, 1, 0)]
+    pieces.matrix(shown, ["largest", "middle", "smallest"], [unit_label(um), *AXES])
 
 
 def _six(pose: PoseReport) -> None:

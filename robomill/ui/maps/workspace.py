@@ -2,6 +2,7 @@
 
 import html
 import re
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -13,11 +14,13 @@ from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
 from robomill.ui import declared, fields, inputs, pieces, session, shell
 from robomill.ui.maps import plane
+from robomill.ui.maps.board import Planes, beneath, board
 from robomill.ui.maps.plane import Region
 from robomill.ui.point import in_hand, middle
 from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
+    UNITS,
     format_many,
     format_number,
     format_percent,
@@ -28,7 +31,8 @@ from robomill.units import (
 )
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.chart import Chart
-from robomill.viz.maps import Map, MapSheet, Scale, sheet_figure
+from robomill.viz.maps import Scale
+from robomill.viz.planes import PlaneMap, ends, extremes
 from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceField
@@ -153,70 +157,81 @@ def picture() -> None:
 
 
 def _plane(region: Region) -> None:
-    plane.slider(region, *region.at())
+    planes = Planes.of(region, 1)
     normal, at = region.at()
-    _sheet(region, normal, [at], "plane")
+    _board(planes, [at], lambda moved: session.see(at=moved[0], normal=normal))
 
 
 def _pair(region: Region) -> None:
-    view, box = region.view, region.box
-    normal, _ = region.at()
-    i = "xyz".index(normal)
-    low, high = float(box.lower[i]), float(box.upper[i])
-    if high - low < 1e-9:
-        _sheet(region, normal, [low], "pair")
+    view, planes = region.view, Planes.of(region, 1)
+    if len(planes.w) == 1:
+        _board(planes, [float(planes.w[0])], lambda moved: None)
         pieces.note("The region has no depth: there is only one plane.")
         return
-    inside = view.pair is not None and low <= min(view.pair) and max(view.pair) <= high
-    first, second = map(float, view.pair) if view.pair is not None and inside else (low, high)
-    left, right = st.columns(2, gap="large")
-    with left:
-        plane.slider(region, normal, first, "pair.0", " left", lambda at: session.see(pair=(at, second)))
-    with right:
-        plane.slider(region, normal, second, "pair.1", " right", lambda at: session.see(pair=(first, at)))
-    moved = session.maps().pair
-    _sheet(region, normal, [first, second] if moved is None else moved.tolist(), "pair")
+    low, high = float(planes.w[0]), float(planes.w[-1])
+    known = view.pair is not None and low <= min(view.pair) and max(view.pair) <= high
+    pair = view.pair.tolist() if view.pair is not None and known else [low, high]
+    _board(planes, pair, lambda moved: session.see(pair=np.array(moved)))
 
 
-def _sheet(region: Region, normal: str, ats: list[float], key: str) -> None:
+def _board(planes: Planes, ats: list[float], settle: Callable[[list[float]], None]) -> None:
     """One or two planes of the quantity on a scale that stays while they move."""
-    unit, what = region.unit, map_quantity(region.robot, region.view.quantity)
-    maps_row, grid = [], None
-    for at in ats:
-        grid = region.grid(normal, at)
-        values = region.field(grid).values(what.name)
-        shown = from_si(values, what.unit).squeeze(axis="xyz".index(normal))
-        maps_row.append(Map(f"{what.title}, {plane.title(normal, at, unit)}", shown, unit=unit_label(what.unit)))
-    assert grid is not None
-    whole = from_si(region.overview().values(what.name), what.unit)
-    scales = {"main": Scale.of(what, whole, region.robot.joint_numbers)}
-    sheet = MapSheet.over([maps_row], grid, normal, unit, scales)
-    ratio = float(np.ptp(sheet.v) / max(np.ptp(sheet.u), 1e-9)) if len(sheet.u) > 1 else 1.0
-    width = 760 if len(ats) == 1 else 370
-    height = int(min(max(width * ratio, 150), 520 if len(ats) == 1 else 420))
-    fig = sheet_figure(sheet, dark=shell.dark(), panel_height=height, revision=f"workspace-{key}-{normal}", gap_x=0.07)
-    pieces.figure(
-        fig,
-        f"workspace-{key}",
-        name=f"workspace-{what.name}",
-        alt=f"{what.title} over a plane of the workspace.",
-        table=lambda: _columns(region, grid, what),
-        caption="Blank: not reached. The colour scale covers the whole region, so it stays while the plane moves.",
+    region = planes.region
+    robot, what = region.robot, map_quantity(region.robot, region.view.quantity)
+    unit = session.project().view.of(what.unit)
+    codes = planes.codes([what.name])[what.name]
+    if not codes.reached:
+        pieces.note("Nothing of this region is reached.")
+        return
+    scale = Scale.of(what, ends([codes], unit), robot.joint_numbers, unit)
+    notes = extremes(codes, unit, UNITS[unit].digits) if scale.kind != "reach" else ()
+    row: list[PlaneMap | None] = [
+        PlaneMap(what.title, codes, unit, notes=notes, slider=side, low=False) for side in range(len(ats))
+    ]
+    sheet = planes.sheet([row], {"main": scale}, 735, 460 if len(ats) == 1 else 400)
+    point = region.view.point
+    selected = None if point is None else (float(point[0]), float(point[1]), float(point[2]))
+    board(planes, sheet, f"workspace-{what.name}" + "-pair" * (len(ats) > 1), ats, settle, selected)
+    dark = "Dark is able, bright is near what the arm cannot do. " if scale.kind == "able" else ""
+    beneath(
+        f"{dark}The colours stay while the plane moves.",
+        lambda: _columns(planes.known(at=ats[0]), what),
+        f"workspace-{what.name}",
     )
+    _selected(region, what)
 
 
-def _columns(region: Region, grid: Grid, what: MapQuantity) -> dict[str, FloatArray]:
+def _selected(region: Region, what: MapQuantity) -> None:
+    """What the quantity is at the point that was clicked, and where its compliance is shown."""
+    point, view = region.view.point, region.view
+    if point is None:
+        return
+    found = fields.field(region.robot, Grid(*point[:, None]), view.A, view.B)
+    unit = session.project().view.of(what.unit)
+    value = from_si(found.values(what.name).item(), unit)
+    scale = Scale.of(what, np.array([value]), region.robot.joint_numbers, unit)
+    where = f"({format_many(point, region.unit, 0, with_unit=False)}) {unit_label(region.unit)}"
+    if what.colours == "reach":
+        said = "reached" if value > 0.5 else "not reached"
+    else:
+        said = (
+            f"{format_number(value, scale.digits)} {unit_label(unit)}".strip() if np.isfinite(value) else "not reached"
+        )
+    pieces.note(f"Selected point {where}: {what.title} {said}. The page Compliance shows what it gives there.")
+
+
+def _columns(known: ComplianceField, what: MapQuantity) -> dict[str, FloatArray]:
     """The table twin of a plane."""
     from robomill.io.maps import map_columns
 
-    return map_columns([region.field(grid).field(what.name)])
+    return map_columns([known.field(what.name)])
 
 
 def _solid(region: Region) -> None:
     robot = region.robot
     what = map_quantity(robot, region.view.quantity)
     grid = fields.solid(robot, region.box)
-    known = region.field(grid)
+    known = fields.field(robot, grid, region.view.A, region.view.B)
     if not known.reached.any():
         pieces.note(sentence(robot, known))
         return
@@ -239,7 +254,7 @@ def _solid(region: Region) -> None:
         name=f"workspace-{what.name}",
         caption=caption,
         alt="The arm with the cells of its workspace as voxels.",
-        table=lambda: _columns(region, grid, what),
+        table=lambda: _columns(known, what),
     )
 
 
