@@ -34,7 +34,8 @@ from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import TOLERANCES, SimulationSetup
-from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
+from robomill.toolpath.path import TABLES
+from robomill.toolpath.source import LEANS, GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.toolpath.text import SUFFIXES
 
 FORMAT = "robomill-setup"
@@ -157,7 +158,8 @@ def _source(table: Table, beside: Beside) -> PathSource:
             source = GCodeSource(
                 table.text("program_text"), table.text("program_name", "program.nc"), table.text("dialect", "auto")
             )
-        source = replace(source, n_s=read_quantity(table, quantities(GCodeSource)["n_s"]))
+        rotary = table.choice("rotary_axis", (*TABLES, LEANS), "")
+        source = replace(source, n_s=read_quantity(table, quantities(GCodeSource)["n_s"]), table=rotary)
     table.finish()
     return source
 
@@ -245,6 +247,7 @@ def _robot_table(robot: Robot) -> dict[str, Any]:
 def _source_table(source: PathSource) -> dict[str, Any]:
     if source.kind == "program":
         told = {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
+        told |= {"rotary_axis": source.table} if source.table else {}
         return told | ({"spindle_1_min": shown(source.n_s, "1/min")} if source.n_s else {})
     if source.kind == "sketch":
         return {"sketch": sketch_to_table(source.sketch)}

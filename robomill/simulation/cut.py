@@ -19,7 +19,7 @@ from robomill.simulation.tools import tooling
 from robomill.surface.engagement import Engagement, engage
 from robomill.surface.march import March
 from robomill.surface.stock_unit import unit_doubt
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import ROTARY_ASKED, Toolpath
 from robomill.units import format_short
 
 SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
@@ -84,6 +84,14 @@ def unknown_material(conditions: CutConditions) -> tuple[Unjudged, ...]:
         "known: cut fewer above each other, or part the program"
     )
     return (Unjudged("layers", where, why),) if where.any() else ()
+
+
+def rotary_asked(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged, ...]:
+    """All cuts of a program that turns far, while nobody has said whether its table or its tool does."""
+    if not any(each.code == ROTARY_ASKED for each in path.findings):
+        return ()
+    why = "the program turns an axis through more than a quarter: say whether it turns the part or leans the tool"
+    return (Unjudged(ROTARY_ASKED, conditions.cutting.copy(), why),)
 
 
 def record_time(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -22,7 +22,7 @@ from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import cut_conditions, steps_in_stock, told_conditions, unknown_material
+from robomill.simulation.cut import cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
@@ -151,7 +151,9 @@ def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:
     force, path = bent.setup.force, bent.path
     turning = turns_in_cut(path, conditions) if force.follows_cut else ()
     threads = threads_in_cut(path, conditions) if force.of_milling else ()
-    return force.unjudged(conditions) + turning + threads + unknown_material(conditions)
+    return (
+        force.unjudged(conditions) + turning + threads + unknown_material(conditions) + rotary_asked(path, conditions)
+    )
 
 
 def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:

@@ -14,6 +14,9 @@ from robomill.units import format_si, format_significant
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
 NO_SPINDLE = "no-spindle"  # the finding of a program that never turns its spindle
+ROTARY_ASKED = "rotary-asked"  # the finding of a program that turns through more than a quarter, by table or by tool
+TABLES = ("", "A", "-A", "B", "-B", "C", "-C")
+"""Rotary axes that turn the part: none, or one, whose positive sense turns the tool about the part (-: or the part)."""
 ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 PER_MOVE: dict[str, type] = {
     "v_f": float,

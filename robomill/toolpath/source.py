@@ -16,19 +16,23 @@ from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
-from robomill.toolpath.path import NO_SPINDLE, Toolpath, toolpath_from_lines
+from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED, TABLES, Toolpath, toolpath_from_lines
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
 from robomill.toolpath.tools import Tools
 from robomill.units import format_si, format_significant, from_si
 
 MAX_KEPT = 4
+LEANS = "tool"
+"""What a program's ``table`` says where its rotary axes lean the tool, however far."""
 
 
 @dataclass(frozen=True)
 class GCodeSource:
     """A program as written: its text, the file's name and the dialect ("auto": guessed and said).
 
+    ``table`` is the rotary axis that turns the part ("A", "-A" ...); "" where the tool leans, or nobody has said;
+    "tool" where it is said that the tool leans.
     ``n_s`` (1/s) is how fast the spindle turns of a program that never says; 0 where that is not known.
     """
 
@@ -43,11 +47,16 @@ class GCodeSource:
         key="spindle_1_min",
         hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
     )
+    table: str = ""
     kind: ClassVar[Literal["program"]] = "program"
     block_name: ClassVar[str] = "line"
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Program")
+        if self.table not in (*TABLES, LEANS):
+            raise ToolpathError(
+                f"Program: rotary axis {self.table!r}; expected one of {', '.join((*TABLES[1:], LEANS))}."
+            )
 
     def block_texts(self) -> list[str]:
         """Its lines, as every reader counts them."""
@@ -82,7 +91,12 @@ class GCodeSource:
         from robomill.toolpath.gcode import read_gcode
 
         data = self.text.encode()
-        return read_apt(data) if is_apt(data) else read_gcode(data, dialect=self.dialect, tools=tools)
+        if is_apt(data):
+            return read_apt(data)
+        path = read_gcode(data, dialect=self.dialect, tools=tools, table=self.table.removeprefix(LEANS))
+        if self.table != LEANS:
+            return path
+        return replace(path, findings=tuple(each for each in path.findings if each.code != ROTARY_ASKED))
 
 
 def _turning(path: Toolpath, n_s: float) -> Toolpath:

@@ -297,3 +297,12 @@ def test_what_the_app_saves_beside_the_setup_is_nothing_to_a_run() -> None:
     """Save in the browser, then the command line: the same numbers."""
     text = setup_to_toml(load_setup(SAMPLE)) + '\n[view]\nunits = "in"\n\n[maps]\nrobot = "other"\n'
     assert setup_from_toml(text).digest() == load_setup(SAMPLE).digest()
+
+
+@pytest.mark.parametrize("table", ["A", "-C", "tool", ""])
+def test_what_turns_the_part_is_kept_in_a_project(table: str) -> None:
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    source = GCodeSource("G21 G0 Z5 A0\nG1 X9 A120 F100\nM2\n", table=table)
+    kept = setup_to_toml(setup.replace(source=source))
+    assert ("rotary_axis" in kept) == bool(table)
+    assert setup_from_toml(kept).source == source

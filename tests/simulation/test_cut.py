@@ -11,11 +11,13 @@ from scipy.spatial.transform import Rotation
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.provenance import Finding
 from robomill.simulation.cut import (
     SEEN,
     SUSPECTED,
     cut_notes,
     moved_points,
+    rotary_asked,
     steps_in_stock,
     suspicions,
     told_conditions,
@@ -23,7 +25,7 @@ from robomill.simulation.cut import (
 )
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import ROTARY_ASKED, Toolpath
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml")
 PROCESS = load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
@@ -152,6 +154,16 @@ def test_notes_of_the_cutter_are_of_what_is_engaged():
     assert "beyond-flutes" in {each.code for each in cut_notes(short, told, np.ones(2, bool))}
     air = replace(told, a_p=np.zeros(2))
     assert "beyond-flutes" not in {each.code for each in cut_notes(short, air, np.ones(2, bool))}
+
+
+def test_no_cut_is_judged_of_a_program_that_turns_far_until_somebody_says_what_turns():
+    met = simulate(PROCESS.replace(cell=1e-3, step=5e-3)).conditions
+    path = path_of([[0, 0, 0], [0.01, 0, 0]], [0, 1])
+    assert rotary_asked(path, met) == ()
+    asked = replace(path, findings=(Finding("warning", "A turns", 2, code=ROTARY_ASKED),))
+    (found,) = rotary_asked(asked, met)
+    assert found.code == ROTARY_ASKED
+    np.testing.assert_array_equal(found.where, met.cutting)
 
 
 def test_steps_before_which_the_material_is_not_known_are_not_judged_where_they_cut():

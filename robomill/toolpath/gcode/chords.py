@@ -10,21 +10,25 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
 from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.path import Toolpath, far_off
+from robomill.units import to_si
 
 MAX_TILT_STEP = math.radians(2.0)
+TABLE_STEP = math.radians(0.5)
+"""2 um off the circle that a table leads a tool round, 200 mm from its axis."""
 _BLOCK = 500_000
 
 
-def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Toolpath:
+def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> Toolpath:
     """The moves as points of {W}: arcs as chords within ``chord_error`` (m), turning axes in steps of 2 degrees.
 
-    Raises GCodeError if nothing moves, a point is beyond any machine, or more than ``arcs.MAX_POINTS`` would be needed.
+    ``table`` is the rotary axis that turns the part (one of ``TABLES``): {W} turns with it, about part zero. Raises
+    GCodeError if nothing moves, a point is beyond any machine, or more than ``arcs.MAX_POINTS`` would be needed.
     """
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
     is_arc = program.is_kind("arc") & ~program.unplaced
     is_tap = program.is_kind("tap")
-    counts = _pieces(program, np.flatnonzero(is_arc), chord_error)
+    counts = _pieces(program, np.flatnonzero(is_arc), chord_error, TABLE_STEP if table else MAX_TILT_STEP)
     counts[is_tap] = 2
     first = np.cumsum(counts) - counts + 1
     p = np.empty((int(counts.sum()) + 1, 3))
@@ -47,10 +51,13 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR) -> Tool
     block = _spread(program.line, counts, program.line[0])
     if far := far_off(p, block):
         raise GCodeError.at(*far)
+    k, v_f = _axes(program, counts), _spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0)
+    if table and (program.rotary.any() or program.rotary0.any()):
+        p, k, v_f = on_table(program, counts, p, v_f, table)
     return Toolpath(
         p=p,
-        k=_axes(program, counts),
-        v_f=_spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0),
+        k=k,
+        v_f=v_f,
         cutting=_spread(program.at_feed, counts, False),
         block=block,
         n_s=_spread(program.n_s, counts, program.n_s[0]),
@@ -84,13 +91,13 @@ def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
     return start, known[1:]
 
 
-def _pieces(program: Program, rows: IntArray, chord_error: float) -> IntArray:
-    """Straight pieces of each move; ``rows`` are the arcs."""
+def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:
+    """Straight pieces of each move; ``rows`` are the arcs, ``most`` (rad) is how far an axis turns in one."""
     counts = np.ones(len(program), dtype=np.int64)
     turns = program.arcs_of(rows)
     counts[rows] = arcs.chord_counts(turns.sweep, turns.bend, chord_error)
     if program.rotary.any() or program.rotary0.any():
-        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / MAX_TILT_STEP - 1e-4)
+        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / most - 1e-4)
         if tilt.sum() > arcs.MAX_POINTS:
             raise GCodeError(f"Program: the turning axes would need more than {arcs.MAX_POINTS} points.")
         counts = np.maximum(counts, tilt.astype(np.int64))
@@ -129,9 +136,46 @@ def _at_first(values: FloatArray, first: IntArray, count: int) -> FloatArray:
 def _axes(program: Program, counts: IntArray) -> FloatArray:
     if not (program.rotary.any() or program.rotary0.any()):
         return np.array([0.0, 0.0, 1.0])
+    return tool_axis(_angles(program, counts))
+
+
+def _angles(program: Program, counts: IntArray) -> FloatArray:
+    """A, B, C (n, 3) rad at each point."""
     owner, step = arcs.steps(counts)
     angles = program.rotary0[owner] + (step / counts[owner])[:, None] * (program.rotary - program.rotary0)[owner]
-    return np.concatenate([tool_axis(program.rotary0[:1]), tool_axis(angles)])
+    return np.concatenate([program.rotary0[:1], angles])
+
+
+def on_table(
+    program: Program, counts: IntArray, p: FloatArray, v_f: FloatArray, table: str
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points p (n, 3) m, axes k and feeds v_f in the part that a ``table`` turns, from those beside the machine.
+
+    ISO 841: a rotary axis counts as if the tool turned about the part, so p and k turn by it about part zero (by its
+    negative for "-A"). A move takes the time that its feed gives to its lengths beside the machine.
+    """
+    angles = _angles(program, counts)
+    axis, sense = "ABC".index(table[-1]), -1.0 if table[0] == "-" else 1.0
+    turn = sense * angles[:, axis]
+    angles[:, axis] = 0.0
+    owner, _ = arcs.steps(counts)
+    beside, degrees = program.length, np.degrees(np.linalg.norm(program.rotary - program.rotary0, axis=1))
+    told = np.where(beside > 1e-9, beside, to_si(degrees, program.units or "mm"))
+    turned = _turned(p, turn, axis)
+    piece = np.linalg.norm(np.diff(turned, axis=0), axis=1)
+    share = np.where(told > 0.0, np.bincount(owner, piece, len(program)) / np.where(told > 0.0, told, 1.0), 1.0)
+    v_f = np.broadcast_to(v_f, (len(p),)).copy()
+    v_f[1:] *= share[owner]
+    return turned, _turned(tool_axis(angles), turn, axis), v_f
+
+
+def _turned(v: FloatArray, angle: FloatArray, axis: int) -> FloatArray:
+    """Vectors (n, 3) turned by angles (n,) about X, Y or Z."""
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    out = np.array(v)
+    out[:, first] = v[:, first] * np.cos(angle) - v[:, second] * np.sin(angle)
+    out[:, second] = v[:, first] * np.sin(angle) + v[:, second] * np.cos(angle)
+    return out
 
 
 def tool_axis(angles: FloatArray) -> FloatArray:

@@ -7,13 +7,15 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.program import TRAVERSE, Program
-from robomill.toolpath.path import NO_SPINDLE
+from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED
 from robomill.units import format_si, to_si
 
 LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
 MOST_SAID = 1000
 """Stretches of a program that one finding counts."""
+QUARTER = 90.0 + 1e-6
+"""degrees that a tool which leans is led through, or stands from upright, without a doubt."""
 LONG_DWELL = 60.0
 """s, on average over a program: so long none waits, so the number is in another unit."""
 
@@ -32,6 +34,24 @@ def doubt(machine: Machine, program: Program) -> None:
     _doubt_spin(machine, program)
     _doubt_zero(machine, program)
     _doubt_home(machine, program)
+    _doubt_table(machine, program)
+
+
+def _doubt_table(machine: Machine, program: Program) -> None:
+    """Ask what turns where an axis turns through more than a quarter: a tool that leans, or a table with the part."""
+    cuts = np.flatnonzero(program.at_feed)
+    if not len(cuts):
+        return
+    angles = np.vstack([program.rotary0[cuts], program.rotary[cuts]])
+    most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
+    for axis in np.flatnonzero(most > QUARTER):
+        turned = (np.abs(program.rotary[cuts, axis]) > 0.0) | (np.abs(program.rotary0[cuts, axis]) > 0.0)
+        letter = "ABC"[axis]
+        text = (
+            f"{letter} turns by {most[axis]:.0f} degrees: does it turn the part (a rotary table) or lean the tool? It "
+            f"is read as the tool's, and nothing is judged, until the rotary axis is stated"
+        )
+        machine.findings.add(ROTARY_ASKED, "warning", int(program.line[cuts[turned][0]]), text)
 
 
 def _doubt_home(machine: Machine, program: Program) -> None:

@@ -18,7 +18,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import ROTARY_ASKED, TABLES, Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools
 
@@ -29,13 +29,19 @@ def read_gcode(
     chord_error: float = CHORD_ERROR,
     dialect: str = "auto",
     tools: Tools | None = None,
+    table: str = "",
 ) -> Toolpath:
     """The toolpath of a program in {W}: arcs as chords within ``chord_error`` (m), findings attached.
 
-    Raises GCodeError naming the line that is refused, or if nothing moves.
+    ``table`` is the rotary axis that turns the part, one of ``TABLES``. Raises GCodeError naming the line that is
+    refused, or if nothing moves.
     """
     program = interpret(path_or_text, dialect=dialect, tools=tools)
-    return to_toolpath(program, chord_error)
+    if table and table in TABLES:
+        program = replace(program, findings=tuple(f for f in program.findings if f.code != ROTARY_ASKED))
+    elif table:
+        raise GCodeError(f"Rotary table: found {table!r}; expected one of {', '.join(TABLES[1:])}.")
+    return to_toolpath(program, chord_error, table)
 
 
 def interpret(

@@ -11,8 +11,8 @@ from robomill.files import PROGRAM
 from robomill.io.programs import program_from_bytes
 from robomill.provenance import Finding
 from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
-from robomill.toolpath.path import Toolpath
-from robomill.toolpath.source import GCodeSource
+from robomill.toolpath.path import ROTARY_ASKED, TABLES, Toolpath
+from robomill.toolpath.source import LEANS, GCodeSource
 from robomill.toolpath.text import SUFFIXES
 from robomill.ui import inputs, pieces, session, typed
 from robomill.ui.box import NumberBox
@@ -24,6 +24,10 @@ from robomill.ui.toolpath.sources import put, put_dropped
 EDITABLE_CHARACTERS = 200_000
 TEXT, MODE, REFUSED, DROPPED = (f"toolpath.{name}" for name in ("text", "mode", "refused", "dropped"))
 MODES = {"code": "Code", "edit": "Edit"}
+ROTARY = {"": "Not said", LEANS: "Leans the tool"} | {
+    each: f"{each[-1]} turns the part{', the other way round' * (each[0] == '-')}" for each in TABLES if each
+}
+"""What is said of rotary axes that turn far."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> No
         _show_refused(refused, dark)
         return
     _dialect(source)
+    if source.table or (path is not None and any(each.code == ROTARY_ASKED for each in path.findings)):
+        inputs.choice("Rotary axis", "toolpath.rotary", ROTARY, source.table, _take_rotary, inputs.LISTED)
     _text(source, path, dark)
 
 
@@ -64,6 +70,14 @@ def dialect_words(source: GCodeSource) -> str:
     chosen = choose_dialect(source.text, source.dialect)
     said = "guessed from how it looks" if chosen.guessed else "as you chose"
     return f"Read as {DIALECTS[chosen.name]} code, {said}."
+
+
+def _take_rotary(table: str) -> None:
+    source = session.project().setup.source
+    assert source.kind == "program"
+    changed = dataclasses.replace(source, table=table)
+    if reading.read(changed):
+        put(changed, f"program {source.name}")
 
 
 def _take_dialect(name: str) -> None:
