@@ -27,18 +27,21 @@ class Enlarged:
     times: float
 
 
-def enlarged(result: SimulationResult, times: float) -> Enlarged:
+def enlarged(
+    result: SimulationResult, times: float, cells: int = PICTURE_CELLS, *, must_touch: bool = True
+) -> Enlarged:
     """Cut again with the tip ``times`` times as far off its path; ``times`` = 1 is the machined surface itself.
 
-    Raises SurfaceError for a cell size that does not fit and for a path that misses the stock.
+    The grid has about ``cells`` cells, or those of the set-up where these are fewer. Raises SurfaceError for a cell
+    size that does not fit and (``must_touch``) for a path that misses the stock.
     """
     setup, path = result.setup, result.path
     size = setup.stock_block.upper - setup.stock_block.lower
-    cell = max(setup.cell, float(np.sqrt(size[0] * size[1] / PICTURE_CELLS)))
+    cell = max(setup.cell, float(np.sqrt(size[0] * size[1] / cells)))
 
     def at(factor: float) -> ZMap:
-        p = path.p + factor * (result.p_machined - path.p)
-        touches = factor == 0.0 and bool(result.removes.any()) and not result.not_judged.any()
+        p = tips(result, factor)
+        touches = must_touch and factor == 0.0 and bool(result.removes.any()) and not result.not_judged.any()
         return cut(setup.stock_block, cell, result.tooling, p, path.k, result.removes, must_touch=touches)
 
     stock_grid(setup.stock_block, setup.cell)  # the surface itself must fit, not just its picture
@@ -99,9 +102,14 @@ def so_far(result: SimulationResult, shown: Enlarged, index: int) -> Enlarged:
             must_touch=False,
         )
 
-    drawn, told = at(path.p + shown.times * (result.p_machined - path.p)), at(path.p)
+    drawn, told = at(tips(result, shown.times)), at(path.p)
     done = (drawn.z == shown.drawn.z) & (told.z == shown.ideal.z)
     return replace(shown, drawn=drawn, error=np.where(done, shown.error, np.nan))
+
+
+def tips(result: SimulationResult, times: float) -> FloatArray:
+    """(m, 3) m in {W}: where the tip goes with its displacement ``times`` times enlarged; NaN where it is not known."""
+    return np.asarray(result.path.p + times * (result.p_machined - result.path.p))
 
 
 def tip_drawn(result: SimulationResult, shown: Enlarged, index: int) -> FloatArray:
