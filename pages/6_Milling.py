@@ -10,16 +10,10 @@ setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
 spread = None if result is None else ui.attempt(panel.spread_of, result)
 
+kicker = f"Milling · {setup.name}"
+ui.headline(kicker, "No result yet" if result is None else ui.verdict_sentence(result, unit))
 if result is None or spread is None:
-    left, right = ui.thirds()
-    with left:
-        panel.inputs_column(result)
-    right.info("Nothing is computed yet: where a value is named above, mend it. What you typed is kept.")
+    panel.waiting(result, dark)
     st.stop()
-
-with st.container(gap=None):
-    ui.headline(f"Milling · {setup.name}", ui.verdict_sentence(result, unit))
-    panel.verdict_link(result)
-    ui.open_question(result)
-ui.tiles(panel.tiles(result, ui.verdict_tiles(result, unit)))
-panel.workbench(setup.digest(), dark)
+ui.open_question(result)
+panel.workbench(dark)

@@ -8,7 +8,6 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tooling import Tooling
 from robomill.progress import checkpoint
 from robomill.surface.passes import Passes, at_one_axis
-from robomill.surface.stock import Cells
 from robomill.surface.zmap import ZMap
 
 
@@ -29,8 +28,8 @@ def history(
     """The way from the stock of ``surface`` to it, over its grid: p (m, 3) m tool tip, k (m, 3) tool axis, ``removes``
     (m,) steps that cut, whose ends are finite.
 
-    At most ``most`` lowerings: where there are more, smaller ones are not told. Voids that a leaning cutter leaves below
-    material are not told either; ``surface`` itself is the end.
+    At most ``most`` lowerings: where there are more, smaller ones are not told. Voids that a leaning cutter leaves
+    below material are not told either; ``surface`` itself is the end.
     """
     depth = float(np.max(surface.z_stock - surface.z, initial=0.0))
     if depth <= 0.0 or not removes.any():
@@ -68,7 +67,7 @@ def _lowered(
         plan_boxes(cutter.radius, ends, axes, top, boxes)
         checkpoint()
         lower_in_turn(cutter.solid, TiltedMoves(ends, axes, boxes), run[owner], tile, least, found)
-        if found.count[0] > most:
+        if found.told[0] > most:
             return None
-    count = int(found.count[0])
+    count = int(found.told[0])
     return found.cell[:count].copy(), np.maximum(found.height[:count], surface.bottom), found.move[:count].copy()

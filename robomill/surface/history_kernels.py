@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from robomill.arrays import FloatArray
-from robomill.compiled import In2, InInt1, Out1, OutInt1, kernel, part
+from robomill.compiled import InInt1, Out1, OutInt1, kernel, part
 from robomill.cutting.profile_kernels import Shape
 from robomill.surface.cells_kernels import Heights, cells_in, columns_near, interval_below, rows_near
 from robomill.surface.envelope_kernels import move_between, swept_height
@@ -14,23 +14,23 @@ from robomill.surface.tilt_kernels import UPRIGHT, TiltedMoves, move_in_frame, t
 
 class Lowerings(NamedTuple):
     """Cells that were lowered, in the order of the moves: flat index (e,), new height (e,) m, number (e,) of the move;
-    ``count`` (1,) how many there were, beyond e where they found no room."""
+    ``told`` (1,) how many there were, beyond e where they found no room."""
 
     cell: OutInt1
     height: Out1
     move: OutInt1
-    count: OutInt1
+    told: OutInt1
 
 
 @part
 def lower(tile: Heights, i: int, j: int, height: float, n: int, found: Lowerings) -> None:
     """Lower a cell in move n, and note it where there is room."""
     tile.z[i, j] = height
-    if found.count[0] < found.cell.size:
-        found.cell[found.count[0]] = i * tile.z.shape[1] + j
-        found.height[found.count[0]] = height
-        found.move[found.count[0]] = n
-    found.count[0] += 1
+    if found.told[0] < found.cell.size:
+        found.cell[found.told[0]] = i * tile.z.shape[1] + j
+        found.height[found.told[0]] = height
+        found.move[found.told[0]] = n
+    found.told[0] += 1
 
 
 @part

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.kinematics.forward import joint_frames
@@ -65,7 +65,7 @@ class _Packing:
 
 
 def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
-    """All that a browser needs to draw the cut at each of ``exaggerations``, which are all above zero.
+    """All that a browser needs to draw the cut at each of ``exaggerations``.
 
     ``about["arrays"]`` names each array with its type, first byte and length:
 
@@ -74,7 +74,7 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
     ready.K (nx ny,) u2       frame at which a cell has its last height and the ideal cut has passed it
     cell.K, height.K, frame.K the lowerings of cells on the way there, in their order
     p, delta, k (f, 3) f4     tip as told, its deviation at true size, tool axis; s (f,) mm cut so far
-    state (f,) u1             1 reached, 2 counts for the verdict, 4 the cut goes on from the frame before, 8 above stock
+    state (f,) u1             1 reached, 2 counts for the verdict, 4 the cut goes on from the frame before, 8 in air
     arm.o, arm.a, arm.do, arm.da (a, n + 1, 3) f4   joints' places and axes, and what the load does to them
     """
     packing, frames = _Packing(), frames_of(result)
@@ -82,7 +82,8 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
     first = shown[0]
     heights = [first.ideal.z, *(each.drawn.z for each in shown), first.ideal.z_stock]
     low, high = (float(f([f(z) for z in heights])) for f in (np.min, np.max))
-    low, quantum = min(low, first.ideal.bottom), max(high - low, 1e-9) / STEPS
+    low = min(low, first.ideal.bottom)
+    quantum = max(high - low, 1e-9) / STEPS
     packing.add("ideal", quantised(first.ideal.z, low, quantum), "u2")
     if first.ideal.z_stock.ndim:
         packing.add("stock", quantised(first.ideal.z_stock, low, quantum), "u2")
@@ -169,7 +170,7 @@ def _last_frame(result: SimulationResult, shown: Enlarged, times: float, frames:
 
 def _samples(packing: _Packing, result: SimulationResult, frames: IntArray) -> None:
     path = result.path
-    joined = np.array([path.cutting[a + 1 : b + 1].all() for a, b in zip(frames[:-1], frames[1:], strict=True)])
+    joined = np.diff(np.cumsum(~path.cutting)[frames]) == 0
     state = REACHED * result.reached[frames] + JUDGED * result.judged[frames]
     state += JOINED * np.append(False, joined) + OVER * ~result.over_stock[frames]
     packing.add("p", from_si(path.p[frames], "mm"), "f4")
@@ -203,7 +204,7 @@ def tool_outlines(cutter: Cutter) -> list[dict[str, Any]]:
         "shank": (np.array([0.92 * R, 0.92 * R]), np.array([flutes, out])),
         "spindle": (
             np.array([1.25 * R, 1.9 * R, 2.4 * R, 2.4 * R]),
-            np.array([out, out + 2.4 * R, out + 2.8 * R, out + 6.0 * R]),
+            np.array([out, out + 2.4 * R, out + 2.8 * R, out + 4.0 * R]),
         ),
     }
     return [
@@ -262,8 +263,3 @@ def arm_frames(result: SimulationResult, samples: IntArray) -> tuple[FloatArray,
     tau = np.einsum("mij,mi->mj", geometric_jacobian(robot, theta)[:, :3], np.nan_to_num(result.F[samples]))
     turned = theta + robot.C_theta * tau
     return T_WM @ joint_frames(robot, theta), T_WM @ joint_frames(robot, turned)
-
-
-def unjudged(result: SimulationResult) -> BoolArray:
-    """(m,) samples of the cut that are drawn as having no answer."""
-    return np.asarray(result.path.cutting & ~result.answered)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,13 @@ def words(app: AppTest) -> str:
     for kind in ("markdown", "caption", "error", "info", "warning"):
         parts += [element.value for element in app.get(kind)]
     return "\n".join(parts)
+
+
+def looked(app: AppTest, **view: Any) -> None:
+    """As if the browser had settled on a look at the cut (no AppTest can move what is drawn there)."""
+    held = store(app)
+    held.project = held.project.replace(view=dataclasses.replace(held.project.view, **view))
+    app.run()
 
 
 def errors(app: AppTest) -> list[str]:

@@ -1,6 +1,7 @@
-"""The milling page's body: inputs on the left, one scrubber, and three questions that share it."""
+"""The milling page's body: inputs on the left; the cut with its scrubber, and three questions that share it."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import streamlit as st
@@ -12,7 +13,7 @@ from robomill.ui import cached, inputs, pieces, running, session
 from robomill.ui import evidence as evidence_panel
 from robomill.ui.arm import arm_at
 from robomill.ui.milling import cut as cut_panel
-from robomill.ui.milling import film, force_view
+from robomill.ui.milling import film, force_view, live_cut
 from robomill.ui.milling import force as force_panel
 from robomill.ui.milling import metrology as metrology_panel
 from robomill.ui.milling import pictures as picture_panel
@@ -21,7 +22,7 @@ from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import NOT_COUNTED
+from robomill.ui.verdict import NOT_COUNTED, verdict_tiles
 from robomill.units import format_many, format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
@@ -101,44 +102,75 @@ def inputs_column(result: SimulationResult | None) -> None:
         cut_panel.judgement_inputs()
 
 
+def workbench(dark: bool) -> None:
+    """Everything below the headline: inputs in a column of their own, beside them the cut and what is known of it."""
+    digest = session.project().setup.digest()
+    left, right = bench()
+    with left:
+        _inputs(digest)
+    with right:
+        _looks(digest, dark)
+
+
+def bench() -> list[Any]:
+    """The two columns of the page: inputs, which scroll by themselves, and the picture with what belongs to it."""
+    return pieces.split([1, 2.5], "milling", gap="small")
+
+
+def waiting(result: SimulationResult | None, dark: bool) -> None:
+    """The page while there are no numbers: inputs, where what is missing is asked for, and the last cut, greyed."""
+    left, right = bench()
+    with left:
+        inputs_column(result)
+    last = session.kept(running.LAST) if result is None else result
+    with right:
+        if last is not None:
+            live_cut.panel(last, dark)
+        if result is None:
+            words = "Nothing is computed yet: where a value is named above, or asked for among the inputs, give it."
+            stays = "" if last is None else "; the picture is the last one"
+            pieces.said("info", f"{words} What you typed is kept{stays}.")
+
+
 @st.fragment
-def workbench(digest: str, dark: bool) -> None:
-    """Everything below the tiles. Runs alone while the scrubber moves; a changed set-up runs the whole page."""
+def _inputs(digest: str) -> None:
+    """Runs alone while something is opened; a changed set-up runs the whole page."""
+    project = session.project()
+    if project.setup.digest() != digest:
+        st.rerun()
+    inputs_column(running.shown(project.setup))
+
+
+@st.fragment
+def _looks(digest: str, dark: bool) -> None:
+    """Runs alone once the scrubber has settled."""
     project = session.project()
     if project.setup.digest() != digest:
         st.rerun()
     result = running.shown(project.setup)
     if result is None:
         return
+    live_cut.panel(result, dark)
+    if live_cut.without_webgl():
+        picture_panel.rendered_picture(result, linked.index(result), dark)
     spread, peak = spread_of(result)
-    left, right = pieces.thirds()
-    with left:
-        inputs_column(result)
-    with right:
-        question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
-        with st.container(border=True):
-            i = linked.scrubber(result)
-            linked.where(result, i, spread)
-        with st.container(border=True):
-            if question == "force":
-                force_view.force_plot(result, i, spread, peak, dark)
-                force_view.facts(result, i, peak)
-            elif question == "tip":
-                linked.deviation_plot(result, i, spread, dark)
-            else:
-                picture_panel.panel(result, i, dark)
-        if question == "force":
-            _engaged(result, i, spread, peak, dark)
-        elif question == "tip":
-            _code_and_arm(result, i)
-        else:
-            with st.container(border=True):
-                metrology_panel.section_facts(station_views.section(result, i, dark))
+    i = linked.index(result)
+    linked.where(result, i, spread)
+    verdict_link(result)
+    pieces.tiles(tiles(result, verdict_tiles(result, project.view.length)))
+    question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
     if question == "force":
+        with st.container(border=True):
+            force_view.force_plot(result, i, spread, peak, dark)
+            force_view.facts(result, i, peak)
+        _engaged(result, i, spread, peak, dark)
         st.subheader("How sure is the force?")
         force_view.alloy_table(result, i, spread)
         force_view.worth_knowing(result)
     elif question == "tip":
+        with st.container(border=True):
+            linked.deviation_plot(result, i, spread, dark)
+        _code_and_arm(result, i)
         _tip(result, i, spread, peak, dark)
     else:
         _part(result, i, spread, dark)
@@ -180,18 +212,21 @@ def _tip(result: SimulationResult, i: int, spread: AlloySpread | None, peak: For
 
 
 def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
-    along, spread_over = pieces.split([1, 1], "profile-histogram")
+    section, along = pieces.split([1, 1], "section-profile", gap="small")
+    with section, st.container(border=True, height="stretch"):
+        st.markdown("**Section at the position**")
+        metrology_panel.section_facts(station_views.section(result, i, dark))
     with along, st.container(border=True, height="stretch"):
-        st.markdown("**Along the groove**")
+        st.markdown("**Along the cut**")
         metrology_panel.profile_panel(result, spread, dark)
-    with spread_over, st.container(border=True, height="stretch"):
+    with st.container(border=True):
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)
     if evidence_panel.is_papers_path(session.project()):
         st.subheader("The paper's test, and ours")
         with st.container(border=True):
             evidence_panel.panel(session.project(), dark)
-    st.subheader("Take it away")
+    st.subheader("Downloads")
     picture_panel.downloads(result, i)
     with st.expander("Film of the cut", icon=":material/movie:", key="milling.open.film"):
         film.panel(result, dark)

@@ -1,4 +1,4 @@
-"""Pictures of the machined surface: rendered, beside the ideal one, or turnable; surfaces to take away."""
+"""The machined surface to take away: as a picture that the server renders, as numbers, as a solid."""
 
 from collections.abc import Callable
 from functools import partial
@@ -11,25 +11,14 @@ from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
-from robomill.ui import cached, declared, inputs, pieces, rendered, session
+from robomill.ui import cached, pieces, rendered, session
+from robomill.ui.milling import live_cut
 from robomill.ui.milling import scrubber as linked
-from robomill.units import format_si, format_times
+from robomill.units import format_si
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.posed import posed
-from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
-HOW = {"one": "Rendered", "pair": "Beside the ideal", "turn": "Turnable"}
-EXTRAS = {
-    "plane": "Section plane",
-    "away": "Cut open",
-    "ghost": "Ideal as ghost",
-    "tool": "Tool",
-    "arm": "Arm",
-    "so_far": "Cut so far",
-}
-EXAGGERATIONS = {1.0: "true", 5.0: "× 5", 10.0: "× 10", 20.0: "× 20", 50.0: "× 50"}
-VIEW, WITH = "milling.picture.view", "milling.picture.with"
 PLACE = "milling.picture"
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
@@ -37,57 +26,19 @@ SIZE = (1360, 720)
 DRAWING_S, ROW_S, CELL_S, FIELD_S, WALL_S = 1.0, 3e-5, 3e-7, 4e-7, 6e-6
 
 
-def panel(result: SimulationResult, i: int, dark: bool, height: int = 430) -> None:
-    """The picture with its controls."""
-    how = _controls()
-    view, tolerance, floors = session.project().view, result.setup.tolerance, result.verdict.floor.tolerance
-
-    def turnable() -> None:
-        shown = pieces.attempt(cached.pictured, result.setup, view.exaggeration)
-        if shown is not None:
-            fig = surface_figure(shown, tolerance, view.length, dark=dark, height=height, camera=view.camera)
-            pieces.figure(fig, "surface", alt="The machined surface, to be turned with the mouse.")
-
-    if how == "turn":
-        turnable()
-    else:
-        key, make = scene(result, i, dark)
-        rendered.picture(PLACE, key, make, "The machined surface coloured by its signed error.", turnable)
-    times = (
-        "True displacement" if view.exaggeration == 1 else f"Displacement shown {format_times(view.exaggeration, 6)}"
-    )
-    ends, other = f"± {format_si(tolerance, 'um', 0)}", f"± {format_si(floors, 'um', 0)}"
-    ends = f"tolerance, {ends}" if floors == tolerance else f"tolerance of walls, {ends} (floors: {other})"
-    pieces.note(
-        f"{times}. Colours are the true error, of floors in height and of walls sideways; they end at the {ends}."
-    )
-
-
-def _controls() -> str:
-    view = session.project().view
-    first, camera, times = pieces.split([2.1, 1.3, 0.9], "picture", gap="small")
-    with first:
-        how = inputs.pick("View", VIEW, HOW)
-    with camera:
-        declared.seen("view.camera", inputs.LISTED)
-    with times:
-        known = view.exaggeration in EXAGGERATIONS
-        options = EXAGGERATIONS if known else {**EXAGGERATIONS, view.exaggeration: format_times(view.exaggeration, 6)}
-        declared.seen("view.exaggeration", inputs.LISTED, options)
-    if how != "turn":
-        inputs.several("With", WITH, EXTRAS, _extras(), partial(session.keep, WITH), inputs.HIDDEN)
-    return str(how)
-
-
-def _extras() -> list[str]:
-    return list(session.kept(WITH, ["plane"]))
+def rendered_picture(result: SimulationResult, i: int, dark: bool) -> None:
+    """The picture that the server draws, as the browser looks at the cut."""
+    key, make = scene(result, i, dark)
+    alt = "The machined surface coloured by its signed error."
+    rendered.picture(PLACE, key, make, alt, lambda: pieces.note("No picture can be drawn here."))
 
 
 def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, ...], Callable[[], SurfacePicture]]:
     """The key of what is drawn, which is all that it depends on, and what makes it (in any thread)."""
     view = session.project().view
-    extras = frozenset(_extras())
-    pair = session.kept(VIEW, "one") == "pair"
+    look = live_cut.state()
+    extras = frozenset({*look["show"], *(["arm"] if look["view"] == "arm" else [])})
+    pair = look["view"] == "pair"
     moves = bool(extras & {"plane", "away", "tool", "arm", "so_far"})
     station = linked.station_m(result)
 

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
 from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
-from robomill.ui import inputs, pieces, session, uncertainty
+from robomill.ui import pieces, session, uncertainty
 from robomill.units import format_many, format_si, from_si
 from robomill.viz.along import add_picks, add_point, at_feed, shade
 from robomill.viz.deviation import components_figure
@@ -34,38 +33,9 @@ def go_to(result: SimulationResult, i: int) -> None:
         session.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
 
 
-def scrubber(result: SimulationResult) -> int:
-    """The slider over the length cut, with steps from line to line; returns the sample it points at."""
-    view, unit = session.project().view, session.project().view.length
-    top = max(float(from_si(float(result.path.s[-1]), unit)), 1e-9)
-    i = nearest_judged(result, station_m(result))
-    inputs.slider(
-        f"Station: {unit} of cut",
-        "view.station",
-        inputs.Span(0.0, round(top, 3), round(top / 200, 4) or 0.001, "%.2f"),
-        round(view.station * top, 3),
-        lambda v: session.look(station=min(max(v / top, 0.0), 1.0)),
-    )
-    lines = cut_lines(result)
-    place = int(np.searchsorted(lines, result.path.block[i])) if i >= 0 else 0
-    with st.container(horizontal=True, gap="small"):  # a row that breaks where the window is narrow
-        for step, label, words in ((-1, "Back", "previous line"), (1, "Next", "next line")):
-            other = place + step
-            how = {"help": f"To the {words} that cuts", "disabled": not 0 <= other < len(lines)}
-            inputs.button(label, f"milling.{label.lower()}", "", _to_line, result, lines, other, **how)
-        how = {"help": "Land on the largest deviation", "disabled": result.worst < 0}
-        inputs.button("Worst", "milling.worst", "my_location", go_to, result, result.worst, **how)
+def index(result: SimulationResult) -> int:
+    """The sample that the scrubber points at; -1 where none counts for the verdict."""
     return nearest_judged(result, station_m(result))
-
-
-def cut_lines(result: SimulationResult) -> FloatArray:
-    """Source lines that cut, in rising order."""
-    return np.unique(result.path.block[result.path.cutting])
-
-
-def _to_line(result: SimulationResult, lines: FloatArray, number: int) -> None:
-    samples = np.flatnonzero((result.path.block == lines[number]) & result.path.cutting)
-    go_to(result, int(samples[len(samples) // 2]))
 
 
 def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:

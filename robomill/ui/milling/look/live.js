@@ -1,5 +1,6 @@
 // One look at the cut: what is chosen here is drawn here, 20 pictures a second while it plays; only what has settled is
-// told to the server. The element says what is drawn, after it is drawn: data-drawn="station=0.500 x10 iso part".
+// told to the server. The element says what is drawn, after it is drawn: data-drawn="station=0.500 x10 iso part",
+// with "so-far" while material stands that is not cut yet.
 const EACH_MS = 50, SETTLED_MS = 250, WHOLE_CUT_MS = 9000, KEYS_STEP = 5;
 const parcels = (globalThis.robomillParcels ??= new Map());
 const html = (root, name) => root.querySelector(`.${name}`);
@@ -176,6 +177,7 @@ class Look {
   start() {
     if (!this.cut) return;
     if (this.state.station >= 0.9995) this.state.station = 0;
+    if (!this.state.show.includes("so_far")) this.state.show = this.data.shows.map(([code]) => code).filter((code) => code === "so_far" || this.state.show.includes(code));
     this.playing = 1;
     this.from = [performance.now(), this.state.station];
     this.last = 0;
@@ -241,7 +243,7 @@ class Look {
     this.words(place);
     curve(this.curve, cut, state.station, data, sharp);
     scene.done();
-    this.root.dataset.drawn = `station=${state.station.toFixed(3)} x${+state.times} ${this.turned() ? "turned" : state.camera} ${state.view}`;
+    this.root.dataset.drawn = `station=${state.station.toFixed(3)} x${+state.times} ${this.turned() ? "turned" : state.camera} ${state.view}${state.show.includes("so_far") ? " so-far" : ""}`;
   }
 
   turned() {
@@ -264,7 +266,7 @@ class Look {
     this.picture.setAttribute("aria-label", `${words.alt} ${told}`);
     const shown = (times) => (times === 1 ? words.true : `${words.shown} × ${+times}`);
     const arm = state.view === "arm" && about.arm;
-    this.said.textContent = arm ? `${words.arm} × ${about.arm.times}. ${words.part}: ${shown(state.times)}.` : `${shown(state.times)}. ${words.thin}`;
+    this.said.textContent = arm ? `${words.arm} × ${about.arm.times}; ${words.part}: × ${+state.times}. ${words.unloaded}` : `${shown(state.times)}. ${words.thin}`;
     this.back.disabled = n <= 0;
     this.next.disabled = n >= lines.number.length - 1;
     this.worst.disabled = about.worst < 0;

@@ -7,7 +7,8 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
   const plane = sectionPlane(cut, place, tool);
   scene.begin(...size, colours.background);
   const camera = posed(cut, state, turn, { parts: show.has("tool") ? parts : null, arm });
-  const open = show.has("away") && !arm ? [...plane.way, dot(plane.way, plane.at)] : null;
+  // What lies before the section is taken away.
+  const open = show.has("away") && !arm ? [...plane.way.map((v) => -v), -dot(plane.way, plane.at)] : null;
   if (pair) {
     scene.look(camera, 0, 0.5);
     scene.load(`ideal`, cut.ideal, null);
@@ -17,8 +18,9 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
   } else {
     scene.look(camera, 0, 1);
   }
-  material.seek(place.frame);
-  scene.load(`${level} ${place.frame}`, material.z, material.error);
+  const upto = show.has("so_far") ? place.frame : cut.about.frames - 1;
+  material.seek(upto);
+  scene.load(`${level} ${upto}`, material.z, material.error);
   scene.drawField({ colours, moving, open });
   if (open) scene.draw(cap(cut, plane, material), colours.cut, { flat: true });
   if (!open) scene.draw(scene.outline, colours.line, { lines: true });
@@ -27,7 +29,7 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
     drawArm(scene, cut, place, colours);
     return;
   }
-  if (show.has("tool") && !(cut.arrays.state[place.frame] & REACHED) === false) {
+  if (show.has("tool") && cut.arrays.state[place.frame] & REACHED) {
     const shape = frameOf(tool.axis);
     parts.forEach((part, n) => scene.draw(`${cut.arrays.tool[place.frame]}.${n}`, colours[part.role], { at: tool.tip, shape }));
   }
@@ -44,16 +46,14 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
 // From where, and what must be seen: a preset, turned by hand.
 function posed(cut, state, turn, { parts, arm }) {
   const [preset, up] = cut.about.cameras[state.camera];
-  let low = [...cut.low], high = [...cut.high], eye = preset;
+  const [low, high] = [[...cut.low], [...cut.high]], points = [];
   if (arm) {
-    const { o, reach } = { o: cut.arrays["arm.o"], reach: 0.04 * arm.size };
-    for (let c = 0; c < o.length; c += 3) for (let i = 0; i < 3; i++) {
-      low[i] = Math.min(low[i], o[c + i] - reach);
-      high[i] = Math.max(high[i], o[c + i] + reach);
-    }
+    const o = cut.arrays["arm.o"];
+    for (let c = 0; c < 3 * (arm.joints + 1); c += 3) points.push([o[c], o[c + 1], o[c + 2]]);
   } else if (parts) {
-    high[2] += Math.min(Math.max(...parts[1].height), 0.35 * Math.hypot(high[0] - low[0], high[1] - low[1]));
+    high[2] += Math.min(0.6 * Math.max(...parts[1].height), 0.16 * Math.hypot(high[0] - low[0], high[1] - low[1]));
   }
+  for (const x of [low[0], high[0]]) for (const y of [low[1], high[1]]) for (const z of [low[2], high[2]]) points.push([x, y, z]);
   let around = Math.atan2(eye[1], eye[0]), over = Math.asin(Math.min(Math.max(eye[2], -1), 1));
   let top = up;
   if (turn.around || turn.over) {
@@ -63,7 +63,7 @@ function posed(cut, state, turn, { parts, arm }) {
     eye = [Math.cos(over) * Math.cos(around), Math.cos(over) * Math.sin(around), Math.sin(over)];
     top = [0, 0, 1];
   }
-  return { eye, up: top, low, high, zoom: turn.zoom, shift: turn.shift };
+  return { eye, up: top, points, more: arm ? 0.06 * arm.size : 0, zoom: turn.zoom, shift: turn.shift };
 }
 
 // The plane across the way of the cut at the station, as wide as the part there.

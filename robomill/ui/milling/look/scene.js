@@ -145,20 +145,20 @@ class Scene {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   }
 
-  // The camera: `eye` towards it, `up`, and corners that must be seen within the part [left, width] of the canvas.
-  look({ eye, up, low, high, zoom, shift }, left, wide) {
-    const { gl, canvas } = this, right = unit(cross(up, eye)), upward = cross(eye, right);
-    const corners = [], centre = low.map((v, i) => 0.5 * (v + high[i]));
-    for (const x of [low[0], high[0]]) for (const y of [low[1], high[1]]) for (const z of [low[2], high[2]]) {
-      corners.push(add([x, y, z], centre, -1));
-    }
-    const most = (v) => Math.max(...corners.map((c) => Math.abs(dot(c, v))));
-    const w = canvas.width * wide, h = canvas.height;
-    const scale = zoom * 0.91 * Math.min(w / (2 * most(right)), h / (2 * most(upward)));
+  // The camera: `eye` towards it, `up`, and points that must be seen (with `more` about them) within the part
+  // [left, wide] of the canvas, beside the key and above the words.
+  look({ eye, up, points, more, zoom, shift }, left, wide) {
+    const { gl, canvas } = this, right = unit(cross(up, eye)), upward = cross(eye, right), axes = [right, upward, eye];
+    const sharp = canvas.width / (canvas.clientWidth || canvas.width), words = 26 * sharp;
+    const ends = axes.map((v) => points.map((p) => dot(p, v))).map((d) => [Math.min(...d) - more, Math.max(...d) + more]);
+    const half = ends.map(([a, b]) => Math.max(0.5 * (b - a), 1e-6));
+    const centre = ends.reduce((sum, [a, b], i) => add(sum, axes[i], 0.5 * (a + b)), [0, 0, 0]);
+    const w = canvas.width * wide, h = canvas.height, key = left + wide > 0.99 && wide > 0.9 ? 84 * sharp : 0;
+    const scale = zoom * 0.95 * Math.min((w - key) / (2 * half[0]), (h - words) / (2 * half[1]));
     gl.viewport(canvas.width * left, 0, w, h);
     this.eye = eye;
     this.view = { turn: [right, upward, eye].flatMap((_, i) => [right[i], upward[i], eye[i]]), centre,
-      fit: [(2 * scale) / w, (2 * scale) / h, shift[0], shift[1]], deep: 0.3 / Math.max(...[right, upward, eye].map(most)) };
+      fit: [(2 * scale) / w, (2 * scale) / h, shift[0] - key / w, shift[1] + words / h], deep: 0.3 / Math.max(...half) };
     this.scale = scale;
     this.light = unit(add(add(eye, right, -0.55), upward, 0.85));
   }

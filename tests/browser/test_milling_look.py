@@ -1,0 +1,147 @@
+"""Looking at the cut asks nobody: the picture follows the scrubber, plays and turns in the browser alone."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+SCRUB = """async (root) => {
+  const bar = root.querySelector('.station'), took = [];
+  for (let n = 0; n < 20; n++) {
+    const before = root.dataset.drawn, start = performance.now();
+    bar.value = 300 + 5 * n;
+    bar.dispatchEvent(new Event('input', { bubbles: true }));
+    while (root.dataset.drawn === before) await new Promise(requestAnimationFrame);
+    took.push(performance.now() - start);
+  }
+  return took;
+}"""
+PLAY = """(root) => new Promise((done) => {
+  const seen = [], watch = new MutationObserver(() => seen.push([performance.now(), root.dataset.drawn]));
+  watch.observe(root, { attributes: true, attributeFilter: ['data-drawn'] });
+  setTimeout(() => { watch.disconnect(); done(seen); }, 3000);
+})"""
+SHIFT = """() => { window.moved = 0; new PerformanceObserver((list) => {
+  for (const entry of list.getEntries()) if (!entry.hadRecentInput) window.moved += entry.value;
+}).observe({ type: 'layout-shift', buffered: true }); }"""
+
+
+def idle(page: Any) -> None:
+    page.wait_for_timeout(300)
+    page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
+
+
+def drawn(page: Any) -> dict[str, str]:
+    """What the element says is drawn."""
+    words = (page.locator(".live").get_attribute("data-drawn") or "").split()
+    return {"station": words[0].partition("=")[2], "times": words[1], "camera": words[2], "view": words[3]}
+
+
+@pytest.fixture
+def sent(page: Any) -> list[int]:
+    """Lengths of what the page sends to the server over its socket."""
+    lengths: list[int] = []
+    page.on("websocket", lambda socket: socket.on("framesent", lambda data: lengths.append(len(data))))
+    return lengths
+
+
+@pytest.fixture
+def look(page: Any, url: str, sent: list[int]) -> Any:
+    """The milling page with its cut drawn."""
+    page.goto(f"{url}/Milling")
+    page.wait_for_selector(".live[data-drawn]", timeout=60_000)
+    idle(page)
+    page.wait_for_timeout(500)
+    sent.clear()
+    return page
+
+
+def test_a_step_of_the_scrubber_is_drawn_without_a_word_to_the_server(look: Any, sent: list[int]) -> None:
+    took = look.locator(".live").evaluate(SCRUB)
+    assert sent == []
+    assert drawn(look)["station"] == "0.395"
+    print(f"a step of the scrubber: median {statistics.median(took):.0f} ms, most {max(took):.0f} ms")
+    assert statistics.median(took) < 300, "60 ms is the aim on a quiet machine"
+    look.wait_for_timeout(900)
+    assert sent != []
+    idle(look)
+    look.wait_for_function("() => document.body.innerText.includes('(−10.50') || document.body.innerText.includes('(−11.00')"
+                           " || document.body.innerText.includes('(−10.00')", timeout=20_000)
+
+
+def test_it_plays_in_the_browser(look: Any, sent: list[int]) -> None:
+    look.get_by_role("button", name="Play").click()
+    seen = look.locator(".live").evaluate(PLAY)
+    assert sent == []
+    stations = [float(words.split()[0].partition("=")[2]) for _, words in seen]
+    assert stations == sorted(stations)
+    assert "so-far" in seen[0][1]
+    print(f"played: {len(set(stations)) / 3.0:.1f} pictures a second")
+    assert len(set(stations)) >= 15, "60 in three seconds is the aim on a quiet machine"
+    look.get_by_role("button", name="Pause").click()
+    look.wait_for_timeout(900)
+    assert sent != []
+
+
+def test_keys_exaggeration_camera_and_view_are_drawn_at_once_and_kept(look: Any, url: str) -> None:
+    slider = look.get_by_role("slider", name="Position along the cut")
+    slider.focus()
+    look.keyboard.press("ArrowRight")
+    look.wait_for_function("() => true")
+    look.get_by_label("Exaggeration").select_option("50")
+    look.get_by_label("Camera").select_option("top")
+    look.get_by_role("radio", name="Arm").click()
+    look.wait_for_timeout(400)
+    assert drawn(look) == {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"}
+    assert "line 7" in (slider.get_attribute("aria-valuetext") or "")
+    look.wait_for_timeout(600)
+    idle(look)
+    look.get_by_role("link", name="Robot").first.click()
+    idle(look)
+    look.get_by_role("link", name="Milling").first.click()
+    look.wait_for_selector(".live[data-drawn]", timeout=60_000)
+    look.wait_for_timeout(800)
+    assert drawn(look) == {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"}
+
+
+def test_the_picture_is_turned_with_the_mouse(look: Any, sent: list[int]) -> None:
+    box = look.locator(".live .picture").bounding_box()
+    look.mouse.move(box["x"] + 200, box["y"] + 150)
+    look.mouse.down()
+    look.mouse.move(box["x"] + 260, box["y"] + 170, steps=4)
+    look.mouse.up()
+    look.wait_for_timeout(400)
+    assert drawn(look)["camera"] == "turned"
+    assert sent == []
+
+
+def test_the_picture_is_on_the_first_screen_and_nothing_jumps(page: Any, url: str) -> None:
+    loaded: list[int] = []
+    page.on("response", lambda response: loaded.append(int(response.headers.get("content-length", "0") or 0)))
+    page.add_init_script(f"({SHIFT})()")
+    for width, height in ((1440, 900), (1024, 768)):
+        page.set_viewport_size({"width": width, "height": height})
+        start = time.perf_counter()
+        page.goto(f"{url}/Milling")
+        page.wait_for_selector(".live[data-drawn]", timeout=60_000)
+        idle(page)
+        page.wait_for_timeout(1500)
+        stage = page.locator(".live .stage").bounding_box()
+        moved, taken = page.evaluate("() => window.moved"), time.perf_counter() - start
+        print(f"{width}: picture at {stage['y']:.0f} px, shift {moved:.3f}, {sum(loaded) / 1e6:.1f} MB, {taken:.1f} s")
+        assert stage["y"] < 44 + 200 if width == 1440 else stage["y"] + 200 < height
+        assert stage["width"] > 600
+    assert sum(loaded) < 8_000_000
+
+
+def test_without_webgl_a_sentence_and_the_rendered_picture_stand_there(page: Any, url: str) -> None:
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null;")
+    page.goto(f"{url}/Milling")
+    page.wait_for_selector(".live[data-drawn='none']", timeout=60_000)
+    assert "draws no 3-D pictures" in page.locator(".live .instead").inner_text()
+    page.wait_for_selector("[class*='st-key-rendered-milling-picture'] img, text=No picture can be drawn", timeout=60_000)
