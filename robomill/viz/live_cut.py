@@ -89,7 +89,7 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
         packing.add("stock", quantised(first.ideal.z_stock, low, quantum), "u2")
     told = _last_frame(result, first, 0.0, frames)
     for n, each in enumerate(shown):
-        _surface(packing, str(n), result, each, (low, quantum), frames, told)
+        _surface(packing, str(n), result, each, (low, quantum), (frames, told))
     _samples(packing, result, frames)
     about: dict[str, Any] = {
         "arrays": packing.places,
@@ -143,10 +143,10 @@ def _surface(
     result: SimulationResult,
     shown: Enlarged,
     scale: tuple[float, float],
-    frames: IntArray,
-    told: IntArray,
+    when: tuple[IntArray, IntArray],
 ) -> None:
-    """Final heights, their colours, and the way there."""
+    """Final heights, their colours, and the way there; ``when``: the frames, and the last one of the ideal cut."""
+    frames, told = when
     most = LOWERINGS // 5
     past = history(shown.drawn, result.tooling, tips(result, shown.times), result.path.k, result.removes, most)
     at = np.searchsorted(frames, past.step)

@@ -70,8 +70,11 @@ def test_a_step_of_the_scrubber_is_drawn_without_a_word_to_the_server(look: Any,
     look.wait_for_timeout(900)
     assert sent != []
     idle(look)
-    look.wait_for_function("() => document.body.innerText.includes('(−10.50') || document.body.innerText.includes('(−11.00')"
-                           " || document.body.innerText.includes('(−10.00')", timeout=20_000)
+    look.wait_for_function(
+        "() => document.body.innerText.includes('(−10.50') || document.body.innerText.includes('(−11.00')"
+        " || document.body.innerText.includes('(−10.00')",
+        timeout=20_000,
+    )
 
 
 def test_it_plays_in_the_browser(look: Any, sent: list[int]) -> None:
@@ -144,4 +147,6 @@ def test_without_webgl_a_sentence_and_the_rendered_picture_stand_there(page: Any
     page.goto(f"{url}/Milling")
     page.wait_for_selector(".live[data-drawn='none']", timeout=60_000)
     assert "draws no 3-D pictures" in page.locator(".live .instead").inner_text()
-    page.wait_for_selector("[class*='st-key-rendered-milling-picture'] img, text=No picture can be drawn", timeout=60_000)
+    page.wait_for_selector(
+        "[class*='st-key-rendered-milling-picture'] img, text=No picture can be drawn", timeout=60_000
+    )

@@ -47,6 +47,7 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
 function posed(cut, state, turn, { parts, arm }) {
   const [preset, up] = cut.about.cameras[state.camera];
   const [low, high] = [[...cut.low], [...cut.high]], points = [];
+  let eye = preset;
   if (arm) {
     const o = cut.arrays["arm.o"];
     for (let c = 0; c < 3 * (arm.joints + 1); c += 3) points.push([o[c], o[c + 1], o[c + 2]]);
