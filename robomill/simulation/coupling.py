@@ -171,11 +171,13 @@ class Coupling:
 
     @property
     def why(self) -> str:
-        """What is left where they do not agree, and how steeply the force changes there."""
+        """What is left where they do not agree, and how the force changes there: by a jump where its last change was
+        slower than the tool's, which alone would have settled."""
         open_ = [each for each in self.settled if not each.agreed]
         worst = max(open_, key=lambda each: each.rest)
+        steep = f"the force, times the compliance, changes {worst.gain:.1f} times as fast as the tool's place"
+        jumps = "the tool just touches, and its force jumps from one place to the next"
         return (
             f"force and deflection do not agree: {format_si(worst.rest, 'um')} remain after {worst.evaluations} "
-            f"evaluations, since there the force, times the compliance, changes {worst.gain:.1f} times as fast as the "
-            "tool's place"
+            f"evaluations, since there {jumps if worst.gain < 1.0 else steep}"
         )

@@ -331,3 +331,11 @@ def test_how_often_the_force_was_asked_for_is_counted(seed):
     assert low + high == pytest.approx(1.0)
     both = (low * bends(there) + high * bends(here)) @ along / push
     assert both == pytest.approx(wall, abs=2e-3)
+
+
+@pytest.mark.parametrize(("gain", "words"), [(0.0, "its force jumps"), (2.34, "changes 2.3 times as fast")])
+def test_what_does_not_agree_says_whether_the_force_jumps_or_is_too_steep(gain: float, words: str) -> None:
+    open_ = Settled(np.zeros(3), 0.9e-6, 171, gain, ((np.zeros(3), 1.0),))
+    found = Coupling((open_,), (7,), 0.0)
+    assert words in found.finding.message
+    assert "0.9 µm remain after 171 evaluations" in found.finding.message
