@@ -143,3 +143,36 @@ def test_how_much_is_missing_to_a_place_is_measured_on_the_arm(name, aside):
         _, sound = every(robot, decoupled(robot), T[None])
         assert sound.any() == (not words)
     assert min(told["beyond"], told[""], told["close" if aside == 0.0 else "inside"]) >= 5, told
+
+
+def stands_apart(robot):
+    """Whether axes, as they lie at some configuration, are those of an arm whose wrist turns about one point."""
+    frames = joint_frames(robot, np.random.default_rng(8).uniform(0.2, 0.9, robot.n))
+    k, p, tip = frames[:-1, :3, 2], frames[:-1, :3, 3], frames[-1]
+    centre = crossing(p[3], k[3], p[4], k[4])
+
+    def off(point, i):
+        return np.linalg.norm(np.cross(point - p[i], k[i]))
+
+    angles = [k[0] @ k[1], np.linalg.norm(np.cross(k[1], k[2])), k[3] @ k[4]]
+    ways = [off(centre, 3), off(centre, 4)]
+    ways.append(off(centre, 5) if robot.n == 6 else np.linalg.norm(np.cross(tip[:3, 3] - centre, tip[:3, 2])))
+    return np.abs([*angles, *ways]).max() < 1e-7
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
+@pytest.mark.parametrize("length", ["alpha", "a", "d"])
+def test_an_arm_whose_axes_stand_a_little_otherwise_has_no_closed_form_and_still_reaches(name, length):
+    robot = rm.load_robot(name)
+    told = set()
+    for row in range(robot.n):
+        table = np.array(getattr(robot, length))
+        table[row] += 1e-3
+        arm = robot.replace(**{length: table})
+        closed = decoupled(arm) is not None
+        assert closed == stands_apart(arm), row
+        told.add(closed)
+        theta = arm.home + 0.1
+        found = rm.inverse_kinematics(arm, rm.tool_pose(arm, theta), near=theta, spin="fixed")
+        np.testing.assert_allclose(found.theta, theta, atol=1e-6)
+    assert told == {True, False}

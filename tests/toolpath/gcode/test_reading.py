@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -235,3 +236,29 @@ def test_turned_axes_are_written_where_one_of_them_turns(tmp_path: Path) -> None
 def test_how_c_is_read_is_said_where_a_cut_has_one(line, level):
     found = [f for f in interpret(f"G21 G90 F100\n{line}\nM2\n").findings if f.code == "c-spins"]
     assert [(f.level, f.line) for f in found] == ([] if level is None else [(level, 2)])
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "says"),
+    [
+        ("hole", "O<other> sub\nO<other> endsub\nM2\n", "Ohole is called, but hole.ngc does not define it"),
+        ("hole", None, "Ohole is called, but there is no Ohole sub; define it in the program"),
+        ("deep_hole-2", "O<deep_hole-2> sub\nG0 X7\nO<deep_hole-2> endsub\nM2\n", ""),
+        ("../hole", "O<../hole> sub\nG0 X7\nO<../hole> endsub\nM2\n", "there is no O../hole sub"),
+    ],
+)
+def test_a_file_beside_the_program_is_read_by_its_plain_name_and_has_to_define_it(
+    name: str, text: str | None, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / "in").mkdir()
+    main = tmp_path / "in" / "main.ngc"
+    main.write_text(f"G21\nO<{name}> call\nM2\n")
+    if text is not None:
+        (main.parent / f"{name}.ngc").write_text(text)
+    if says:
+        with pytest.raises(GCodeError, match=f"^Line 2: .*{re.escape(says)}"):
+            interpret(main)
+    else:
+        program = interpret(main)
+        assert program.end[-1] * 1e3 == pytest.approx((7, 0, 0))
+        assert [f.code for f in program.findings if f.code == "sub-file"] == ["sub-file"]

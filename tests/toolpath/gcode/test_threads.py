@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.program import FEED
 
@@ -91,3 +92,33 @@ def test_diameters_halve_the_depths():
     here = program.line == 3
     np.testing.assert_allclose(program.end[here] * 1e3, plain, atol=1e-9)
     assert program.kind[here].tolist() == kind.tolist()
+
+
+@pytest.mark.parametrize(("most", "fits"), [(3, False), (4, True)])
+def test_a_thread_of_more_passes_than_anybody_waits_for_is_refused(most, fits, monkeypatch):
+    """J0.25 of K1 are four passes."""
+    monkeypatch.setattr("robomill.toolpath.gcode.threads.MAX_PASSES", most)
+    if fits:
+        assert (read("I-1 J0.25 K1")[2] == FEED).sum() == 4
+        assert (read("I-1 J0.25 K1 H9")[2] == FEED).sum() == 4 + most, "springs are held to the same bound"
+    else:
+        with pytest.raises(GCodeError, match=r"^Line 3: G76 would need more than 3 passes; give a larger J\.$"):
+            read("I-1 J0.25 K1")
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        *((f"I-1 J{j} K0.5", "I other than 0, J above 0 and K above J") for j in (0.5, 0.6, 0, -0.1)),
+        ("I0 J0.1 K0.5", "I other than 0, J above 0 and K above J"),
+        ("I-1 J0.000001 K0.5", "more than 3 passes"),
+        *((words, "") for words in ("I-1 J0.5 K0.500001", "I0.001 J0.3 K0.5", "I-0.001 J0.3 K0.5")),
+    ],
+)
+def test_the_depths_of_a_thread_are_some_and_the_first_is_less_than_all(words, says, monkeypatch):
+    monkeypatch.setattr("robomill.toolpath.gcode.threads.MAX_PASSES", 3)
+    if says:
+        with pytest.raises(GCodeError, match=f"^Line 3: G76 .*{says}"):
+            read(words)
+    else:
+        assert (read(words)[2] == FEED).sum() == 2
