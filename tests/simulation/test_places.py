@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import trimesh
 
-from robomill.simulation.places import APART, BETWEEN, places
+from robomill.simulation.places import APART, BETWEEN, Places, places
 from robomill.surface.stock import Stock
 from tests.simulation.test_gauge import BLOCK, pushed, run
 
@@ -113,3 +116,26 @@ def test_how_high_the_stock_stands_is_measured_along_the_tool(lean):
         assert not at.depth(q, points + np.array(off)).any()
     for share in (0.99, 1.01):
         np.testing.assert_array_equal(at.stands(q, points, share * high), (high > 0.0) & (share < 1.0))
+
+
+def test_the_stock_stands_as_high_as_its_mesh_over_the_nearest_cell():
+    """A block on a plate, both of boxes; points all over them and beside them, not nearer to an edge than half a cell.
+    In cells of 9 mm the plate has 18 by 10, which are not square."""
+    low, high, cell = np.array([-0.055, 0.020, -0.012]), np.array([0.100, 0.102, 0.0]), 9e-3
+    plate = ((low, [*high[:2], -5e-3]), ([0.062, 0.061, -6e-3], [0.087, 0.102, 0.0]))
+    triangles = np.concatenate([trimesh.creation.box(bounds=bounds).triangles for bounds in plate])
+    cases = SimpleNamespace(setup=SimpleNamespace(stock_block=Stock(low, high, triangles), cell=cell))
+    rng = np.random.default_rng(2)
+    points = rng.uniform([-0.08, 0.0, -0.016], [0.12, 0.12, 0.0], (4000, 3))
+    edges = [np.array([-0.055, 0.062, 0.087, 0.100]), np.array([0.020, 0.061, 0.102])]
+    clear = [np.abs(points[:, [axis]] - edges[axis]).min(axis=1) > 0.51 * cell for axis in (0, 1)]
+    points = points[clear[0] & clear[1]]
+    lean = np.radians(20.0)
+    many = np.tile([0.0, np.sin(lean), np.cos(lean)], (len(points), 1))
+    at = Places(cases, *[np.arange(len(points))] * 2, *[points] * 3, many, points, (), np.arange(0), None)
+    inside = ((points > low) & (points < high))[:, :2].all(axis=1)
+    upon = ((points > plate[1][0]) & (points < plate[1][1]))[:, :2].all(axis=1)
+    top = np.where(upon, 0.0, -5e-3)
+    depth = np.where(inside, np.maximum(top - points[:, 2], 0.0) / np.cos(lean), 0.0)
+    np.testing.assert_allclose(at.depth(np.arange(len(points)), points), depth, atol=1e-12)
+    assert min(upon.sum(), (inside & ~upon & (depth > 0)).sum(), (~inside).sum()) > 50
