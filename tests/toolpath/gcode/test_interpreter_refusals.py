@@ -64,3 +64,19 @@ def test_the_centre_of_a_full_circle_may_be_a_place_on_a_sinumerik() -> None:
     circle = interpret("G71 G90 G0 X40 Y20\nG2 X40 Y20 I=AC(30) J=AC(20) F100\nM30\n", dialect="sinumerik")
     assert circle.centre[-1, :2] * 1e3 == pytest.approx([30, 20])
     assert circle.length[-1] * 1e3 == pytest.approx(20 * math.pi)
+
+
+@pytest.mark.parametrize("most", [100, 101, 102, 103, 104, 105])
+@pytest.mark.parametrize("rounds", [34, 35])
+def test_as_many_lines_are_executed_in_loops_as_are_said(
+    most: int, rounds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the line that ends it this program executes its first, three a round, and the head of its loop again; it
+    may execute each of its five lines once, and so many more."""
+    monkeypatch.setattr("robomill.toolpath.gcode.interpreter.MAX_STEPS", most)
+    text = f"G21\nO1 repeat [{rounds}]\nG0 X1\nO1 endrepeat\nM2\n"
+    if 1 + 3 * rounds + 1 <= 5 + most:
+        assert len(interpret(text).end) == rounds
+    else:
+        with pytest.raises(GCodeError, match=f"more than {most} lines were executed in loops"):
+            interpret(text)
