@@ -26,7 +26,7 @@ ui.headline(
 tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)
 ui.tiles(
     [
-        dataclasses.replace(tip, label="Tip off its path in the cut"),
+        dataclasses.replace(tip, label="Deviation of the tip in the cut"),
         ui.Tile(
             "C_yy at this pose",
             format_si(now.component("yy"), view.of("um/N"), 3),
@@ -34,13 +34,13 @@ ui.tiles(
             format_si(old.component("yy"), view.of("um/N"), 3) if old else "",
         ),
         ui.Tile(
-            "Softest direction",
+            "Largest compliance",
             format_si(now.principal[0][-1], view.of("um/N"), 3),
-            f"along ({format_many(now.principal[1][:, -1], '1', 2)}) in {{M}}",
+            f"in direction ({format_many(now.principal[1][:, -1], '1', 2)}) of the robot frame",
             format_si(old.principal[0][-1], view.of("um/N"), 3) if old else "",
         ),
         ui.Tile(
-            "det(J)",
+            "Distance to singularity, det(J)",
             pose.det_value(now, view.of),
             pose.det_words(now),
             pose.det_value(old, view.of),
@@ -48,7 +48,7 @@ ui.tiles(
     ]
 )
 
-left, right = ui.split([5, 9], "page", gap="large")
+left, right = ui.split([4, 9], "page", gap="medium")
 with left:
     editors.editors(project)
     pose.controls(project, theta, result)
@@ -56,7 +56,7 @@ with right:
     picture, numbers = ui.split([2.3, 1], "pose")
     with picture, st.container(border=True):
         tip = format_many(now.T_MT[:3, 3], view.length, 1, with_unit=False)
-        caption = f"Tip at ({tip}) {view.length} in {{M}}. Foot and tube sizes are for the eye only."
+        caption = f"Tip at ({tip}) {view.length} in the robot frame {{M}}. Foot and tube sizes are for the eye only."
         scene = ArmScene(frames=now.frames, joints=now.robot.joint_numbers, ghost=pose.ghost(now, old))
         arm(scene, "robot-arm", (caption, "The arm at the chosen joint angles."), 500, zoom=0.8)
     with numbers:

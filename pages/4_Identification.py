@@ -21,7 +21,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         result = None if tests is None else pieces.underway(fit_of, kept, robot)
     except RobomillError as exc:
         refusal = exc
-    kicker = f"Identification · {kept.name}"
+    kicker = f"Identification · {kept.title}"
     with top:
         ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
     if result is not None:

@@ -21,6 +21,6 @@ else:
     st.divider()
     edge.edge(found)
     st.divider()
-    mathematics.equations(found.pose)
+    mathematics.equations(found.pose, lesson.Push.of(found.pose.C))
 st.divider()
 mathematics.reproduced()

@@ -1,5 +1,7 @@
 """Robots by name or from a file: the presets under samples/robots, TOML and URDF files."""
 
+from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from robomill.errors import RobotError
@@ -19,6 +21,7 @@ __all__ = [
     "robot_folder",
     "robot_from_toml",
     "robot_names",
+    "robot_titles",
     "robot_to_toml",
 ]
 
@@ -31,6 +34,12 @@ def robot_folder() -> Path:
 def robot_names() -> list[str]:
     """Names of the robots that come with robomill, as ``load_robot`` takes them."""
     return sorted(path.stem for path in robot_folder().glob("*.toml"))
+
+
+@lru_cache(maxsize=1)
+def robot_titles() -> Mapping[str, str]:
+    """What the robots that come with robomill are called, by name."""
+    return {name: load_robot(name).title or name for name in robot_names()}
 
 
 def load_robot(name_or_path: str | Path) -> Robot:

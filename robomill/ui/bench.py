@@ -56,10 +56,10 @@ class Bench(Replaceable):
     map_own_name: str = ""
     map_own_text: str = ""
     robot: str = AS_MADE
-    model: str = choice("What gives", {name: family.title for name, family in MODELS.items()}, default="joints")
+    model: str = choice("Flexible elements", {name: family.title for name, family in MODELS.items()}, default="joints")
     bending: tuple[int, ...] = BENDING_JOINTS
     bending_auto: bool = switch("Let the tests say where links bend", default=False)
-    robust: bool = switch("Weigh down tests that do not fit", default=False)
+    robust: bool = switch("Reduce weight of outliers", default=False)
     fit_points: str = choice(
         "Points fitted beside the compliances",
         {"none": "None: as stated", "force": "Load point", "gauge": "Gauge point", "both": "Load and gauge point"},
@@ -97,9 +97,19 @@ class Bench(Replaceable):
         return self.own_name if self.sample == OWN else f"{self.sample}.csv"
 
     @property
+    def title(self) -> str:
+        """What the screen calls the load tests: a sample by what it is, a file by its name."""
+        return self.own_name if self.sample == OWN else SAMPLES[self.sample]
+
+    @property
     def map_text(self) -> str:
         """The measured map as it is read."""
         return self.map_own_text if self.map_sample == OWN else sample_text(self.map_sample)
+
+    @property
+    def map_title(self) -> str:
+        """What the screen calls the map."""
+        return self.map_own_name if self.map_sample == OWN else MAP_SAMPLES[self.map_sample]
 
     @property
     def map_name(self) -> str:

@@ -202,7 +202,7 @@ def models_figure(
         say(fig, f"{left_out[k]:.2f} %", 1.0, float(k), p.text, size=13, xref="paper", xshift=8, xanchor="left")
     for values, name, marker in (
         (in_sample, "on its own data", {"size": 10, "symbol": "circle-open", "color": p.muted, "line": {"width": 2}}),
-        (left_out, "on poses left out", {"size": 11, "color": p.accent}),
+        (left_out, "on unseen poses", {"size": 11, "color": p.accent}),
     ):
         fig.dots(values, y, marker, name=name, hovertemplate="%{x:.2f} %<extra></extra>")
     values = np.concatenate([in_sample, left_out])

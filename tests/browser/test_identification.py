@@ -49,10 +49,10 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     idle(page)
     assert "199 tests" in page.locator("[data-testid='stMain']").inner_text()
     page.get_by_role("button", name="Use these compliances in the project").click()
-    page.get_by_role("button", name="In force in the project").wait_for()
+    page.get_by_role("button", name="In use in the project").wait_for()
     choose(page, "In the cut")
     page.locator(".js-plotly-plot .legendtext", has_text="95 % band").wait_for()
-    tile = page.locator(".rm-tile", has_text="The cut at its worst").locator(".rm-value").inner_text()
+    tile = page.locator(".rm-tile", has_text="Largest deviation in the cut").locator(".rm-value").inner_text()
     assert re.match(r"0\.29\d* ± 0\.0\d+\s*mm", tile), tile
     said = page.get_by_text("off its path, with 95 % probability").inner_text()
     assert "from the compliances" in said
@@ -65,7 +65,7 @@ def test_from_upload_to_band(page: Any, tmp_path: Path) -> None:
     page.get_by_role("textbox", name=re.compile("Force known to")).fill("10")
     page.keyboard.press("Enter")
     page.get_by_text("from the force").wait_for()
-    wider = page.locator(".rm-tile", has_text="The cut at its worst").locator(".rm-value").inner_text()
+    wider = page.locator(".rm-tile", has_text="Largest deviation in the cut").locator(".rm-value").inner_text()
     # 10 % of 0.29 mm, twice, against what the compliances leave: their noise and the model's error.
     assert float(wider.partition("±")[2].split("mm")[0]) > 4 * float(tile.partition("±")[2].split("mm")[0])
 

@@ -83,8 +83,8 @@ def click(page: AppTest, key: str) -> AppTest:
 def test_it_opens_with_a_finished_result(page: AppTest) -> None:
     assert not page.exception
     shown = html(page)
-    assert "These tests predict poses left out to 1.0 %; joint 4 is known least, to ± 53 %." in shown
-    assert "cross-validated; 0.9 % on its own data" in shown
+    assert "These tests predict poses they have not seen to 1.0 %; joint 4 is the least certain, to ± 53 %." in shown
+    assert "cross-validated; 0.9 % on the data it was fitted to" in shown
     assert "15.72 to 50.99 ×10⁻⁷ rad/(N m)" in shown
     assert "0.292 ± 0.003" in shown  # 2 x 4 um of each reading at 250 N, by 100 N
     assert "synthetic" in shown

@@ -19,7 +19,8 @@ def test_the_lesson_asks_then_reveals(app: AppTest) -> None:
     assert '<td class="off">−1.024</td>' in said, "the off-diagonal term lights up"
     assert "Look again" in said
     app.radio(key="learn.answer").set_value("-2").run()
-    assert "Right:" in words(app)
+    assert "<b>Right.</b> The second column of C says where a push along Y leads." in words(app)
+    assert "You said: along Y and down." in words(app)
 
 
 def test_the_ellipsoid_stretches_towards_the_edge(app: AppTest) -> None:
@@ -47,3 +48,22 @@ def test_the_reproduction_table_is_on_the_page(app: AppTest) -> None:
     for item in ("Table 1", "Table 3", "Fig. 5", "Fig. 16"):
         assert item in said
     assert "0.2644 mm from Table 3" in said
+
+
+def test_the_mathematics_pushes_where_the_question_does(app: AppTest) -> None:
+    go(app, "1_Robot")
+    app.selectbox(key="robot.name").set_value("kuka_kr270").run()
+    go(app, LEARN)
+    asked = next(axis for axis in "XYZ" if f"Push the tool along {axis}." in words(app))
+    tex = "\n".join(e.value for e in app.get("latex")) if app.get("latex") else words(app)
+    assert f"C_{{{2 * asked.lower()}}}" in tex
+    force = " \\\\ ".join("100" if axis == asked else "0" for axis in "XYZ")
+    assert force in tex
+
+
+def test_a_button_leads_to_the_virtual_laboratory(app: AppTest) -> None:
+    go(app, LEARN)
+    app.button(key="learn.reveal").click().run()
+    app.button(key="learn.laboratory").click().run()
+    assert not app.exception
+    assert app.button_group(key="identification.section").value == "laboratory"

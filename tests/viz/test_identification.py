@@ -103,7 +103,7 @@ def test_models_show_both_errors_and_name_the_chosen_one() -> None:
     fig = models_figure(["a", "b"], np.array([1.0, 20.0]), np.array([1.5, 30.0]), 0, dark=False)
     named = {t.name: t for t in fig.figure.data if t.name}
     np.testing.assert_allclose(named["on its own data"].x, [1.0, 20.0])
-    np.testing.assert_allclose(named["on poses left out"].x, [1.5, 30.0])
+    np.testing.assert_allclose(named["on unseen poses"].x, [1.5, 30.0])
     assert fig.figure.layout.yaxis.ticktext == ("<b>a</b>", "b")
 
 

@@ -54,7 +54,7 @@ def cut_tile(bench: Bench, robot: Robot, result: IdentificationResult, unit: str
     digits = uncertainty.band_digits(half)
     text = uncertainty.band_text(found.max_deviation, half, unit)
     if known.held_by(found.setup.robot, found.setup.springs).holds_for(setup.robot, setup.springs):
-        return text, "95 % band; in force in the project"
+        return text, "95 % band; in use in the project"
     return text, f"by these compliances; the project has {format_si(now, unit, digits)}"
 
 

@@ -13,7 +13,7 @@ from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.io.load_test_sheets import TEMPLATES, load_test_template
 from robomill.io.load_tests import read_findings
-from robomill.io.robots import robot_names
+from robomill.io.robots import robot_titles
 from robomill.io.texts import read_text
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -85,9 +85,9 @@ def _templates(robot: Robot) -> None:
 
 def robot_choice(bench: Bench) -> None:
     """Which robot was measured: the project's, or a preset."""
-    own = session.project().setup.robot.name
-    titles = {THE_PROJECTS: f"The project's: {own}", **{n: n for n in robot_names()}}
-    now = bench.robot_name(own)
+    own = session.project().setup.robot
+    titles = {THE_PROJECTS: f"The project's: {own.title or own.name}", **robot_titles()}
+    now = bench.robot_name(own.name)
     inputs.choice("Robot measured", "identification.robot", titles, now, decided("robot"), inputs.LISTED)
 
 
@@ -149,9 +149,7 @@ def use(bench: Bench, robot: Robot, result: IdentificationResult) -> None:
     in_force = setup.measured_map is None and known is not None and known.holds_for(fitted.robot, fitted.springs)
     if in_force:
         session.know(knowledge(bench, robot, result))  # force and lengths may have been stated since
-    label, icon = (
-        ("In force in the project", "check") if in_force else ("Use these compliances in the project", "input")
-    )
+    label, icon = ("In use in the project", "check") if in_force else ("Use these compliances in the project", "input")
     put = (_use, bench, fitted, robot, result)
     inputs.button(label, "identification.use", icon, *put, type="primary", width="stretch", disabled=in_force)
     if in_force:

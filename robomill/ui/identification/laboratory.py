@@ -152,10 +152,10 @@ def title(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
 
 def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool) -> list[pieces.Tile]:
     """Readings left, the gauge, the weakest joint, the score."""
-    least = pieces.Tile("Least known", "everything", "measure first")
+    least = pieces.Tile("Least certain", "everything", "measure first")
     if result is not None:
         label, half = words.weakest(result)
-        least = pieces.Tile("Least known", label.capitalize(), words.within(half))
+        least = pieces.Tile("Least certain", label.capitalize(), words.within(half))
     score = lab.score(result) if handed_in and result is not None else None
     covered = int(np.nansum(score.covered)) if score else 0
     tone = "" if score is None else "ok" if score.points >= 80 else "tight" if score.points >= 50 else "out"

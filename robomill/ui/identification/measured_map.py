@@ -44,7 +44,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
         refusal = exc
     with top:
         sentence = "These measurements do not make a map yet." if check is None else title(check)
-        pieces.headline(f"Measured map · {bench.map_name}", sentence)
+        pieces.headline(f"Identification · measured map · {bench.map_title}", sentence)
     if field is not None and check is not None:
         cut = CutByBoth.of(field, robot)
         pieces.tiles(tiles(field, check, cut, view.length))
@@ -78,14 +78,14 @@ def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, 
         upload("Your measured map (CSV)", "identification.map.file", put_map)
         pieces.note("Compliances at poses, or displacements under forces in three directions at each.")
     with third:
-        options = {f"C_{c}": f"C {c}" for c in COMPONENTS}
+        options = {f"C_{c}": f"C_{c}" for c in COMPONENTS}
         component = inputs.pick("Component", "identification.map.component", options, "C_yy", inputs.LISTED)
         z = 0.0
         if field is not None:
             levels = np.unique(np.round(field.p[:, 2], 6))
             texts = {float(v): format_si(float(v), unit, 0) for v in levels}
             nearest = min(texts, key=abs)
-            z = inputs.pick("Level Z in {M}", "identification.map.level", texts, nearest, inputs.LISTED)
+            z = inputs.pick("Level Z in the robot frame", "identification.map.level", texts, nearest, inputs.LISTED)
     return component, z
 
 

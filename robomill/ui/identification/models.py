@@ -21,7 +21,7 @@ from robomill.viz.identification import models_figure
 
 
 def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
-    """Every model on the same tests: errors on own data and on poses left out, parameters, remarks."""
+    """Every model on the same tests: errors on own data and on unseen poses, parameters, remarks."""
     try:
         compared = pieces.underway(comparison_of, bench, robot)
     except RobomillError as exc:
@@ -47,7 +47,7 @@ def models(bench: Bench, robot: Robot, joint_unit: str, dark: bool) -> None:
             name="models",
             table=lambda: _model_columns(rows),
             caption="In brackets: parameters. From ring to dot: over-fitting. Bold: simplest that predicts as well.",
-            alt="Errors of the models on their own data and on poses left out.",
+            alt="Errors of the models on the data they were fitted to and on unseen poses.",
         )
     absorbed = compared.absorbed()
     if absorbed:
@@ -64,9 +64,9 @@ def _judgement(compared: Comparison) -> str:
     best, simple = compared.best, compared.simplest_good
     title = simple.choice.title
     if best is simple:
-        return f"{title} predict poses left out best, to {format_si(best.cv_relative_error, '%', 1)}."
+        return f"{title} predict unseen poses best, to {format_si(best.cv_relative_error, '%', 1)}."
     return (
-        f"{title} predict as well as anything richer ({format_si(simple.cv_relative_error, '%', 1)} on poses left out, "
+        f"{title} predict as well as anything richer ({format_si(simple.cv_relative_error, '%', 1)} on unseen poses, "
         f"the best model {format_si(best.cv_relative_error, '%', 1)})."
     )
 

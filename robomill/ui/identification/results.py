@@ -40,20 +40,20 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
     few = len(result.labels) <= 8
     left, right = pieces.split([1, 1.3], "fit") if few else (st.container(), st.container())
     with left, st.container(border=True, height="stretch"):
-        st.markdown("**Which are confused with which**")
+        st.markdown("**Joints the tests cannot tell apart**")
         if np.isfinite(result.correlation).any():
             names = [words.pretty(p).replace("Joint ", "J").replace("joint ", "J") for p in result.labels]
             pieces.figure(
                 correlation_figure(names, result.correlation, dark=dark),
                 "ident-correlation",
                 table=lambda: {"": names, **{n: result.correlation[:, i] for i, n in enumerate(names)}},
-                caption="±1: only their sum or difference is known.",
+                caption="Correlation of two joints: at ±1 only their sum or difference is known.",
                 alt="Correlations of the fitted compliances.",
             )
         else:
             pieces.note("Without residuals to judge the noise by, there are no correlations.")
     with right, st.container(border=True, height="stretch"):
-        st.markdown("**The numbers**")
+        st.markdown("**Compliances found**")
         _table(result, robot, joint_unit)
         before, after = result.condition
         pieces.note(

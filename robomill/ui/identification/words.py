@@ -166,7 +166,7 @@ def title(result: IdentificationResult) -> str:
     cv = result.cv_relative_error
     what = "readings" if result.single else "poses"
     said = (
-        f"These tests predict {what} left out to {format_si(cv, '%', 1)}"
+        f"These tests predict {what} they have not seen to {format_si(cv, '%', 1)}"
         if np.isfinite(cv)
         else f"There are too few {what} to leave any out"
     )
@@ -175,7 +175,7 @@ def title(result: IdentificationResult) -> str:
     label, half = weakest(result)
     if not np.isfinite(half):
         return f"{said}; {label} cannot be seen."
-    return f"{said}; {label} is known least, to {within(half)}."
+    return f"{said}; {label} is the least certain, to {within(half)}."
 
 
 def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
@@ -183,23 +183,25 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -
     cv, inside = result.cv_relative_error, result.in_sample
     single = result.single
     rms = format_si(result.residual_rms, "urad" if single else "um", 1)
-    least = Tile("Least known joint", "none", "this model has no joints")
+    least = Tile("Least certain joint", "none", "this model has no joints")
     if result.has_joints:
         label, half = weakest(result)
         unit = unit_of(result.labels[result.weakest], joint_unit)
         low, high = interval(result.parameter_ci95[result.weakest], unit)
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
-        least = Tile(f"Least known: {label}", within(half), note if np.isfinite(half) else "these tests do not see it")
+        least = Tile(
+            f"Least certain: {label}", within(half), note if np.isfinite(half) else "these tests do not see it"
+        )
     odd = len(result.outliers)
     fit = f"{odd} outlier{'s' * (odd > 1)}" if odd else "no outlier"
     return [
         Tile(
-            f"Error on {'readings' if single else 'poses'} left out",
+            f"Prediction error on unseen {'readings' if single else 'poses'}",
             format_si(cv, "%", 1) if np.isfinite(cv) else "not known",
-            f"cross-validated; {format_si(inside, '%', 1)} on its own data",
+            f"cross-validated; {format_si(inside, '%', 1)} on the data it was fitted to",
             kind="computed",
         ),
         least,
-        Tile("Residual, rms", rms, f"{result.equations:,} equations, {fit}"),
-        Tile("The cut at its worst", *cut),
+        Tile("Residual (RMS)", rms, f"{result.equations:,} equations, {fit}"),
+        Tile("Largest deviation in the cut", *cut),
     ]

@@ -89,20 +89,26 @@ def _measure(pose: PoseReport, way: Ray, i: int) -> None:
     what = map_quantity(pose.robot, "det_J")
     det = float(way.det[i])
     softest_here = pose.principal[0][-1]
-    number, label = split_unit(format_si(det, what.unit, 3))
+    view = session.project().view
+    give, det_unit = view.of("um/N"), view.of(what.unit)
+    number, label = split_unit(format_si(det, det_unit, 3))
     near = "A singularity: one direction is lost." if near_singular(pose.robot, det) else "Far from a singularity."
     st.html(
         f'<p class="rm-note">det(J)</p><div class="rm-det">{number} <small>{label}</small></div>'
         f'<p class="rm-note">{near}</p>'
-        f'<p class="rm-note">softest direction</p><div class="rm-det">{format_si(softest_here, "um/N", 2)}</div>'
+        f'<p class="rm-note">largest compliance</p><div class="rm-det">{format_si(softest_here, give, 2)}</div>'
     )
-    unit = session.project().view.length
+    unit = view.length
     softest = soft_direction(cartesian_compliance(pose.robot, way.theta))[0][:, -1]
     fig = ray_figure(
         from_si(way.radius, unit),
         i,
-        (f"distance from the base, {unit_label(unit)}", what.label, f"softest, {unit_label('um/N')}"),
-        (from_si(way.det, what.unit), from_si(softest, "um/N")),
+        (
+            f"distance from the base, {unit_label(unit)}",
+            f"det(J), {unit_label(det_unit)}",
+            f"largest compliance, {unit_label(give)}",
+        ),
+        (from_si(way.det, det_unit), from_si(softest, give)),
         dark=shell.dark(),
     )
     pieces.figure(
@@ -111,7 +117,7 @@ def _measure(pose: PoseReport, way: Ray, i: int) -> None:
         alt="det(J) and the largest compliance against the distance from the base.",
         table=lambda: {
             f"distance_{unit}": from_si(way.radius, unit),
-            "det_J": from_si(way.det, what.unit),
-            "softest_um/N": from_si(softest, "um/N"),
+            "det_J": from_si(way.det, det_unit),
+            f"largest_compliance_{give}": from_si(softest, give),
         },
     )

@@ -6,6 +6,7 @@ The push is along the axis that leads this robot aside most: along Y for the pap
 from __future__ import annotations
 
 import dataclasses
+import html
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, cast
@@ -25,6 +26,7 @@ from robomill.viz.arm import ArmScene, displacement_scale
 
 KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
+ALIGHT = 5e-9  # m/N: what is less reads 0.00 um/N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
@@ -34,6 +36,25 @@ SIDE = {
 
 # Big type, readable from the back row.
 BIG = """<style>
+/* Question and picture stand side by side from 900 px on, where the pages' columns stand under each other. */
+@media (min-width: 900px) and (max-width: 1080px) {
+  .st-key-split-ask [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
+    flex-wrap: nowrap !important; gap: 1.2rem; }
+  .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
+    flex: 55 1 0 !important; min-width: 0 !important; width: auto !important; }
+  .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"]:last-child {
+    flex: 45 1 0 !important; }
+}
+@media (max-width: 1100px) {
+  [class*="st-key-learn-answers"] label p { font-size: 20px !important; }
+  .rm-ask { font-size: 2rem !important; }
+  .rm-say { font-size: 1.35rem !important; }
+  .rm-c { border-spacing: 3px !important; width: 100%; }
+  .rm-c td { font-size: 1.15rem !important; min-width: 0 !important; padding: .4rem .3rem !important; }
+  .rm-c th { font-size: .85rem !important; padding: .1rem .2rem !important; }
+}
+/* A button that takes the answer back is no button that is off. */
+.st-key-learn-reveal button[kind="secondary"] { border: 2px solid #0A84B5; font-weight: 600; }
 .rm-ask { font-size: 2.5rem; line-height: 1.15; font-weight: 650; letter-spacing: -.02em; margin: .2rem 0 .4rem 0;
   text-wrap: balance; }
 [class*="st-key-learn-answers"] label p { font-size: 1.5rem !important; line-height: 1.5; }
@@ -97,6 +118,15 @@ class Push:
             return "other"
         return f"{'+' if delta[self.aside] > 0 else '-'}{self.aside}"
 
+    @property
+    def column(self) -> str:
+        """Which column of C says where this push leads."""
+        return ("first", "second", "third")[self.along]
+
+    def said(self, answer: str) -> str:
+        """An answer inside a sentence."""
+        return self.answers[answer].replace("Along", "along", 1)
+
 
 def _side(axis: int, plus: bool) -> str:
     if axis == 2:
@@ -137,7 +167,7 @@ def question(found: InHand) -> None:
     push = Push.of(found.pose.C)
     st.html(BIG + f'<p class="rm-ask">Push the tool along {push.name}. Where does the tip go?</p>')
     now = progress()
-    left, right = pieces.split([1.35, 1], "ask", gap="large")
+    left, right = pieces.split([55, 45], "ask", gap="medium")
     with right:
         with st.container(key="learn-answers"):
             look = inputs.Look(stacked=True, hidden=True)
@@ -147,6 +177,11 @@ def question(found: InHand) -> None:
         turn = partial(go, revealed=not now.revealed)
         inputs.button(words, "learn.reveal", "visibility", turn, width="stretch", type=tone)
         _answer(found.pose.C, push, now)
+        if now.revealed and st.button(
+            "Measure it in the virtual laboratory", key="learn.laboratory", icon=":material/science:", type="tertiary"
+        ):
+            session.keep("identification.section", "laboratory")
+            st.switch_page("pages/4_Identification.py")
     with left, st.container(border=True):
         _push(found.pose, push, now.revealed)
 
@@ -159,16 +194,15 @@ def _answer(C: FloatArray, push: Push, now: Lesson) -> None:
     unit = session.project().view.length
     st.html(f'<p class="rm-say">{PUSH} along {push.name} moves the tip {_moves(delta, push, unit)}.</p>')
     if now.answer in push.answers:
-        judged = "Right:" if now.answer == push.went(delta) else "Look again:"
-        column = ("first", "second", "third")[push.along]
-        pieces.note(
-            f"You said: {push.answers[now.answer]}. {judged} the {column} column of C says where a push along "
-            f"{push.name} leads."
+        judged = "Right." if now.answer == push.went(delta) else "Look again."
+        st.html(
+            f'<p class="rm-say">You said: {html.escape(push.said(now.answer))}. <b>{judged}</b> The {push.column} '
+            f"column of C says where a push along {push.name} leads.</p>"
         )
-    st.html(compliance_table(C, push.along))
+    st.html(compliance_table(C, push.along, unit_of_C()))
     pieces.note(
-        f"C in {unit_label('um/N')}. Blue: along the push. Orange, outlined: the off-diagonal terms, where the "
-        f"push leads aside."
+        f"C in {unit_label(unit_of_C())}. Blue: along the push. Orange, outlined: the off-diagonal terms, where "
+        f"the push leads aside."
     )
 
 
@@ -182,14 +216,19 @@ def _moves(delta: FloatArray, push: Push, unit: str) -> str:
     return " and ".join(told) if told else "nowhere"
 
 
-def compliance_table(C: FloatArray, along: int) -> str:
-    """C in um/N as a large table with the column of the push along that axis lit, HTML."""
+def unit_of_C() -> str:
+    """The unit in which C is shown."""
+    return session.project().view.of("um/N")
+
+
+def compliance_table(C: FloatArray, along: int, unit: str = "um/N") -> str:
+    """C in ``unit`` as a large table with the column of the push along that axis lit, HTML."""
     rows = ""
     for i, name in enumerate("XYZ"):
         cells = ""
         for j in range(3):
-            value = float(from_si(float(C[i, j]), "um/N"))
-            lit = "" if j != along else "on" if i == along else "off" if abs(value) > 5e-3 else ""
+            value = float(from_si(float(C[i, j]), unit))
+            lit = "" if j != along else "on" if i == along else "off" if abs(C[i, j]) > ALIGHT else ""
             cells += f'<td class="{lit}">{format_number(value, 3)}</td>'
         rows += f"<tr><th>tip {name}</th>{cells}</tr>"
     return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'

@@ -17,8 +17,8 @@ from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cached, pieces
+from robomill.ui.learn.lesson import Push
 from robomill.ui.markup import Html
-from robomill.ui.point import FORCE
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.units import from_si, unit_label
 
@@ -27,25 +27,27 @@ SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
 SMALL = 5e-4
 
 
-def equations(pose: PoseReport) -> None:
-    """Eqs. (13), (14) and (15) with this robot's numbers at this pose."""
+def equations(pose: PoseReport, push: Push) -> None:
+    """Eqs. (13), (14) and (15) with this robot's numbers at this pose, for the push of the question."""
     st.subheader("The mathematics, with the numbers of now")
     left, right = pieces.split([1, 1], "mathematics", gap="large")
     with left:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
         pieces.note(
             pieces.subscripts(
-                "Every joint gives in its own direction J_i; the tip gives by the sum. Along Y, with "
-                "C_θ in 10⁻⁶ rad/(N m) and J in m/rad:"
+                "Every joint gives in its own direction J_i; the tip gives by the sum. Along "
+                f"{push.name}, with C_θ in 10⁻⁶ rad/(N m) and J in m/rad:"
             )
         )
-        st.latex(r"\large " + component(pose, 1, 1))
-        pieces.note("and from Y into Z, the reason for the sideways answer:")
-        st.latex(r"\large " + component(pose, 2, 1))
+        st.latex(r"\large " + component(pose, push.along, push.along))
+        pieces.note(f"and from {push.name} into {'XYZ'[push.aside]}, the reason for the sideways answer:")
+        st.latex(r"\large " + component(pose, push.aside, push.along))
     with right:
         st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
-        st.latex(r"\large " + product(pose.C))
-        pieces.note(f"C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot's frame {{M}}.")
+        st.latex(r"\large " + product(pose.C, push))
+        pieces.note(
+            f"In the paper's units: C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot frame."
+        )
 
 
 def component(pose: PoseReport, row: int, column: int) -> str:
@@ -66,13 +68,14 @@ def component(pose: PoseReport, row: int, column: int) -> str:
     return rf"C_{{{name}}} = {sum_} = {total:.3f}"
 
 
-def product(C: FloatArray) -> str:
+def product(C: FloatArray, push: Push) -> str:
     """C F = delta with numbers, as TeX."""
     rows = from_si(C, "um/N")
     matrix = r" \\ ".join(" & ".join(_number(v, 3) for v in row) for row in rows)
-    moved = r" \\ ".join(_number(v, 1) for v in from_si(displacement(C, [0.0, FORCE, 0.0]), "um"))
+    moved = r" \\ ".join(_number(v, 1) for v in from_si(displacement(C, push.force), "um"))
+    force = r" \\ ".join(f"{v:.0f}" for v in push.force)
     return (
-        rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} 0 \\ {FORCE:.0f} \\ 0 \end{{bmatrix}}"
+        rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} {force} \end{{bmatrix}}"
         rf" = \begin{{bmatrix}} {moved} \end{{bmatrix}}"
     )
 

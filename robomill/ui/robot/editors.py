@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.io.robots import load_robot, robot_names
+from robomill.io.robots import load_robot, robot_titles
 from robomill.provenance import Provenance
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import grid, inputs, pieces, session
@@ -38,7 +38,7 @@ def editors(project: Project) -> None:
 
 def _which_robot(robot: Robot) -> None:
     """The robots that come with robomill; one of another file, or one that was edited, stands before them."""
-    names = {name: _title(name) for name in robot_names()}
+    names = dict(robot_titles())
     current = robot.name
     if robot.name not in names or not tables.same_arm(robot, _known(robot.name)):
         current = EDITED
@@ -50,10 +50,6 @@ def _which_robot(robot: Robot) -> None:
 @st.cache_resource(max_entries=64, show_spinner=False)
 def _known(name: str) -> Robot:
     return load_robot(name)
-
-
-def _title(name: str) -> str:
-    return _known(name).title or name.replace("_", " ")
 
 
 def _take_robot(name: str) -> None:

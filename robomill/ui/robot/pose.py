@@ -82,23 +82,21 @@ def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> No
 
 
 def det_value(pose: PoseReport | None, shown: Callable[[str], str]) -> str:
-    """det(J) of the arm's task in the unit that is ``shown`` for its own; with more than six axes there is none."""
-    if pose is None:
-        return ""
-    return format_si(pose.det_J, shown(pose.det_J_unit), 3) if pose.has_det_J else "not square"
+    """det(J) of the arm's task, or its size, as every page says it, in the unit that is ``shown`` for its own."""
+    return "" if pose is None else format_si(pose.det_J, shown(pose.det_J_unit), 3)
 
 
 def det_words(pose: PoseReport) -> str:
     """What det(J) says in words."""
     if not pose.has_det_J:
-        return "the task Jacobian of this arm is not square"
-    return "a singularity is near" if pose.near_singular else "0 at a singularity"
+        return "√det(J Jᵀ): the Jacobian of this arm is not square; 0 at a singularity"
+    return "a singularity is near; it is 0 there" if pose.near_singular else "0 at a singularity"
 
 
 def compliance_matrix(now: PoseReport, old: PoseReport | None) -> None:
     """C at the pose, and how it changed."""
     point.compliance_matrix(now)
-    pieces.note("Row: where the tip goes. Column: where you push.")
+    pieces.note("Rows: where the tip goes. Columns: where you push.")
     if old is not None:
         st.markdown("**Before the last change**")
         point.compliance_matrix(old)
@@ -108,6 +106,6 @@ def share_bars(pose: PoseReport, dark: bool) -> None:
     """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
     shares = pose.shares("yy")
     total = float(shares.sum()) or 1.0
-    st.markdown("**Where the give along Y comes from**")
+    st.markdown("**Share of the deflection along Y**")
     each = zip(pose.robot.joint_numbers, shares / total, joint_colours(7, dark))
     pieces.table([(f"joint {n}", pieces.bar(share, colour), format_percent(share)) for n, share, colour in each], "sbn")
