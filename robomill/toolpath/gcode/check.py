@@ -1,19 +1,24 @@
 """Checks on a line before it is executed: which motion it makes, and that every word has a use."""
 
+import math
+
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.cycle_rules import is_cycle
+from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc
+from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc, keep_motion
+from robomill.toolpath.gcode.tool_axis import UNIT, angles_of
 from robomill.toolpath.gcode.words import Block
 
 _AXES = "xyzabcuvw"
 _SPECIAL = frozenset("dehijklpqr")
 """Words that only some codes use, as ``_uses`` says."""
+_LINUXCNC = Dialect("linuxcnc", guessed=False)
 _COMPENSATION_ON = frozenset({410, 411, 420, 421})
 
 
-def choose_motion(machine: Machine, block: Block) -> None:
+def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) -> None:
     """Set ``block.motion``. Raises GCodeError if axis words have no use or two."""
     words = block.words
     polar = "@" in words or "^" in words
@@ -32,19 +37,28 @@ def choose_motion(machine: Machine, block: Block) -> None:
         if (axes or polar) and not covets:
             raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
     elif motion >= 0:
-        if covets:
+        if non_modal in (280, 300) and motion in (0, 10) and not dialect.strict:
+            keep_motion(machine, motion)
+            motion = -1
+        elif covets:
             raise block.refuse(
                 f"{g_name(non_modal)} and {g_name(motion)} both want the axis words; put them on two lines."
             )
         weighs_start = motion == 52 and "p" in words  # the first line of a NURBS may say the weight of its start alone
-        if not axes and not polar and motion not in (0, 10, 20, 30) and not weighs_start:
+        if not axes and not polar and motion not in (-1, 0, 10, 20, 30) and not weighs_start:
             raise block.refuse(f"{g_name(motion)} needs axis words such as X0.")
     if motion >= 0:
         block.motion = motion
     elif not covets and block.g.get(modal.LENGTH) != 431:
         if (axes or polar) and machine.motion in (-1, 800):
-            raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
+            if machine.motion == -1 or not dialect.keeps_motion(machine):
+                raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
+            machine.motion = machine.straight
+            text = f"axis words without a motion are read as {g_name(machine.straight)}, {dialect.kept(machine)}"
+            machine.note("motion-kept", "suspicious" if dialect.guessed else "info", text)
         block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))
+    if not dialect.strict:
+        _read_tool_axis(machine, block)
     if non_modal == 530 and (
         block.g.get(modal.DISTANCE) == 910 or (modal.DISTANCE not in block.g and not machine.absolute)
     ):
@@ -52,6 +66,22 @@ def choose_motion(machine: Machine, block: Block) -> None:
     for letter in "uvw":
         if letter in words:
             raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")
+
+
+def _read_tool_axis(machine: Machine, block: Block) -> None:
+    """I J K of length 1 on a straight move are the direction of the tool, as robot and five-axis posts write it."""
+    words = block.words
+    if block.motion not in (0, 10) or not {"i", "j", "k"} <= words.keys() or "a" in words or "b" in words:
+        return
+    axis = words["i"], words["j"], words["k"]
+    if abs(math.hypot(*axis) - 1.0) > UNIT:
+        return
+    before = machine.p[3], machine.p[4]
+    angles = angles_of(axis, before)
+    for letter in "ijk":
+        del words[letter]
+    words["a"], words["b"] = (now - (0.0 if machine.absolute else old) for now, old in zip(angles, before))
+    machine.note("tool-axis", "info", "I J K of a straight move are read as the direction of the tool")
 
 
 def check_words(block: Block) -> list[tuple[str, str]]:

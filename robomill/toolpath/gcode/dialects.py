@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
@@ -28,6 +29,15 @@ HARMLESS: dict[str, frozenset[int]] = {
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
 
+NAMED = {
+    120: "G12 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
+    130: "G13 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
+    1500: "G150 mills a pocket (Haas), which is not read; let the CAM system write its moves out.",
+    650: "G65 calls a macro with values, which is not read; let the CAM system write its moves out.",
+    660: "G66 calls a macro at every point, which is not read; let the CAM system write its moves out.",
+}
+"""What is said of G words that are known and not read."""
+
 _COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
 _VERBATIM_OR_CODE = re.compile(r"\([^()\n]*\)?|;.*|<[^>]*>?|\"[^\"]*\"?|[^(;<\"]+")
 
@@ -38,7 +48,7 @@ def _words(*words: str) -> tuple[tuple[str, str], ...]:
 
 _LINUXCNC = (("#<", "#<"), ("o", r"\n[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)"))
 _SINUMERIK_TEXT = (("msg", r"\bmsg[ \t]*\([ \t]*\""), ("$path", r"\n[ \t]*;[ \t]*\$path"))
-_GRBL = (("$", r"\n[ \t]*\$(?:h|x|\d+=|j=)"),)
+_GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
     ("=", r"\b(?:(?:cr|ar|turn)|[xyzijkabcfs]\d?)[ \t]*="),
@@ -67,12 +77,32 @@ class Dialect:
     name: str
     guessed: bool = True
 
+    @property
+    def strict(self) -> bool:
+        """Somebody has said that LinuxCNC runs it: what LinuxCNC refuses is refused."""
+        return self.name == "linuxcnc" and not self.guessed
+
+    def keeps_motion(self, machine: Machine) -> bool:
+        """Whether G80 leaves the last of G0 to G3 in force, and a program begins with G0.
+
+        Fanuc's and Haas's cycles are a modal group of their own (09), beside that of G0 to G3 (01); grbl begins in G0.
+        """
+        return self._is_fanuc_like or (not self.strict and not len(machine.recorder))
+
+    def kept(self, machine: Machine) -> str:
+        """Why a motion is in force that the line does not say."""
+        if not len(machine.recorder):
+            return "in which controls begin; write the word"
+        return "which was in force before the cycle, as Fanuc and Haas keep it; LinuxCNC stops here"
+
     def line(self, raw: str, number: int, machine: Machine) -> str:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
         findings = machine.findings
         raw = _plain_numbers(raw, number, findings)
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
             return translated(raw, number, machine)
+        if self._is_fanuc_like:
+            raw = self._without_smoothing(raw, number, findings)
         if self.name == "fanuc":
             if _TIP.search(raw):
                 findings.add(
@@ -81,9 +111,7 @@ class Dialect:
                     number,
                     "G43.4 (tool centre point control) is read as G43: points are tip points",
                 )
-            if _SMOOTHING.search(raw):
-                findings.add("harmless-g", "ignored", number, "G5.1 Q is left out: it moves nothing")
-            code = _SMOOTHING.sub("", "O" + raw[1:] if raw[:1] == ":" else raw)
+            code = "O" + raw[1:] if raw[:1] == ":" else raw
             if _dwells(code, machine.motion):
                 code = _IN_MS.sub(_in_seconds, code)
             return _TIP.sub("G43", _DWELL.sub(r"\1P", code))
@@ -91,19 +119,40 @@ class Dialect:
             return _from_grbl(raw, number, findings)
         return raw
 
+    @property
+    def _is_fanuc_like(self) -> bool:
+        return self.name == "fanuc" or (self.name == "linuxcnc" and self.guessed)
+
+    def _without_smoothing(self, raw: str, number: int, findings: Findings) -> str:
+        if "G" not in raw and "g" not in raw:
+            return raw
+        for found in _SMOOTHING.findall(raw):
+            name = re.split(r"[\sPpQq]", found.strip())[0].upper()
+            findings.add("harmless-g", "ignored", number, f"{name} is left out: it moves nothing")
+        return _SMOOTHING.sub("", raw)
+
     def unknown(self, machine: Machine, block: Block) -> None:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
-            if code in HARMLESS[self.name]:
+            harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
+            if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
+                raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
+            if code in harmless:
                 machine.note("harmless-g", "ignored", f"{g_name(code)} is left out: it moves nothing")
             else:
-                raise block.refuse(f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
+                raise block.refuse(
+                    NAMED.get(code, f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
+                )
         for code in block.unknown_m:
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 
     def unused_word(self, machine: Machine, block: Block, letter: str, use: str) -> None:
         """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
         if letter == "p" and block.words[letter] == -1.0:
+            return
+        if block.unknown_m or modal.USER in block.m:
+            code = [*block.unknown_m, block.m.get(modal.USER)][0]
+            machine.note("unused-word", "ignored", f"{letter.upper()} beside M{code} is left out with it")
             return
         if self.name == "linuxcnc" or letter in "ijkr":
             raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
@@ -143,7 +192,11 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
 
 
 _TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
-_SMOOTHING = re.compile(r"\bG0?5\.1\s*Q[01]\b(?:\s*R\d+)?", re.IGNORECASE)
+_SMOOTHING = re.compile(
+    r"\bG0?5\.1\s*Q[0123]\b(?:\s*[RXYZ]\d+\.?)*|\bG0?5\s*P(?:10000|[0123])\b|\bG0?8\s*P[01]\b|"
+    r"\bG187\b(?:\s*[PE]\s*[\d.]+)*|\bG103\b(?:\s*P\s*\d+)?",
+    re.IGNORECASE,
+)
 _IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
 _G_WORD = re.compile(r"G0*(\d+(?:\.\d+)?)|M0*9[789]\b", re.IGNORECASE)
 _CYCLES = frozenset({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88", "89"})

@@ -88,7 +88,7 @@ class Interpreter(Subprograms):
             if self.fanuc_call(block):
                 return
             self.dialect.unknown(machine, block)
-        check.choose_motion(machine, block)
+        check.choose_motion(machine, block, self.dialect)
         for letter, use in check.check_words(block):
             self.dialect.unused_word(machine, block, letter, use)
         apply_settings(block, machine.store)

@@ -41,8 +41,10 @@ class Machine:
     first move for which it holds. ``tool_name`` is the tool that a program calls by name, while no table has it.
     ``systems`` are the coordinate systems that are in force, each with the first move for which it is; ``placed`` those
     that the program itself has placed, each with the line. ``away`` says of which of x, y, z the place is not known, as
-    only the machine knows where its home lies; ``aways`` are those, each with the first move for which it holds, and
-    ``homes`` the homes that the program has stored itself (28, 30).
+    only the machine knows where its home lies;
+    ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
+    itself (28, 30). ``straight`` is the last of G0 to G3; ``arc_refused`` says that an arc was refused whose centre is
+    given in steps.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -58,6 +60,8 @@ class Machine:
         self.rotation = 0.0
         self.system = 1
         self.length_offset = [0.0] * 3
+        self.straight = 0
+        self.arc_refused = False
         self.motion, self.plane, self.absolute, self.arc_absolute = 800, 17, True, False
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False

@@ -67,6 +67,12 @@ def implied_motion(m, axes: bool, centre: bool) -> int:
     return -1
 
 
+def keep_motion(m, motion: int) -> None:
+    """G0, G1, G2 or G3 is in force; as ``straight`` it outlasts cycles and G80, for controls that take it up again."""
+    m.motion = motion
+    m.straight = motion
+
+
 def is_arc(motion: int) -> bool:
     """True for G2 and G3."""
     return motion in (CLOCKWISE, COUNTERCLOCKWISE)
@@ -229,7 +235,7 @@ def check_arc(m, w, has_end: bool) -> int:
         return refusal
     if not has_centre:
         return 0 if has_end else RADIUS_WITHOUT_END
-    if not math.isnan(w[I + third]):
+    if not math.isnan(w[I + third]) and (m.arc_absolute or w[I + third] != 0.0):
         return ARC_ACROSS_PLANE
     if m.arc_absolute and (math.isnan(w[I + first]) or math.isnan(w[I + second])):
         return ARC_CENTRE_INCOMPLETE
@@ -333,19 +339,19 @@ def make_move(m, w, motion: int, end, row) -> int:
         refusal, u, v = arc_centre(m, w, motion, start, (end[first], end[second]))
         if refusal != 0:
             return refusal
-        m.motion = motion
+        keep_motion(m, motion)
         turn = turns_of(w, motion)
         if m.feed_mode == INVERSE_TIME:
             inverse_time(m, w, arc_length(m, end, start, (u, v), turn))
         row.plane = m.plane
         write_arc(m, end, from_plane(m.plane, u, v, m.p[third]), turn, feed_speed(m), row)
     elif motion == LINE:
-        m.motion = motion
+        keep_motion(m, motion)
         if m.feed_mode == INVERSE_TIME:
             inverse_time(m, w, straight_length(m.p, end))
         write_straight(m, FEED, end, feed_speed(m), row)
     else:
-        m.motion = motion
+        keep_motion(m, motion)
         write_straight(m, TRAVERSE, end, 0.0, row)
     m.arc_not_allowed = False
     m.initial_level = math.nan

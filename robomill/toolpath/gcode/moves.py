@@ -48,6 +48,7 @@ def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
     """Raise the refusal that a code of ``motion_rules`` stands for; 0 is none. ``name`` is the motion's, else its G."""
     if code == 0:
         return
+    machine.arc_refused = code in (rules.ARC_OFF_ITS_CIRCLE, rules.ARC_ON_ITS_CENTRE) and not machine.arc_absolute
     first, second, third = rules.axes(machine.plane)
     raise block.refuse(
         SENTENCES[code].format(
@@ -141,7 +142,8 @@ def move(machine: Machine, block: Block) -> None:
     compensation = machine.compensation
     is_arc = rules.is_arc(block.motion)
     if compensation is not None and compensation.radius > 0 and not (is_arc and machine.plane == 19):
-        machine.arc_not_allowed, machine.motion = False, block.motion
+        machine.arc_not_allowed = False
+        rules.keep_motion(machine, block.motion)
         if is_arc:
             compensation.arc(machine, block, end)
             return

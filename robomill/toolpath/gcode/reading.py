@@ -10,7 +10,7 @@ from robomill.arrays import frozen
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
-from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
+from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
 from robomill.toolpath.gcode.doubts import doubt
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -63,18 +63,33 @@ def interpret(
     machine = Machine(tools)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
-    interpreter = Interpreter(machine, File(name, lines, folder), chosen)
+    file = File(name, lines, folder)
     try:
-        interpreter.run()
-    except GCodeError as exc:
+        Interpreter(machine, file, chosen).run()
+    except GCodeError as refused:
+        exc = _offered(refused, machine, tools, file, chosen)
         if not partial:
-            raise
+            raise exc from None
         machine.findings.add("refused", "error", exc.line, str(exc))
     if chosen.guessed and chosen.name != "linuxcnc":
         machine.findings.add(
             "dialect-guessed", "info", 0, f"read as {chosen.name} code; this is a guess from how it looks"
         )
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
+
+
+def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: File, dialect: Dialect) -> GCodeError:
+    """What a program is refused with; of an arc off its circle also whether all arcs fit with absolute centres."""
+    if not machine.arc_refused:
+        return refused
+    again = Machine(tools)
+    again.arc_absolute = True
+    try:
+        Interpreter(again, File(file.name, file.lines, file.folder), dialect).run()
+    except GCodeError:
+        return refused
+    said = f"{str(refused).rstrip('.')}. As absolute centres all arcs fit: write G90.1 on the first line."
+    return GCodeError.at(refused.line, said.removeprefix(f"Line {refused.line}: "))
 
 
 def _program(machine: Machine, dialect: str, lines: int) -> Program:

@@ -9,7 +9,7 @@ from robomill.toolpath.gcode.codes import LETTERS
 
 _NUMBERS = ("rotation", "factor", "feed", "speed", "waited", "dwell_time", "initial_level")
 _CODES = (
-    *("unit_code", "units_said", "system", "dwells", "motion", "plane"),
+    *("unit_code", "units_said", "system", "dwells", "motion", "straight", "plane"),
     *("feed_mode", "spindle", "spindle_mode", "in_spindle", "moves"),
 )
 _FLAGS = (
