@@ -1,49 +1,53 @@
-"""The start page: the paper's milling test, finished, before anyone has clicked anything."""
+"""The start page: what this is, a program to be checked, the reference groove finished before anyone has clicked."""
 
 import streamlit as st
 
 from robomill import ui
 from robomill.simulation.stations import nearest_judged
 from robomill.ui.arm import arm_at
-from robomill.ui.start import story
+from robomill.ui.start import carved, story
+from robomill.ui.toolpath.program import take_program
 from robomill.ui.verdict import NOT_COUNTED
 from robomill.units import format_limit
 
-HEIGHT = 430
-
+HEIGHT = 285
 
 project = ui.begin("Start")
+story.onward()
 setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
+story.purpose()
 if result is None:
+    ui.headline(setup.name, "Nothing is computed yet.")
     ui.note(
-        "Nothing is computed yet. Where numbers above were refused, undo the last change, or mend it on the Robot, "
-        "Toolpath or Milling page."
+        "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
     )
+    story.doors(take_program)
     st.stop()
 
 ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
 ui.open_question(result)
 ui.tiles(ui.verdict_tiles(result, unit))
 
-left, right = ui.split([1, 1.18], "pictures")
+left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
 with left, st.container(border=True, height="stretch"):
     index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
     if index >= 0:
         arm_at(result, index, "start-arm", HEIGHT)
-with right, st.container(border=True, height="stretch"):
+with middle, st.container(border=True, height="stretch"):
     story.groove_picture(result, project.view, HEIGHT, dark)
-
-st.subheader("What this rests on")
-left, right = ui.split([1.55, 1], "rests", gap="large")
-with left:
-    story.where_from(setup)
 with right:
-    story.beside_the_paper(project)
+    story.doors(take_program)
 
-st.subheader("Where to go from here")
-story.doors()
-ui.note(
-    f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance {format_limit(setup.tolerance, unit)}. "
-    f"Fingerprint of this run: {setup.digest()[:12]}."
-)
+carved.strip(unit)
+
+with st.expander(story.why(setup, unit), key="start.open.why"):
+    left, right = ui.split([1.55, 1], "rests", gap="large")
+    with left:
+        story.where_from(setup)
+    with right:
+        story.beside_the_paper(project)
+    ui.note(
+        f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance "
+        f"{format_limit(setup.tolerance, unit)}. Fingerprint of this run: {setup.digest()[:12]}."
+    )

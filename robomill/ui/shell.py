@@ -75,15 +75,14 @@ def begin(title: str) -> Project:
     st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide", initial_sidebar_state=SIDEBAR)
     if menu.group_pages():
         st.rerun()
-    ground = palette(dark()).background
-    st.html(f"{CSS}<style>:root {{ --rm-ground: {ground}; }}</style>")
+    p = palette(dark())
+    st.html(f"{CSS}<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; }}</style>")
     rendered.queue().worker.start()
     if not _ready.is_set():
         if compiled.missing():
             with st.spinner(f"{compiled.WORDS} ..."):
                 compiled.build()
         _ready.set()
-    p = palette(dark())
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:
         autosave.take_up()
@@ -118,7 +117,7 @@ def _sidebar() -> None:
 
 def _preset(project: Project) -> None:
     names, current = presets(), project.preset
-    titles = {name: name.replace("_", " ").capitalize() for name in names}
+    titles = {name: preset_setup(name).name for name in names}
     if current not in titles:
         titles = {current: "Your file", **titles}
     inputs.choice("Preset", "project.preset", titles, current, session.open_preset, inputs.LISTED)

@@ -64,3 +64,35 @@ def test_a_broken_project_is_refused_where_it_was_opened(app: AppTest) -> None:
     assert len(said) == 2
     assert said[0] == said[1]
     assert store(app).project.setup.digest() == before
+
+
+def test_a_program_dropped_on_the_first_screen_is_asked_what_it_cuts(app: AppTest) -> None:
+    box = next(b for b in app.file_uploader if b.label == "Check my program")
+    box.set_value(("PART.NC", b"G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F300\nG1 X40\nG0 Z5\nM30\n", "text/plain"))
+    app.run()
+    assert not app.exception
+    assert store(app).page == "Toolpath"
+    assert store(app).project.setup.source.name == "PART.NC"
+    assert app.selectbox(key="toolpath.question.material").value
+    assert 'class="rm-top open"' in words(app), "hatched until somebody has said what is cut"
+
+
+def test_what_is_no_program_is_refused_on_the_first_screen(app: AppTest) -> None:
+    box = next(b for b in app.file_uploader if b.label == "Check my program")
+    box.set_value(("part.docx", b"x", "text/plain"))
+    app.run()
+    assert store(app).page == "Start"
+    assert any(said.startswith("part.docx: expected a program") for said in errors(app))
+
+
+def test_the_first_screen_says_what_this_is_and_counts_what_the_result_rests_on(app: AppTest) -> None:
+    assert "predicts how far a milling robot is pushed off its path" in words(app)
+    assert app.expander[0].label == "Why believe this? It rests on 11 inputs: 5 assumed, 5 published, 1 measured"
+    assert words(app).count("<h1") == 1
+
+
+def test_a_carved_sample_opens_with_a_click(app: AppTest) -> None:
+    app.button(key="start.open.heart").click().run()
+    assert not app.exception
+    assert store(app).project.preset == "heart"
+    assert "0.26 mm" in words(app)

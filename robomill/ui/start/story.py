@@ -1,44 +1,38 @@
 """What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
 
 import html
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
-from robomill.io.samples import app_dir
+from robomill.files import PROGRAM
 from robomill.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.ui import cached, evidence, pieces, rendered, session
+from robomill.ui import cached, evidence, inputs, pieces, rendered, session
 from robomill.ui.project import Project, View
-from robomill.units import format_percent, format_si, format_times
+from robomill.ui.verdict import verdict_sentence
+from robomill.units import format_count, format_percent, format_si, format_times
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.views import surface_picture
 
+PURPOSE = "robomill predicts how far a milling robot is pushed off its path by the cutting force, and why."
 DOORS = (
-    (
-        "I design robots",
-        "Which joint should I spend money on? Change a compliance or a link and watch the cut.",
-        "pages/1_Robot.py",
-        "Open the robot",
-    ),
-    (
-        "I mill parts",
-        "Will my groove be in tolerance? Drop a program, choose a cutter, read one sentence.",
-        "pages/5_Toolpath.py",
-        "Open the toolpath",
-    ),
-    (
-        "I teach",
-        "Why does a robot bend sideways? One push, one picture, the equations beside it.",
-        "pages/8_Learn.py",
-        "Open the lesson",
-    ),
+    ("I design robots", "Which joint is worth stiffening?", "pages/1_Robot.py", "Stiffen a joint"),
+    ("I teach", "Why does a robot bend sideways?", "pages/8_Learn.py", "Start the lesson"),
 )
+CHECKED = "start.checked"
+KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
+
+
+def purpose() -> None:
+    """What this is, in one sentence."""
+    st.html(f'<p class="rm-purpose">{html.escape(PURPOSE)}</p>')
 
 
 def cause(result: SimulationResult, unit: str) -> str:
@@ -64,8 +58,11 @@ def cause(result: SimulationResult, unit: str) -> str:
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
     """The machined groove as a rendered picture, or turnable where nothing can be rendered."""
     setup, times = result.setup, view.exaggeration
-    size = (940, round(940 * height / 560))
-    alt = "The machined groove coloured by its signed error against the ideal one."
+    size = (940, round(940 * height / 400))
+    alt = (
+        f"The part as milled, coloured by its signed error, displacement shown {format_times(times, 6)}. "
+        f"{verdict_sentence(result, view.length)}"
+    )
 
     def scene() -> SurfacePicture:
         how: dict[str, Any] = {"camera": "iso", "dark": dark, "size": size, "captions": ()}
@@ -117,14 +114,41 @@ def beside_the_paper(project: Project) -> None:
     )
 
 
-def doors() -> None:
-    """Three cards, one for each kind of visitor."""
-    for column, (title, text, page, label) in zip(pieces.split([1, 1, 1], "doors"), DOORS, strict=True):
-        with column, st.container(border=True):
-            st.html(f'<div class="rm-door"><b>{html.escape(title)}</b><p>{html.escape(text)}</p></div>')
-            there = (app_dir() / page).is_file()
-            st.page_link(
-                page if there else "pages/1_Robot.py",
-                label=label if there else "Open the robot",
-                icon=":material/arrow_forward:",
-            )
+def why(setup: SimulationSetup, length: str) -> str:
+    """On how many numbers the result rests, by who says them: "11 inputs: 5 published, 5 assumed, 1 measured"."""
+    kinds = [source.provenance.kind for source in sources(setup, length)]
+    order = sorted(set(kinds), key=lambda kind: -kinds.count(kind))
+    counted = ", ".join(f"{kinds.count(kind)} {KINDS.get(kind, kind)}" for kind in order)
+    return f"Why believe this? It rests on {format_count(len(kinds), 'input')}: {counted}"
+
+
+def doors(take: Callable[[bytes, str], None]) -> None:
+    """A card for each kind of visitor; the one who mills drops a program there, which ``take`` gets."""
+    with st.container(key="doors"):
+        with st.container(border=True, key="door-mill"):
+            _door("I mill parts", "Will my part be within tolerance? Drop its G-code.")
+            inputs.upload("Check my program", "start.program", _then(take), most_MB=PROGRAM.most_MB)
+        for title, text, page, label in DOORS:
+            with st.container(border=True, key=f"door-{label.split()[-1]}"):
+                _door(title, text)
+                st.page_link(page, label=label, icon=":material/arrow_forward:")
+
+
+def _door(title: str, text: str) -> None:
+    st.html(f'<div class="rm-door"><h2>{html.escape(title)}</h2><p>{html.escape(text)}</p></div>')
+
+
+def _then(take: Callable[[bytes, str], None]) -> Callable[[bytes, str], None]:
+    """``take``, and what was taken is asked about on the toolpath page, which ``onward`` leads to."""
+
+    def taken(data: bytes, name: str) -> None:
+        take(data, name)
+        session.keep(CHECKED, True)
+
+    return taken
+
+
+def onward() -> None:
+    """To the toolpath, where a program that was just dropped is asked what it cuts."""
+    if session.drop(CHECKED):
+        st.switch_page("pages/5_Toolpath.py")
