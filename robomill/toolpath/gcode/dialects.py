@@ -82,6 +82,11 @@ class Dialect:
         """Somebody has said that LinuxCNC runs it: what LinuxCNC refuses is refused."""
         return self.name == "linuxcnc" and not self.guessed
 
+    @property
+    def has_macros(self) -> bool:
+        """Whether Macro B is read."""
+        return self._is_fanuc_like
+
     def keeps_motion(self, machine: Machine) -> bool:
         """Whether G80 leaves the last of G0 to G3 in force, and a program begins with G0.
 

@@ -9,7 +9,7 @@ _VARIABLE = re.compile(r"(?:\d*n\d+)?([a-z]+\d*)$")
 LANGUAGES = {
     "Fanuc's Macro B": (
         "if while goto then do end",
-        "write the moves out, or branches and loops as O words (O1 while [#1 LT 5])",
+        "choose the dialect Fanuc-like, or write branches and loops as O words (O1 while [#1 LT 5])",
     ),
     "Heidenhain's dialogue": (
         "begin tool cycl lbl blk call cc fmax",
@@ -43,3 +43,32 @@ def said_of(raw: str, text: str, at: int) -> str:
                 return f"{word[0].upper()} is a word of {name}, which is not read; {remedy}."
             return f"{word[0].upper()} is a word that is not known; expected letters with numbers, such as X10."
     return ""
+
+
+FIRST_LINES = 40
+"""Lines at the start of a file in which a language is told by its own words."""
+_TOLD = (
+    (
+        "KUKA KRL",
+        r"&(?:ACCESS|REL|PARAM)\b|(?:GLOBAL[ \t]+)?DEF[ \t]+\w+[ \t]*\([^\n]*\)[ \t]*$|;FOLD\b|(?:PTP|LIN)[ \t]*\{",
+    ),
+    ("ABB RAPID", r"%%%|MODULE[ \t]+\w+|(?:PERS|CONST)[ \t]+(?:robtarget|tooldata|wobjdata)\b|Move[LJC][ \t]"),
+    ("Fanuc's robot language (TP)", r"/PROG\b|/ATTR\b|[ \t]*\d*:[ \t]*[JLC][ \t]+P\["),
+    ("URScript", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
+    ("Heidenhain's dialogue", r"(?:\d+[ \t]+)?BEGIN[ \t]+PGM\b"),
+    ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
+    ("a DXF drawing", r"[ \t]*0[ \t]*\n[ \t]*SECTION\b"),
+    ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),
+    ("STEP", r"ISO-10303-21;"),
+)
+_REMEDY = "expected G-code or APT; let the CAM system write one of them."
+
+
+def language_of(text: str) -> tuple[int, str] | None:
+    """Line (1-based) and refusal of a file whose first lines are another language's; None for what may be G-code."""
+    head = "\n".join(text.split("\n")[:FIRST_LINES])
+    for name, pattern in _TOLD:
+        found = re.search(rf"^(?:{pattern})", head, re.MULTILINE | re.IGNORECASE)
+        if found is not None:
+            return head.count("\n", 0, found.start()) + 1, f"this is {name}, which is not read; {_REMEDY}"
+    return None

@@ -9,9 +9,10 @@ from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.macro import MacroB, with_brackets
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.stretches import Stretches
-from robomill.toolpath.gcode.subprograms import CALLS, Subprograms
+from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
@@ -23,7 +24,7 @@ _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
 
-class Interpreter(Subprograms):
+class Interpreter(MacroB):
     """Runs one program on one machine. ``file`` and ``pc`` are the line that comes next."""
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
@@ -64,6 +65,9 @@ class Interpreter(Subprograms):
             if left is None:
                 return
             raw = raw if left == code.upper() else left + mark + comment
+        macro = self.dialect.has_macros
+        if macro:
+            raw = with_brackets(raw)
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
@@ -77,6 +81,8 @@ class Interpreter(Subprograms):
             skip_number(reader)
         if text[reader.at : reader.at + 1] == "o":
             self.o_word(reader, index)
+            return
+        if macro and self.macro_word(reader, index):
             return
         block = read_words(reader, machine.diameter_mode)
         self.execute(block)

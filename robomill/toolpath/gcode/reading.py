@@ -13,6 +13,7 @@ from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
 from robomill.toolpath.gcode.doubts import doubt
 from robomill.toolpath.gcode.findings import NO_UNITS
+from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
@@ -60,6 +61,8 @@ def interpret(
     data, name = read_source(source)
     lines = Lines(data)
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
+    if chosen.guessed and (foreign := language_of(data[:SAMPLE].decode("utf-8", "replace"))):
+        raise GCodeError.at(*foreign)
     machine = Machine(tools)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None

@@ -1,0 +1,58 @@
+"""Macro B: each program with the places along X that Python finds for it."""
+
+from __future__ import annotations
+
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+HEAD = "%\nO0001\nG21 G90 G1 F100\n"
+
+
+def xs(body: str, dialect: str = "auto") -> list[float]:
+    return [round(float(x) * 1e3, 9) for x in interpret(f"{HEAD}{body}M30\n%\n", dialect=dialect).end[1:, 0]]
+
+
+RUN = [
+    ("#1=1\nN5 X#1\n#1=#1+1\nIF [#1 LE 4] GOTO 5\nX9\n", [1, 2, 3, 4, 9]),
+    ("#100=0\nWHILE [#100 LT 3] DO 1\n#100 = #100 + 1 (on)\nX#100\nEND 1\nX9\n", [1, 2, 3, 9]),
+    ("WHILE [1 LT 0] DO1\nX5\nEND1\nX9\n", [9]),
+    ("#1=0\nWHILE[#1LT2]DO1\n#1=#1+1\n#2=0\nWHILE[#2LT2]DO2\n#2=#2+1\nX[#1*10+#2]\nEND2\nEND1\n", [11, 12, 21, 22]),
+    ("#1=0\nDO1\n#1=#1+1\nX#1\nIF[#1GE3]GOTO9\nEND1\nN9 X9\n", [1, 2, 3, 9]),
+    ("GOTO 20\nX1\nN20 X2\n", [2]),
+    ("#3=20\nGOTO #3\nX1\nN20 X2\nGOTO [#3+10]\nX3\nN30 X4\n", [2, 4]),
+    ("#1=3\nIF [#1 EQ 3] THEN #2=7\nIF [#1 EQ 4] THEN #2=8\nX#2\n", [7]),
+    ("#1=2*3+4\n#[#1]=5-#1/2\nX#10\nX[#1 MOD 4]\nX-#1\n", [0, 2, -10]),
+    ("N10 #5=SQRT[16]+FIX[2.7]\nX#5\n", [6]),
+]
+
+
+@pytest.mark.parametrize(("body", "places"), RUN)
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+def test_branches_and_loops_are_followed(body: str, places: list[float], dialect: str) -> None:
+    assert xs(body, dialect) == places
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("GOTO 7\n", "Line 4: GOTO 7 leads nowhere: no line has the number N7"),
+        ("IF [1 EQ 1] X5\n", "Line 4: found 'x5' after the condition of IF; expected GOTO or THEN"),
+        ("IF [1 EQ 1] THEN X5\n", "Line 4: THEN sets variables"),
+        ("WHILE [1 EQ 1] DO1\nX5\n", "Line 4: WHILE ... DO and END do not match here"),
+        ("X1\nEND1\n", "Line 5: WHILE ... DO and END do not match here"),
+        ("IF [#1 EQ #0] GOTO 5\nN5\n", "#0 does not exist"),
+        ("N5 X1\nGOTO 5\n", "more than 25000 lines were executed in loops; the program may not end"),
+    ],
+)
+def test_what_leads_nowhere_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        xs(body)
+    assert says in str(caught.value)
+
+
+def test_stated_as_linuxcnc_s_there_is_no_macro_b() -> None:
+    for body in ("GOTO 20\nN20 X2\n", "#1=2+3\nX#1\n"):
+        with pytest.raises(GCodeError):
+            xs(body, "linuxcnc")
