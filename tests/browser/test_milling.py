@@ -74,7 +74,7 @@ def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: An
 def test_the_scrubber_moves_code_section_and_point_without_the_whole_page(milling: Any) -> None:
     page = milling
     ask(page, "Where does the tip go?")
-    slider = page.get_by_role("slider", name="Station").first
+    slider = page.get_by_role("slider", name="Position along the cut").first
     slider.focus()
     before = place(page)
     times = []
