@@ -8,12 +8,11 @@ from robomill.ui.milling import body as panel
 project = ui.begin("Milling")
 setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
-spread = None if result is None else ui.attempt(panel.spread_of, result)
 
 kicker = f"Milling · {setup.name}"
 ui.headline(kicker, "No result yet" if result is None else ui.verdict_sentence(result, unit))
-if result is None or spread is None:
-    panel.waiting(result, dark)
+if result is None:
+    panel.waiting(dark)
     st.stop()
 ui.open_question(result)
 panel.workbench(dark)

@@ -45,11 +45,20 @@ def words(proto: Any) -> str:
             for one in values:
                 if hasattr(one, "ListFields"):
                     of(one)
-                elif isinstance(one, str) and field.name not in ("id", "key", "js", "css", "form_id", "element_id"):
+                elif isinstance(one, str) and field.name not in (
+                    "id",
+                    "key",
+                    "js",
+                    "css",
+                    "js_content",
+                    "css_content",
+                    "form_id",
+                    "element_id",
+                ):
                     lines.append(one)
 
     of(proto)
-    return "\n".join(lines)
+    return re.sub(r'"blob": ?"[^"]*"', "", "\n".join(lines))
 
 
 def metric(app: AppTest) -> list[tuple[str, str]]:

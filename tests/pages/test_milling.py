@@ -111,3 +111,39 @@ def test_the_papers_test_is_shown_beside_the_papers_path_alone(app: AppTest) -> 
 def test_a_small_cell_is_shown_as_it_is(app: AppTest) -> None:
     go(app, "6_Milling")
     assert app.text_input(key="cell:mm").value.partition(".")[2] == f"{store(app).project.setup.cell * 1e3:.4f}"[2:]
+
+
+def test_a_program_without_a_speed_keeps_its_last_picture_and_is_asked_for_the_speed(app: AppTest) -> None:
+    go(app, "6_Milling")
+    kept, shown = store(app), store(app).values["milling.live.sent"]
+    app.selectbox(key="force.kind").set_value("mechanistic").run()
+    setup = kept.project.setup.replace(source=GCodeSource("G21 G90\nG0 X-20 Y0 Z-2\nG1 X20 F1200\n", "no_speed.nc"))
+    kept.project = kept.project.replace(setup=setup)
+    app.run()
+    assert not app.exception
+    assert "No result yet" in words(app)
+    assert any("source.n_s" in (box.key or "") for box in app.text_input)
+    assert kept.values["milling.live.sent"] != ""
+    number(app, next(box.key for box in app.text_input if "source.n_s" in (box.key or ""))).set_value(12000).run()
+    assert not app.exception
+    assert "No result yet" not in words(app)
+    assert kept.values["milling.live.sent"] != shown
+
+
+@pytest.mark.parametrize("gone", ["cell:mm", "tolerance:mm", "force.feed_normal:N", "cutter.diameter:mm"])
+def test_an_emptied_box_leaves_the_picture(app: AppTest, gone: str) -> None:
+    go(app, "6_Milling")
+    shown = store(app).values["milling.live.sent"]
+    app.text_input(key=gone).set_value("").run()
+    assert not app.exception
+    assert store(app).values["milling.live.sent"] == shown
+    assert "No result yet" not in words(app)
+
+
+def test_an_exaggeration_of_ones_own_is_drawn_too(app: AppTest) -> None:
+    go(app, "6_Milling")
+    held = store(app)
+    assert held.project.view.camera == "iso"
+    looked(app, camera="front", exaggeration=37.0, station=1.0)
+    assert not app.exception
+    assert held.project.view.exaggeration == 37.0

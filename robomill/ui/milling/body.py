@@ -56,13 +56,12 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
     return f"{format_many(ends.range, unit, between=' to ', with_unit=False)}: spin about the tool"
 
 
-def verdict_link(result: SimulationResult) -> None:
-    """The way to where the tip is off most, and what the verdict counts."""
+def to_worst(result: SimulationResult) -> None:
+    """The way to where the tip is off most."""
     if result.worst >= 0:
         how = {"type": "tertiary", "help": "Code line, arm, force and section there"}
         label = f"Where the tip is off most: line {result.worst_block}"
         inputs.button(label, "milling.verdict", "my_location", _land, result, **how)
-    pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
 
 
 def _mean_and_peak(result: SimulationResult) -> str:
@@ -117,19 +116,18 @@ def bench() -> list[Any]:
     return pieces.split([1, 2.5], "milling", gap="small")
 
 
-def waiting(result: SimulationResult | None, dark: bool) -> None:
+def waiting(dark: bool) -> None:
     """The page while there are no numbers: inputs, where what is missing is asked for, and the last cut, greyed."""
     left, right = bench()
     with left:
-        inputs_column(result)
-    last = session.kept(running.LAST) if result is None else result
+        inputs_column(None)
+    last = session.kept(running.LAST)
     with right:
         if last is not None:
             live_cut.panel(last, dark)
-        if result is None:
-            words = "Nothing is computed yet: where a value is named above, or asked for among the inputs, give it."
-            stays = "" if last is None else "; the picture is the last one"
-            pieces.said("info", f"{words} What you typed is kept{stays}.")
+        words = "Nothing is computed yet: where a value is named above, or asked for among the inputs, give it."
+        stays = "" if last is None else "; the picture is the last one"
+        pieces.said("info", f"{words} What you typed is kept{stays}.")
 
 
 @st.fragment
@@ -153,10 +151,15 @@ def _looks(digest: str, dark: bool) -> None:
     live_cut.panel(result, dark)
     if live_cut.without_webgl():
         picture_panel.rendered_picture(result, linked.index(result), dark)
-    spread, peak = spread_of(result)
+    known = pieces.attempt(spread_of, result)
+    if known is None:
+        return
+    spread, peak = known
     i = linked.index(result)
-    linked.where(result, i, spread)
-    verdict_link(result)
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        linked.where(result, i, spread)
+        to_worst(result)
+    pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
     pieces.tiles(tiles(result, verdict_tiles(result, project.view.length)))
     question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
     if question == "force":

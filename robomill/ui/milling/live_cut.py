@@ -93,10 +93,11 @@ def panel(result: SimulationResult, dark: bool) -> None:
         sent = {"about": made.about, "blob": made.blob}
         _parcel(key="milling.parcel", data={"digest": name, "parcel": sent}, height=1)
     shown = result.setup.digest() == session.project().setup.digest()
-    show_last(result.setup.tolerance, name, dark, old=made is None or not shown)
+    with st.container(key="milling-look"):
+        _show(result.setup.tolerance, name, dark, old=made is None or not shown)
 
 
-def show_last(tolerance: float, name: str, dark: bool, *, old: bool) -> None:
+def _show(tolerance: float, name: str, dark: bool, *, old: bool) -> None:
     """The look at the parcel of this name; greyed where the set-up in force is another one."""
     view = session.project().view
     p = palette(dark)

@@ -84,10 +84,8 @@ def downloads(result: SimulationResult, i: int) -> None:
         for kind in FORMATS:
             solid, long = partial(_mesh, result, kind), making(_mesh_seconds(result, kind))
             pieces.download(f"Surface {kind.upper()}", solid, f"surface.{kind}", f"milling.get.{kind}", long)
-    pieces.note(
-        f"Surfaces are closed solids in mm, true to size, with cells of {format_si(setup.cell, 'mm', 2)}; "
-        "VTP carries the signed error."
-    )
+    cells = format_si(setup.cell, session.project().view.length, 2)
+    pieces.note(f"Surfaces are closed solids in mm, true to size, with cells of {cells}; VTP carries the signed error.")
 
 
 def _csv(result: SimulationResult) -> str:
