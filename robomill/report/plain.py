@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
+from robomill.surface.section_law import MEASURES
 from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
 
 AXES = "XYZ"
+SECTIONS = {kind: kind if kind != "unknown" else "-" for kind in MEASURES}
 
 
 def matrix_lines(rows: Sequence[Sequence[float]]) -> list[str]:
@@ -94,20 +96,27 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     if lost["count"]:
         lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named(lost['blocks'])}")
         lines += [f"          {reason['why']} ({reason['count']} points)" for reason in lost["reasons"]]
-    lines.append("groove    station    width    depth   centre off   floor off   (mm)")
+    lines.append("sections  station  kind     what is measured there (mm)")
     lines += [_section_line(section) for section in record["groove"]]
     return lines + finding_lines([f for f in record["findings"] if f["level"] != "ignored"])
 
 
 def _section_line(section: dict[str, Any]) -> str:
-    """A section's dimensions, or why there are none."""
-    start = f"          {section['station_mm']:7.2f}  "
-    if math.isnan(section["width_mm"]) and section["note"]:
-        return start + str(section["note"])
-    return (
-        f"{start}{section['width_mm']:7.3f}  {section['depth_mm']:7.3f}"
-        f"  {section['centre_offset_mm']:+11.4f}  {section['floor_error_mm']:+10.4f}"
-    )
+    """What a section is and its dimensions, or why there are none."""
+    start = f"          {section['station_mm']:7.2f}  {SECTIONS[section['kind']]:7s}  "
+    told = {name: section[f"{name}_mm"] for name in ("width", "depth")}
+    signed = {
+        "centre": section["centre_offset_mm"],
+        "floor": section["floor_error_mm"],
+        "left wall": section["wall_left_error_mm"],
+        "right wall": section["wall_right_error_mm"],
+        "surface": section["error_mean_mm"],
+    }
+    if section["kind"] == "groove":
+        signed = {name: signed[name] for name in ("centre", "floor")}
+    found = [f"{name} {v:.3f}" for name, v in told.items() if not math.isnan(v)]
+    found += [f"{name} {v:+.4f}" for name, v in signed.items() if not math.isnan(v)]
+    return start + (", ".join(found) or str(section["note"]) or "nothing can be measured")
 
 
 def _reading(found: dict[str, Any]) -> str:

@@ -67,10 +67,14 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
 
 
 def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str, Any]:
-    """A section's dimensions, and the deviation and force at the path's sample nearest to it."""
+    """What a section is and what is measured there (null where its kind has no such measure, with a reason under
+    ``not_measured`` where it has one), and the deviation and force at the path's sample nearest to it."""
     i = nearest_feed(result, section.station)
     return {
-        **{f"{name}_mm": shown(getattr(section, name), "mm") for name in MEASURED},
+        "kind": section.kind,
+        **{f"{name}_{unit}": shown(getattr(section, name), unit) for name, unit in MEASURED.items()},
+        "near_wall": section.near or None,
+        "not_measured": dict(section.why),
         "block": section.block,
         "deviation_mm": shown(result.delta[i], "mm"),
         "force_N": shown(result.F[i], "N"),

@@ -1,8 +1,10 @@
 """Results as columns in display units: the table twin of each figure, and what CSV files hold."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.progress import slices
@@ -10,7 +12,16 @@ from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 
 Columns = dict[str, FloatArray]
-MEASURED = ("station", "width", "depth", "centre_offset", "floor_error")  # of each section of the groove
+# Of each section: what is told of it whatever its kind, and in which unit.
+MEASURED = {
+    **dict.fromkeys(("station", "width", "depth", "centre_offset", "floor_error"), "mm"),
+    **dict.fromkeys(("wall_left_error", "wall_right_error"), "mm"),
+    **dict.fromkeys(("wall_left_angle", "wall_right_angle"), "deg"),
+    **dict.fromkeys(("wall_left_straightness", "wall_right_straightness", "flatness"), "mm"),
+    "floor_tilt": "deg",
+    **dict.fromkeys(("error_mean", "error_max", "error_rms"), "mm"),
+    "slope": "deg",
+}
 
 
 def deviation_columns(result: SimulationResult) -> Columns:
@@ -50,16 +61,26 @@ def _vectors(name: str, values: FloatArray, unit: str, axes: Sequence[str] = "xy
     return {name.format(axis=axis): from_si(values[:, i], unit) for i, axis in enumerate(axes)}
 
 
-def section_columns(result: SimulationResult) -> Columns:
-    """The groove's dimensions at the default stations."""
+def section_columns(result: SimulationResult) -> dict[str, FloatArray | NDArray[np.str_]]:
+    """What the default stations are and what is measured there; NaN where a kind has no such measure."""
     sections = result.sections
-    return {f"{name}_mm": from_si(np.array([getattr(s, name) for s in sections]), "mm") for name in MEASURED}
+    numbers = {
+        f"{name}_{unit}": from_si(np.array([getattr(s, name) for s in sections]), unit)
+        for name, unit in MEASURED.items()
+    }
+    return {"station_mm": numbers.pop("station_mm"), "kind": np.array([s.kind for s in sections]), **numbers}
 
 
-def csv_text(columns: Columns) -> str:
+def csv_text(columns: Mapping[str, FloatArray | NDArray[np.str_]]) -> str:
     """Columns as CSV; NaN is an empty cell."""
-    rows = np.column_stack(list(columns.values()))
     lines = [",".join(columns)]
-    for some in slices(len(rows), "Rows"):
-        lines += [",".join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in rows[some]]
+    for some in slices(min((len(column) for column in columns.values()), default=0), "Rows"):
+        cells = [[_cell(v) for v in column[some].tolist()] for column in columns.values()]
+        lines += [",".join(row) for row in zip(*cells, strict=True)]
     return "\n".join(lines) + "\n"
+
+
+def _cell(value: float | str) -> str:
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else f"{value:.9g}"

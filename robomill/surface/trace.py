@@ -1,6 +1,7 @@
-"""Following one groove in a section plane: where its walls stand, how they lean, how its floor lies."""
+"""Following a section outwards from the tool's axis: what stands beside the floor, and how a wall there stands."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -8,74 +9,134 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.surface.swept import Heights
 
 WALL_LEVELS = 9
-FLOOR_POINTS = 21
+LEVELS = (0.05, 0.98)  # of a wall's own height: where it is measured
 SUBDIVISIONS, NARROWINGS = 16, 6  # from a fiftieth of the radius to less than a picometre for each millimetre of it
-FINEST = 1 / 20_000  # of the way to the side of the stock: the shortest step by which a wall is sought
+FINE, FINEST = 1 / 50, 1 / 20_000  # of the radius, and of the way to the side of the stock: the step of a search
+AT_ONCE = 75  # points asked for at a time
+AT_TOP = 1e-9  # of a wall's height, below what was not cut: where its upper edge is looked for
+LEDGE, LAND = 0.1e-3, 0.25  # m, and of the radius: what is as high and as wide, below the stock's top, ends a wall
+CUSP = 1e-7  # m: a crest between two passes is higher
+OWN = 1.05  # of the radius: what stands as close to the axis the pass itself has left
+STEPPED = 0.1  # of a wall's height: where its place jumps by more from one level to the next it is not one wall
+SHORTEST = 0.1e-3  # m: the lean and the form of a wall that is lower say nothing
+
+Ends = Literal["wall", "open", "lower", "crest", "slope"]
+SHORT = f"the wall is lower than {SHORTEST * 1e3:g} mm"
+SEVERAL = "several passes here: the wall is stepped"
 
 
 @dataclass(frozen=True)
-class Trace:
-    """One groove in a section plane: wall positions and angles, floor, and its height function."""
+class Side:
+    """Where a floor ends on one side: at a "wall", at the stock's side ("open"), where another pass has cut "lower", at
+    a "crest" between two passes, on a "slope" that rises further than a cutter reaches.
 
-    left: float
-    right: float
-    left_angle: float
-    right_angle: float
-    left_straightness: float
-    right_straightness: float
-    floor: float
-    floor_tilt: float
-    top: float
-    height: Heights
-
-
-def trace_groove(height: Heights, middle: float, low: float, high: float, radius: float, skin: Heights) -> Trace | None:
-    """Follow the cut region from the tool axis at ``middle`` to the first material on either side.
-
-    Walls are NaN where the region runs out of the stock (low, high). None if nothing is cut at the tool axis.
+    w    m  of the wall's edge: at its top where that is the stock's, half way up where it is a ledge below it
+    top  m  height of what the wall carries; ``of_stock``: it is the stock's own top
     """
-    floor, top = float(height(np.array([middle]))[0]), float(skin(np.array([middle]))[0])
-    if not floor < top - 1e-12:
-        return None
-    levels = top - (top - floor) * np.concatenate([[1e-9], np.linspace(0.02, 0.6, WALL_LEVELS)])
-    walls = {side: _wall(height, skin, middle, end, levels, radius) for side, end in ((1, high), (-1, low))}
-    left, left_angle, left_bow = _wall_form(walls[1], levels, 1)
-    right, right_angle, right_bow = _wall_form(walls[-1], levels, -1)
-    inner = [0.5 * ((limit if np.isnan(edge) else edge) - middle) for edge, limit in ((right, low), (left, high))]
-    across = np.linspace(max(inner[0], -0.5 * radius), min(inner[1], 0.5 * radius), FLOOR_POINTS)
-    slope = float(np.polyfit(across, height(middle + across) - floor, 1)[0])
-    return Trace(left, right, left_angle, right_angle, left_bow, right_bow, floor, slope, top, height)
+
+    ends: Ends
+    w: float = float("nan")
+    top: float = float("nan")
+    of_stock: bool = False
 
 
-def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: FloatArray, radius: float) -> FloatArray:
-    """Position w of the first material above each level, from ``middle`` towards ``end``; NaN if there is none.
+@dataclass(frozen=True)
+class WallForm:
+    """A wall's lean from the floor's side of the horizontal (rad, 90 degrees is upright, more opens up), the range
+    about its best straight line (m); NaN with the reason ``why`` where it has none."""
+
+    angle: float = float("nan")
+    straightness: float = float("nan")
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """The section line around one floor: the height left on it, the stock's ``skin``, the stock's sides ``low`` and
+    ``high``, the cutter's ``radius``; all m."""
+
+    height: Heights
+    skin: Heights
+    low: float
+    high: float
+    radius: float
+
+    def end(self, side: float) -> float:
+        """Where the stock ends on a side (+1: left, -1: right)."""
+        return self.high if side > 0 else self.low
+
+
+def side_of(line: Line, middle: float, side: float) -> Side:
+    """What ends the floor at ``middle`` on a side (+1: left, -1: right)."""
+    floor = float(line.height(np.array([middle]))[0])
+    step, reach = _step(line, middle, side), abs(line.end(side) - middle)
+    start, highest, lowest, far = 0.0, floor, floor, 0.0
+    while start < reach:
+        ahead = np.minimum(start + step * np.arange(1, AT_ONCE + 1), reach)
+        w = middle + side * ahead
+        z, skin = line.height(w), line.skin(w)
+        for a, height, top in zip(ahead.tolist(), z.tolist(), skin.tolist(), strict=True):
+            if top <= floor + CUSP:
+                return Side("open")
+            if height >= top - AT_TOP * (top - floor):
+                return _wall(line, middle, side, (top, floor, True))
+            if height < floor - LEDGE and a > OWN * line.radius:
+                return Side("lower")
+            if highest > lowest + CUSP and height < highest - CUSP:
+                return Side("crest")
+            if height < lowest or height > highest + CUSP:
+                lowest, highest, far = min(lowest, height), height, a
+            land = a - far
+            if highest > floor + LEDGE and land >= LAND * line.radius:
+                return _wall(line, middle, side, (highest, floor, False))
+        start = float(ahead[-1])
+    return Side("open")
+
+
+def _wall(line: Line, middle: float, side: float, heights: tuple[float, float, bool]) -> Side:
+    """The wall between a floor and what it carries, ``heights`` (top, floor, whether the top is the stock's), or the
+    slope that it is where it goes on for more than a cutter's flank can."""
+    top, floor, of_stock = heights
+    levels = top - (top - floor) * np.array([AT_TOP if of_stock else 0.5, 0.1 if of_stock else 0.4, 0.9])
+    edge, _, foot = first_above(line, middle, side, levels)
+    own = abs(edge - middle) <= OWN * line.radius
+    if not own and not abs(edge - foot) <= OWN * line.radius:
+        return Side("slope")
+    return Side("wall", float(edge), top, of_stock)
+
+
+def first_above(line: Line, middle: float, side: float, levels: FloatArray, most: float = np.inf) -> FloatArray:
+    """Position w of the first material above each level, from ``middle`` towards a side; NaN if there is none within
+    ``most`` (m).
 
     Where the stock itself lies below a level, material is what was not cut. Found on a line of points, then on
     ever finer ones between two of them; material narrower than a fiftieth of the radius may be missed, and under a
     cutter much smaller than the stock, what is narrower than a twenty-thousandth of the way.
     """
-    side = 1.0 if end > middle else -1.0
-    reach = abs(end - middle)
-    step = max(radius / 50, FINEST * reach)
-    thin = 1e-9 * abs(levels[0] - levels[-1]) + 1e-12
+    reach = min(abs(line.end(side) - middle), most)
+    step, start = _step(line, middle, side), 0.0
+    floor = float(line.height(np.array([middle]))[0])
+    thin = AT_TOP * abs(float(levels.max()) - floor) + 1e-12
 
     def above(w: FloatArray, level: FloatArray) -> BoolArray:
-        return np.asarray(height(w) >= np.minimum(level, skin(w) - thin))
+        skin = line.skin(w)
+        return np.asarray((line.height(w) >= np.minimum(level, skin - thin)) & (skin > floor + CUSP))
 
-    start, found = 0.0, np.full((len(levels), 2), np.nan)
+    found = np.full((len(levels), 2), np.nan)
     while start < reach and np.isnan(found[:, 0]).any():
-        ahead = np.minimum(start + step * np.arange(76), reach)
+        ahead = np.minimum(start + step * np.arange(AT_ONCE + 1), reach)
         w = middle + side * ahead[1:]
-        z, uncut = height(w), skin(w) - thin
+        z, skin = line.height(w), line.skin(w)
         for n in np.flatnonzero(np.isnan(found[:, 0])):
-            hits = np.flatnonzero(z >= np.minimum(levels[n], uncut))
+            hits = np.flatnonzero((z >= np.minimum(levels[n], skin - thin)) & (skin > floor + CUSP))
             if len(hits):
                 found[n] = ahead[hits[0]], ahead[hits[0] + 1]
         start = float(ahead[-1])
     a, b = found[:, 0], found[:, 1]
     known = np.isfinite(a)
+    result = np.full(len(levels), np.nan)
     if not known.any():
-        return a
+        return result
     a, b, level = a[known], b[known], levels[known]
     parts = np.arange(SUBDIVISIONS + 1) / SUBDIVISIONS
     for _ in range(NARROWINGS):
@@ -84,17 +145,24 @@ def _wall(height: Heights, skin: Heights, middle: float, end: float, levels: Flo
         solid = above(inner.ravel(), np.repeat(level, inner.shape[1])).reshape(inner.shape)
         first = np.where(solid.any(axis=1), solid.argmax(axis=1), SUBDIVISIONS - 1)
         a, b = c[np.arange(len(a)), first], c[np.arange(len(a)), first + 1]
-    result = np.full(len(levels), np.nan)
     result[known] = middle + side * 0.5 * (a + b)
     return result
 
 
-def _wall_form(wall: FloatArray, levels: FloatArray, side: int) -> tuple[float, float, float]:
-    """Position at the top, angle and straightness of a wall from its positions at the levels: whoever meets material
-    as high as the top has met it at every level below."""
-    if np.isnan(wall[0]):
-        return float("nan"), float("nan"), float("nan")
-    z, w = levels[1:], wall[1:]
-    slope, offset = np.polyfit(z, w, 1)
-    off_line = (w - (slope * z + offset)) / np.sqrt(1 + slope * slope)
-    return float(wall[0]), float(np.pi / 2 + np.arctan(side * slope)), float(np.ptp(off_line))
+def wall_form(line: Line, middle: float, side: float, span: tuple[float, float]) -> WallForm:
+    """Lean and form of the wall on a side between two heights, ``span`` (foot, top) m: its own, without nose and
+    floor."""
+    foot, top = span
+    if not top - foot >= SHORTEST:
+        return WallForm(why=SHORT)
+    levels = foot + (top - foot) * np.linspace(*LEVELS, WALL_LEVELS)
+    w = first_above(line, middle, side, levels)
+    if np.isnan(w).any() or np.abs(np.diff(w)).max() > max(STEPPED, np.ptp(w) / (top - foot) / 2) * (top - foot):
+        return WallForm(why=SEVERAL)
+    slope, offset = np.polyfit(levels, w, 1)
+    off_line = (w - (slope * levels + offset)) / np.sqrt(1 + slope * slope)
+    return WallForm(float(np.pi / 2 + np.arctan(side * slope)), float(np.ptp(off_line)))
+
+
+def _step(line: Line, middle: float, side: float) -> float:
+    return max(FINE * line.radius, FINEST * abs(line.end(side) - middle))

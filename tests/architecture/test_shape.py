@@ -41,6 +41,7 @@ UNUSED = {
     "task_jacobian": "public name",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",
+    "error_*": "records and panels ask for a section's measures by their names",
     "camera_position": "pyvista's",
     "parallel_projection": "pyvista's",
     "parallel_scale": "pyvista's",

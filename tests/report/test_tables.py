@@ -37,7 +37,10 @@ def test_columns_are_the_arrays_in_millimetres(result):
 
 def test_sections_are_in_millimetres(result):
     columns = section_columns(result)
-    assert list(columns) == ["station_mm", "width_mm", "depth_mm", "centre_offset_mm", "floor_error_mm"]
+    assert list(columns)[:6] == ["station_mm", "kind", "width_mm", "depth_mm", "centre_offset_mm", "floor_error_mm"]
+    assert columns["kind"].tolist() == ["groove"] * len(result.sections)
+    np.testing.assert_allclose(columns["wall_left_angle_deg"], 90.0)
+    assert np.isnan(columns["slope_deg"]).all()
     np.testing.assert_allclose(columns["depth_mm"], [1e3 * s.depth for s in result.sections])
     np.testing.assert_allclose(columns["centre_offset_mm"], [1e3 * s.centre_offset for s in result.sections])
 

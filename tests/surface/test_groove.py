@@ -70,9 +70,9 @@ def test_ball_groove_width_and_walls():
     half = np.sqrt(2 * 0.004 * depth - depth**2)
     assert section.width == pytest.approx(2 * half, rel=1e-6)
     assert section.centre_offset == pytest.approx(DELTA[1], abs=1e-10)
-    assert section.wall_left_angle == pytest.approx(section.wall_right_angle, abs=1e-9)
-    assert section.wall_left_angle > np.radians(100)
-    assert section.wall_left_straightness > 1e-5
+    assert np.isnan([section.wall_left_angle, section.wall_right_straightness, section.floor_tilt]).all()
+    assert "round" in section.why["wall_left_angle"]
+    assert "no straight floor" in section.why["floor_tilt"]
 
 
 def test_chamfer_groove_has_its_cone_as_wall():
@@ -83,14 +83,17 @@ def test_chamfer_groove_has_its_cone_as_wall():
     assert section.width == pytest.approx(2 * 0.002 * np.tan(np.radians(30.0)), rel=1e-6)
 
 
-def test_merged_passes_share_one_groove():
-    """Two passes 6 mm apart merge: the left pass's section runs to the far wall of the right one."""
-    p = np.array([[0, 0, -0.002], [0.05, 0, -0.002], [0.05, 0.006, -0.002], [0, 0.006, -0.002]])
+def test_two_merged_passes_leave_a_pocket():
+    """Two passes 5 mm apart merge: floor between walls further apart than one cutter leaves them."""
+    p = np.array([[0, 0, -0.002], [0.05, 0, -0.002], [0.05, 0.005, -0.002], [0, 0.005, -0.002]])
     stock = Stock((-0.01, -0.01, -0.01), (0.06, 0.02, 0.0))
     cutting = np.array([False, True, True, True])
     section = groove_section(stock, FLAT, p, p + np.array([0, 1e-4, 0]), cutting, [1, 2, 3, 4], 0.025)
-    assert (section.wall_left, section.wall_right) == pytest.approx((0.0101, -0.0039), abs=1e-9)
-    assert section.centre_offset == pytest.approx(1e-4, abs=1e-9)
+    assert (section.kind, section.near) == ("pocket", "right")
+    assert (section.wall_left, section.wall_right) == pytest.approx((0.0091, -0.0039), abs=1e-9)
+    assert (section.wall_left_error, section.wall_right_error) == pytest.approx((1e-4, 1e-4), abs=1e-9)
+    assert section.width == pytest.approx(0.013, abs=1e-9)
+    assert np.isnan(section.centre_offset)
     assert section.block == 2
 
 
@@ -98,8 +101,9 @@ def test_side_cut_has_one_wall():
     p = np.array([[0, 0, -0.002], [0.05, 0, -0.002]])
     stock = Stock((-0.01, -0.03, -0.01), (0.06, 0.001, 0.0))
     section = groove_section(stock, FLAT, p, p + np.array([0, 1e-4, -2e-5]), [False, True], None, 0.025)
-    assert np.isnan(section.wall_left)
-    assert np.isnan(section.centre_offset)
+    assert (section.kind, section.near) == ("step", "right")
+    assert np.isnan([section.wall_left, section.centre_offset, section.width]).all()
+    assert section.wall_right_error == pytest.approx(1e-4, abs=1e-10)
     assert section.wall_right == pytest.approx(-0.0039, abs=1e-10)
     assert section.floor_error == pytest.approx(-2e-5, abs=1e-12)
 
@@ -147,7 +151,7 @@ def test_metal_that_a_pass_without_a_number_takes_away_is_not_measured():
 
 
 def test_tilted_cutter_leaves_a_leaning_wall_and_a_tilted_floor():
-    """Axis tilted by B about Y (towards +X), feed along +Y: left of the feed is -X, where the wall opens up."""
+    """Axis tilted by B about Y (towards +X), feed along +Y: right of the feed is +X, where the wall opens up."""
     tilt = np.radians(8.0)
     k = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
     p = np.array([[0.0, -0.05, -0.003], [0.0, 0.05, -0.003]])
@@ -155,10 +159,10 @@ def test_tilted_cutter_leaves_a_leaning_wall_and_a_tilted_floor():
     moved = p + np.array([2e-4, 0.0, -1e-4])
     section = groove_section(stock, FLAT, p, moved, [False, True], None, 0.05, k=k)
     assert section.floor_error == pytest.approx(-1e-4, abs=1e-12)
-    assert np.arctan(section.floor_tilt) == pytest.approx(tilt, abs=1e-9)  # higher to the left
-    opening, lip = sorted([section.wall_left_angle, section.wall_right_angle], reverse=True)
-    assert np.degrees(opening) == pytest.approx(98.0, abs=1e-6)
-    assert np.degrees(lip) == pytest.approx(90.0, abs=1e-6)  # the undercut side shows its lip only
+    assert section.floor_tilt == pytest.approx(tilt, abs=1e-9)  # higher to the left
+    assert np.degrees(section.wall_right_angle) == pytest.approx(98.0, abs=1e-6)
+    assert np.isnan(section.wall_left_angle)  # seen from above the undercut side is its lip
+    assert "under its lip" in section.why["wall_left_angle"]
     # both walls move sideways with the tool, and the cylinder's sides move with its depth along the slope too
     assert section.centre_offset == pytest.approx(-(2e-4 + 1e-4 * np.tan(tilt)), abs=1e-10)
 
