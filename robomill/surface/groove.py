@@ -48,7 +48,7 @@ class GrooveSection:
     wall_left_angle, wall_right_angle    from the floor's side of the horizontal: 90 degrees is upright, more opens up
     wall_left_straightness, wall_right_straightness   range about the best straight line over the wall's own height
     floor, floor_tilt                height at the tool axis; lean of the machined floor across, rising to the left +
-    flatness                         range of the machined floor over what the section shows of it
+    flatness                         range of the machined floor over what is in reach of the section
     error_mean, error_max, error_rms of a free surface along its normal, + material left; ``slope`` its own, rad
     w, z_ideal, z_machined           (q,) the section's profile
     note           what one must know of it, or why there is none; "" for nothing
@@ -173,7 +173,8 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, samples: 
         return replace(bare, kind="nothing", note="nothing is cut here: the tool passes beside the stock")
     w = seen.window(samples)
     told, left = seen.told.height(w), seen.left.height(w)
-    bare = replace(bare, w=frozen(w), z_ideal=frozen(told), z_machined=frozen(left))
+    z_ideal, z_machined = (frozen(np.maximum(z, stock.lower[2])) for z in (told, left))
+    bare = replace(bare, w=frozen(w), z_ideal=z_ideal, z_machined=z_machined)
     top = float(seen.told.skin(np.array([seen.at[0]]))[0])
     if not seen.floors[0] < top - ONE_HEIGHT:
         above = place.centre[2] >= stock.upper[2]

@@ -11,7 +11,7 @@ from robomill.cutting.tool import Cutter
 from robomill.surface.section_law import has_floor, straight_part
 from robomill.surface.trace import AT_TOP, OWN, Line, Side, WallForm, first_above, wall_form
 
-REACH = 2.5  # cutter radii to either side that a section shows; what stands further away it does not measure
+REACH, SHOWN = 2.5, 3.25  # cutter radii to either side that a section measures, and shows
 LIKE = 0.25  # of the radius: walls that stand so close are one as told and as left
 ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 FLOOR_POINTS = 21
@@ -72,7 +72,7 @@ class Seen:
 
     def window(self, samples: int) -> FloatArray:
         """Positions (samples,) m that the section shows."""
-        reach = REACH * self.cutter.radius + abs(self.shift)
+        reach = SHOWN * self.cutter.radius + abs(self.shift)
         low, high = max(self.told.low, self.at[0] - reach), min(self.told.high, self.at[0] + reach)
         return np.linspace(low, high, samples)
 
@@ -144,23 +144,26 @@ class Seen:
         return Found(float(np.arctan(slope)))
 
     def flatness(self, w: FloatArray) -> Found:
-        """Range of the machined floor over what the section shows of the ideal one, beside walls and steps."""
+        """Range of the machined floor over what of the ideal one is in reach of the section, beside walls and steps."""
         if self.through:
             return Found(why=NO_FLOOR)
         if not has_floor(self.cutter):
             return Found(why=ROUND_FLOOR)
         flat = np.abs(self.told.height(w) - self.floors[0]) <= ONE_HEIGHT
         beside = abs(self.shift) + self.cutter.radius - self.cutter.flat_radius + 2.0 * (w[1] - w[0])
-        flat = _eroded(flat, int(np.ceil(beside / (w[1] - w[0]))))
+        flat = _eroded(flat, int(np.ceil(beside / (w[1] - w[0])))) & self._in_reach(w)
         if flat.sum() < FLOOR_POINTS:
             return Found(why=LEANS if abs(self.leans) > UNDERCUT else "too little of the floor is in the section")
         return Found(float(np.ptp(self.left.height(w[flat]))))
+
+    def _in_reach(self, w: FloatArray) -> BoolArray:
+        return np.asarray(np.abs(w - self.at[0]) <= REACH * self.cutter.radius)
 
     def normal_error(self, w: FloatArray) -> dict[str, float]:
         """Machined against ideal along the free surface's normal, over what is cut in both: mean, largest (signed) and
         root mean square (m), and the local slope of the ideal one (rad)."""
         told, left, skin = self.told.height(w), self.left.height(w), self.told.skin(w)
-        cut = (told < skin - ONE_HEIGHT) & (left < skin - ONE_HEIGHT)
+        cut = (told < skin - ONE_HEIGHT) & (left < skin - ONE_HEIGHT) & self._in_reach(w)
         near = cut & (np.abs(w - self.at[0]) <= self.cutter.radius)
         if near.sum() < 3:
             return {}

@@ -86,35 +86,38 @@ def arm_scene(result: SimulationResult, index: int, length: str = "mm") -> ArmSc
 
 
 def section_drawing(section: GrooveSection, unit: str) -> SectionDrawing:
-    """A measured section in display units; the drawing shows the groove and a few millimetres beside it."""
+    """A measured section in display units; of a groove the drawing shows a few millimetres beside it."""
 
     def shown(value: Any) -> Any:
         return from_si(value, unit)
 
     walls = np.array([section.wall_left, section.wall_right, section.wall_left_ideal, section.wall_right_ideal])
     w = section.w
-    if np.isfinite(walls).all():
+    if section.kind == "groove" and np.isfinite(walls).all():
         beside = 0.45 * float(np.ptp(walls))
         w = np.clip(w, walls.min() - beside, walls.max() + beside)
     keep = w == section.w
-    w_machined = _upright(section.w, section.z_machined, (section.wall_left, section.wall_right), section.depth)
-    w_ideal = _upright(section.w, section.z_ideal, (section.wall_left_ideal, section.wall_right_ideal), section.depth)
-    same = ("wall_left", "wall_right", "width", "depth", "centre_offset", "floor_error")
+    w_machined = _upright(section.w, section.z_machined, (section.wall_left, section.wall_right))
+    w_ideal = _upright(section.w, section.z_ideal, (section.wall_left_ideal, section.wall_right_ideal))
+    walls_of = [f"wall_{side}{what}" for side in ("left", "right") for what in ("", "_ideal", "_error")]
+    same = (*walls_of, "width", "depth", "centre_offset", "floor_error", "flatness", "error_mean", "error_max", "floor")
     return SectionDrawing(
+        kind=section.kind,
+        near=section.near,
         u=shown(w_machined[keep]),
         machined=shown(section.z_machined[keep]),
         u_ideal=shown(w_ideal[keep]),
         ideal=shown(section.z_ideal[keep]),
         **{name: shown(getattr(section, name)) for name in same},
-        top=shown(section.floor + section.depth),
-        floor=shown(section.floor),
+        slope=float(from_si(section.slope, "deg")),
         unit=unit,
+        note=section.note,
     )
 
 
-def _upright(w: FloatArray, z: FloatArray, walls: tuple[float, float], depth: float) -> FloatArray:
+def _upright(w: FloatArray, z: FloatArray, walls: tuple[float, float]) -> FloatArray:
     """Positions with the two samples beside an upright wall put on the wall itself, where it was measured."""
-    placed = w.copy()
+    placed, depth = w.copy(), float(np.ptp(z))
     for wall in walls:
         i = int(np.searchsorted(w, wall)) if np.isfinite(wall) else 0
         if 0 < i < len(w) and abs(z[i] - z[i - 1]) > 0.6 * depth:

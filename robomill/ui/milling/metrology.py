@@ -24,6 +24,38 @@ STATIONS, FEW_STATIONS = 21, 13
 MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
 MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
+WHAT = {
+    "groove": "Groove: two walls that one pass leaves.",
+    "step": "Step: one wall; on the other side the cut is open.",
+    "pocket": "Pocket: several passes made the floor; measured are the floor and the nearer wall.",
+    "free": "Free surface: no wall here; measured is its error along the normal.",
+    "nothing": "",
+}
+LABELS = {
+    "width": "Width",
+    "depth": "Depth",
+    "centre_offset": "Centre offset",
+    "floor_error": "Floor error",
+    "floor_tilt": "Floor tilt",
+    "flatness": "Floor flatness",
+    **{f"wall_{side}_error": f"{side.capitalize()} wall error" for side in ("left", "right")},
+    **{f"wall_{side}_angle": f"{side.capitalize()} wall" for side in ("left", "right")},
+    "error_mean": "Mean error",
+    "error_max": "Largest error",
+    "error_rms": "RMS error",
+    "slope": "Slope",
+}
+SIGNED = {
+    "centre_offset": "positive to the left of the feed",
+    "floor_error": "positive: material left",
+    "error_mean": "positive: material left",
+    "error_max": "positive: material left",
+}
+ANGLES = {
+    "floor_tilt": "across, rising to the left of the feed positive",
+    "slope": "of the ideal surface",
+    **dict.fromkeys(("wall_left_angle", "wall_right_angle"), ""),
+}
 
 
 @shared(by_result, "Error of the surface")
@@ -40,43 +72,36 @@ def profile(result: SimulationResult) -> tuple[GrooveProfile, IntArray]:
     return groove_profile(sections), np.array([s.block for s in sections])
 
 
-def section_facts(groove: GrooveSection | None) -> None:
-    """The dimensions of the section, as a measuring report lists them."""
-    if groove is None or not len(groove.w):
+def section_facts(section: GrooveSection | None) -> None:
+    """What is cut at the station and its dimensions, as a measuring report lists them; a reason for what has none."""
+    if section is None or not len(section.w):
         return
-    unit = session.project().view.length
+    if section.kind in WHAT:
+        pieces.note(WHAT[section.kind] + (f" {section.note[0].upper()}{section.note[1:]}." if section.note else ""))
+    rows = [(LABELS[name], *_measured(section, name)) for name in _listed(section)]
+    if rows:
+        pieces.facts(rows)
 
-    def length(value: float, sign: bool = False) -> str:
-        return format_si(value, unit, sign=sign) if np.isfinite(value) else "open"
 
-    def wall(side: str) -> tuple[str, str, str]:
-        if np.isnan(getattr(groove, f"wall_{side}")):
-            return f"{side.capitalize()} wall", "open", "the cut reaches the stock's side"
-        angle = format_si(getattr(groove, f"wall_{side}_angle"), "deg")
-        form = format_si(getattr(groove, f"wall_{side}_straightness"), "um")
-        return f"{side.capitalize()} wall", angle, f"straight within {form}"
+def _listed(section: GrooveSection) -> list[str]:
+    """Its measures in the order of a report: both walls' lean in one table with their form beside it."""
+    return [name for name in section.measures if not name.endswith("_straightness")]
 
-    if groove.note:
-        pieces.note(f"{groove.note.capitalize()}.")
-        sides = [
-            (f"{side.capitalize()} wall off", length(off, True), "its ideal place, positive to the left of the feed")
-            for side, off in (
-                ("left", groove.wall_left - groove.wall_left_ideal),
-                ("right", groove.wall_right - groove.wall_right_ideal),
-            )
-        ]
-    else:
-        sides = [("Centre offset", length(groove.centre_offset, True), "positive to the left of the feed")]
-    pieces.facts(
-        [
-            ("Width", length(groove.width), ""),
-            ("Depth", length(groove.depth), ""),
-            *sides,
-            ("Floor", length(groove.floor_error, True), f"tilted by {format_si(groove.floor_tilt, 'deg', 3)} across"),
-            wall("left"),
-            wall("right"),
-        ]
-    )
+
+def _measured(section: GrooveSection, name: str) -> tuple[str, str]:
+    """A measure and what one must know of it."""
+    value, view = float(getattr(section, name)), session.project().view
+    if not np.isfinite(value):
+        return "not measured", section.why.get(name, "")
+    if name in ANGLES:
+        beside = ANGLES[name]
+        if name.startswith("wall"):
+            form = float(getattr(section, name.replace("angle", "straightness")))
+            beside = f"straight within {format_si(form, view.of('um'))}"
+        return format_si(value, "deg", 3 if name == "floor_tilt" else 2), beside
+    signed = name in SIGNED or name.startswith("wall")
+    remark = SIGNED.get(name, "") or ("positive to the left of the feed" if name.startswith("wall") else "")
+    return format_si(value, view.length, sign=signed), remark
 
 
 def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool) -> None:

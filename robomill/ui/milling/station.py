@@ -11,10 +11,11 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
+from robomill.surface.groove import GrooveSection
 from robomill.ui import cached, declared, inputs, pieces, session, shell
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import station_m
-from robomill.units import format_si, from_si
+from robomill.units import format_si, from_si, unit_label
 from robomill.viz.deviation import shares_figure
 from robomill.viz.dial import Dial, dial_figure
 from robomill.viz.sections import section_figure
@@ -22,6 +23,8 @@ from robomill.viz.theme import tool_colours
 from robomill.viz.views import section_drawing
 
 AROUND = 5
+ANGLES = ("wall_left_angle", "wall_right_angle", "floor_tilt", "slope")
+KIND_WORDS = {"free": "free surface"} | {kind: kind for kind in ("groove", "step", "pocket")}
 
 
 def code(result: SimulationResult, i: int, height: int = 300) -> None:
@@ -106,22 +109,35 @@ def dial(
 def section(result: SimulationResult, i: int, dark: bool) -> Any:
     """The dimensioned section at the station; returns it."""
     unit = session.project().view.length
-    groove = pieces.attempt(cached.groove, result.setup, station_m(result))
-    if groove is None:
+    found = pieces.attempt(cached.groove, result.setup, station_m(result))
+    if found is None:
         return None
-    if not len(groove.w):
-        pieces.note(f"No section here: {groove.note}.")
-        return groove
+    if not len(found.w) or found.kind == "unknown":
+        pieces.note(f"No section here: {found.note}.")
+        return found
     pieces.figure(
-        section_figure(section_drawing(groove, unit), dark=dark),
+        section_figure(section_drawing(found, unit), dark=dark),
         "linked-section",
-        name="groove-sections",
+        name="sections",
         table=lambda: section_columns(result),
-        caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale. "
-        "Dashed: the ideal groove.",
-        alt="Cross-section of the groove with its dimensions and the ideal groove dashed.",
+        caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale, in "
+        f"{unit_label(unit)}. Dashed: the ideal surface."
+        + (f" {found.note[0].upper()}{found.note[1:]}." if found.kind == "nothing" else ""),
+        alt=section_words(found, unit),
     )
-    return groove
+    return found
+
+
+def section_words(section: GrooveSection, unit: str) -> str:
+    """A section in words with its numbers, for whoever does not see the drawing."""
+    if section.kind == "nothing":
+        return f"Cross-section: {section.note}."
+    found = [
+        f"{name.replace('_', ' ')} {format_si(getattr(section, name), 'deg' if name in ANGLES else unit)}"
+        for name in section.measures
+        if np.isfinite(getattr(section, name))
+    ]
+    return f"Cross-section of a {KIND_WORDS[section.kind]}: {', '.join(found) or 'nothing can be measured'}."
 
 
 def shares(result: SimulationResult, i: int, dark: bool) -> None:
