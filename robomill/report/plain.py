@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
+from robomill.simulation.strays import WORDS
 from robomill.surface.section_law import MEASURES
 from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
 
@@ -86,6 +87,10 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         )
         lines.append(f"sag       {vector(record['sag_mm'], 'mm')}   {what}")
     lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
+    if tip := record["tip"]:
+        lines.append(
+            f"tip       {format_value(tip['value_mm'], 'mm')} off its path at line {tip['line']}; {WORDS[tip['fate']]}"
+        )
     for name, turn in (record["tooth"] or {}).items():
         mean, low, high = (format_value(turn[end], "mm", sign=True) for end in ("mean", "low", "high"))
         lines.append(f"tooth     {name} {mean} by the mean force, {low} to {high} as teeth come by")

@@ -112,6 +112,7 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             for name, reading in readings.items()
         },
         "share_at_assumed_ends": verdict.far,
+        "tip": _tip(result),
         "gone": sorted(set(path.block[result.gauge.gone].tolist())),
         "thin_wall": sorted(set(path.block[result.gauge.thin].tolist())),
         "tooth": _tooth(result),
@@ -126,6 +127,21 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
                 for each in result.unjudged
             ],
         },
+    }
+
+
+def _tip(result: SimulationResult) -> dict[str, Any] | None:
+    """Where the tip is off its path most, and what becomes of it on the part."""
+    found = result.stray
+    if found is None:
+        return None
+    return {
+        "value_mm": shown(found.size, "mm"),
+        "line": int(result.path.block[found.sample]),
+        "station_mm": shown(result.path.s[found.sample], "mm"),
+        "mark": found.mark,
+        "fate": found.fate,
+        "left_on_part_mm": shown(found.left, "mm"),
     }
 
 

@@ -30,6 +30,7 @@ BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
 LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings that differ by less are one
+LEAST = 1e-4  # share that a single place stands for
 SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
 
 
@@ -56,14 +57,20 @@ class Readings:
         return int(equal[np.argmin(np.abs(self.error - self.own)[equal] + (size.max() - size[equal]))])
 
     def share_out(self, tolerance: float) -> float:
-        """Share of the length that is out of ``tolerance`` (m); 0 where there is none."""
-        total = float(self.length.sum())
-        return float(self.length[np.abs(self.error) > tolerance].sum()) / total if total > 0.0 else 0.0
+        """Share of the length that is out of ``tolerance`` (m): 0 where nothing is, and never 0 where something is,
+        however short."""
+        return self._share(tolerance, self.length)
 
-    def area(self, tolerance: float = 0.0) -> float:
-        """m^2 of wall that is out of ``tolerance`` (m), or all of it."""
-        out = np.abs(self.error) > tolerance if tolerance > 0.0 else np.ones(len(self.error), dtype=bool)
-        return float((self.length * self.height)[out].sum())
+    def area_out(self, tolerance: float) -> tuple[float, float]:
+        """(out of ``tolerance`` (m), all) m^2, by length and height; the first is never 0 where something is out."""
+        area = self.length * self.height
+        return self._share(tolerance, area) * float(area.sum()), float(area.sum())
+
+    def _share(self, tolerance: float, weight: FloatArray) -> float:
+        out, total = np.abs(self.error) > tolerance, float(weight.sum())
+        if not out.any():
+            return 0.0
+        return max(float(weight[out].sum()) / total if total > 0.0 else 1.0, LEAST)
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ from robomill.simulation.posture import posture_notes, turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
+from robomill.simulation.strays import Stray, stray
 from robomill.simulation.tools import tool_notes, tooling
 from robomill.simulation.verdict import judge, thin_wall_notes
 from robomill.simulation.verdict_words import Verdict
@@ -212,11 +213,11 @@ class SimulationResult:
 
     @property
     def area_out(self) -> tuple[float, float]:
-        """(out of tolerance, all) m^2 of what was cut: seen from above, and walls by their length and height, each
-        against its own tolerance."""
-        wall, floor, walls = self.verdict.wall.tolerance, self.verdict.floor.tolerance, self.gauge.walls
-        beside = float(np.hypot(wall, floor))  # a corner of walls and floors may be off by both
-        return self.error.area_out(floor, beside) + walls.area(wall), self.error.cut_area + walls.area()
+        """(out of tolerance, all) m^2 of the walls and floors that the verdict judges, each against its own tolerance:
+        their length by their height, or by the cutter's width."""
+        walls = self.gauge.walls.area_out(self.verdict.wall.tolerance)
+        floors = self.gauge.floors.area_out(self.verdict.floor.tolerance)
+        return walls[0] + floors[0], walls[1] + floors[1]
 
     @property
     def rapids(self) -> tuple[int, ...]:
@@ -266,6 +267,11 @@ class SimulationResult:
     def gauge(self) -> Gauge:
         """What a gauge would read on the walls, floors and ends that the run leaves."""
         return gauge(self)
+
+    @cached_property
+    def stray(self) -> Stray | None:
+        """Where the tip is off its path most, and what of that is on the part; None where nothing is judged."""
+        return stray(self, self.gauge)
 
     @cached_property
     def verdict(self) -> Verdict:

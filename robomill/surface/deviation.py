@@ -9,7 +9,6 @@ from robomill.errors import SurfaceError
 from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.surface.zmap import ZMap
-from robomill.units import format_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +18,6 @@ class Deviation:
     error (nx, ny) m         signed distance to the ideal surface: machined minus ideal height, or the way sideways to
                              the ideal wall where that is shorter (to one cell); NaN where neither surface was cut
     cut (nx, ny) bool        cells cut in either
-    aside (nx, ny) bool      cells of a wall: their error is the way sideways
     excess_volume, gouge_volume  m^3, from the mean heights of the cells; their difference knows sub-cell walls, and
                              each by itself is right to first order in the cell size
     """
@@ -28,7 +26,6 @@ class Deviation:
     y: FloatArray
     error: FloatArray
     cut: BoolArray
-    aside: BoolArray
     cell_area: float
     excess_volume: float
     gouge_volume: float
@@ -55,18 +52,6 @@ class Deviation:
         """Root mean square error over the cut cells, m."""
         return float(np.sqrt(np.mean(self.values**2))) if self.values.size else 0.0
 
-    def area_out(self, tolerance: float, beside: float | None = None) -> float:
-        """Area (m^2), seen from above, whose error is beyond +-tolerance (m); ``beside`` (m) is that of walls' cells.
-
-        Raises SurfaceError for a tolerance that is not positive.
-        """
-        own = tolerance if beside is None else beside
-        for limit in (tolerance, own):
-            if not (np.isfinite(limit) and limit > 0):
-                raise SurfaceError(f"Tolerance: found {format_si(limit, 'mm')}; expected a length above 0.")
-        out = np.abs(self.values) > np.where(self.aside[self.cut], own, tolerance)
-        return float(out.sum()) * self.cell_area
-
     def histogram(self, bins: int = 60, limit: float | None = None) -> tuple[FloatArray, FloatArray]:
         """Bin edges (bins + 1,) m and area (bins,) m^2; errors beyond +-limit are counted in the outer bins."""
         reach = max(*np.abs(self.worst), 1e-9) if limit is None else limit
@@ -90,11 +75,10 @@ def deviation(ideal: ZMap, machined: ZMap, *, reach: float = 1e-3) -> Deviation:
     was_cut = ideal.cut_mask | machined.cut_mask
     error = surface_error(ideal, machined, reach)
     error[~was_cut] = np.nan
-    aside = np.abs(error) < np.abs(height_error)
-    for array in (error, was_cut, aside):  # large, and nobody else's: no copy
+    for array in (error, was_cut):  # large, and nobody else's: no copy
         array.flags.writeable = False
     excess, gouge = _volumes(height_error, ideal, machined)
-    return Deviation(ideal.x, ideal.y, error, was_cut, aside, ideal.dx * ideal.dy, excess, gouge)
+    return Deviation(ideal.x, ideal.y, error, was_cut, ideal.dx * ideal.dy, excess, gouge)
 
 
 def _volumes(height_error: FloatArray, ideal: ZMap, machined: ZMap) -> tuple[float, float]:

@@ -125,7 +125,8 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
         was = shown(old.max_deviation)
         change = format_si(result.max_deviation - old.max_deviation, unit, sign=True)
     parts = " · ".join(f"{a} {format_si(v, unit, sign=True, with_unit=False)}" for a, v in zip("XYZ", result.delta[i]))
-    note = f"{parts} · line {result.worst_block} · RMS {shown(result.rms_deviation)}"
+    fate = f" · {result.stray.words}" if result.stray is not None else ""
+    note = f"{parts} · line {result.worst_block}{fate} · RMS {shown(result.rms_deviation)}"
     value = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
     return Tile("Tip off its path", value, note, was, change)
 

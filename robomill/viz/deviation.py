@@ -6,7 +6,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.simulation.result import SimulationResult
-from robomill.units import from_si
+from robomill.units import format_limit, from_si
 from robomill.viz.along import Along, add_band, at_feed
 from robomill.viz.chart import Chart
 from robomill.viz.theme import axis_colours, joint_colours, palette, rgba, say
@@ -27,8 +27,9 @@ def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int
         lines = result.path.block[plot.chosen]
         plot.curve(delta[:, column], f"δ<sub>{name.upper()}</sub>", line, "%{y:+.4f} " + unit, customdata=lines)
     for side in (1, -1) if np.nanmin(delta, initial=0.0) < -0.6 * tolerance else (1,):
-        plot.level(side * tolerance, p.bad)
-    say(plot.fig, f"tolerance {tolerance:g} {unit}", 1, tolerance, p.bad, xref="paper", xanchor="right", yshift=9)
+        plot.level(side * tolerance, p.muted, "solid")
+    words = f"tolerance of the surface {format_limit(result.setup.tolerance, unit)}"
+    say(plot.fig, words, 1, tolerance, p.muted, xref="paper", xanchor="right", yshift=9)
     plot.zero()
     if i >= 0:
         plot.station(float(s[i]), "station")

@@ -6,7 +6,6 @@ from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
-from robomill.simulation.stations import force_components
 from robomill.units import from_si
 from robomill.viz.along import Along, at_feed
 from robomill.viz.chart import Chart
@@ -25,33 +24,39 @@ def force_figure(
     dark: bool,
     i: int = -1,
 ) -> Chart:
-    """Mean force by component, the alloy's band around it, the extremes of a revolution as thin lines.
+    """Size of the mean force and one band: the alloy's other rows, else up to the peak of a revolution. Its components
+    are in the key and come with a click on their names.
 
     A line stands at sample ``i``.
     """
     p, s = palette(dark), from_si(result.path.s, unit)
-    mean, band = at_feed(result, result.force_components), _band(result, spread)
-    extremes = () if peak is None else (at_feed(result, peak.low), at_feed(result, peak.high))
-    plot = Along.begin(s, unit, "force", dark=dark, height=360)
-    for c, (name, colour) in enumerate(zip(COMPONENTS, (p.muted, p.accent, p.warm), strict=True)):
-        if band is not None:
-            plot.shade((band[0][:, c], band[1][:, c]), "alloy's rows", rgba(colour, 0.18), c == 1)
-        for k, extreme in enumerate(extremes):
-            line = {"color": colour, "width": 1, "dash": "dot"}
-            first = c == 1 and k == 0
-            plot.curve(extreme[:, c], "peak of a turn", line, legendgroup="peak", showlegend=first)
-        plot.curve(mean[:, c], name, {"color": colour, "width": 2.4, "dash": DASHES[c]}, "%{y:+.1f} N")
+    mean = at_feed(result, result.force_components)
+    plot = Along.begin(s, unit, "force", dark=dark, height=320)
+    band, name = _band(result, spread, peak)
+    if band is not None:
+        plot.shade(band, name, rgba(p.accent, 0.18))
+    plot.curve(np.linalg.norm(mean, axis=1), "mean force", {"color": p.accent, "width": 2.4}, "%{y:.1f} N")
+    for c, component in enumerate(COMPONENTS):
+        line = {"color": p.text, "width": 1.6, "dash": DASHES[c]}
+        plot.curve(mean[:, c], component, line, "%{y:+.1f} N", visible="legendonly")
     plot.zero()
     if i >= 0:
         plot.station(float(s[i]))
     return plot.done("Force on the tool, N")
 
 
-def _band(result: SimulationResult, spread: AlloySpread | None) -> tuple[FloatArray, FloatArray] | None:
-    if spread is None or len(spread.titles) < 2:
-        return None
-    rows = force_components(result, spread)
-    return at_feed(result, rows.min(axis=0)), at_feed(result, rows.max(axis=0))
+def _band(
+    result: SimulationResult, spread: AlloySpread | None, peak: ForceSpread | None
+) -> tuple[tuple[FloatArray, FloatArray] | None, str]:
+    """Between which sizes the force may lie, and by what."""
+    if spread is not None and len(spread.titles) > 1:
+        sizes = np.linalg.norm(spread.F, axis=2)
+        low, high, name = sizes.min(axis=0), sizes.max(axis=0), "range over published coefficients"
+    elif peak is not None:
+        (low, high), name = (np.linalg.norm(F, axis=1) for F in (result.F, peak.at_peak)), "to the peak of a turn"
+    else:
+        return None, ""
+    return (at_feed(result, low[:, None])[:, 0], at_feed(result, high[:, None])[:, 0]), name
 
 
 def engagement_figure(result: SimulationResult, unit: str, *, dark: bool, i: int = -1) -> Chart:
@@ -60,8 +65,8 @@ def engagement_figure(result: SimulationResult, unit: str, *, dark: bool, i: int
     phi_st, phi_ex = (np.where(c.engaged, from_si(phi, "deg"), np.nan) for phi in (c.phi_st, c.phi_ex))
     depth = np.where(result.path.cutting, from_si(c.a_p, unit), np.nan)
     plot = Along.begin(s, unit, "engagement", dark=dark, height=300)
-    plot.shade((phi_st, phi_ex), "arc of engagement", rgba(p.warm, 0.18))
-    plot.curve(phi_ex - phi_st, "its size", {"color": p.warm, "width": 2}, "%{y:.0f}°")
+    plot.shade((phi_st, phi_ex), "arc of engagement", rgba(p.text, 0.12))
+    plot.curve(phi_ex - phi_st, "its size", {"color": p.text, "width": 2}, "%{y:.0f}°")
     line = {"color": p.accent, "width": 2, "dash": "dash"}
     plot.curve(depth, "depth", line, "%{y:.3f} " + unit, yaxis="y2")
     top = float(np.nanmax(depth, initial=0.0)) or 1.0

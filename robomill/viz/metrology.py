@@ -5,9 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.units import decimals, unit_label
 from robomill.viz.along import Along
 from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba, say
+
+CLIPPED = 2.0  # tolerances: what is further out would press the rest of the curve flat
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,25 +36,39 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     """The profile with its tolerance, its band, its best line and what was measured; ``block`` (q,) source lines."""
     p, unit = palette(dark), curves.unit
     plot = Along.begin(curves.station, unit, "profile", dark=dark, height=320)
+    limits = _limits(curves.wall_tolerance, curves.floor_tolerance)
+    most = max(place for place, _ in limits)
+    inside = {"fillcolor": rgba(p.muted, 0.07), "line": {"width": 0}, "layer": "below"}
+    plot.fig.shape(type="rect", xref="x domain", x0=0, x1=1, y0=-most, y1=most, **inside)
     if curves.band is not None:
         plot.shade((curves.band[0], curves.band[1]), "alloy's rows", rgba(p.accent, 0.16))
     hover = "%{y:+.4f} " + unit + ", line %{customdata}"
-    plot.curve(curves.offset, "centre offset", {"color": p.accent, "width": 2.4}, hover, customdata=block)
-    plot.curve(curves.floor, "floor", {"color": p.warm, "width": 2, "dash": "dash"}, "%{y:+.4f} " + unit)
+    for value, name, colour in ((curves.offset, "centre offset", p.accent), (curves.floor, "floor", p.text)):
+        if np.isfinite(value).any():
+            plot.curve(value, name, {"color": colour, "width": 2.2}, hover, customdata=block)
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
     if curves.measured is not None:
         marks = {"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}}
         plot.fig.dots(*curves.measured, marks, name="measured", hovertemplate="measured %{y:+.4f} " + unit)
-    limits = _limits(curves.wall_tolerance, curves.floor_tolerance)
     for place, words in limits:
-        plot.level(place, p.bad, "solid")
-        say(plot.fig, words, 1, place, p.bad, xref="paper", xanchor="right", yshift=9)
+        plot.level(place, p.muted, "solid")
+        say(plot.fig, words, 1, place, p.muted, xref="paper", xanchor="right", yshift=9 if place > 0 else -9)
     plot.zero()
-    drawn = [curves.offset, curves.floor, *([] if curves.band is None else [curves.band])]
-    reach = 1.15 * max(*(place for place, _ in limits), *(np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in drawn))
+    drawn = np.concatenate([curves.offset, curves.floor, *([] if curves.band is None else curves.band)])
+    largest = float(np.abs(drawn[np.isfinite(drawn)]).max(initial=0.0))
+    reach = min(1.15 * max(most, largest), CLIPPED * most)
+    if beyond := beyond_chart(curves):
+        say(plot.fig, f"{beyond} beyond", 0, 1, p.muted, xref="paper", yref="paper", xanchor="left", yanchor="top")
     plot.station(station)
-    return plot.done(f"Error of the groove, {unit}", range=[-reach, reach])
+    return plot.done(f"Error across the cut, {unit}", range=[-reach, reach])
+
+
+def beyond_chart(curves: ProfileCurves) -> int:
+    """How many stations lie beyond what the chart shows."""
+    ends = CLIPPED * max(curves.wall_tolerance, curves.floor_tolerance)
+    outside = (np.abs(values) > ends for values in (curves.offset, curves.floor))
+    return int(np.logical_or(*outside).sum())
 
 
 def _limits(walls: float, floors: float) -> list[tuple[float, str]]:
@@ -60,10 +77,12 @@ def _limits(walls: float, floors: float) -> list[tuple[float, str]]:
     return [(side * value, f"{sign} {words}") for value, words in told for side, sign in ((1, "+"), (-1, "−"))]
 
 
-def histogram_figure(edges: FloatArray, share: FloatArray, tolerances: FloatArray, *, dark: bool) -> Chart:
-    """Share of the cut area (%) by signed error (µm), in the colours of the surface; ``tolerances`` of walls and floors
-    marked."""
-    p = palette(dark)
+def histogram_figure(
+    edges: FloatArray, share: FloatArray, tolerances: FloatArray, unit: str = "um", *, dark: bool
+) -> Chart:
+    """Share of the cut area (%) by signed error (``unit``: um or thou), in the colours of the surface; ``tolerances``
+    of walls and floors marked."""
+    p, label = palette(dark), unit_label(unit)
     walls, floors = map(float, tolerances)
     middle = 0.5 * (edges[1:] + edges[:-1])
     fig = figure(dark=dark, height=320, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
@@ -81,14 +100,14 @@ def histogram_figure(edges: FloatArray, share: FloatArray, tolerances: FloatArra
             "cmax": walls,
             "line": {"width": 0.6, "color": p.line},
         },
-        hovertemplate="%{x:+.0f} µm<br>%{y:.1f} % of the area<extra></extra>",
+        hovertemplate=f"%{{x:+.{decimals(unit, None)}f}} {label}<br>%{{y:.1f}} % of the area<extra></extra>",
     )
     for place, words in _limits(walls, floors):
-        fig.upright(x=place, line={"color": p.bad, "width": 1.2, "dash": "dash"})
-        say(fig, words, place, 1.0, p.bad, yref="paper", yanchor="bottom")
+        fig.upright(x=place, line={"color": p.muted, "width": 1.2})
+        say(fig, words, place, 1.0, p.muted, yref="paper", yanchor="bottom")
     reach = max(1.12 * walls, 1.12 * floors, float(np.abs(edges).max()) * 1.04)
     fig.lay_out(
-        xaxis=axis("Signed error, µm (− too deep, + material left)", dark=dark, range=[-reach, reach]),
+        xaxis=axis(f"Signed error, {label} (− too deep, + material left)", dark=dark, range=[-reach, reach]),
         yaxis=axis("Share of the cut area, %", dark=dark, rangemode="tozero"),
     )
     return fig

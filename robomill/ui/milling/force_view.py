@@ -9,7 +9,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
 from robomill.ui import pieces, session
-from robomill.units import format_si, from_si
+from robomill.units import format_many, format_si, from_si
 from robomill.viz.engagement import COMPONENTS, engagement_figure, force_figure
 
 OF_CUTTER = ("stock-unit", "wide-cutter", "beyond-flutes")  # codes of findings that stand beside cutter and stock
@@ -22,17 +22,26 @@ def force_plot(
     peak: ForceSpread | None,
     dark: bool,
 ) -> None:
-    """Mean force by component along the cut; shaded: the alloy's rows; dotted: the extremes of a revolution."""
+    """Size of the mean force along the cut with its band; its components come with a click in the key."""
     unit = session.project().view.length
-    words = "Mean force on the tool; feed-normal is the left of the feed, axial positive out of the part."
+    words = "Mean force on the tool. A click in the key shows its components: feed-normal is to the left of the feed, "
+    words += "axial positive out of the part."
     pieces.figure(
         force_figure(result, spread, peak, unit, dark=dark, i=i),
         "force",
         name="force",
         table=lambda: force_columns(result, peak),
         caption=words,
-        alt="Mean force on the tool along the path by component, with the peak of a turn and the alloy's band.",
+        alt=_in_words(result),
     )
+
+
+def _in_words(result: SimulationResult) -> str:
+    size = np.linalg.norm(result.F[result.judged], axis=1)
+    if not len(size):
+        return "Mean force on the tool along the path: nothing is judged."
+    ends = format_many((float(size.min()), float(size.max())), "N", 0, " to ")
+    return f"Mean force on the tool along the path: {ends}."
 
 
 def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[str, FloatArray]:
@@ -123,11 +132,12 @@ def coupling_facts(result: SimulationResult) -> None:
         return
     if not coupling.converged:
         return  # said beside its switch
+    small = session.project().view.of("um")
     rate = f"a step, {coupling.iterations} at most"
     pieces.facts(
         [
             ("Coupling", f"{coupling.mean_iterations:.1f} evaluations", rate),
-            ("Against one pass", format_si(coupling.difference, "um"), "largest difference of any component"),
+            ("Against one pass", format_si(coupling.difference, small), "largest difference of any component"),
         ]
     )
 

@@ -11,13 +11,14 @@ from robomill.io.profiles import MeasuredProfile, read_profile
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import offset_band
+from robomill.simulation.verdict_words import way
 from robomill.surface.deviation import Deviation
 from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import inputs, pieces, session
 from robomill.ui.cached import by_result, shared
 from robomill.ui.milling.scrubber import station_m
-from robomill.units import format_percent, format_si, from_si
+from robomill.units import format_beside, format_limit, format_many, format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 
 STATIONS, FEW_STATIONS = 21, 13
@@ -111,6 +112,9 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     if along is None:
         return
     found, block = along
+    if not np.isfinite([found.centre_offset, found.floor_error]).any():
+        pieces.note("No chart along this cut: at none of its stations a groove or a floor can be measured.")
+        return
     measured = session.kept(MEASURED)
     fit = None
     if result.path.goes_one_way and np.isfinite(found.centre_offset).sum() >= 3:
@@ -127,14 +131,16 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         fit=None if fit is None else from_si(found.centre_offset - fit.side.residual, unit),
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
     )
-    missing = f" {found.missing} of {len(found.station)} stations have no groove to measure." if found.missing else ""
+    missing = ""
+    if found.missing:
+        missing = f" {found.missing} of {len(found.station)} stations are no groove of one pass and have no middle."
     pieces.figure(
         profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
         name="groove-profile",
         table=lambda: profile_columns(found, block),
-        caption="Middle line and floor of the groove against the ideal ones." + missing,
-        alt="Centre offset and floor error of the groove along its length, with the tolerance.",
+        caption="Middle line of the groove and floor of the cut against the ideal ones; grey: the tolerance." + missing,
+        alt=_along_in_words(found, unit),
     )
     if fit is not None:
         side, floor = fit.side, fit.floor
@@ -144,14 +150,25 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
                 ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
                 (
                     "Form error",
-                    format_si(side.form_error, "um"),
-                    f"left after both; the floor keeps {format_si(floor.form_error, 'um')}",
+                    format_si(side.form_error, session.project().view.of("um")),
+                    f"left after both; the floor keeps {format_si(floor.form_error, session.project().view.of('um'))}",
                 ),
             ]
         )
     else:
-        pieces.note("Best fit (shift and turn against form) needs one straight groove; this path turns.")
+        pieces.note("Best fit (shift and turn against form) needs one straight groove; here there is none.")
     _overlay(found, measured, unit)
+
+
+def _along_in_words(found: GrooveProfile, unit: str) -> str:
+    """The chart in words, with the ends of its curves."""
+    told = []
+    for name, values in (("centre offset", found.centre_offset), ("floor error", found.floor_error)):
+        known = values[np.isfinite(values)]
+        if len(known):
+            ends = format_many((float(known.min()), float(known.max())), unit, between=" to ", sign=True)
+            told.append(f"{name} {ends}")
+    return f"Along the cut: {', '.join(told)}."
 
 
 def profile_columns(found: GrooveProfile, block: IntArray) -> dict[str, Any]:
@@ -219,8 +236,9 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     limit = min(max(1.15 * floors, 1.15 * walls, 1.05 * largest), 3.0 * max(floors, walls))
     edges, area = error.histogram(48, limit)
     share = 100.0 * area / error.cut_area if error.cut_area else area
+    small = session.project().view.of("um")
     pieces.figure(
-        histogram_figure(from_si(edges, "um"), share, from_si(np.array([walls, floors]), "um"), dark=dark),
+        histogram_figure(from_si(edges, small), share, from_si(np.array([walls, floors]), small), small, dark=dark),
         "histogram",
         name="error-histogram",
         table=lambda: {
@@ -230,20 +248,35 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
             "share_percent": share,
         },
         caption="Shortest distance of the machined surface to the ideal one, over the cut area seen from above.",
-        alt="Histogram of the signed error over the cut area.",
+        alt=f"Histogram of the signed error over the cut area; RMS {format_si(error.rms, small)}.",
     )
-    out, all_of_it = result.area_out
-    pieces.facts(
-        [
-            ("Material left", format_si(error.excess_volume, "mm3"), f"up to {format_si(error.worst[0], 'um')} thick"),
-            ("Cut too deep", format_si(error.gouge_volume, "mm3"), f"up to {format_si(-error.worst[1], 'um')} deep"),
-            (
-                "Out of tolerance",
-                format_percent(out / all_of_it if all_of_it else 0.0, 1),
-                f"{format_si(out, 'mm2')} of the {format_si(all_of_it, 'mm2')} of floors and walls",
-            ),
-            ("RMS error", format_si(error.rms, "um"), "over the cut area"),
-        ]
-    )
+    pieces.facts([*_out_of_tolerance(result), *_volumes(error)])
     for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
+
+
+def _out_of_tolerance(result: SimulationResult) -> list[tuple[str, str, str]]:
+    """How much of the walls and of the floors the verdict finds out of tolerance: its own readings, each apart."""
+    verdict, unit, rows = result.verdict, session.project().view.length, []
+    for name, reading in (("wall", verdict.wall), ("floor", verdict.floor)):
+        if reading.worst < 0:
+            rows.append((f"{name.capitalize()}s", "–", f"the cut leaves no {name}"))
+            continue
+        size = format_beside(abs(reading.value), reading.tolerance, unit)
+        remark = f"at most {size} {way(name, reading)}, {format_limit(reading.tolerance, unit)} allowed"
+        rows.append((f"{name.capitalize()}s out of tolerance", share_out_words(reading.share_out), remark))
+    return rows
+
+
+def share_out_words(share: float) -> str:
+    """A share of what is out of tolerance; never "0" where something is."""
+    return "none" if share == 0.0 else "under 0.1 %" if share < 1e-3 else format_percent(share, 1)
+
+
+def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
+    view = session.project().view
+    return [
+        ("Material left", format_si(error.excess_volume, view.of("mm3")), "on walls and floors together"),
+        ("Cut too deep", format_si(error.gouge_volume, view.of("mm3")), "into walls and floors together"),
+        ("RMS error", format_si(error.rms, view.of("um")), "over the cut area"),
+    ]
