@@ -367,7 +367,7 @@ def test_form_error_is_apart_from_the_shift(app: AppTest) -> None:
     milling(app)
     text = words(app)
     assert "Form error" in text
-    assert "Out of tolerance" in text
+    assert "Walls out of tolerance" in text
     assert "Left wall" in text
 
 

@@ -1,0 +1,56 @@
+"""The chart along the cut and the histogram: what is drawn, in which colour and unit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.viz.metrology import ProfileCurves, beyond_chart, histogram_figure, profile_figure
+from robomill.viz.theme import palette
+
+STATION = np.linspace(0.0, 100.0, 5)
+
+
+def curves(offset, floor, **more):
+    return ProfileCurves(STATION, np.array(offset), np.array(floor), "mm", 0.3, 0.2, **more)
+
+
+def chart(made, dark=False):
+    return profile_figure(made, np.arange(5), 50.0, dark=dark)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_tolerance_is_grey_and_curves_are_solid(dark):
+    p = palette(dark)
+    fig = chart(curves([0.2] * 5, [-0.1] * 5), dark)
+    by_name = {trace["name"]: trace["line"] for trace in fig.traces}
+    assert by_name["centre offset"]["color"] == p.accent
+    assert by_name["floor"]["color"] == p.text
+    assert not any("dash" in by_name[name] for name in ("centre offset", "floor"))
+    levels = {shape["y0"]: shape["line"]["color"] for shape in fig.layout["shapes"] if shape["type"] == "line"}
+    assert {levels[place] for place in (0.3, -0.3, 0.2, -0.2)} == {p.muted}
+    words = {each["text"] for each in fig.layout["annotations"]}
+    assert {"+ walls", "− walls", "+ floors", "− floors"} <= words
+    assert not {p.warm, p.bad, p.caution} & {str(line["color"]) for line in by_name.values()}
+
+
+def test_what_is_further_out_than_twice_the_tolerance_is_counted_not_drawn():
+    made = curves([0.1, 0.1, 3.0, 0.1, np.nan], [0.0, -0.7, 0.0, 0.0, np.nan])
+    fig = chart(made)
+    assert beyond_chart(made) == 2
+    assert fig.layout["yaxis"]["range"] == pytest.approx([-0.6, 0.6])
+    assert "2 beyond" in {each["text"] for each in fig.layout["annotations"]}
+    assert not any("beyond" in each["text"] for each in chart(curves([0.1] * 5, [0.0] * 5)).layout["annotations"])
+
+
+def test_a_curve_without_a_number_is_left_out():
+    fig = chart(curves([np.nan] * 5, [-0.1] * 5))
+    assert [trace["name"] for trace in fig.traces] == ["floor"]
+
+
+def test_the_histogram_counts_in_the_unit_of_the_view():
+    edges, share, limits = np.linspace(-12.0, 12.0, 9), np.full(8, 12.5), np.array([11.8, 11.8])
+    fig = histogram_figure(edges, share, limits, "thou", dark=False)
+    assert "thou" in fig.layout["xaxis"]["title"]["text"]
+    assert "thou" in fig.traces[0]["hovertemplate"]
+    assert "µm" not in str(fig.layout) + fig.traces[0]["hovertemplate"]
