@@ -133,7 +133,9 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     )
     missing = ""
     if found.missing:
-        missing = f" {found.missing} of {len(found.station)} stations are no groove of one pass and have no middle."
+        missing = (
+            f" At {found.missing} of {len(found.station)} stations no groove of one pass is cut, so there is no middle."
+        )
     pieces.figure(
         profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
