@@ -21,6 +21,13 @@ _COMPENSATION_ON = frozenset({410, 411, 420, 421})
 def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) -> None:
     """Set ``block.motion``. Raises GCodeError if axis words have no use or two."""
     words = block.words
+    if machine.polar_words:
+        _read_polar(machine, block)
+    if block.g.get(modal.MOTION) in (740, 840) and machine.spindle == 0 and dialect.has_macros:
+        block.m.setdefault(modal.SPINDLE, 3 if block.g[modal.MOTION] == 840 else 4)
+        machine.note(
+            "tap-turns", "info", f"{g_name(block.g[modal.MOTION])} turns the spindle by itself (rigid tapping)"
+        )
     polar = "@" in words or "^" in words
     axes = any(letter in words for letter in _AXES)
     if polar:
@@ -66,6 +73,18 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
     for letter in "uvw":
         if letter in words:
             raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")
+
+
+def _read_polar(machine: Machine, block: Block) -> None:
+    """With G16 X is the distance from part zero and Y the angle, in G17 and G90."""
+    words = block.words
+    if block.g.get(modal.NON_MODAL) is not None or not words.keys() & {"x", "y"}:
+        return
+    if not machine.absolute or block.g.get(modal.DISTANCE) == 910 or machine.plane != 17:
+        raise block.refuse("G16 is read in G17 and G90 alone; write the moves out.")
+    for letter, polar in (("x", "@"), ("y", "^")):
+        if letter in words:
+            words[polar] = words.pop(letter)
 
 
 def _read_tool_axis(machine: Machine, block: Block) -> None:

@@ -8,8 +8,10 @@ from decimal import Decimal
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.offsets import turn_about, turn_back
 from robomill.toolpath.gcode.sinumerik import translated
 from robomill.toolpath.gcode.words import Block
 
@@ -33,6 +35,9 @@ NAMED = {
     120: "G12 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     130: "G13 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     1500: "G150 mills a pocket (Haas), which is not read; let the CAM system write its moves out.",
+    510: "G51 scales coordinates, which is not read; let the CAM system write its moves out.",
+    511: "G51.1 mirrors coordinates, which is not read; let the CAM system write its moves out.",
+    682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
     650: "G65 calls a macro with values, which is not read; let the CAM system write its moves out.",
     660: "G66 calls a macro at every point, which is not read; let the CAM system write its moves out.",
 }
@@ -116,10 +121,13 @@ class Dialect:
                     number,
                     "G43.4 (tool centre point control) is read as G43: points are tip points",
                 )
+            raw = _take_corner(raw, machine)
             code = "O" + raw[1:] if raw[:1] == ":" else raw
             if _dwells(code, machine.motion):
                 code = _IN_MS.sub(_in_seconds, code)
             return _TIP.sub("G43", _DWELL.sub(r"\1P", code))
+        if self._is_fanuc_like:
+            return _take_corner(raw, machine)
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
             return _from_grbl(raw, number, findings)
         return raw
@@ -140,6 +148,8 @@ class Dialect:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
+            if self._is_fanuc_like and self._turns(machine, block, code):
+                continue
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
             if code in harmless:
@@ -150,6 +160,18 @@ class Dialect:
                 )
         for code in block.unknown_m:
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
+
+    def _turns(self, machine: Machine, block: Block, code: int) -> bool:
+        """G68 and G69 turn coordinates, G16 and G15 make X and Y a radius and an angle; False for other words."""
+        if code == 680:
+            turn_about(machine, block)
+        elif code == 690 and machine.before_turn is not None:
+            turn_back(machine)
+        elif code == 160 or (code == 150 and machine.polar_words):
+            machine.polar_words = code == 160
+        else:
+            return False
+        return True
 
     def unused_word(self, machine: Machine, block: Block, letter: str, use: str) -> None:
         """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
@@ -206,6 +228,7 @@ _IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
 _G_WORD = re.compile(r"G0*(\d+(?:\.\d+)?)|M0*9[789]\b", re.IGNORECASE)
 _CYCLES = frozenset({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88", "89"})
 _MOVES = frozenset({"0", "1", "2", "3", "33", "80"})
+_CORNER = re.compile(r",\s*([RC])\s*(\d+\.?\d*|\.\d+)", re.IGNORECASE)
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
 _EXPONENT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?(?:\d+\.?\d*|\.\d+))[eE]([-+]?\d{1,3})(?![\d.])")
 _USES_E = re.compile(r"\bG0*76\b|\bM0*6[678]\b", re.IGNORECASE)
@@ -228,6 +251,15 @@ def _plain_numbers(raw: str, number: int, findings: Findings) -> str:
             "exponent", "warning", number, "numbers with an exponent (X1.5e-3) are read; most controls refuse them"
         )
     return plain
+
+
+def _take_corner(raw: str, machine: Machine) -> str:
+    """``,R5`` rounds the corner at the end of its line, ``,C5`` cuts 5 off both sides of it."""
+    found = _CORNER.search(raw) if "," in raw else None
+    if found is None or "(" in raw[: found.start()] or ";" in raw[: found.start()]:
+        return raw
+    machine.corner = (ROUND if found[1] in "Rr" else LEGS), float(found[2])
+    return raw[: found.start()] + raw[found.end() :]
 
 
 def _dwells(code: str, motion: int) -> bool:

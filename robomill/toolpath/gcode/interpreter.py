@@ -103,6 +103,8 @@ class Interpreter(MacroB):
         level = machine.store.level
         saved = self.saved.setdefault(level, {})
         ends = execute(machine, block, saved)
+        if machine.corner is not None:
+            raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
         self.calls.special[level] = level in self.foreign or bool(saved)
         if ends:
             self.ended = True

@@ -10,6 +10,7 @@ from typing import Any
 from robomill.errors import GCodeError
 from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import LETTERS
+from robomill.toolpath.gcode.corners import joined
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
@@ -43,14 +44,19 @@ class Machine:
     that the program itself has placed, each with the line. ``away`` says of which of x, y, z the place is not known, as
     only the machine knows where its home lies;
     ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
-    itself (28, 30). ``straight`` is the last of G0 to G3; ``arc_refused`` says that an arc was refused whose centre is
-    given in steps.
+    itself (28, 30).
+
+    ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
+    are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68.
     """
 
     def __init__(self, tools: Tools | None) -> None:
         self.store = Parameters(self.provided, (*_AXES, *_PROVIDED))
         self.findings = Findings()
-        self.recorder = Recorder()
+        self.recorder = Recorder(joined)
+        self.corner: tuple[str, float] | None = None
+        self.polar_words = False
+        self.before_turn: tuple[list[float], float] | None = None
         self.tools = None if tools is None else own_copy(tools)
         self.unit_code, self.units_said = 210, 0
         self.factor = to_si(1.0, "mm")
@@ -106,7 +112,8 @@ class Machine:
     @property
     def is_plain(self) -> bool:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
-        return self.compensation is None and not self.diameter_mode and not any(self.away)
+        held = self.compensation is not None or self.recorder.held is not None
+        return not (held or self.diameter_mode or self.polar_words or any(self.away))
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -115,7 +122,8 @@ class Machine:
             return
         unit = UNITS[code]
         ratio = to_si(1.0, self.unit) / to_si(1.0, unit)
-        for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset):
+        turned = [] if self.before_turn is None else [self.before_turn[0]]
+        for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset, *turned):
             values[:3] = [v * ratio for v in values[:3]]
         self.feed *= ratio
         if self.compensation is not None:

@@ -155,7 +155,10 @@ def move(machine: Machine, block: Block) -> None:
         return
     row = Move(block.line)
     demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
-    machine.recorder.add(row)
+    corner, machine.corner = machine.corner, None
+    if corner is not None and row.kind != FEED:
+        raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
+    machine.recorder.add(row, None if corner is None else (corner[0], corner[1] * machine.factor))
 
 
 def drill(machine: Machine, block: Block) -> None:

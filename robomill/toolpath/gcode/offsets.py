@@ -45,12 +45,44 @@ def select_system(machine: Machine, block: Block, code: int) -> None:
     system = SYSTEMS[code]
     if system == machine.system:
         return
+    if machine.before_turn is not None:
+        raise block.refuse(f"{g_name(code)} while G68 turns the coordinates; use G69 first.")
     absolute = _absolute(machine)
     origin, rotation = stored_system(machine, system)
     machine.p = _in_system(machine, absolute, origin, rotation)
     machine.g5x, machine.rotation, machine.system = origin, rotation, system
     machine.systems.append((len(machine.recorder), system))
     machine.store.numbered[5220] = float(system)
+
+
+def turn_about(machine: Machine, block: Block) -> None:
+    """G68: coordinates are turned by R degrees about X, Y (where they are not given: about where the tool is)."""
+    machine.need_compensation_off(block, "G68")
+    words = block.words
+    if machine.plane != 17 or "r" not in words or not machine.absolute:
+        raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
+    turn_back(machine)
+    centre = [words.pop(letter, at) + o for letter, at, o in zip("xy", machine.p, machine.g92)]
+    machine.before_turn = machine.g5x, machine.rotation
+    rotation = machine.rotation + words.pop("r")
+    was, now = (rotate(centre[0], centre[1], angle) for angle in (machine.rotation, rotation))
+    origin = [machine.g5x[0] + was[0] - now[0], machine.g5x[1] + was[1] - now[1], *machine.g5x[2:]]
+    _see(machine, origin, rotation)
+
+
+def turn_back(machine: Machine) -> None:
+    """G69: coordinates are as they were before G68."""
+    if machine.before_turn is not None:
+        (origin, rotation), machine.before_turn = machine.before_turn, None
+        _see(machine, origin, rotation)
+
+
+def _see(machine: Machine, origin: list[float], rotation: float) -> None:
+    """The machine stays where it is; its place counts from another origin and direction."""
+    point = [p - o for p, o in zip(_absolute(machine), origin)]
+    point[0], point[1] = rotate(point[0], point[1], -rotation)
+    machine.p = [p - o for p, o in zip(point, machine.g92)]
+    machine.g5x, machine.rotation = origin, rotation
 
 
 def axis_offsets(machine: Machine, block: Block, code: int) -> None:

@@ -1,6 +1,7 @@
 """What an interpreter makes of a program: canonical moves in the machine frame, recorded one by one, kept as arrays."""
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import product
 from operator import attrgetter
@@ -179,7 +180,9 @@ _row_of = attrgetter(*_COLUMNS)
 class Recorder:
     """Collects moves: the last ones as rows of ``MOVE``, those before as columns."""
 
-    def __init__(self) -> None:
+    def __init__(self, join: Callable[[Move, Move, tuple[str, float]], list[Move]] | None = None) -> None:
+        self.join = join
+        self.held: tuple[Move, tuple[str, float]] | None = None
         self.count = 0
         self._rows = np.zeros(FLUSH, MOVE)
         self._taken = 0
@@ -188,8 +191,19 @@ class Recorder:
     def __len__(self) -> int:
         return self.count + self._taken
 
-    def add(self, move: Move) -> None:
-        """A move. Raises GCodeError if there are too many."""
+    def add(self, move: Move, corner: tuple[str, float] | None = None) -> None:
+        """A move, and the corner that its end shall have once the next one is known. Raises GCodeError if too many."""
+        if self.held is not None and self.join is not None:
+            (first, size), self.held = self.held, None
+            *before, move = self.join(first, move, size)
+            for each in before:
+                self._add(each)
+        if corner is not None:
+            self.held = move, corner
+            return
+        self._add(move)
+
+    def _add(self, move: Move) -> None:
         self._rows[self._taken] = _row_of(move)
         self.take(self._taken + 1)
 
@@ -230,6 +244,9 @@ class Recorder:
 
     def columns(self) -> dict[str, Any]:
         """All moves as read-only arrays by column name."""
+        if self.held is not None:
+            (last, _), self.held = self.held, None
+            self._add(last)
         self._flush()
         out: dict[str, Any] = {}
         for name in _COLUMNS:

@@ -1,0 +1,89 @@
+"""Corners, turned and polar coordinates and rigid taps of Fanuc and Haas, from plane geometry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+HEAD = "%\nO0001\nG21 G90 G0 X0 Y0 Z0\n"
+
+
+def ends(body: str, dialect: str = "fanuc") -> list[list[float]]:
+    program = interpret(f"{HEAD}{body}M30\n%\n", dialect=dialect)
+    return [[round(float(v) * 1e3, 6) for v in p[:2]] for p in program.end[1:]]
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "auto"])
+def test_a_corner_is_rounded_with_its_radius(dialect: str) -> None:
+    program = interpret(f"{HEAD}G1 X20 ,R5 F100\nY20\nM30\n%\n", dialect=dialect)
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[15, 0], [20, 5], [20, 20]], atol=1e-9)
+    np.testing.assert_allclose(program.centre[2, :2] * 1e3, [15, 5], atol=1e-9)
+    assert program.length[2] * 1e3 == pytest.approx(2.5 * np.pi)
+    assert [int(k) for k in program.kind] == [0, 1, 2, 1]
+    assert not program.clockwise[2]
+    assert (program.v_f[1:] == program.v_f[1]).all()
+
+
+def test_corners_of_any_angle_touch_both_cuts() -> None:
+    """Back by 60 degrees: the arc turns by 120, from points 5 / tan(30) off the corner, clockwise for a right turn."""
+    program = interpret(f"{HEAD}G1 X40 ,R5 F100\nX30 Y[-10*SQRT[3]]\nM30\n%\n", dialect="fanuc")
+    leg = 5 / np.tan(np.radians(30))
+    np.testing.assert_allclose(
+        program.end[1:3, :2] * 1e3, [[40 - leg, 0], [40 - leg / 2, -leg * np.sqrt(3) / 2]], atol=1e-9
+    )
+    assert program.sweep[2] == pytest.approx(np.radians(-120))
+    centre = program.centre[2, :2] * 1e3
+    np.testing.assert_allclose([np.hypot(*(centre - p[:2] * 1e3)) for p in program.end[1:3]], 5, atol=1e-9)
+
+
+def test_a_chamfer_takes_its_length_off_both_cuts_and_corners_may_follow_one_another() -> None:
+    assert ends("G1 X20 ,C5 F100\nY20 ,C4\nX0\n") == [[15, 0], [20, 5], [20, 16], [16, 20], [0, 20]]
+    assert ends("G1 X20 ,R5 F100\nX30\n") == [[20, 0], [30, 0]]
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G1 X20 ,R5 F100\nG0 Y20\n", "Line 4: a corner is rounded or chamfered between two straight cuts"),
+        ("G0 X20 ,R5\nY20\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
+        ("G1 X20 ,R5 F100\nY3\n", "Line 4: a corner takes 5.000 mm of both cuts, and one has 3.000 mm"),
+        ("M8 ,C5\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
+        ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
+        ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while G68 turns the coordinates"),
+        ("G16\nG91 X5 Y10\n", "Line 5: G16 is read in G17 and G90 alone"),
+        ("G51 X0 Y0 P2\n", "Line 4: G51 scales coordinates, which is not read"),
+        ("G68.2 X0 Y0 Z0 I0 J30 K0\n", "Line 4: G68.2 tilts the working plane"),
+    ],
+)
+def test_what_cannot_be_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        ends(body)
+    assert says in str(caught.value)
+
+
+def test_g68_turns_what_follows_about_its_centre_until_g69() -> None:
+    """(x, y) goes to c + R(90)((x, y) - c): about (10, 0), (20, 0) to (10, 10) and (20, 5) to (5, 10)."""
+    body = "G68 X10 Y0 R90\nG1 X20 Y0 F100\nY5\nG91 X10\nG90 G69\nX1 Y2\n"
+    assert ends(body) == [[10, 10], [5, 10], [5, 20], [1, 2]]
+    assert ends("G1 X3 Y4 F9\nG68 R180\nX4 Y4\nG69\nY0\n") == [[3, 4], [2, 4], [2, 0]]
+    arc = interpret(f"{HEAD}G68 X0 Y0 R90\nG2 X10 Y0 I5 J0 F9\nM30\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(arc.centre[-1, :2] * 1e3, [0, 5], atol=1e-9)
+
+
+def test_g16_makes_x_a_radius_and_y_an_angle_until_g15() -> None:
+    root = round(20 / np.sqrt(2), 6)
+    assert ends("G16\nG1 X20 Y45 F100\nY90\nX10\nG15\nX5 Y6\n") == [[root, root], [0, 20], [0, 10], [5, 6]]
+    holes = interpret(f"{HEAD}G0 Z9\nG90 G17 G16\nG81 X20 Y0 Z-5 R1 F100\nY90\nG80\nG15\nM30\n%\n", dialect="fanuc")
+    bottoms = holes.end[np.isclose(holes.end[:, 2], -5e-3)] * 1e3
+    np.testing.assert_allclose(bottoms[:, :2], [[20, 0], [0, 20]], atol=1e-9)
+
+
+def test_g84_turns_the_spindle_by_itself() -> None:
+    program = interpret(f"{HEAD}M29 S500\nG98 G84 X5 Y0 Z-8 R2 F500\nG80\nM30\n%\n", dialect="fanuc")
+    tapped = program.thread & (program.n_s > 0)
+    assert tapped.sum() == 2
+    assert program.n_s[tapped] * 60 == pytest.approx([500, 500])
+    assert [f.line for f in program.findings if f.code == "tap-turns"] == [5]
