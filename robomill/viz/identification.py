@@ -52,7 +52,7 @@ def intervals_figure(shown: Intervals, *, dark: bool) -> Chart:
         showlegend=compared,
     )
     _fitted(fig, shown, low, high, dark)
-    _compared(fig, shown, dark)
+    _compared(fig, shown, _start(shown, low, high), dark)
     more = _log_axis(shown, low, high) if shown.logarithmic else {}
     fig.lay_out(
         xaxis=axis(shown.unit, dark=dark, **more),
@@ -73,15 +73,38 @@ def _fitted(fig: Chart, shown: Intervals, low: FloatArray, high: FloatArray, dar
             say(fig, shown.words[k], 1.0, float(k), p.text, size=12.5, xref="paper", xanchor="left", **place)
         else:
             say(fig, shown.words[k], 0.02, float(k), p.muted, size=12.5, xref="paper", xanchor="left")
-    dots = {"size": 10, "color": [colours[k % 7] for k in y[known]], "line": {"color": p.background, "width": 1.5}}
-    hover = {"text": [shown.words[k] for k in y[known]], "hovertemplate": "%{text}<extra></extra>"}
-    fitted = np.clip(shown.value[known], low[known], None)
-    fig.dots(fitted, y[known], dots, name="fitted, with its 95 % interval", **hover)
+    left = known & (shown.value < low)  # a logarithmic axis has no zero: an arrow to the left says where it is
+    drawn = known & ~left
+    dots = {"size": 10, "color": [colours[k % 7] for k in y[drawn]], "line": {"color": p.background, "width": 1.5}}
+    hover = {"text": [shown.words[k] for k in y[drawn]], "hovertemplate": "%{text}<extra></extra>"}
+    fig.dots(shown.value[drawn], y[drawn], dots, name="fitted, with its 95 % interval", **hover)
+    _left_of_axis(fig, shown.value[left], y[left], _start(shown, low, high), [colours[k % 7] for k in y[left]])
+    for k in y[left]:
+        words = f"{format_number(shown.value[k], 2)} lies left of this axis"
+        say(fig, words, 0.012, k + 0.36, p.muted, size=11.5, xref="paper", xanchor="left")
 
 
-def _compared(fig: Chart, shown: Intervals, dark: bool) -> None:
-    """Reference sets as open symbols above their rows, the truth as crosses."""
+def _left_of_axis(fig: Chart, values: FloatArray, y: Any, start: float, colours: Any) -> None:
+    """Arrows at the left end of the axis for values that lie left of it."""
+    if not len(values):
+        return
+    marker = {"size": 12, "symbol": "triangle-left", "color": colours}
+    hover = {
+        "text": [format_number(v, 2) for v in values],
+        "hovertemplate": "%{text}, left of this axis<extra></extra>",
+    }
+    fig.dots(np.full(len(values), start), y, marker, showlegend=False, cliponaxis=False, **hover)
+
+
+def _compared(fig: Chart, shown: Intervals, start: float, dark: bool) -> None:
+    """Reference sets as open symbols above their rows, the truth as crosses; arrows at ``start`` where they lie left of
+    a logarithmic axis."""
     colour, y = palette(dark).text, np.arange(len(shown.labels))
+    if shown.logarithmic:
+        for k, values in enumerate([*shown.references.values(), *([] if shown.truth is None else [shown.truth])]):
+            left = np.isfinite(values) & (values < start)
+            of_truth = k == len(shown.references)
+            _left_of_axis(fig, values[left], y[left] - (0.0 if of_truth else 0.3), start, colour)
     for (name, values), symbol in zip(shown.references.items(), REFERENCE_SYMBOLS, strict=False):
         marker = {"size": 9, "symbol": symbol, "color": colour, "line": {"width": 1.6}}
         hover = f"{name}: %{{x:.2f}} {shown.unit}<extra></extra>"
@@ -274,6 +297,12 @@ def _clipped(shown: Intervals) -> tuple[FloatArray, FloatArray]:
         floor = max(bottom / 4, top / 120)
         low, high = np.maximum(low, floor), np.maximum(np.where(np.isfinite(high), high, top * 2), floor)
     return low, high
+
+
+def _start(shown: Intervals, low: FloatArray, high: FloatArray) -> float:
+    """Where the axis begins, if it is logarithmic."""
+    ends = _log_axis(shown, low, high)["range"]
+    return float(10.0 ** ends[0])  # type: ignore[index]
 
 
 def _log_axis(shown: Intervals, low: FloatArray, high: FloatArray) -> dict[str, object]:

@@ -22,8 +22,8 @@ from robomill.viz.theme import palette
 
 STEPS = 65534  # 1 to 65535 are the values from the lowest to the highest, 0 is not reached
 CONTOURS, FEW_CONTOURS = 8, 5  # over all planes, of one map and of each of several
-LEFT, RIGHT, FOOT, CAPTION, SLIDER, GAP = 52, 74, 42, 22, 34, 14  # px, as planes.css has them
-LEAST_HIGH = 60  # px of a panel
+LEFT, RIGHT, FOOT, CAPTION, SLIDER, GAP = 52, 74, 40, 22, 32, 10  # px, as board.js and board.css have them
+LEGEND, LEAST_HIGH = 30, 60  # px of what stands beneath, and of a panel at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,4 +242,4 @@ def _height(sheet: PlaneSheet, ranges: list[list[float]]) -> int:
     wide = (sheet.width - LEFT - RIGHT * bars - GAP * (columns - 1)) / columns
     high = min(max(wide * (v1 - v0) / (u1 - u0), LEAST_HIGH), sheet.most)
     sliders = SLIDER if len(sheet.w) > 1 else 0
-    return round(sliders + rows * (high + CAPTION) + (rows - 1) * GAP + FOOT + 30)
+    return round(sliders + rows * (high + CAPTION) + (rows - 1) * GAP + FOOT + LEGEND)

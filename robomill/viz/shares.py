@@ -10,7 +10,7 @@ from robomill.units import format_number, format_significant
 from robomill.viz.chart import Chart, Trace
 from robomill.viz.theme import ABOVE, axis, figure, joint_colours, palette, say
 
-SHARES_HEIGHT, LINES_HEIGHT = 300, 480  # px
+SHARES_HEIGHT, LINES_HEIGHT = 266, 480  # px
 
 
 def share_bars(
@@ -24,12 +24,12 @@ def share_bars(
 ) -> Chart:
     """Bars, one a component, of the joints' shares (n, k) in ``unit``: what adds goes right, what takes away left.
 
-    A long mark is the sum; a grey one ``old`` (k,), the sum before.
+    A long mark is the sum; a grey one ``old`` (k,), the sum before. The page says the joints' colours.
     """
     p = palette(dark)
     colours = joint_colours(7, dark)
-    margin = {"l": 8, "r": 58, "t": 30, "b": 8}
-    fig = figure(dark=dark, height=SHARES_HEIGHT, revision="share-bars", barmode="relative", bargap=0.34, margin=margin)
+    fig = figure(dark=dark, height=SHARES_HEIGHT, revision="share-bars", barmode="relative", bargap=0.34)
+    fig.lay_out(showlegend=False, margin={"l": 34, "r": 50, "t": 6, "b": 38, "autoexpand": False})
     data: list[Trace] = [
         {
             "type": "bar",
@@ -42,7 +42,6 @@ def share_bars(
         }
         for j, number in enumerate(joints)
     ]
-    fig.lay_out(legend={"entrywidth": 44, "font": {"size": 12}})
     total = shares.sum(axis=0)
     if old is not None and not np.allclose(old, total, rtol=1e-6, atol=1e-12):
         data.append(_marks("sum before", names, old, p.muted, unit))
@@ -53,8 +52,14 @@ def share_bars(
     for name, value, edge in zip(names, total, right, strict=True):
         say(fig, format_number(value, 3, sign=True), max(edge, 0.0), name, p.text, size=12.5, xanchor="left", xshift=8)
     span = [1.12 * left - 0.02 * top, 1.10 * float(right.max(initial=0.1)) + 0.05 * top]
-    fig.layout["xaxis"] = axis(unit, dark=dark, range=span) | {"zeroline": True, "zerolinecolor": p.line}
-    fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", showline=False) | {"title": None}
+    fig.layout["xaxis"] = axis(unit, dark=dark, range=span, automargin=False, nticks=4) | {
+        "zeroline": True,
+        "zerolinecolor": p.line,
+    }
+    fig.layout["xaxis"]["title"]["standoff"] = 2
+    fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", showline=False, automargin=False) | {
+        "title": None
+    }
     fig.add_traces(data)
     return fig
 
@@ -82,7 +87,7 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
     order = np.argsort(-gain, kind="stable")
     top, low = float(np.nanmax(gain, initial=0.0)) or 1.0, float(np.nanmin(gain, initial=0.0))
     fig = figure(dark=dark, height=height, revision="gains", bargap=0.25, showlegend=False)
-    fig.layout["margin"] = {"l": 58, "r": 24, "t": 22, "b": 34, "autoexpand": False}
+    fig.layout["margin"] = {"l": 58, "r": 24, "t": 20, "b": 32, "autoexpand": False}
     fig.add(
         "bar",
         y=[f"joint {joints[i]}" for i in order],

@@ -155,7 +155,7 @@ def test_x_and_y_have_the_same_scale(page: Any) -> None:
         open_page(page, name)
         box = page.locator(MAP).last.locator("canvas").bounding_box()
         left = 52 if name == "Workspace" else 0
-        assert (box["width"] - left - 2) / (box["height"] - 42 - 2) == pytest.approx(1220 / 620, rel=0.02)
+        assert (box["width"] - left - 2) / (box["height"] - 40 - 2) == pytest.approx(1220 / 620, rel=0.02)
 
 
 def test_table_2_against_table_3_in_two_clicks(page: Any) -> None:

@@ -51,6 +51,29 @@ def test_intervals_are_drawn_as_given(dark: bool) -> None:
     assert 10**high > 51.0
 
 
+def test_a_zero_is_an_arrow_at_the_end_of_a_logarithmic_axis_and_no_point_on_it() -> None:
+    """A joint 4 of 0 was drawn as a point at 2.1."""
+    none = dataclasses.replace(
+        SHOWN,
+        value=np.array([8.9, 0.0, 33.4]),
+        low=np.array([8.5, 0.0, 30.0]),
+        high=np.array([9.3, 4.0, 51.0]),
+        references={"Table 2": np.array([7.1, 0.0, 12.3])},
+        truth=np.array([9.0, 0.0, 28.0]),
+    )
+    fig = intervals_figure(none, dark=False).figure
+    start = 10.0 ** fig.layout.xaxis.range[0]
+    fitted = next(t for t in fig.data if t.name and t.name.startswith("fitted"))
+    np.testing.assert_allclose(fitted.x, [8.9, 33.4])
+    arrows = [t for t in fig.data if t.marker.symbol == "triangle-left"]
+    assert len(arrows) == 3
+    for arrow in arrows:
+        np.testing.assert_allclose(arrow.x, start)
+        assert [round(y) for y in arrow.y] == [1]
+        assert list(arrow.text) == ["0.00"]
+    assert any(a.text == "0.00 lies left of this axis" for a in fig.layout.annotations)
+
+
 def test_signed_values_stand_on_a_linear_axis() -> None:
     signed = dataclasses.replace(
         SHOWN,

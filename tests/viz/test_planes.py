@@ -15,6 +15,7 @@ from robomill.viz.planes import (
     CAPTION,
     FOOT,
     LEFT,
+    LEGEND,
     RIGHT,
     SLIDER,
     PlaneMap,
@@ -125,7 +126,7 @@ def test_another_theme_or_another_value_is_another_board() -> None:
 def test_x_and_y_have_one_scale_in_the_room_there_is() -> None:
     """1300 x 700 mm with their half cells: as high as they are wide, in that ratio."""
     wide = 700 - LEFT - RIGHT
-    assert sheet_data(sheet(), dark=False)["height"] == round(SLIDER + wide * 700 / 1300 + CAPTION + FOOT + 30)
+    assert sheet_data(sheet(), dark=False)["height"] == round(SLIDER + wide * 700 / 1300 + CAPTION + FOOT + LEGEND)
 
 
 def test_contours_are_inside_the_range_of_their_map() -> None:

@@ -1,6 +1,6 @@
 // Maps over the planes of a region. All planes are here: the slider draws another one without asking the server, which
 // gets the plane that was settled on, and the cell that was clicked. Every number was computed there.
-const LEFT = 52, RIGHT = 74, FOOT = 42, CAPTION = 22, GAP = 14, SETTLED_MS = 400, SHADES = 1024;
+const LEFT = 52, RIGHT = 74, FOOT = 40, CAPTION = 22, GAP = 10, SETTLED_MS = 400, SHADES = 1024;
 
 const make = (name, className = "", text = "") => {
   const made = document.createElement(name);

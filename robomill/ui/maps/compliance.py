@@ -185,7 +185,7 @@ def best_joint(found: InHand, saved: Saved | None, view: MapView) -> None:
             unit_label(unit),
             joints,
             dark=shell.dark(),
-            height=64 + 21 * len(joints),
+            height=54 + 19 * len(joints),
         ),
         "gains",
         table=lambda: {"joint": list(map(str, joints)), f"saved_{unit}": gain},

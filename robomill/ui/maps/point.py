@@ -24,6 +24,7 @@ from robomill.viz.arm import ArmScene, displacement_scale
 from robomill.viz.chart import Chart
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
+from robomill.viz.theme import joint_colours
 
 AXES = "XYZ"
 
@@ -108,6 +109,10 @@ def bars(found: InHand, old: PoseReport, unit: str) -> None:
     """Which joint contributes how much to each component at the selected point."""
     where = place(found.point, unit)
     st.markdown(f"**At the selected point**<br>{where}", unsafe_allow_html=True)
+    colours = joint_colours(7, shell.dark())
+    numbers = found.pose.robot.joint_numbers
+    key = (f'<span style="color:{colours[k % 7]}">■</span> joint {number}' for k, number in enumerate(numbers))
+    st.html(f'<p class="rm-note" style="opacity:1">{" &nbsp;".join(key)}</p>')
     if not found.pose.reached:
         pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
         return
@@ -121,7 +126,7 @@ def bars(found: InHand, old: PoseReport, unit: str) -> None:
         "point-shares",
         table=lambda: share_columns(pose),
         alt=f"Shares of the joints in each compliance component at {where}: {said}.",
-        caption="Share of each joint",
+        caption="Share of each joint, and the sum",
     )
 
 
