@@ -12,6 +12,7 @@ from conftest import errors, go, number, store, words
 from random_arms import seven
 from streamlit.testing.v1 import AppTest
 
+import robomill as rm
 from robomill.io.robots import load_robot
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
@@ -40,9 +41,11 @@ def look(app: AppTest, **fields: object) -> AppTest:
 
 def board(app: AppTest) -> dict[str, Any]:
     """What the browser gets to draw the maps of a page."""
-    found = [json.loads(each.proto.json) for each in app.get("bidi_component") if '"codes"' in each.proto.json]
-    assert len(found) == 1
-    return found[0]
+    sent = [json.loads(each.proto.json) for each in app.get("bidi_component") if each.proto.json]
+    codes, shown = ([each for each in sent if name in each] for name in ("codes", "panels"))
+    assert len(codes) == len(shown) == 1
+    assert codes[0]["rev"] == shown[0]["rev"]
+    return codes[0] | shown[0]
 
 
 def titles(app: AppTest) -> list[str]:
@@ -250,3 +253,30 @@ def test_a_region_of_ones_own_is_typed_in_the_unit_of_lengths(app: AppTest) -> N
     app.text_input(key="maps.step:mm").set_value("0").run()
     assert any("Step: found 0 mm; expected more than 0 mm" in e for e in errors(app))
     assert not app.exception
+
+
+@pytest.mark.parametrize("name", ["kuka_kr500", "kuka_kr270", "fanuc_r2000ic"])
+def test_another_robot_is_looked_at_where_the_project_cuts(app: AppTest, name: str) -> None:
+    """The paper's cut lies at (0, -1300, 0) mm; the largest box of these arms is elsewhere, behind a KUKA's back."""
+    put(app, load_robot(name))
+    go(app, COMPLIANCE)
+    assert "At the selected point (0, −1300, 0) mm" in [s.value for s in app.subheader]
+    shown = board(app)
+    assert shown["point"] == [0.0, -1300.0, 0.0]
+    assert shown["u"]["span"][0] < 0.0 < shown["u"]["span"][1]
+    assert shown["v"]["span"][0] < -1300.0 < shown["v"]["span"][1]
+    cuts = [line["points"] for line in shown["outlines"] if line["kind"] == "cut"]
+    assert np.mean(np.concatenate(cuts), axis=0) == pytest.approx([0.0, -1300.0], abs=1.0)
+
+
+def test_what_a_stiffer_joint_saves_is_what_the_cut_simulated_anew_saves(app: AppTest) -> None:
+    """Joint 3 ten per cent stiffer, by a run of its own: the tile's number, to its digits."""
+    go(app, COMPLIANCE)
+    setup = store(app).project.setup
+    stiffer = np.array(setup.robot.C_theta)
+    stiffer[2] /= 1.1
+    after = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=stiffer))).max_deviation
+    saved = (rm.simulate(setup).max_deviation - after) * 1e6
+    chart = next(c for c in charts(app) if "saves" in str(c["layout"]))
+    assert chart["data"][0]["y"][0] == "joint 3"  # type: ignore[index]
+    assert f"10 % stiffer saves {saved:.3g} µm of this cut" in words(app)

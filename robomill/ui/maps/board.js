@@ -75,22 +75,29 @@ class Board {
     this.timer = 0;
     this.sent = [];
     this.told = "";
-    this.ratio = 1;
+    this.wait = () => {};
     this.part("png").onclick = () => this.save();
     this.watch = new ResizeObserver(() => { if (this.data) { this.layOut(); this.draw(); } });
     this.watch.observe(root);
   }
 
+  // What Python says now; drawn once the codes of its maps are on the page, too.
   show(data, send) {
     this.send = send;
+    removeEventListener("robomill-codes", this.wait);
+    const codes = this.data?.rev === data.rev ? [] : window.robomillCodes?.get(data.rev);
+    if (codes) this.take(data, codes);
+    else addEventListener("robomill-codes", this.wait = () => this.show(data, send));
+  }
+
+  take(data, codes) {
     const fresh = this.data?.rev !== data.rev;
     const moved = fresh ? this.data?.w.at : null;
     this.data = data;
     if (fresh) {
-      this.codes = data.codes.map(decoded);
+      this.codes = codes.map(decoded);
       this.shades = data.scales.map(shades);
     }
-    this.root.style.height = `${data.height}px`;
     this.adopt(fresh, moved);
     if (fresh) { this.build(); this.layOut(); }
     this.draw();
@@ -513,11 +520,16 @@ class Board {
     link.click();
   }
 
-  end() { this.settle(); this.watch.disconnect(); }
+  end() {
+    this.settle();
+    this.watch.disconnect();
+    removeEventListener("robomill-codes", this.wait);
+  }
 }
 
 export default function ({ data, parentElement, setStateValue }) {
   const root = parentElement.querySelector(".maps");
+  root.style.height = `${data.height}px`;
   root.board ??= new Board(root);
   root.board.show(data, setStateValue);
   // Called before the page shows it anew, too: what is drawn stays, and the board ends with its element.

@@ -6,6 +6,7 @@ The planes go there once; back come the plane that was settled on and the cell t
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,9 @@ from robomill.workspace.fields import ComplianceField
 from robomill.workspace.grid import Grid
 
 _component = component("robomill_maps", __file__)
+_codes = component(
+    "robomill_codes", str(Path(__file__).with_name("codes.py")), html="<i></i>", css="i { display: none }"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +102,8 @@ def board(
         place = [float(from_si(seen[letter], planes.region.unit)) for letter in sheet.axes]
     data |= {"at": [planes.nearest(each) for each in at], "point": place, "file": key}
     name = f"board-{key}"
+    # By themselves: they stay as they are while the plane and the point move, so that the browser keeps them.
+    _codes(key=f"codes-{key}", data={"rev": data["rev"], "codes": data.pop("codes")})
     _component(
         key=name,
         data=data,
