@@ -99,13 +99,14 @@ def test_a_turn_on_the_spot_has_no_way():
 
 
 def test_the_rate_of_a_move_is_that_of_its_start_too():
-    """By hand, per millimetre: a still first sample of a cut has the rate of the move after it, a still rapid none."""
-    turns = np.radians([0.0, 0.0, 3.0, 0.0, 0.0, 4.0, 0.0, 0.0])
+    """By hand, per millimetre: a still first sample of a cut has the rate of the move after it, a still rapid
+    none, and a turn on the spot no end of it."""
+    turns = np.radians([0.0, 0.0, 3.0, 0.0, 0.0, 4.0, 5.0, 0.0])
     way = np.array([0.0, 0.0, 2.0, 5.0, 0.0, 1.0, 0.0, 0.0]) * 1e-3
     cutting = np.array([False, True, True, True, False, True, True, False])
     angle, x = np.cumsum(turns), np.cumsum(way)
     k = np.column_stack([np.sin(angle), 0.0 * angle, np.cos(angle)])
     given = {"v_f": 0.01, "block": np.arange(8), "n_s": 200.0, "tool": 0}
     path = Toolpath(p=np.outer(x, [0.6, 0.8, 0.0]), k=k, cutting=cutting, **given)
-    expected = np.radians([0.0, 1500.0, 1500.0, 0.0, 0.0, 4000.0, 0.0, 0.0])
+    expected = np.radians([0.0, 1500.0, 1500.0, 0.0, 0.0, 4000.0, np.inf, 0.0])
     np.testing.assert_allclose(turn_rate(path), expected, atol=1e-6)
