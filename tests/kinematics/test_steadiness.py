@@ -1,7 +1,10 @@
 """Haste and singular passages along a path: against the axes of the arm and joints moved by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import robomill as rm
 from robomill.kinematics.dexterity import determinant, near_singular
@@ -132,3 +135,49 @@ def test_standing_still_is_no_haste():
 def test_a_passage_is_told_with_the_branches_it_leads_between():
     assert "from 'front' to 'back'" in Passage(3, "front", "back").sentence()
     assert " from " not in Passage(3, "front", "front").sentence()
+
+
+@pytest.mark.parametrize(("name", "free_spin"), [("kuka_kr500", False), ("kuka_kr500", True), ("slavkovic_5r", False)])
+@pytest.mark.parametrize("seed", range(3))
+def test_runs_of_haste_are_those_of_a_loop_over_steps_and_joints(name, free_spin, seed):
+    """Poses and joints drawn apart from each other. A turn of the tool about itself is asked of the joints where six
+    axes follow the whole pose; it explains nothing where its spin is free, nor with five axes."""
+    robot, m = rm.load_robot(name), 40
+    rng = np.random.default_rng(seed)
+    T_MT = np.tile(np.eye(4), (m, 1, 1))
+    way = rng.choice([0.0, 0.5e-3, 1e-3], m)
+    T_MT[:, :3, 3] = np.outer(np.cumsum(way), [0.6, 0.0, -0.8])
+    spin, lean = np.cumsum(np.radians(rng.choice([0.0, 1.5], m))), np.cumsum(np.radians(rng.choice([0.0, 0.5], m)))
+    T_MT[:, :3, :3] = (
+        Rotation.from_rotvec(np.outer(lean, [1.0, 0, 0])) * Rotation.from_rotvec(np.outer(spin, [0, 0, 1.0]))
+    ).as_matrix()
+    steps = rng.choice([0.1, 0.9, 2.5, 4.0], (m, robot.n), p=[0.5, 0.2, 0.2, 0.1]) + rng.uniform(
+        0.0, 0.05, (m, robot.n)
+    )
+    theta = robot.home + np.cumsum(np.radians(steps), axis=0)
+    theta[25] = np.nan
+    result = rm.inverse_kinematics(robot, rm.tool_pose(robot, np.tile(robot.home, (m, 1))))
+    result = replace(result, theta=theta, T_MT=T_MT, free_spin=free_spin)
+    expected = []
+    for j in range(robot.n):
+        run = []
+        for i in range(1, m + 1):
+            fast = False
+            if i < m and np.isfinite(theta[[i - 1, i]]).all():
+                if robot.n == 6 and not free_spin:
+                    turned = Rotation.from_matrix(T_MT[i, :3, :3].T @ T_MT[i - 1, :3, :3]).magnitude()
+                else:
+                    turned = np.arccos(np.clip(T_MT[i, :3, 2] @ T_MT[i - 1, :3, 2], -1.0, 1.0))
+                fast = abs(theta[i, j] - theta[i - 1, j]) > np.radians(2.0) * way[i] / 1e-3 + 2.0 * turned + 1e-6
+            if fast:
+                run.append(i)
+            elif run:
+                turns = [abs(theta[k, j] - theta[k - 1, j]) for k in run]
+                rates = [turn / way[k] if way[k] else np.inf for turn, k in zip(turns, run, strict=True)]
+                k = int(np.argmax(rates))
+                expected.append((run[0], run[-1], j + 1, sum(turns), sum(way[run]), run[k], rates[k]))
+                run = []
+    expected.sort(key=lambda each: (each[0], each[2]))
+    found = [(h.first, h.last, h.joint, h.turn, h.way, h.worst, h.rate) for h in hasty_turns(result)]
+    assert len(found) > 10
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-12)
