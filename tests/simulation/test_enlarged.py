@@ -113,3 +113,19 @@ def test_the_cut_so_far_ends_one_radius_before_the_tip(slot: SimulationResult, s
     step = float(slot.path.step_length[k + 1])
     assert step > made.cell  # else the sample that comes next could not be told
     assert abs(cut.max() - (tip[0] + slot.setup.cutter.radius)) <= made.cell
+
+
+def test_a_floor_that_is_cut_too_high_is_told_by_its_height_and_not_by_what_the_tool_goes_aside(
+    result: SimulationResult,
+) -> None:
+    """Lifted along the slot from 0.02 to 0.06 mm, and 0.2 mm aside."""
+    path = result.path
+    share = np.clip((path.p[:, 0] + 0.05) / 0.1, 0.0, 1.0)
+    delta = np.column_stack([0.0 * share, 0.2e-3 + 0.0 * share, 0.02e-3 + 0.04e-3 * share]) * path.cutting[:, None]
+    shown = enlarged(dataclasses.replace(result, delta=delta), 20.0)
+    assert shown.drawn.cell / 20.0 < 0.02e-3
+    for x in (-0.03, 0.0, 0.03):
+        i = int(np.argmin(np.abs(shown.drawn.x - x)))
+        both = (shown.ideal.z[i] < -0.5e-3) & (shown.drawn.z[i] < -0.5e-3)
+        assert both.sum() > 3
+        np.testing.assert_allclose(shown.error[i, both], 0.02e-3 + 0.04e-3 * (x + 0.05) / 0.1, atol=3e-6)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robomill.cutting.unjudged import Unjudged
 from robomill.provenance import Provenance
 from tests.simulation.test_gauge import pushed, run
 
@@ -65,3 +66,14 @@ def test_by_a_force_that_was_stated_for_another_path_nothing_is_judged():
         assert "0.12 mm off in Y" in open_.sentence
         assert f", if the tool is pushed with {force:.0f} N. Nobody has said yet what this path cuts" in open_.sentence
         assert "tolerance" not in open_.sentence
+
+
+@pytest.mark.parametrize(("count", "more"), [(1, ""), (2, " (and 1 more reason)"), (3, " (and 2 more reasons)")])
+def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_counted(result, count, more):
+    where = np.zeros(len(result.path), dtype=bool)
+    where[np.flatnonzero(result.path.cutting)[[3, 4]]] = True
+    reasons = tuple(Unjudged(f"code-{k}", where, f"the reason is {k}.") for k in range(count))
+    lost = replace(result, delta=np.where(where[:, None], np.nan, result.delta), unjudged=reasons)
+    line, every = int(result.path.block[where][0]), int(result.path.cutting.sum())
+    said = f"2 of {every} points of the cut are not judged (line {line}): the reason is 0{more}."
+    assert said in lost.verdict.sentence
