@@ -175,7 +175,8 @@ def test_one_pose_few_rows_and_forces_anyhow_are_told_apart():
     found = lines_of_pull(ROBOT, wild)
     assert found.says == "apart"
     assert codes(found, wild) == {"pull-apart"}
-    assert found.suspects == ()
+    assert found.suspects == found.pushes == ()
+    assert found.shift is found.covariance is None, "where lines do not meet there is no load point either"
 
 
 def test_a_tool_that_never_turns_cannot_tell_its_load_point():
