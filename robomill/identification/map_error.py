@@ -26,7 +26,7 @@ def noise_of_tests(C: FloatArray, spread: FloatArray, stated: FloatArray) -> flo
     not. NaN when nothing shows it.
     """
     i, j = np.triu_indices(3, 1)
-    apart = (C[:, i, j] - C[:, j, i]) / np.sqrt(spread[:, i] ** 2 + spread[:, j] ** 2)
+    apart = (C[:, i, j] - C[:, j, i]) / np.hypot(spread[:, i], spread[:, j])
     known = stated[np.isfinite(stated)]
     noise = max(float(np.sqrt(np.mean(apart**2))), float(np.median(known)) if len(known) else 0.0)
     return noise if noise > 0.0 else float("nan")
