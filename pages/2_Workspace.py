@@ -25,7 +25,12 @@ else:
     ui.tiles(
         [
             ui.Tile(label, "–")
-            for label in ("Region in reach", "Least |det(J)|", "Room to joint limits", "Largest box in reach")
+            for label in (
+                "Region in reach",
+                "Distance to singularity",
+                "Room to joint limits",
+                "Largest box in reach",
+            )
         ]
     )
 

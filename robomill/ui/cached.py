@@ -15,7 +15,7 @@ from robomill.simulation.run import deviation_over_spin, simulate
 from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.groove import GrooveSection
-from robomill.ui import beside, inputs, session
+from robomill.ui import beside, inputs, job, session
 from robomill.ui.commons import NOTHING, Commons
 from robomill.ui.job import Underway
 
@@ -40,9 +40,13 @@ def shared(key: Callable[..., Any], doing: str = "") -> Callable[[Function], Fun
         def asked(*arguments: Any) -> Any:
             name = name_of(function, key(*arguments))
             make = partial(commons.get, name, partial(function, *arguments))
-            if not doing or not beside.on_a_page() or commons.find(name, NOTHING) is not NOTHING:
+            if not doing or not beside.on_a_page():
                 return make()
-            return beside.made(".".join(name), name, make, doing, group=name[0])
+            place = ".".join(name)
+            if commons.find(name, NOTHING) is not NOTHING:
+                job.give_up(place)  # it ended between two runs of the page, or somebody else had it made
+                return make()
+            return beside.made(place, name, make, doing, group=name[0])
 
         return cast("Function", asked)
 

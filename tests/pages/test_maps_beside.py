@@ -32,7 +32,7 @@ def test_the_largest_box_is_looked_for_beside_the_page(app: AppTest, monkeypatch
     monkeypatch.setattr(beside, "FIRST_S", 0.1)
     for _ in range(20):  # the other maps of the page take what they take
         go(app, "2_Workspace")
-        if begun.is_set() and "Least |det(J)|" in words(app):
+        if begun.is_set() and "least |det(J)|" in words(app):
             break
     assert not app.exception
     place = next(key for key, kept in store(app).values.items() if isinstance(kept, Job))

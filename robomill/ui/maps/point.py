@@ -111,8 +111,11 @@ def bars(found: InHand, old: PoseReport, unit: str) -> None:
     st.markdown(f"**At the selected point**<br>{where}", unsafe_allow_html=True)
     colours = joint_colours(7, shell.dark())
     numbers = found.pose.robot.joint_numbers
-    key = (f'<span style="color:{colours[k % 7]}">■</span> joint {number}' for k, number in enumerate(numbers))
-    st.html(f'<p class="rm-note" style="opacity:1">{" &nbsp;".join(key)}</p>')
+    key = (
+        f'<span style="white-space:nowrap"><span style="color:{colours[k % 7]}">■</span> joint {number}</span>'
+        for k, number in enumerate(numbers)
+    )
+    st.html(f'<p class="rm-note" style="opacity:1">{" &ensp;".join(key)}</p>')
     if not found.pose.reached:
         pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
         return
@@ -126,7 +129,7 @@ def bars(found: InHand, old: PoseReport, unit: str) -> None:
         "point-shares",
         table=lambda: share_columns(pose),
         alt=f"Shares of the joints in each compliance component at {where}: {said}.",
-        caption="Share of each joint, and the sum",
+        caption="Shares and their sum",
     )
 
 
@@ -175,7 +178,9 @@ def _six(pose: PoseReport) -> None:
     st.markdown("**Rotations, too: C<sub>X</sub>, eq. (11), and J, eq. (9)**", unsafe_allow_html=True)
     six = pose.C_X
     shown = np.empty((6, 6))
-    shown[:3, :3] = from_si(six[:3, :3], "um/N")
+    view = session.project().view
+    um, m = view.of("um/N"), view.of("m")
+    shown[:3, :3] = from_si(six[:3, :3], um)
     shown[3:, :3], shown[:3, 3:] = from_si(six[3:, :3], "urad/N"), from_si(six[:3, 3:], "urad/N")
     shown[3:, 3:] = from_si(six[3:, 3:], "urad/(N m)")
     pieces.matrix(
@@ -183,13 +188,13 @@ def _six(pose: PoseReport) -> None:
         ["δx", "δy", "δz", "φx", "φy", "φz"],
         ["Fx", "Fy", "Fz", "Mx", "My", "Mz"],
     )
-    pieces.note("δ per F in µm/N, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
+    pieces.note(f"δ per F in {unit_label(um)}, φ per F and δ per M in µrad/N, φ per M in µrad/(N m).")
     pieces.matrix(
-        _numbers(pose.J),
+        _numbers(np.concatenate([from_si(pose.J[:3], m), pose.J[3:]])),
         ["vx", "vy", "vz", "ωx", "ωy", "ωz"],
         [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in pose.robot.joint_numbers],
     )
-    pieces.note("J in m/rad and rad/rad, columns by joint, rows in {M}.")
+    pieces.note(f"J in {unit_label(m)}/rad and rad/rad, columns by joint, rows in {{M}}.")
 
 
 def _numbers(matrix: FloatArray, sign: bool = False) -> list[list[str]]:

@@ -46,14 +46,15 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceField, un
     share = float(known.reached.mean())
     det = np.abs(known.det_J[known.reached])
     what = map_quantity(robot, "det_J")
-    least = format_si(float(det.min()), what.unit, 3) if len(det) else "not reached"
+    shown = session.project().view
+    least = format_si(float(det.min()), shown.of(what.unit), 3) if len(det) else "not reached"
     limit = known.values("limit_distance")
     nearest = format_percent(np.nanmin(limit)) if np.isfinite(limit).any() else NOT_REACHED
     largest, looked = fields.box_there(robot, view.A, view.B)
     size, note = ("none", "nothing in reach at this tilt") if looked else ("…", "not computed yet")
     if largest is not None:
         spans = [v for v in largest.size if v > 1e-6]  # none: an arm of one joint stands still at a tilt
-        size = format_many(spans, "m", 1, " × ") if spans else "one point"
+        size = format_many(spans, shown.of("m"), 1, " × ") if spans else "one point"
         note = _against(largest, robot, unit)
     singular = bool(near_singular(robot, det).any())
     return [
@@ -64,9 +65,9 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceField, un
             tone="ok" if share > 0.999 else "tight" if share > 0 else "out",
         ),
         pieces.Tile(
-            "Least |det(J)|",
+            "Distance to singularity",
             least,
-            "a singularity is near" if singular else "no singularity in this region" if len(det) else "",
+            "least |det(J)|: " + ("a singularity is near" if singular else "none in this region") if len(det) else "",
         ),
         pieces.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
         pieces.Tile("Largest box in reach", size, note, kind="computed"),
@@ -85,9 +86,8 @@ def _against(box: ReachBox, robot: Robot, unit: str) -> str:
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
     words = "holds" if ratio["holds_paper_box"] else "turned by 90° holds" if turned else "does not hold"
-    return (
-        f"{words} the paper's {box_size(PAPER_BOX_SIZE, unit)} · {format_number(ratio['volume_ratio'], 1)} × its volume"
-    )
+    times = format_number(ratio["volume_ratio"], 1)
+    return f"{words} the reference box {box_size(PAPER_BOX_SIZE, unit)} · {times} × its volume"
 
 
 def sentence(robot: Robot, known: ComplianceField | None) -> str:
@@ -135,7 +135,7 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
     flat = fields.flat(robot) is not None
     for name, box, kind in (
         ("largest without a singularity", largest, "computed"),
-        ("the paper's", ReachBox(*PAPER_BOX), "paper"),
+        ("reference box", ReachBox(*PAPER_BOX), "paper"),
     ):
         if box is None or (flat and kind == "paper"):
             continue
@@ -235,20 +235,21 @@ def _solid(region: Region) -> None:
     if not known.reached.any():
         pieces.note(sentence(robot, known))
         return
-    values = None if what.colours == "reach" else from_si(known.values(what.name), what.unit)
+    shown = session.project().view.of(what.unit)
+    values = None if what.colours == "reach" else from_si(known.values(what.name), shown)
     mask = known.reached
     caption = "Everything in reach at this tilt."
     if values is not None:
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        share = _level(low, high, region.view, unit_label(what.unit))
+        share = _level(low, high, region.view, unit_label(shown))
         cut = low + share * (high - low)
         mask = mask & (np.nan_to_num(values, nan=-np.inf) >= cut)
         caption = (
-            f"Cells where {what.title} is at least {format_significant(cut, 3)} {unit_label(what.unit)}".rstrip() + "."
+            f"Cells where {what.title} is at least {format_significant(cut, 3)} {unit_label(shown)}".rstrip() + "."
         )
     pieces.figure(
         _solid_figure(
-            region, grid, mask, None if values is None else (values, Scale.of(what, values, robot.joint_numbers))
+            region, grid, mask, None if values is None else (values, Scale.of(what, values, robot.joint_numbers, shown))
         ),
         "workspace-solid",
         name=f"workspace-{what.name}",
@@ -282,7 +283,7 @@ def _solid_figure(region: Region, grid: Grid, mask: BoolArray, shown: tuple[Floa
     if largest is not None and view.region != "paper":
         fig.add_traces(wire_box(largest.lower, largest.upper, p.accent, "largest box"))
     if view.region == "paper" or (robot.n >= 5 and view.region != "own"):
-        fig.add_traces(wire_box(*PAPER_BOX, p.warm, "the paper's box"))
+        fig.add_traces(wire_box(*PAPER_BOX, p.warm, "reference box"))
         low, high = np.minimum(low, PAPER_BOX[0]), np.maximum(high, PAPER_BOX[1])
     widen(fig, low, high)
     return fig
