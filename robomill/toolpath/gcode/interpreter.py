@@ -9,8 +9,9 @@ from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.macro import MacroB, with_brackets
+from robomill.toolpath.gcode.macro import with_brackets
 from robomill.toolpath.gcode.owords import File
+from robomill.toolpath.gcode.sinumerik_words import SinumerikWords
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
@@ -24,7 +25,7 @@ _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
 
-class Interpreter(MacroB):
+class Interpreter(SinumerikWords):
     """Runs one program on one machine. ``file`` and ``pc`` are the line that comes next."""
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
@@ -62,6 +63,7 @@ class Interpreter(MacroB):
         if self.dialect.name == "sinumerik":
             code, mark, comment = raw.partition(";")
             left = self.sinumerik_call(code.upper(), line)
+            left = None if left is None else self.sinumerik_line(left, line)
             if left is None:
                 return
             raw = raw if left == code.upper() else left + mark + comment
@@ -105,6 +107,7 @@ class Interpreter(MacroB):
         ends = execute(machine, block, saved)
         if machine.corner is not None:
             raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
+        self.drill_modal(block)
         self.calls.special[level] = level in self.foreign or bool(saved)
         if ends:
             self.ended = True

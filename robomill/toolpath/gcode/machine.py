@@ -48,6 +48,7 @@ class Machine:
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
     are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68.
+    ``modal`` is the cycle that MCALL holds, ``r_set`` are the R parameters that a program has set.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -56,6 +57,8 @@ class Machine:
         self.recorder = Recorder(joined)
         self.corner: tuple[str, float] | None = None
         self.polar_words = False
+        self.modal: Any = None
+        self.r_set: set[int] = set()
         self.before_turn: tuple[list[float], float] | None = None
         self.tools = None if tools is None else own_copy(tools)
         self.unit_code, self.units_said = 210, 0
@@ -113,7 +116,8 @@ class Machine:
     def is_plain(self) -> bool:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
         held = self.compensation is not None or self.recorder.held is not None
-        return not (held or self.diameter_mode or self.polar_words or any(self.away))
+        other = self.diameter_mode or self.polar_words or self.modal is not None
+        return not (held or other or any(self.away))
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""

@@ -46,7 +46,7 @@ def select_system(machine: Machine, block: Block, code: int) -> None:
     if system == machine.system:
         return
     if machine.before_turn is not None:
-        raise block.refuse(f"{g_name(code)} while G68 turns the coordinates; use G69 first.")
+        raise block.refuse(f"{g_name(code)} while coordinates are shifted or turned (G68, TRANS, ROT); end that first.")
     absolute = _absolute(machine)
     origin, rotation = stored_system(machine, system)
     machine.p = _in_system(machine, absolute, origin, rotation)
@@ -83,6 +83,23 @@ def _see(machine: Machine, origin: list[float], rotation: float) -> None:
     point[0], point[1] = rotate(point[0], point[1], -rotation)
     machine.p = [p - o for p, o in zip(point, machine.g92)]
     machine.g5x, machine.rotation = origin, rotation
+
+
+def frame_of(machine: Machine) -> tuple[list[float], float]:
+    """How far coordinates are shifted (x, y, z) and turned (degrees) on top of their coordinate system."""
+    if machine.before_turn is None:
+        return [0.0] * 3, 0.0
+    origin, rotation = machine.before_turn
+    return [now - was for now, was in zip(machine.g5x[:3], origin)], machine.rotation - rotation
+
+
+def see_frame(machine: Machine, shift: list[float], angle: float) -> None:
+    """Coordinates are shifted and turned so far on top of their coordinate system, and no further (TRANS, ROT)."""
+    turn_back(machine)
+    machine.before_turn = machine.g5x, machine.rotation
+    x, y = rotate(shift[0], shift[1], machine.rotation)
+    origin = [machine.g5x[0] + x, machine.g5x[1] + y, machine.g5x[2] + shift[2], *machine.g5x[3:]]
+    _see(machine, origin, machine.rotation + angle)
 
 
 def axis_offsets(machine: Machine, block: Block, code: int) -> None:

@@ -151,6 +151,11 @@ SUPPORT: tuple[Support, ...] = (
     Support("G51 G68.2", "scaling, tilted planes", "refused", "G51 X0 Y0 P2", dialect="fanuc"),
     _row("A3= B3= C3=", "direction of the tool", "G0 X1 A3=0 B3=0 C3=1", (1, 0, 0), 1, dialect="sinumerik"),
     _row("AC( ) IC( )", "places and steps", "G91\nG0 X=AC(4)\nG90\nX=IC(1)", (5, 0, 0), 2, dialect="sinumerik"),
+    _row("R1= X=R1*2", "R parameters and expressions", "R1=2\nG0 X=R1*2+1", (5, 0, 0), 1, dialect="sinumerik"),
+    _row("GOTOF GOTOB IF", "jumps", "IF 1<2 GOTOF L_A\nG0 X9\nL_A: G0 X1", (1, 0, 0), 1, dialect="sinumerik"),
+    _row("TRANS ATRANS ROT AROT", "shifts and turns", "TRANS X5\nG0 X1", (6, 0, 0), 1, dialect="sinumerik"),
+    _row("RND= CHF= CHR=", "corners", "G1 X9 RND=2 F9\nY9", (9, 9, 0), 3, dialect="sinumerik"),
+    _row("CYCLE81 to 86, MCALL", "drilling", "F9 G0 Z9\nCYCLE81(9,0,1,-5)", (0, 0, 9), 4, dialect="sinumerik"),
     _row(
         "L100 P2, names, M17, RET",
         "subprograms in the same file",

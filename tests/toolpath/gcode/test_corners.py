@@ -52,7 +52,7 @@ def test_a_chamfer_takes_its_length_off_both_cuts_and_corners_may_follow_one_ano
         ("G1 X20 ,R5 F100\nY3\n", "Line 4: a corner takes 5.000 mm of both cuts, and one has 3.000 mm"),
         ("M8 ,C5\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
-        ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while G68 turns the coordinates"),
+        ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while coordinates are shifted or turned"),
         ("G16\nG91 X5 Y10\n", "Line 5: G16 is read in G17 and G90 alone"),
         ("G51 X0 Y0 P2\n", "Line 4: G51 scales coordinates, which is not read"),
         ("G68.2 X0 Y0 Z0 I0 J30 K0\n", "Line 4: G68.2 tilts the working plane"),

@@ -7,6 +7,9 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 
+READ = {"GOTO", "TRANS", "ROT", "IF", "MCALL", "R1=", "X="}
+"""Words that the dialect reads which they are of."""
+
 
 @pytest.mark.parametrize("dialect", ["auto", "fanuc", "sinumerik"])
 @pytest.mark.parametrize(
@@ -30,7 +33,8 @@ from robomill.toolpath.gcode import interpret
     ],
 )
 def test_a_word_of_another_language_is_named(line: str, word: str, language: str, dialect: str) -> None:
-    stated = "linuxcnc" if language == "Macro B" and dialect != "sinumerik" else dialect
+    read = word in READ or (language == "Macro B" and dialect != "sinumerik")
+    stated = "linuxcnc" if read else dialect
     with pytest.raises(GCodeError) as caught:
         interpret(f"G21 G90 F100\n{line}\nM2\n", dialect=stated)
     assert caught.value.line == 2

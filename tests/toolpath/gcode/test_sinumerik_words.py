@@ -1,0 +1,134 @@
+"""Everyday words of Sinumerik controls: every program with the places that plane geometry gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+HEAD = "G71 G90 G17 F100 S500 M3\n"
+
+
+def ends(body: str) -> list[tuple[str, float, float, float]]:
+    program = interpret(f"{HEAD}{body}M30\n", dialect="sinumerik")
+    return [("RFAT"[k], *(round(float(v) * 1e3, 6) for v in p)) for k, p in zip(program.kind, program.end)]
+
+
+def places(body: str) -> list[tuple[float, float, float]]:
+    return [each[1:] for each in ends(body)]
+
+
+def heights(body: str) -> list[tuple[str, float]]:
+    return [(kind, z) for kind, _, _, z in ends(body)]
+
+
+VALUES = [
+    ("R1=5\nG1 X=R1\n", 5),
+    ("R1=5 R2=-2\nG1 X=R1*(3+R2)-1\n", 4),
+    ("N10 R10=2.5\nN20 R11=R10*2\nN30 G1 X=-R11\n", -5),
+    ("R1=30\nG1 X=10*SIN(R1)\n", 5),
+    ("G1 X=10+5 Y0\n", 15),
+    ("R1=4\nG1 X1\nX=IC(2)\n", 3),
+    ("R1=3\nIF R1==3 GOTOF L_A\nG1 X9\nL_A:\nG1 X2\n", 2),
+    ("R1=3\nIF R1<>3 GOTOF L_A\nG1 X9\nL_A:\n", 9),
+    ("R1=0\nAGAIN: R1=R1+1\nIF R1<4 GOTOB AGAIN\nG1 X=R1\n", 4),
+    ("GOTO N50\nG1 X9\nN50 G1 X3\n", 3),
+    ("GOTOF ENDE\nG1 X9\nENDE: G1 X6\n", 6),
+]
+
+
+@pytest.mark.parametrize(("body", "x"), VALUES)
+def test_r_parameters_labels_and_jumps(body: str, x: float) -> None:
+    assert places(body)[-1][0] == pytest.approx(x)
+
+
+FRAMES = [
+    ("TRANS X10 Y5 Z1\nG1 X1 Y2 Z3\n", (11, 7, 4)),
+    ("TRANS X10\nATRANS X5\nG1 X1\n", (16, 0, 0)),
+    ("TRANS X10\nTRANS Y5\nG1 X1 Y2\n", (1, 7, 0)),
+    ("ROT RPL=90\nG1 X5\n", (0, 5, 0)),
+    ("ROT Z90\nG1 X5\n", (0, 5, 0)),
+    ("TRANS X10 Y5\nAROT RPL=90\nG1 X5 Y1\n", (9, 10, 0)),
+    ("ROT RPL=90\nATRANS X5\nG1 X1\n", (0, 6, 0)),
+    ("AROT RPL=30\nAROT RPL=60\nG1 X5\n", (0, 5, 0)),
+    ("TRANS X10\nROT RPL=90\nG1 X5\n", (0, 5, 0)),
+    ("TRANS X10\nTRANS\nG1 X5\n", (5, 0, 0)),
+    ("TRANS X10\nAROT RPL=90\nROT\nG1 X5\n", (5, 0, 0)),
+]
+
+
+@pytest.mark.parametrize(("body", "end"), FRAMES)
+def test_frames_shift_and_turn_coordinates(body: str, end: tuple[float, float, float]) -> None:
+    """TRANS and ROT begin anew from the coordinate system, ATRANS and AROT add to what holds; empty ones end it."""
+    assert places(body)[-1] == pytest.approx(end, abs=1e-6)
+
+
+ABOVE = "G0 X0 Y0 Z50\n"
+HOLES = [
+    ("CYCLE81(50,0,2,-10)", [("R", 2), ("F", -10), ("R", 50)]),
+    ("CYCLE81(50,0,2,,10)", [("R", 2), ("F", -10), ("R", 50)]),
+    ("CYCLE82(50,1,2,-10,,0.5)", [("R", 3), ("F", -10), ("R", 50)]),
+    ("CYCLE83(50,0,2,-10,,-4,,0,0,0,1,0)", [("R", 2), ("F", -4), ("F", -8), ("F", -10), ("R", 50)]),
+    ("CYCLE83(50,0,2,,10,,6,1,0,0,1,1)", [("R", 2), ("F", -6), ("R", 2), ("R", -6), ("F", -10), ("R", 50)]),
+    ("CYCLE84(50,0,2,-10,,0,5,,1.5)", [("R", 2), ("F", -10), ("F", 2), ("R", 50)]),
+    ("CYCLE85(50,0,2,-10,,0,60,120)", [("R", 2), ("F", -10), ("F", 2), ("R", 50)]),
+    ("CYCLE86(50,0,2,-10,,0.5,3)", [("R", 2), ("F", -10), ("R", 50)]),
+    ("R1=50\nCYCLE81(R1,0,R1/25,-10)", [("R", 2), ("F", -10), ("R", 50)]),
+]
+
+
+@pytest.mark.parametrize(("call", "moves"), HOLES)
+def test_a_cycle_drills_where_the_tool_stands(call: str, moves: list[tuple[str, float]]) -> None:
+    assert heights(f"{ABOVE}{call}\n")[1:] == moves
+
+
+def test_cycles_have_feeds_and_dwells_of_their_own() -> None:
+    bored = interpret(f"{HEAD}{ABOVE}CYCLE85(50,0,2,-10,,0.5,60,120)\nM30\n", dialect="sinumerik")
+    assert bored.v_f * 6e4 == pytest.approx([0, 0, 60, 120, 0])
+    assert bored.dwell_time == pytest.approx(0.5)
+    tapped = interpret(f"{HEAD}{ABOVE}CYCLE84(50,0,2,-10,,0,5,,1.5)\nM30\n", dialect="sinumerik")
+    assert tapped.v_f[2] * 6e4 == pytest.approx(1.5 * 500)
+    assert tapped.thread.tolist() == [False, False, True, True, False]
+
+
+def test_mcall_drills_behind_every_line_that_moves_in_the_plane_until_it_ends() -> None:
+    found = places(f"{ABOVE}MCALL CYCLE81(50,0,2,-10)\nX10\nY10\nZ60\nX20 Y20\nMCALL\nX30\n")
+    assert [p[:2] for p in found if p[2] == -10] == [(10, 0), (10, 10), (20, 20)]
+    assert found[-1] == (30, 20, 50)
+
+
+def test_corners_are_rounded_and_chamfered() -> None:
+    assert places("G1 X20 RND=5\nY20 CHR=2\nX0 CHF=2\nY0\n") == [
+        (15, 0, 0),
+        (20, 5, 0),
+        (20, 18, 0),
+        (18, 20, 0),
+        (pytest.approx(np.sqrt(2), abs=1e-6), 20, 0),
+        (0, pytest.approx(20 - np.sqrt(2), abs=1e-6), 0),
+        (0, 0, 0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G1 X=R7\n", "Line 2: R7 is read before the program sets it"),
+        ("R5000=1\n", "Line 2: R5000 does not exist"),
+        ("GOTOF NOWHERE\n", "Line 2: GOTOF NOWHERE leads nowhere"),
+        ("A_B:\nGOTOF A_B\n", "Line 3: GOTOF A_B leads nowhere: there is no such label on that side"),
+        ("ROT X45\n", "Line 2: ROT X45 is not read; expected shifts along X, Y, Z or a turn about Z"),
+        ("TRANS X10\nG55\n", "Line 3: G55 while coordinates are shifted or turned"),
+        ("CYCLE81(50,0)\n", "Line 2: CYCLE81 needs RTP, RFP and DP or DPR"),
+        ("CYCLE81(50,0,2,5)\n", "Line 2: CYCLE81: expected RTP above RFP + SDIS, and the depth below"),
+        ("CYCLE84(50,0,2,-10,,0,5,8)\n", "Line 2: CYCLE84 needs PIT"),
+        ("CYCLE83(50,0,2,-10)\n", "Line 2: CYCLE83 needs FDEP or FDPR"),
+        ("CYCLE81(50,0,2,-10,,0,1)\n", "Line 2: CYCLE81 counts its depth by the diameter"),
+        ("POCKET3(50,0)\n", "POCKET3"),
+    ],
+)
+def test_what_is_not_read_is_refused_by_name(body: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        ends(body)
+    assert says in str(caught.value)
