@@ -58,6 +58,7 @@ def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: An
     assert "(50.00, 0.00, −2.00)" in place(page)
     figure = page.locator(".js-plotly-plot").first
     figure.locator(".nsewdrag").first.wait_for()
+    figure.scroll_into_view_if_needed()
     page.wait_for_timeout(1200)
     plot = figure.locator(".nsewdrag").first.bounding_box()
     # Half way along, on the curve of the size: the axis runs from below zero to above the tolerance.
