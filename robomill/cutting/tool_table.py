@@ -1,5 +1,7 @@
 """The tools of a program by number: what cuts, how long each is, and what of it nobody has stated. SI."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -106,6 +108,10 @@ class ToolTable(Mapping[int, TableTool]):
                 f"Tool {number} cuts, but the tool table does not say its diameter; give it.", where=f"tool {number}"
             )
         return cutter
+
+    def unstated(self, numbers: Iterable[int]) -> tuple[TableTool, ...]:
+        """Tools among ``numbers`` whose flutes, which the force grows with, nobody has stated."""
+        return tuple(self[n] for n in sorted({*numbers} & {*self}) if "flutes" in self[n].assumed)
 
     def notes(self, numbers: Iterable[int]) -> tuple[Finding, ...]:
         """What a reader must know of the tools ``numbers`` that cut: what of them is assumed, one finding a tool."""

@@ -22,7 +22,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
     gone = tuple(result.path.block[gauge.gone].tolist())
-    found = Verdict("ok", share, "", *readings, far, gone, premise(result))
+    found = Verdict("ok", share, "", *readings, far, gone, premise(result, bool(deciding)))
     found = replace(found, level=_level(result, found))
     return replace(found, sentence=" ".join(words for words in said(result, found) if words))
 

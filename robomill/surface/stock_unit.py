@@ -15,6 +15,7 @@ HELD, LOST = 0.9, 0.5
 """Shares of the path within the block: so much is a part that is cut, less than this one that is missed."""
 HARDLY, OVERRUN = 0.1, 0.6
 """Shares of the path: with so little of it in the block as it is, so much within another unit's is enough."""
+OUTSIDE = "stock-outside"  # code of the finding by which what is cut rests on a unit that hardly was meant
 PLACES = 1000  # of the path that are looked at, evenly along it
 TOO_LARGE = 20.0
 LIKELY = 5.0
@@ -43,7 +44,7 @@ def unit_doubt(stock: Stock, p: ArrayLike, cutting: ArrayLike) -> tuple[Finding,
                 f"Stock: it is {_size(stock.size)} and {found}; were its numbers {what}, it would be "
                 f"{_size(stock.size * times)} and hold {held} the path: check the unit."
             )
-            return (Finding("suspicious", text, code="stock-unit"),)
+            return (Finding("suspicious", text, code="stock-size" if large else OUTSIDE),)
     return ()
 
 

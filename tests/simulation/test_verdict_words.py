@@ -7,8 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+<<<<<<< Updated upstream
 from robomill.cutting.unjudged import Unjudged
+=======
+from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
+from robomill.io.materials import load_material
+>>>>>>> Stashed changes
 from robomill.provenance import Provenance
+from robomill.simulation.run import simulate
+from robomill.surface.stock import Stock
+from robomill.toolpath.source import GCodeSource
 from tests.simulation.test_gauge import pushed, run
 
 
@@ -68,6 +78,7 @@ def test_by_a_force_that_was_stated_for_another_path_nothing_is_judged():
         assert "tolerance" not in open_.sentence
 
 
+<<<<<<< Updated upstream
 @pytest.mark.parametrize(("count", "more"), [(1, ""), (2, " (and 1 more reason)"), (3, " (and 2 more reasons)")])
 def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_counted(result, count, more):
     where = np.zeros(len(result.path), dtype=bool)
@@ -77,3 +88,32 @@ def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_c
     line, every = int(result.path.block[where][0]), int(result.path.cutting.sum())
     said = f"2 of {every} points of the cut are not judged (line {line}): the reason is 0{more}."
     assert said in lost.verdict.sentence
+=======
+def test_flutes_that_nobody_has_counted_are_not_judged_by() -> None:
+    """A table of a machine says a diameter: 2, 3 or 4 flutes are 93, 110 or 128 N here, within or out of tolerance."""
+    own = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800")
+    program = GCodeSource("\n".join(["G21 G90 T3 M6 S12000 M3", "G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "M2", ""]))
+    material = load_material("al7075_t6_carbide_ref190")
+    counted = TableTool(3, Cutter("flat", 8e-3, flutes=4))
+    setup = own.setup.replace(source=program, force=MechanisticForce(own.setup.cutter, material), engagement=True)
+    levels = {}
+    for tool in (counted, replace(counted, cutter=Cutter("flat", 8e-3), assumed=ASKED)):
+        found = simulate(setup.replace(tools=ToolTable((tool,)))).verdict
+        levels[len(tool.assumed)] = found.level
+        assert found.share > 0.5
+    assert levels == {0: "out", 3: "unjudged"}
+    assert "if tool 3 has 2 flutes. Nobody has said how many flutes tool 3 has" in found.sentence
+    stated = setup.replace(tools=ToolTable((tool,)), force=own.setup.force)
+    assert simulate(stated).verdict.premise == ""
+
+
+def test_a_path_beside_a_stock_that_is_hardly_meant_in_its_unit_is_not_judged() -> None:
+    """80 mm read as 3; a short block that is really cut, with long ways in and out, is judged."""
+    own = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800")
+    tiny = Stock((-1.6e-3, -0.8e-3, -0.4e-3), (1.6e-3, 0.8e-3, 0.0))
+    found = simulate(own.setup.replace(stock=tiny)).verdict
+    assert found.level == "unjudged"
+    assert "if the unit of the stock is right. The path hardly touches the stock" in found.sentence
+    short = Stock((-0.012, -0.02, -0.01), (0.012, 0.02, 0.0))
+    assert simulate(own.setup.replace(stock=short)).verdict.premise == ""
+>>>>>>> Stashed changes

@@ -79,7 +79,7 @@ SMALL = Stock((0.0, -0.005, -0.01), (0.01, 0.005, 0.0))  # 10 mm, where 100 mm w
 )
 def test_half_of_the_path_is_a_part_that_is_cut(spans: tuple[tuple[float, float], ...], doubted: bool) -> None:
     found = unit_doubt(SMALL, *slots(*spans))
-    assert [(each.code, each.line) for each in found] == [("stock-unit", 0)] * doubted
+    assert [(each.code, each.line) for each in found] == [("stock-outside", 0)] * doubted
     for each in found:
         assert "most of the path lies outside of it" in each.message
         assert "hold all of the path" in each.message

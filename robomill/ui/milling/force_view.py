@@ -8,11 +8,18 @@ from robomill.simulation.coupling import COUPLING
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
+from robomill.surface.stock_unit import OUTSIDE
 from robomill.ui import pieces, session
 from robomill.units import format_many, format_si, from_si
 from robomill.viz.engagement import COMPONENTS, engagement_figure, force_figure
 
-OF_CUTTER = ("stock-unit", "wide-cutter", "beyond-flutes")  # codes of findings that stand beside cutter and stock
+OF_CUTTER = (
+    "stock-unit",
+    "stock-size",
+    OUTSIDE,
+    "wide-cutter",
+    "beyond-flutes",
+)  # codes of findings that stand beside cutter and stock
 
 
 def force_plot(
