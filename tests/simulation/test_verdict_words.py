@@ -7,14 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-<<<<<<< Updated upstream
-from robomill.cutting.unjudged import Unjudged
-=======
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
+from robomill.cutting.unjudged import Unjudged
 from robomill.io.materials import load_material
->>>>>>> Stashed changes
 from robomill.provenance import Provenance
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
@@ -78,7 +75,6 @@ def test_by_a_force_that_was_stated_for_another_path_nothing_is_judged():
         assert "tolerance" not in open_.sentence
 
 
-<<<<<<< Updated upstream
 @pytest.mark.parametrize(("count", "more"), [(1, ""), (2, " (and 1 more reason)"), (3, " (and 2 more reasons)")])
 def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_counted(result, count, more):
     where = np.zeros(len(result.path), dtype=bool)
@@ -88,7 +84,8 @@ def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_c
     line, every = int(result.path.block[where][0]), int(result.path.cutting.sum())
     said = f"2 of {every} points of the cut are not judged (line {line}): the reason is 0{more}."
     assert said in lost.verdict.sentence
-=======
+
+
 def test_flutes_that_nobody_has_counted_are_not_judged_by() -> None:
     """A table of a machine says a diameter: 2, 3 or 4 flutes are 93, 110 or 128 N here, within or out of tolerance."""
     own = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800")
@@ -116,4 +113,3 @@ def test_a_path_beside_a_stock_that_is_hardly_meant_in_its_unit_is_not_judged() 
     assert "if the unit of the stock is right. The path hardly touches the stock" in found.sentence
     short = Stock((-0.012, -0.02, -0.01), (0.012, 0.02, 0.0))
     assert simulate(own.setup.replace(stock=short)).verdict.premise == ""
->>>>>>> Stashed changes
