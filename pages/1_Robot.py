@@ -48,7 +48,7 @@ ui.tiles(
     ]
 )
 
-left, right = ui.split([4, 9], "page", gap="medium")
+left, right = ui.split([5, 9], "page", gap="medium")
 with left:
     editors.editors(project)
     pose.controls(project, theta, result)
@@ -57,8 +57,14 @@ with right:
     with picture, st.container(border=True):
         tip = format_many(now.T_MT[:3, 3], view.length, 1, with_unit=False)
         caption = f"Tip at ({tip}) {view.length} in the robot frame {{M}}. Foot and tube sizes are for the eye only."
-        scene = ArmScene(frames=now.frames, joints=now.robot.joint_numbers, ghost=pose.ghost(now, old))
-        arm(scene, "robot-arm", (caption, "The arm at the chosen joint angles."), 500, zoom=0.8)
+        scene = ArmScene(
+            frames=now.frames,
+            joints=now.robot.joint_numbers,
+            ghost=pose.ghost(now, old),
+            unit=view.of("m"),
+            aspect=0.9,
+        )
+        arm(scene, "robot-arm", (caption, f"The arm at the chosen joint angles, its tip at {tip} {view.length}."), 500)
     with numbers:
         pose.compliance_matrix(now, old)
         pose.share_bars(now, dark)

@@ -8,9 +8,11 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.units import format_many, format_significant, from_si, to_si, unit_label
-from robomill.viz import solids
+from robomill.viz import framing, solids
 from robomill.viz.chart import Chart, Trace, drawn
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
+
+EYE = (1.30, -0.95, 0.62)
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +22,7 @@ class ArmScene:
     frames (n+1, 4, 4): the frame before each joint (the joint turns about its z), then {T}.
     offset (n,): travel along each joint's z before the link goes across (the D-H d).
     joints (n,): the joints' numbers, 1 to n where they are not given.
+    aspect: width over height of the frame that the arm fills, seen from ``eye`` and without axes; None: in its axes.
     part (lower (3,), upper (3,)) in {W}; path (m, 3) with reached (m,); force, displacement (3,) at the tip.
     """
 
@@ -37,6 +40,8 @@ class ArmScene:
     joints: tuple[int, ...] = ()
     bench: bool = True
     unit: str = "m"
+    aspect: float | None = None
+    eye: tuple[float, float, float] = EYE
 
 
 def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str = "arm", zoom: float = 1.0) -> Chart:
@@ -52,6 +57,7 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         fig.add_traces([solids.trace([*links, *joints], p.muted, "before", opacity=0.18)])
     tip, width, name_colour = scene.frames[-1][:3, 3], 0.0065 * reach, axis_colours(dark)["z"]
     opaque = [*_arm(scene, dark), *_foot(scene, reach, dark), *solids.frame(np.eye(4), 0.16 * reach, dark)]
+    far = (1.12, 1.12) if scene.aspect is None else (1.28, 1.6)  # of force and displacement: words beside the arrows
     said: list[solids.Said] = [(np.array([0.0, 0.0, 0.208 * reach]), "{M}", name_colour)]
     if scene.T_MW is not None:
         opaque += solids.frame(scene.T_MW, 0.075 * reach, dark)
@@ -61,15 +67,32 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         vector = _sized(scene.force, 0.20 * reach)
         opaque += solids.arrow(tip - vector, vector * 0.96, p.accent, width)
         upright = max(float(vector[2]), 0.0) / 0.20 / reach  # its words stand over their point, and the arrow too
-        said.append((tip - (1.12 + 0.25 * upright) * vector, scene.force_label, p.accent))
+        said.append((tip - (far[0] + 0.25 * upright) * vector, scene.force_label, p.accent))
     if scene.displacement is not None:
         vector = _sized(scene.displacement, 0.17 * reach)
         opaque += solids.arrow(tip, vector, p.warm, width)
-        said.append((tip + 1.12 * vector, scene.displacement_label, p.warm))
+        said.append((tip + far[1] * vector, scene.displacement_label, p.warm))
+    if scene.aspect is not None:
+        fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text)])
+        across = [i for i in (0, 1) if abs(scene.eye[i]) < 0.9 * np.linalg.norm(scene.eye)]
+        said += [(0.19 * reach * np.eye(3)[i], "XYZ"[i], axis_colours(dark)["xyz"[i]]) for i in across]
+        return _filling(fig, scene, said, dark)
     fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), solids.words(said)])
     fig.add_traces(_part_traces(scene, reach, dark))
     fig.lay_out(scene=_scene_layout(_bounds(fig, reach), scene.unit, dark, revision, zoom), showlegend=False)
     return fig
+
+
+def _filling(fig: Chart, scene: ArmScene, said: list[solids.Said], dark: bool) -> Chart:
+    """The arm on most of its frame, its words on a ground of their own."""
+    drawn_points = [np.stack([np.asarray(t[a], dtype=float) for a in "xyz"], axis=1) for t in fig.traces]
+    points = np.vstack([*drawn_points, *(np.asarray(at, dtype=float)[None] for at, word, _ in said if word)])
+    ground = "rgba(17,24,29,0.8)" if dark else "rgba(255,255,255,0.8)"
+    layout = framing.framed(points[np.isfinite(points).all(axis=1)], scene.eye, scene.aspect or 1.0)
+    words = {"annotations": framing.signs(said, ground)}
+    return fig.lay_out(
+        scene={**layout, **words, "uirevision": fig.layout["uirevision"], "dragmode": "turntable"}, showlegend=False
+    )
 
 
 def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
@@ -97,7 +120,7 @@ def _scene_layout(bounds: FloatArray, unit: str, dark: bool, revision: str, zoom
         "aspectmode": "manual",
         "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
         "camera": {
-            "eye": {"x": 1.30, "y": -0.95, "z": 0.62},
+            "eye": dict(zip("xyz", EYE, strict=True)),
             "center": {"x": -0.03, "y": -0.04, "z": -0.04},
             "projection": {"type": "orthographic"},
         },

@@ -76,7 +76,7 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     caption = f"Where {push} in every direction take the tip, shown {grown}; the same scale at every distance."
     alt = "The arm with its compliance ellipsoid at the chosen distance."
     arm(
-        ArmScene(frames=pose.frames, joints=pose.robot.joint_numbers),
+        ArmScene(frames=pose.frames, joints=pose.robot.joint_numbers, unit=session.project().view.of("m")),
         "learn-edge",
         (caption, alt),
         480,

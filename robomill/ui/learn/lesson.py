@@ -53,6 +53,9 @@ BIG = """<style>
   .rm-c td { font-size: 1.15rem !important; min-width: 0 !important; padding: .4rem .3rem !important; }
   .rm-c th { font-size: .85rem !important; padding: .1rem .2rem !important; }
 }
+/* The arm is drawn for a frame about as wide as high, and shown smaller in a narrower one. */
+@media (min-width: 900px) and (max-width: 1100px) { .st-key-learn-push { zoom: .55; } }
+@media (min-width: 1101px) and (max-width: 1280px) { .st-key-learn-push { zoom: .72; } }
 /* A button that takes the answer back is no button that is off. */
 .st-key-learn-reveal button[kind="secondary"] { border: 2px solid #0A84B5; font-weight: 600; }
 .rm-ask { font-size: 2.5rem; line-height: 1.15; font-weight: 650; letter-spacing: -.02em; margin: .2rem 0 .4rem 0;
@@ -244,6 +247,9 @@ def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
         force_label=PUSH,
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit),
+        unit=session.project().view.of("m"),
+        aspect=1.05,
+        eye=(1.55, -0.29, 0.26),
     )
     drawn = format_times(displacement_scale(delta, pose.frames))
     caption = (
@@ -252,4 +258,6 @@ def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
         else f"Seen from the side: {PUSH} along {push.name}."
     )
     alt = f"The arm seen from the side with a force of {PUSH} along {push.name} on the tool."
-    arm(scene, "learn-push", (caption, alt), 520, 0.95, (None, lambda fig, _: fig.lay_out(scene={"camera": SIDE})))
+    if revealed:
+        alt += f" Its tip moves by {format_si(float(np.linalg.norm(delta)), unit)}."
+    arm(scene, "learn-push", (caption, alt), 520)
