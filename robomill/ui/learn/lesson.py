@@ -54,8 +54,12 @@ BIG = """<style>
   .rm-c th { font-size: .85rem !important; padding: .1rem .2rem !important; }
 }
 /* The arm is drawn for a frame about as wide as high, and shown smaller in a narrower one. */
-@media (min-width: 900px) and (max-width: 1100px) { .st-key-learn-push { zoom: .55; } }
-@media (min-width: 1101px) and (max-width: 1280px) { .st-key-learn-push { zoom: .72; } }
+@media (min-width: 900px) and (max-width: 1100px) {
+  .st-key-learn-push { width: 166% !important; max-width: none !important; transform: scale(.6);
+    transform-origin: top left; margin-bottom: -208px; } }
+@media (min-width: 1101px) and (max-width: 1280px) {
+  .st-key-learn-push { width: 133% !important; max-width: none !important; transform: scale(.75);
+    transform-origin: top left; margin-bottom: -130px; } }
 /* A button that takes the answer back is no button that is off. */
 .st-key-learn-reveal button[kind="secondary"] { border: 2px solid #0A84B5; font-weight: 600; }
 .rm-ask { font-size: 2.5rem; line-height: 1.15; font-weight: 650; letter-spacing: -.02em; margin: .2rem 0 .4rem 0;
@@ -168,7 +172,7 @@ def stand(robot: Robot) -> InHand:
 def question(found: InHand) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
     push = Push.of(found.pose.C)
-    st.html(BIG + f'<p class="rm-ask">Push the tool along {push.name}. Where does the tip go?</p>')
+    st.html(BIG + f'<h1 class="rm-ask">Push the tool along {push.name}. Where does the tip go?</h1>')
     now = progress()
     left, right = pieces.split([55, 45], "ask", gap="medium")
     with right:

@@ -1,0 +1,34 @@
+"""Learn in a browser: question and picture side by side from 900 px on, and nothing of the arm outside of its frame."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from screenshots import idle
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.mark.parametrize("width", [900, 1024, 1180, 1440])
+def test_question_and_picture_stand_side_by_side(page: Any, url: str, width: int) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": width, "height": 900})
+    page.goto(f"{url}/Learn")
+    idle(page)
+    answers = page.locator("[class*=st-key-learn-answers]")
+    picture = page.locator(".st-key-learn-push .js-plotly-plot")
+    picture.locator("canvas").first.wait_for()
+    page.wait_for_timeout(1500)
+    asked, drawn = answers.bounding_box(), picture.bounding_box()
+    assert asked["x"] >= drawn["x"] + drawn["width"] - 1, "beside each other"
+    assert abs(asked["y"] - drawn["y"]) < 60
+    assert asked["x"] + asked["width"] <= width
+    size = answers.locator("label p").first.evaluate("node => getComputedStyle(node).fontSize")
+    assert float(size.removesuffix("px")) >= 20.0
+    assert drawn["width"] / drawn["height"] > 0.84, "the frame is as wide as the arm needs"
+    page.get_by_role("button", name="Show where it goes").click()
+    idle(page)
+    back = page.get_by_role("button", name="Hide it again")
+    back.wait_for()
+    assert back.evaluate("node => getComputedStyle(node).borderTopWidth") == "2px"
