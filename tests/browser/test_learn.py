@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 from screenshots import idle
 
+from robomill.ui.learn.lesson import ASPECT
+from robomill.viz.framing import FILL
+
 pytestmark = pytest.mark.browser
 
 
@@ -26,7 +29,7 @@ def test_question_and_picture_stand_side_by_side(page: Any, url: str, width: int
     assert asked["x"] + asked["width"] <= width
     size = answers.locator("label p").first.evaluate("node => getComputedStyle(node).fontSize")
     assert float(size.removesuffix("px")) >= 20.0
-    assert drawn["width"] / drawn["height"] > 0.84, "the frame is as wide as the arm needs"
+    assert drawn["width"] >= FILL * ASPECT * drawn["height"], "the frame is as wide as the arm needs"
     page.get_by_role("button", name="Show where it goes").click()
     idle(page)
     back = page.get_by_role("button", name="Hide it again")

@@ -28,6 +28,7 @@ KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
 ALIGHT = 5e-9  # m/N: what is less reads 0.00 um/N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
+HEIGHT, ASPECT = 420, 0.85  # of the picture: whole, too, in the column of a window of 900 px
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
     "center": {"x": 0, "y": -0.13, "z": -0.04},
@@ -53,13 +54,6 @@ BIG = """<style>
   .rm-c td { font-size: 1.15rem !important; min-width: 0 !important; padding: .4rem .3rem !important; }
   .rm-c th { font-size: .85rem !important; padding: .1rem .2rem !important; }
 }
-/* The arm is drawn for a frame about as wide as high, and shown smaller in a narrower one. */
-@media (min-width: 900px) and (max-width: 1100px) {
-  .st-key-learn-push { width: 166% !important; max-width: none !important; transform: scale(.6);
-    transform-origin: top left; margin-bottom: -208px; } }
-@media (min-width: 1101px) and (max-width: 1280px) {
-  .st-key-learn-push { width: 133% !important; max-width: none !important; transform: scale(.75);
-    transform-origin: top left; margin-bottom: -130px; } }
 /* A button that takes the answer back is no button that is off. */
 .st-key-learn-reveal button[kind="secondary"] { border: 2px solid #0A84B5; font-weight: 600; }
 .rm-ask { font-size: 2.5rem; line-height: 1.15; font-weight: 650; letter-spacing: -.02em; margin: .2rem 0 .4rem 0;
@@ -252,7 +246,7 @@ def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
         displacement=delta if revealed else None,
         displacement_label=format_si(float(np.linalg.norm(delta)), unit),
         unit=session.project().view.of("m"),
-        aspect=1.05,
+        aspect=ASPECT,
         eye=(1.55, -0.29, 0.26),
     )
     drawn = format_times(displacement_scale(delta, pose.frames))
@@ -264,4 +258,4 @@ def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
     alt = f"The arm seen from the side with a force of {PUSH} along {push.name} on the tool."
     if revealed:
         alt += f" Its tip moves by {format_si(float(np.linalg.norm(delta)), unit)}."
-    arm(scene, "learn-push", (caption, alt), 520)
+    arm(scene, "learn-push", (caption, alt), HEIGHT)
