@@ -215,7 +215,8 @@ def _scale(scale: Scale, dark: bool) -> dict[str, Any]:
 def _panel(sheet: PlaneSheet, row: int, column: int, panel: PlaneMap, codes: int) -> dict[str, Any]:
     scale = sheet.scales[panel.scale]
     low, high = (float(from_si(end, panel.unit)) for end in (panel.codes.low, panel.codes.high))
-    sizes = scale.kind not in ("joints", "reach")
+    # A map that is one value to its last digit has no lines, whatever its rounding errors are.
+    sizes = scale.kind not in ("joints", "reach") and high - low > 2.0 * 10.0**-scale.digits
     most = CONTOURS if len(sheet.panels) < 3 else FEW_CONTOURS
     return {
         "row": row,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import json
 
 import numpy as np
@@ -133,3 +134,11 @@ def test_contours_are_inside_the_range_of_their_map() -> None:
     panel = sheet_data(sheet(), dark=True)["panels"][0]
     assert 3 <= len(panel["contours"]) <= 8
     assert all(panel["low"] <= level <= panel["high"] for level, _ in panel["contours"])
+
+
+def test_rounding_errors_are_no_contours() -> None:
+    """A share that is zero but for 1e-20 was drawn with lines and values of its noise."""
+    noise = coded(np.abs(values(3)) * 1e-14)
+    row: list[PlaneMap | None] = [PlaneMap("C_zz, joint 5", noise, "um/N")]
+    data = sheet_data(dataclasses.replace(sheet(), rows=[row]), dark=False)
+    assert data["panels"][0]["contours"] == []

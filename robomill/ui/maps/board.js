@@ -427,7 +427,7 @@ class Board {
         c.moveTo(-4, made.y(value));
         c.lineTo(0, made.y(value));
         c.stroke();
-        c.fillText(words, -6, made.y(value));
+        c.fillText(words, -6, Math.max(made.y(value), 6));
       }
       c.save();
       c.translate(-LEFT + 2, h / 2);
