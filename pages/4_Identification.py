@@ -25,7 +25,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
     with top:
         ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
     if result is not None:
-        ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length)))
+        ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length), view.length))
     left, right = ui.split([1, 2.3], "steps", gap="large")
     with left:
         inputs.source(kept, robot)

@@ -10,11 +10,13 @@ import pytest
 from conftest import go
 from streamlit.testing.v1 import AppTest
 
-PAGES = ("2_Workspace", "3_Compliance", "app", "5_Toolpath", "7_Improve")
+PAGES = ("1_Robot", "4_Identification", "8_Learn", "2_Workspace", "3_Compliance", "app", "5_Toolpath", "7_Improve")
 METRIC = re.compile(r"(?<![\w_])(?:[µμ]m|mm|cm|m)(?:[²³]|/N|/min|/s|/tooth)?(?![\w'’_=])|(?<=\d)mm\b|/mm")
-SOURCES = re.compile(r'<span class="rm-badge.*?</td>', re.DOTALL)  # who says a number, in that one's own words
+SOURCES = re.compile(r'<span class="rm-badge.*?(?:</td>|</p>)', re.DOTALL)  # who says a number, in that one's own words
 KEPT = re.compile(  # torque, what a program is written in, units to choose from, and the program's own text
-    r"N m\b|kN m\b|mm \(G21\)|^mm$|mm inch|\"lines\": \[.*?\]|\"codes\": \[.*?\]|in mm, true to size",
+    r"N m\b|kN m\b|mm \(G21\)|^mm$|mm inch|\"lines\": \[.*?\]|\"codes\": \[.*?\]|in mm, true to size"
+    # a file of load tests; the paper's table and the mathematics beside it, which say that they are in its units
+    r"|# provenance: synthetic.*|<th class=\"w\">Of the paper.*?</table>|the paper&#x27;s units.*?</p>",
     re.DOTALL | re.MULTILINE,
 )
 

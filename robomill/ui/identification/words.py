@@ -11,7 +11,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import is_stiffness, of_joint, shown
 from robomill.ui.pieces import Tile
-from robomill.units import format_percent, format_si, format_value, from_si, unit_label
+from robomill.units import format_percent, format_si, format_value, from_si, in_lengths, unit_label
 from robomill.viz.identification import Intervals
 
 IDENTIFIED_SET = "identified"
@@ -178,11 +178,11 @@ def title(result: IdentificationResult) -> str:
     return f"{said}; {label} is the least certain, to {within(half)}."
 
 
-def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str]) -> list[Tile]:
+def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str], length: str = "mm") -> list[Tile]:
     """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
     cv, inside = result.cv_relative_error, result.in_sample
     single = result.single
-    rms = format_si(result.residual_rms, "urad" if single else "um", 1)
+    rms = format_si(result.residual_rms, "urad" if single else in_lengths("um", length), 1 if length == "mm" else None)
     least = Tile("Least certain joint", "none", "this model has no joints")
     if result.has_joints:
         label, half = weakest(result)

@@ -36,7 +36,7 @@ def equations(pose: PoseReport, push: Push) -> None:
         pieces.note(
             pieces.subscripts(
                 "Every joint gives in its own direction J_i; the tip gives by the sum. Along "
-                f"{push.name}, with C_θ in 10⁻⁶ rad/(N m) and J in m/rad:"
+                f"{push.name}, in the paper's units, C_θ in 10⁻⁶ rad/(N m) and J in m/rad:"
             )
         )
         st.latex(r"\large " + component(pose, push.along, push.along))
@@ -109,7 +109,7 @@ def reproduced() -> None:
     found = pieces.attempt(rows)
     if found is None:
         return
-    pieces.note(summary(found))
+    pieces.note(f"{summary(found)} Numbers are in the paper's units.")
     shown = [
         (
             Html(f"<b>{html.escape(r.statement.where)}</b>"),
