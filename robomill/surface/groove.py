@@ -17,7 +17,7 @@ from robomill.errors import SurfaceError
 from robomill.progress import checkpoint
 from robomill.surface.passes import tool_axes
 from robomill.surface.raster import skin_on_line
-from robomill.surface.section import LIKE, NO_FLOOR, ONE_HEIGHT, REACH, TURN, TURNS, Found, Seen
+from robomill.surface.section import ASLANT, LIKE, NO_FLOOR, ONE_HEIGHT, REACH, STEPS, TURN, TURNS, Found, Seen
 from robomill.surface.section_law import MEASURES, Kind, kind_of
 from robomill.surface.stock import Stock, stock_span
 from robomill.surface.swept import CutPath, Station, SweptPath, station_at, swept_path
@@ -27,6 +27,7 @@ NAN = float("nan")
 SIDES = {1.0: "left", -1.0: "right"}
 OWN_PATH = 1.5  # cutter diameters of the path, before and after a station, whose walls are its own
 SAME = 1e-7  # m: walls that stand so close are one
+ALONG = 0.02  # tangent: a flank that leans shows its lean where it runs along the feed
 NEIGHBOUR = "another pass took away a wall that this one was told to leave, so the middle is not measured"
 
 
@@ -194,7 +195,9 @@ def _section(paths: tuple[SweptPath, SweptPath, SweptPath], at: _Tool, samples: 
         note = "the deflected tool cuts nothing here"
         return replace(bare, note=note, why=dict.fromkeys(bare.measures, note))
     if kind == "free":
-        return replace(bare, **seen.normal_error(w), floor=seen.floors[1])  # type: ignore[arg-type]
+        error = seen.normal_error(w)
+        why = {} if error else dict.fromkeys(bare.measures, STEPS)
+        return replace(bare, **error, floor=seen.floors[1], why=why)  # type: ignore[arg-type]
     turns = {side: _direction(paths[0], at, seen, (side, ideal)) for side, ideal in sides.items()}
     return _measured(bare, seen, sides, turns)
 
@@ -221,8 +224,9 @@ def _seen(paths: tuple[SweptPath, SweptPath], at: _Tool) -> Seen | None:
         Line(path.heights(place.centre, place.normal, float(high - low)), skin, low, high, cutter.radius)
         for path in paths
     )
-    rises = float(at.move[2] / np.linalg.norm(at.move[:2]))
-    return Seen(told, left, (middles[0], middles[1]), cutter, float(stock.lower[2]), at.lean, rises)
+    plan = float(np.linalg.norm(at.move[:2]))
+    rises, along = float(at.move[2] / plan), float(at.k[:2] @ at.move[:2] / plan / at.k[2])
+    return Seen(told, left, (middles[0], middles[1]), cutter, float(stock.lower[2]), at.lean, rises, rises + along)
 
 
 def _of_own_path(
@@ -291,10 +295,15 @@ def _measured(bare: GrooveSection, seen: Seen, sides: dict[float, Side], turns: 
         name, form = f"wall_{SIDES[which]}", seen.form(which, ideal)
         error = seen.wall_error(which, ideal, turns[which])
         lost = error.why if np.isnan(error.value) and error.why != TURNS else ""
+        aslant = seen.cutter.conical and not abs(turns[which]) <= ALONG
         found[f"{name}_ideal"], found[f"{name}_error"] = Found(ideal.w), error
         found[name] = Found(why=lost) if lost else seen.edge(which, ideal)
-        found[f"{name}_angle"] = Found(why=lost) if lost else Found(form.angle, form.why)
-        found[f"{name}_straightness"] = Found(why=lost) if lost else Found(form.straightness, form.why)
+        found[f"{name}_angle"] = (
+            Found(why=lost) if lost else Found(*((NAN, ASLANT) if aslant else (form.angle, form.why)))
+        )
+        found[f"{name}_straightness"] = (
+            Found(why=lost) if lost else Found(*((NAN, ASLANT) if aslant else (form.straightness, form.why)))
+        )
     stand = {which: wall for which, wall in walls.items() if np.isfinite(found[f"wall_{SIDES[which]}"].value)}
     found["depth"] = Found(why=NO_FLOOR) if seen.through else Found(seen.top(stand) - seen.floors[1])
     if len(walls) == 2:

@@ -15,6 +15,7 @@ REACH, SHOWN = 2.5, 3.25  # cutter radii to either side that a section measures,
 LIKE = 0.25  # of the radius: walls that stand so close are one as told and as left
 ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 FLOOR_POINTS = 21
+MOST_HEEL = 0.05  # tangent: on steeper ramps the floor is round across
 STEP = 5e-6  # m: a floor that is off its line across by more has steps, and no lean
 HEEL = 0.15  # of the radius times the slope of the path: how round its heel leaves half of a floor (1 - cos 30 degrees)
 STEEPER = 1.0  # against the free surface's own slope: what is steeper is the flank beside it
@@ -23,7 +24,9 @@ UNDERCUT = 1e-3  # sine of the tool's lean across, from which the wall on one si
 
 NO_FLOOR = "cut through the stock: there is no floor"
 ROUND_FLOOR = "the cutter leaves no straight floor"
-STEPPED_FLOOR = "several passes here: the floor is stepped"
+STEPPED_FLOOR = "the floor is not straight across here: several passes, or a path that climbs"
+STEPS = "steps all over: no surface of its own here"
+ASLANT = "the wall does not run along the feed here"
 LEANS = "the floor leans with the tool"
 ROUND_WALL = "the flank is round: a nose made it"
 HIDDEN = "the wall leans back under its lip"
@@ -44,7 +47,7 @@ class Found:
 class Seen:
     """A section line with both its surfaces: ``told`` and ``left``, the axis ``at`` (m on either), the ``cutter``, the
     stock's ``bottom`` m, how far the tool ``leans`` to the left of the feed (the sine), and how steep (the tangent) the
-    feed ``rises``."""
+    feed ``rises``, and how steep against the cutter's flat (``heel``)."""
 
     told: Line
     left: Line
@@ -53,6 +56,7 @@ class Seen:
     bottom: float
     leans: float
     rises: float
+    heel: float
 
     @property
     def shift(self) -> float:
@@ -77,9 +81,25 @@ class Seen:
         return np.linspace(low, high, samples)
 
     def floor_error(self) -> Found:
-        """Machined floor minus ideal floor, each at its axis."""
+        """Machined floor minus ideal floor, each at its axis; beside a step of the ideal one there is none."""
         told, left = self.floors
-        return Found(why=NO_FLOOR) if self.through else Found(left - told)
+        if self.through:
+            return Found(why=NO_FLOOR)
+        beside = abs(self.shift) + LIKE * self.cutter.radius
+        if beside <= self.cutter.flat_radius:
+            across = np.linspace(-beside, beside, FLOOR_POINTS)
+            w = self.at[0] + across[(self.at[0] + across > self.told.low) & (self.at[0] + across < self.told.high)]
+            z = self.told.height(w)
+            cut = z < self.told.skin(w) - ONE_HEIGHT
+            if not self._straight(w[cut] - self.at[0], z[cut] - told):
+                return Found(why=STEPPED_FLOOR)
+        return Found(left - told)
+
+    def _straight(self, across: FloatArray, z: FloatArray) -> bool:
+        """Whether heights z (q,) m over a floor's middle are those of a flat that leans as the tool does."""
+        lean = -self.leans / np.sqrt(1.0 - self.leans**2)
+        heel = HEEL * min(abs(self.heel), MOST_HEEL) * self.cutter.radius
+        return bool(np.ptp(z - lean * across) <= STEP + heel)
 
     def edge(self, side: float, ideal: Side) -> Found:
         """Where the machined counterpart of an ideal wall has its edge."""
@@ -138,10 +158,9 @@ class Seen:
             ends.append(side * min(0.5 * room, most))
         across = np.linspace(ends[0], ends[1], FLOOR_POINTS)
         z = self.left.height(middle + across) - floor
-        slope, offset = np.polyfit(across, z, 1)
-        if np.ptp(z - slope * across - offset) > STEP + HEEL * abs(self.rises) * self.cutter.radius:
+        if not self._straight(across, z):
             return Found(why=STEPPED_FLOOR)
-        return Found(float(np.arctan(slope)))
+        return Found(float(np.arctan(np.polyfit(across, z, 1)[0])))
 
     def flatness(self, w: FloatArray) -> Found:
         """Range of the machined floor over what of the ideal one is in reach of the section, beside walls and steps."""
@@ -168,8 +187,8 @@ class Seen:
         if near.sum() < 3:
             return {}
         across = float(np.polyfit(w[near], told[near], 1)[0])
-        cut &= np.abs(np.gradient(told, w) - across) <= STEEPER
-        cut &= np.abs(np.gradient(left, w) - across) <= STEEPER
+        steep = np.abs(np.gradient(np.stack([told, left]), w, axis=1) - across).max(axis=0) > STEEPER
+        cut &= _eroded(~steep, int(np.ceil(LIKE * self.cutter.radius / (w[1] - w[0]))))
         if not cut.any():
             return {}
         slope = float(np.hypot(across, self.rises))
@@ -193,8 +212,10 @@ class Seen:
         return Found(off / np.hypot(1.0, direction)) if np.isfinite(direction) else Found(why=TURNS)
 
     def is_own(self, ideal: Side) -> bool:
-        """Whether the pass itself was told to leave a wall."""
-        return abs(ideal.w - self.at[0]) <= OWN * self.cutter.radius
+        """Whether the pass itself was told to leave a wall: it stands as far from the axis as the cutter reaches."""
+        rise = (ideal.top - self.floors[0]) * (1.0 if ideal.of_stock else 0.5)
+        reaches = float(self.cutter.radius_at(max(rise, 0.0)))
+        return abs(abs(ideal.w - self.at[0]) - reaches) <= (OWN - 1.0) * self.cutter.radius
 
 
 def _eroded(mask: BoolArray, by: int) -> BoolArray:

@@ -21,7 +21,7 @@ STEPPED = 0.1  # of a wall's height: where its place jumps by more from one leve
 SHORTEST = 0.1e-3  # m: the lean and the form of a wall that is lower say nothing
 
 Ends = Literal["wall", "open", "lower", "crest", "slope"]
-SHORT = f"the wall is lower than {SHORTEST * 1e3:g} mm"
+SHORT = "the wall is too low for its lean to be measured"
 SEVERAL = "several passes here: the wall is stepped"
 
 

@@ -262,11 +262,16 @@ def test_a_slot_has_as_much_wall_whatever_the_corner_of_its_cutter(corner):
 def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
     error = np.array([0.1, -0.3, 0.2, -0.2])
     found = Readings(np.arange(4), error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]), error)
-    assert found.area() == pytest.approx(0.5 + 6.0 + 1.0 + 0.8)
-    assert found.area(0.15) == pytest.approx(6.0 + 1.0 + 0.8)
-    assert found.area(0.25) == pytest.approx(6.0)
+    assert found.area_out(0.3) == pytest.approx((0.0, 0.5 + 6.0 + 1.0 + 0.8))
+    assert found.area_out(0.15)[0] == pytest.approx(6.0 + 1.0 + 0.8)
+    assert found.area_out(0.25)[0] == pytest.approx(6.0)
     assert found.share_out(0.15) == pytest.approx(14 / 15)
     assert found.share_out(0.3) == 0.0
+    # A single place that stands for no length of its own is still out: a ten-thousandth, and all where nothing else is.
+    single = Readings(np.arange(2), np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2), error[:2])
+    assert single.share_out(0.3) == pytest.approx(1e-4)
+    assert single.area_out(0.3) == pytest.approx((5e-4, 5.0))
+    assert Readings(np.arange(1), np.array([0.4]), np.zeros(1), np.ones(1), error[:1]).share_out(0.3) == 1.0
     assert found.worst == 1
 
 
@@ -420,8 +425,10 @@ def test_floors_of_a_sample_stand_for_its_length_together_and_so_does_each_wall(
     assert places.max() > 2
     over = np.bincount(found.floors.sample, found.floors.length, minlength=len(length))
     np.testing.assert_allclose(over[places > 0], length[places > 0], atol=1e-12)
-    assert found.floors.area() == pytest.approx(2 * R * length[places > 0].sum())
+    assert found.floors.area_out(1.0)[1] == pytest.approx(2 * R * length[places > 0].sum())
     if name in ("slot", "spring pass", "rib"):  # both walls stand
         beside = np.bincount(found.walls.sample, found.walls.length, minlength=len(length))
         np.testing.assert_allclose(beside[places > 0], 2 * length[places > 0], atol=1e-12)
-        assert found.walls.area() == pytest.approx(2 * 2e-3 * length[places > 0].sum())  # the slots are 2 mm deep
+        assert found.walls.area_out(1.0)[1] == pytest.approx(
+            2 * 2e-3 * length[places > 0].sum()
+        )  # the slots are 2 mm deep

@@ -100,7 +100,7 @@ def test_a_slot_as_shallow_as_a_scratch_has_place_and_depth_and_no_lean(depth):
     assert found.centre_offset == pytest.approx(0.1e-3, abs=EXACT)
     assert found.depth == pytest.approx(1e-3 * depth + 0.004e-3, abs=EXACT)
     assert np.isnan([found.wall_left_angle, found.wall_left_straightness]).all()
-    assert "lower than 0.1 mm" in found.why["wall_left_angle"]
+    assert "too low" in found.why["wall_left_angle"]
 
 
 @pytest.mark.parametrize("z", [-10.0, -12.0])
@@ -336,7 +336,7 @@ def test_a_wall_that_another_pass_made_is_measured_along_its_own_normal(turn):
 def test_rows_pushed_to_different_depths_do_not_tilt_the_floor():
     """Two rows 1 mm apart: the deeper one's rim passes 3 mm from the axis of the other; a step is not a tilt."""
     found = section([slot(), slot(y=5.0)], FLAT, moved=np.array([[0, 0, 0.0], [0, 0, -0.5e-3]]))
-    assert found.floor_tilt == pytest.approx(0.0, abs=1e-6) or "stepped" in found.why["floor_tilt"]
+    assert found.floor_tilt == pytest.approx(0.0, abs=1e-6) or "not straight" in found.why["floor_tilt"]
 
 
 # --- free surfaces ---------------------------------------------------------------------------------------------------
@@ -351,8 +351,9 @@ def test_a_ball_raster_has_crests_of_s2_by_8r_and_an_error_along_its_normal(s):
     near = np.abs(found.w) < 1.01 * s * 1e-3
     crest = np.ptp(found.z_ideal[near])
     r = 4e-3
-    assert crest == pytest.approx(r - np.sqrt(r * r - (0.5e-3 * s) ** 2), rel=0.05)
-    assert crest == pytest.approx((1e-3 * s) ** 2 / (8 * r), rel=0.12)
+    height, sampled = r - np.sqrt(r * r - (0.5e-3 * s) ** 2), (found.w[1] - found.w[0]) * 0.5e-3 * s / r
+    assert height - sampled < crest <= height + 1e-12  # drawn at points, one of which is beside the crest
+    assert height == pytest.approx((1e-3 * s) ** 2 / (8 * r), rel=0.03)
     for name in ("error_mean", "error_max"):
         assert getattr(found, name) == pytest.approx(-0.06e-3, abs=EXACT)
     assert found.error_rms == pytest.approx(0.06e-3, abs=EXACT)
