@@ -184,3 +184,27 @@ def test_past_a_limit_by_how_much_and_on_which_side():
     np.testing.assert_array_equal(overshoot(ROBOT, 0.5 * (low + high)), 0.0)
     np.testing.assert_allclose(overshoot(ROBOT, high + 0.1), 0.1)
     np.testing.assert_allclose(overshoot(ROBOT, low - 0.2), -0.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "spin", "whole"),
+    [
+        *(("slavkovic_5r", spin, False) for spin in ("fixed", "least_motion")),
+        *(("fanuc_r2000ic", spin, True) for spin in ("fixed", "least_motion", 0.3)),
+        *(("kuka_kr500", spin, spin != "least_motion") for spin in ("fixed", "least_motion", 0.3)),
+    ],
+)
+def test_a_turn_of_the_tool_about_itself_excuses_joints_that_have_to_make_it(name, spin, whole, monkeypatch):
+    """Six joints follow the whole pose, at one spin for all of a path; but where the spindle is on the last axis and
+    its spin is free that axis stays, and five axes leave the spin open."""
+    said = set()
+
+    def noted(robot, theta, possible, T_MT, of_all):
+        said.add(of_all)
+        return join(robot, theta, possible, T_MT, of_all)
+
+    monkeypatch.setattr("robomill.kinematics.inverse.join", noted)
+    robot = rm.load_robot(name)
+    theta = robot.home + np.linspace(0.05, 0.1, 4)[:, None]
+    assert rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near="path", spin=spin).reached.any()
+    assert said == {whole}
