@@ -37,6 +37,7 @@ def test_numbers_by_numeric_derivatives(name):
     np.testing.assert_allclose(here.C, (J @ C_theta @ J.T)[:3, :3], rtol=1e-6, atol=1e-12)
     # A force by hand: each joint turned by what its torque makes it give.
     F = np.array([30.0, -20.0, 50.0])
+    np.testing.assert_allclose(here.delta(F), (J @ (robot.C_theta * (J[:3].T @ F)))[:3], rtol=1e-6, atol=1e-10)
     for i in range(robot.n):
         tip, axis = here.T_MT[:3, 3], here.frames[i][:3, 2]
         torque = J[:3, i] @ F
