@@ -117,7 +117,8 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         return
     measured = session.kept(MEASURED)
     fit = None
-    if result.path.goes_one_way and np.isfinite(found.centre_offset).sum() >= 3:
+    both = np.isfinite(found.centre_offset) & np.isfinite(found.floor_error)
+    if result.path.goes_one_way and both.sum() >= 3:
         fit = fit_groove(found)
     limits = [float(from_si(each.tolerance, unit)) for each in (result.verdict.wall, result.verdict.floor)]
     curves = ProfileCurves(
@@ -158,7 +159,9 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
             ]
         )
     else:
-        pieces.note("Best fit (shift and turn against form) needs one straight groove; here there is none.")
+        pieces.note(
+            "Best fit (shift and turn against form) needs one straight groove with a floor; here there is none."
+        )
     _overlay(found, measured, unit)
 
 
