@@ -43,7 +43,7 @@ def picture(found: InHand, old: PoseReport) -> None:
         return
     choice = st.container()
     left, right = pieces.split([2.2, 1], "maps", gap="small")
-    with left:
+    with left, st.container(key="maps-room"):
         plane.picture("sheet", _show, choice)
     with right:
         point.bars(found, old, session.project().view.length)

@@ -153,7 +153,8 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
 def picture() -> None:
     """The picture with its own controls; a slider step redraws this part alone."""
     shown = {"plane": _plane, "pair": _pair, "solid": _solid}
-    plane.picture("picture", lambda region: shown[region.view.picture](region))
+    with st.container(key="maps-room"):
+        plane.picture("picture", lambda region: shown[region.view.picture](region))
 
 
 def _plane(region: Region) -> None:
