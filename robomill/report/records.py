@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
+from robomill.report.settled import settled
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
@@ -17,23 +18,23 @@ from robomill.workspace.fields import Field
 
 
 def jsonable(value: Any) -> Any:
-    """Arrays as lists, NaN and infinity as null: JSON has no word for them."""
+    """Arrays as lists, numbers to 12 significant digits, NaN and infinity as null: JSON has no word for them."""
     if isinstance(value, dict):
         return {str(k): jsonable(v) for k, v in value.items()}
     if isinstance(value, np.ndarray):
-        return jsonable(value.tolist())
+        return jsonable((settled(value) if value.dtype.kind == "f" else value).tolist())
     if isinstance(value, list | tuple):
         return [jsonable(v) for v in value]
     if isinstance(value, np.generic):
         return jsonable(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
+    if isinstance(value, float):
+        return float(f"{value:.12g}") if math.isfinite(value) else None
     return value
 
 
 def shown(value: ArrayLike, unit: str) -> Any:
-    """SI array in ``unit``, as plain floats."""
-    return np.asarray(from_si(np.asarray(value, dtype=float), unit)).tolist()
+    """SI array in ``unit``, ``settled``, as plain floats."""
+    return settled(from_si(np.asarray(value, dtype=float), unit)).tolist()
 
 
 def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:

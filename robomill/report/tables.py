@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
 from robomill.progress import slices
+from robomill.report.settled import settled
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 
@@ -72,10 +73,11 @@ def section_columns(result: SimulationResult) -> dict[str, FloatArray | NDArray[
 
 
 def csv_text(columns: Mapping[str, FloatArray | NDArray[np.str_]]) -> str:
-    """Columns as CSV; NaN is an empty cell."""
+    """Columns as CSV, those of numbers ``settled``; NaN is an empty cell."""
+    shown = [settled(column) if column.dtype.kind == "f" else column for column in columns.values()]
     lines = [",".join(columns)]
-    for some in slices(min((len(column) for column in columns.values()), default=0), "Rows"):
-        cells = [[_cell(v) for v in column[some].tolist()] for column in columns.values()]
+    for some in slices(min(map(len, shown), default=0), "Rows"):
+        cells = [[_cell(v) for v in column[some].tolist()] for column in shown]
         lines += [",".join(row) for row in zip(*cells, strict=True)]
     return "\n".join(lines) + "\n"
 

@@ -14,7 +14,8 @@ import streamlit as st
 from robomill.errors import RobomillError
 from robomill.progress import slices
 from robomill.provenance import Provenance
-from robomill.ui import beside, cached
+from robomill.report.settled import settled
+from robomill.ui import beside, cached, session
 from robomill.ui.job import Underway
 from robomill.ui.markup import Html, as_html, as_markdown, quiet
 from robomill.units import split_unit
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
 ROW = 36  # pixels of a row of a table
+DIGITS = "%.12g"  # of a number in a file: what comes after is rounding
 CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
 MIME = {
@@ -229,7 +231,7 @@ def figure(
             "pan3d",
             "zoom3d",
         ],
-        "toImageButtonOptions": {"format": "png", "filename": f"robomill-{file_name}", "scale": 2},
+        "toImageButtonOptions": {"format": "png", "filename": named(file_name), "scale": 2},
     }
     more: dict[str, Any] = {}
     if on_pick is not None:
@@ -279,13 +281,25 @@ def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "")
             return tuple(frame.columns), pd.util.hash_pandas_object(frame).to_numpy()
 
         making = Making(CELL_S * frame.size, about)
-        download("CSV", partial(_csv, frame), f"robomill-{name}.csv", f"csv:{name}", making)
+        download("CSV", partial(_csv, frame), named(f"{name}.csv"), f"csv:{name}", making)
 
 
 def _csv(frame: DataFrame) -> str:
     """The whole table, some rows at a time."""
-    parts = [frame[some].to_csv(index=False, header=not some.start) for some in slices(len(frame), "Rows")]
-    return "".join(parts) or frame.to_csv(index=False)
+    frame = frame.assign(**{name: settled(column) for name, column in frame.items() if column.dtype.kind == "f"})
+    how: dict[str, Any] = {"index": False, "float_format": DIGITS}
+    parts = [frame[some].to_csv(header=not some.start, **how) for some in slices(len(frame), "Rows")]
+    return "".join(parts) or frame.to_csv(**how)
+
+
+def named(file: str) -> str:
+    """The name of a file that is taken away, with the project's in front: ``heart-surface.stl``."""
+    return f"{called()}-{file}"
+
+
+def called() -> str:
+    """The project's name as files carry it."""
+    return re.sub(r"[^A-Za-z0-9]+", "-", session.project().setup.name).strip("-").lower() or "project"
 
 
 @dataclass(frozen=True)
@@ -312,7 +326,7 @@ def download(
         data = attempt(cached.asked_for, label, key, making.about(), data)
         if data is None:
             return
-        label, more = f"Save {file_name}", {"type": "primary"} | more
+        label, more = f"Save {file_name.removeprefix(named(''))}", {"type": "primary"} | more
     more = {"icon": ":material/download:", "on_click": "ignore"} | more
     made = data if callable(data) else lambda: data  # not looked through at every run
     st.download_button(label, made, file_name, MIME[file_name.rpartition(".")[2]], key, **more)

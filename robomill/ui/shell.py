@@ -1,6 +1,5 @@
 """What every page begins with: page config, style, project store and sidebar."""
 
-import re
 import sys
 import threading
 from pathlib import Path
@@ -21,7 +20,6 @@ from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
-SIDEBAR = 248  # pixels wide
 BYTE_S = 4e-8  # s that a byte of a project takes to be written
 CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
@@ -72,7 +70,7 @@ _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css=
 
 def begin(title: str) -> Project:
     """Start a page: the first call of every page. Returns the project of this session."""
-    st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide", initial_sidebar_state=SIDEBAR)
+    st.set_page_config(page_title=f"{title} · robomill", page_icon=ICON, layout="wide")
     if menu.group_pages():
         st.rerun()
     p = palette(dark())
@@ -141,7 +139,7 @@ def _files(held: session.Store) -> None:
         pieces.download(
             "Save",
             lambda: project_to_toml(project),
-            _file_name(project.setup.name),
+            f"{pieces.called()}{SUFFIX}",
             "save",
             pieces.Making(
                 BYTE_S * weight(project.setup), lambda: (project.digest(), project.view, project.preset, project.maps)
@@ -162,7 +160,3 @@ def _open(data: bytes, name: str) -> None:
     reason = session.open_text(read_text(data, ProjectError, SETUP, name)[0])
     if reason:
         raise ProjectError(f"{name} was not opened. {reason} Your project is as it was.")
-
-
-def _file_name(name: str) -> str:
-    return (re.sub(r"[^A-Za-z0-9]+", "-", name).strip("-").lower() or "project") + SUFFIX

@@ -94,6 +94,6 @@ def _finished(job: Job) -> None:
         st.image(job.made, width="stretch")
     else:
         st.video(job.made, autoplay=True, loop=True, muted=True)
-    pieces.download(f"Film {KINDS[film.kind]}", job.made, f"cut.{film.kind}", "milling.get.film")
+    pieces.download(f"Film {KINDS[film.kind]}", job.made, pieces.named(f"cut.{film.kind}"), "milling.get.film")
     size = len(job.made) / 1e6
     pieces.note(f"{film.frames} pictures, {size:.1f} MB, displacement shown {format_times(film.times, 6)}.")

@@ -11,7 +11,7 @@ from robomill.report.tables import csv_text, deviation_columns
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
-from robomill.ui import cached, pieces, rendered, session
+from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui.milling import live_cut
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si
@@ -22,6 +22,8 @@ from robomill.viz.views import surface_picture
 PLACE = "milling.picture"
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
+FULL = "milling.get.full"
+FEW_TRIANGLES, MOST_TRIANGLES = 150_000, 2_000_000  # of a solid that is taken away: an STL below 10 MB, and all of it
 # s on a desktop of 2024, measured: a picture; a sample's row; a cell of a solid, with its error, and one with a wall.
 DRAWING_S, ROW_S, CELL_S, FIELD_S, WALL_S = 1.0, 3e-5, 3e-7, 4e-7, 6e-6
 
@@ -68,8 +70,9 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
 
 
 def downloads(result: SimulationResult, i: int) -> None:
-    """Deviation as CSV, picture as PNG, the surface in the formats people ask for."""
-    setup = result.setup
+    """Deviation as CSV, picture as PNG, the surface in the formats people ask for, thinned unless all of it is."""
+    setup, full = result.setup, bool(session.kept(FULL, False))
+    most = MOST_TRIANGLES if full else FEW_TRIANGLES
 
     def making(seconds: float) -> pieces.Making:
         return pieces.Making(seconds, lambda: cached.by_result(result))
@@ -77,15 +80,29 @@ def downloads(result: SimulationResult, i: int) -> None:
     with st.container(horizontal=True, gap="small"):
         table = partial(_csv, result)
         long = making(ROW_S * len(result.path))
-        pieces.download("Deviation CSV", table, "deviation.csv", "milling.get.deviation", long)
+        pieces.download("Deviation CSV", table, pieces.named("deviation.csv"), "milling.get.deviation", long)
         key, make = scene(result, i, False)
         long = pieces.Making(0.0 if rendered.there(key) else DRAWING_S, lambda: key)
-        pieces.download("Picture PNG", partial(rendered.now, PLACE, key, make), "groove.png", "milling.get.png", long)
+        pieces.download(
+            "Picture PNG", partial(rendered.now, PLACE, key, make), pieces.named("part.png"), "milling.get.png", long
+        )
         for kind in FORMATS:
-            solid, long = partial(_mesh, result, kind), making(_mesh_seconds(result, kind))
-            pieces.download(f"Surface {kind.upper()}", solid, f"surface.{kind}", f"milling.get.{kind}", long)
-    cells = format_si(setup.cell, session.project().view.length, 2)
-    pieces.note(f"Surfaces are closed solids in mm, true to size, with cells of {cells}; VTP carries the signed error.")
+            solid = partial(_mesh, result, kind, most)
+            long = pieces.Making(_mesh_seconds(result, kind), lambda: (cached.by_result(result), most))
+            name = pieces.named(f"surface.{kind}")
+            pieces.download(f"Surface {kind.upper()}", solid, name, f"milling.get.{kind}", long)
+    every = format_si(max(_spacing(result, most), setup.cell), session.project().view.length, 2)
+    inputs.switch("Surfaces with every cell", FULL, full, partial(session.keep, FULL))
+    pieces.note(
+        f"Surfaces are closed solids in mm, true to size, with a height every {every} and each wall in its place; "
+        "VTP carries the signed error."
+    )
+
+
+def _spacing(result: SimulationResult, most: int) -> float:
+    """How far apart (m) the heights of a solid of about ``most`` triangles lie."""
+    low, high = result.setup.stock_block.lower[:2], result.setup.stock_block.upper[:2]
+    return float(np.sqrt(2.0 * np.prod(high - low) / most))
 
 
 def _csv(result: SimulationResult) -> str:
@@ -100,6 +117,6 @@ def _mesh_seconds(result: SimulationResult, kind: str) -> float:
     return surface.z.size * (CELL_S + (FIELD_S if kind == "vtp" else 0.0)) + len(surface.edge.index) * WALL_S
 
 
-def _mesh(result: SimulationResult, kind: str) -> bytes:
+def _mesh(result: SimulationResult, kind: str, most: int) -> bytes:
     error = np.asarray(result.error.error) if kind == "vtp" else None
-    return mesh_bytes(result.machined, kind, error=error)
+    return mesh_bytes(result.machined, kind, error=error, max_faces=most)

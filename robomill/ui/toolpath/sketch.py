@@ -115,4 +115,4 @@ def _export() -> None:
 
         return write_gcode(setup.toolpath, units=unit, title=f"sketch, {setup.name}")
 
-    pieces.download("G-code of this sketch", text, "sketch.nc", "toolpath.export")
+    pieces.download("G-code of this sketch", text, pieces.named("sketch.nc"), "toolpath.export")
