@@ -126,3 +126,12 @@ def test_part_zero_and_the_table_of_lines(page: Any) -> None:
     open_page(page, "Robot")
     open_page(page, "Toolpath")
     assert cell(page, 0, 3) == "12.5"
+
+
+def test_stiffness_typed_beside_the_compliance_changes_both(page: Any) -> None:
+    open_page(page, "Robot")
+    type_into_cell(page, (0, 2), 0.85, "1000,5", "Joint 1, stiffness: 1000,5 is 1000.5 kN m/rad.")
+    assert (cell(page, 0, 1), cell(page, 0, 2)) == ("9.995", "1000.5")
+    type_into_cell(page, (1, 1), 0.5, "20,5", "Joint 2, compliance: 20,5 is 20.5 ×10⁻⁷ rad/(N m).")
+    assert cell(page, 1, 2) == "487.805"
+    assert cell(page, 0, 2) == "1000.5"
