@@ -8,7 +8,10 @@ from robomill.errors import GCodeError
 from robomill.files import PROGRAM, check_size, read_file
 
 Source = str | bytes | bytearray | Path
-SUFFIXES = (".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min")
+SUFFIXES = (
+    *(".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"),
+    *(".apt", ".aptsource", ".cls", ".cl", ".ncl", ".ncf", ".ptp", ".iso", ".h"),
+)
 
 
 def read_source(source: Source) -> tuple[bytes, str]:

@@ -1,9 +1,12 @@
 """What is doubted of a program that has been read: findings that a person should look at before trusting its path."""
 
+import re
+
 import numpy as np
 
 from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.program import TRAVERSE, Program
@@ -14,10 +17,32 @@ LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
 MOST_SAID = 1000
 """Stretches of a program that one finding counts."""
+FEW, RARE = 20, 0.02
+"""So many coordinates show how a program writes its numbers, and of so small a share a whole number is a slip."""
+SAMPLE = 2_000_000
+"""Bytes at the start of a program in which that is looked for."""
+_COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJKxyzijk](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
 LONG_DWELL = 60.0
 """s, on average over a program: so long none waits, so the number is in another unit."""
+
+
+def doubt_points(findings: Findings, data: bytes) -> None:
+    """Note whole numbers among coordinates that have a decimal point: many controls count them in thousandths."""
+    words = _COORDINATE.findall(data[:SAMPLE])
+    whole = [number for number in words if b"." not in number and int(number) != 0]
+    if len(words) < FEW or not whole or len(whole) > RARE * len(words):
+        return
+    for found in _COORDINATE.finditer(data):
+        if b"." not in found[1] and int(found[1]) != 0:
+            line = data.count(b"\n", 0, found.start()) + 1
+            text = (
+                f"{found[0].decode('ascii', 'replace')} has no decimal point where nearly all others have one: it is "
+                "read as whole units; many controls (Fanuc) take it for thousandths: write the point"
+            )
+            findings.add("no-point", "suspicious", line, text)
+            return
 
 
 def doubt(machine: Machine, program: Program) -> None:
@@ -134,7 +159,7 @@ def _doubt_size(machine: Machine, program: Program) -> None:
     size = float(np.subtract(*program.extents[::-1]).max())
     inch = to_si(1.0, "in") / to_si(1.0, "mm")
     shown = format_si(size, "mm", 1)
-    if machine.unit_said != "in" and 0.0 < size < LIKELY[0]:
+    if not machine.unit_said and 0.0 < size < LIKELY[0]:
         other = format_si(size * inch, "mm", 1)
         machine.findings.add(
             "size-doubt", "suspicious", 0, f"the part is {shown} across; if the program means inches, it is {other}"

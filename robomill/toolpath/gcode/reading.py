@@ -11,7 +11,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
-from robomill.toolpath.gcode.doubts import doubt
+from robomill.toolpath.gcode.doubts import doubt, doubt_points
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -78,6 +78,8 @@ def interpret(
         machine.findings.add(
             "dialect-guessed", "info", 0, f"read as {chosen.name} code; this is a guess from how it looks"
         )
+    if chosen.has_macros:
+        doubt_points(machine.findings, data)
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
 
 

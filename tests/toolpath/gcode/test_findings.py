@@ -77,7 +77,7 @@ def found(text: str, code: str, **more):
 @pytest.mark.parametrize(
     ("mm", "said_unit", "other"),
     [
-        (7.9, "G21\n", "200.7 mm"),
+        (7.9, "G21\n", ""),
         (8.0, "G21\n", ""),
         (7.9, "", "200.7 mm"),
         (7.9, "G20\n", ""),
@@ -87,7 +87,7 @@ def found(text: str, code: str, **more):
     ],
 )
 def test_a_part_of_an_unlikely_size_is_doubted(mm: float, said_unit: str, other: str) -> None:
-    """Measured along its longest side, by the moves at feed."""
+    """Measured along its longest side, by the moves at feed. A small part is doubted where no unit is said."""
     size = mm / 25.4 if said_unit == "G20\n" else mm
     text = f"{said_unit}F100\nG0 X-9000 Y0\nX0\nG1 Y{size} X{0.5 * size}\nG0 Z9000\nM2\n"
     doubts = found(text, "size-doubt")

@@ -218,7 +218,7 @@ def test_turned_axes_are_written_where_one_turns(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("radius", "doubted"), [(2, True), (5, False), (1400, False), (1600, True)])
 def test_a_part_is_as_large_as_its_arcs(radius, doubted):
     """A full circle ends where it starts; from 8 mm to 3 m across a part is not doubted."""
-    program = interpret(f"G21 S900 M3 F100\nG0 X3 Y4\nG2 I{radius}\nM2\n")
+    program = interpret(f"S900 M3 F100\nG0 X3 Y4\nG2 I{radius}\nM2\n")
     np.testing.assert_allclose(np.subtract(*program.extents[::-1]), [2e-3 * radius, 2e-3 * radius, 0], atol=1e-12)
     assert ("size-doubt" in {f.code for f in program.findings}) is doubted
 

@@ -1,0 +1,38 @@
+"""What is doubted of a program that can be read."""
+
+from __future__ import annotations
+
+import pytest
+
+from robomill.toolpath.gcode import interpret
+
+POINTS = "".join(f"X{k}.5 Y{k}.\n" for k in range(60))
+
+
+@pytest.mark.parametrize(
+    ("slip", "dialect", "said"),
+    [
+        ("X100", "auto", True),
+        ("Z-5", "fanuc", True),
+        ("X100", "grbl", False),
+        ("X0", "auto", False),
+        ("X100.", "auto", False),
+        ("(X100)", "auto", False),
+        ("#100=5\nX#100", "auto", False),
+    ],
+)
+def test_a_missing_decimal_point_among_numbers_that_have_one_is_doubted(slip: str, dialect: str, said: bool) -> None:
+    found = interpret(f"G21 G90\nG1 F100 X1.\n{POINTS}{slip}\nM30\n", dialect=dialect).findings
+    doubts = [(f.line, f.level, f.message.split()[0]) for f in found if f.code == "no-point"]
+    assert doubts == [(63, "suspicious", slip)] * said
+
+
+def test_programs_that_write_whole_numbers_are_not_doubted() -> None:
+    text = "".join(f"X{k} Y{k}.5\n" for k in range(60))
+    assert not [f for f in interpret(f"G21 G90\nG1 F100 X1.\n{text}M30\n").findings if f.code == "no-point"]
+
+
+@pytest.mark.parametrize(("said", "doubted"), [("", True), ("G21 ", False), ("G20 ", False)])
+def test_a_small_part_is_doubted_only_where_no_unit_is_said(said: str, doubted: bool) -> None:
+    found = interpret(f"{said}G90 G0 Z1\nG1 X5 F100\nM30\n").findings
+    assert ("size-doubt" in {f.code for f in found}) == doubted
