@@ -124,10 +124,25 @@ def waiting(dark: bool) -> None:
     last = session.kept(running.LAST)
     with right:
         if last is not None:
-            live_cut.panel(last, dark)
+            with picture_place():
+                live_cut.panel(last, dark)
         words = "Nothing is computed yet: where a value is named above, or asked for among the inputs, give it."
         stays = "" if last is None else "; the picture is the last one"
         pieces.said("info", f"{words} What you typed is kept{stays}.")
+
+
+def picture_place() -> Any:
+    """Where the picture stands: it has its room before it is there."""
+    return st.container(key="milling-look")
+
+
+def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
+    """What holds at the position, and the verdict's tiles."""
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        linked.where(result, i, spread)
+        to_worst(result)
+    pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
+    pieces.tiles(tiles(result, verdict_tiles(result, session.project().view.length)))
 
 
 @st.fragment
@@ -148,19 +163,17 @@ def _looks(digest: str, dark: bool) -> None:
     result = running.shown(project.setup)
     if result is None:
         return
-    live_cut.panel(result, dark)
-    if live_cut.without_webgl():
-        picture_panel.rendered_picture(result, linked.index(result), dark)
+    picture, i = picture_place(), linked.index(result)
     known = pieces.attempt(spread_of, result)
+    if known is not None:
+        _numbers(result, i, known[0])
+    with picture:  # after the numbers, which are there sooner
+        live_cut.panel(result, dark)
+        if live_cut.without_webgl():
+            picture_panel.rendered_picture(result, i, dark)
     if known is None:
         return
     spread, peak = known
-    i = linked.index(result)
-    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        linked.where(result, i, spread)
-        to_worst(result)
-    pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
-    pieces.tiles(tiles(result, verdict_tiles(result, project.view.length)))
     question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
     if question == "force":
         with st.container(border=True):

@@ -93,8 +93,7 @@ def panel(result: SimulationResult, dark: bool) -> None:
         sent = {"about": made.about, "blob": made.blob}
         _parcel(key="milling.parcel", data={"digest": name, "parcel": sent}, height=1)
     shown = result.setup.digest() == session.project().setup.digest()
-    with st.container(key="milling-look"):
-        _show(result.setup.tolerance, name, dark, old=made is None or not shown)
+    _show(result.setup.tolerance, name, dark, old=made is None or not shown)
 
 
 def _show(tolerance: float, name: str, dark: bool, *, old: bool) -> None:
