@@ -19,7 +19,7 @@ LANGUAGES = {
         "trans atrans rot arot scale ascale mirror amirror if else endif while endwhile for endfor repeat until loop "
         "endloop gotof gotob gotoc case call mcall extern proc ret def set cycle pocket slot holes longhole supa "
         "workpiece transmit tracyl traori trafoof oriwks orimks stopre diamon diamof msg print",
-        "let the CAM system write the moves out, without frames, cycles, variables and jumps",
+        "let the CAM system write the moves out, without swivels, pockets and variables of its own",
     ),
 }
 """Languages: their words, of which two may have the same, and what to do about them."""

@@ -186,5 +186,7 @@ DIFFERENCES: tuple[str, ...] = (
     "A condition after ELSEIF is reckoned only if no branch before it was taken.",
     "A G1, G2 or G3 without a feed rate is refused, as on the machine; LinuxCNC's preview takes a feed of 1.",
     "Probing is taken to travel its whole way and to touch nothing.",
+    "Homes (G28, G30) and places in the machine (G53) are not known: the path stands clear of the part there.",
+    "What LinuxCNC refuses and other controls run (axis words after G80, G0 beside G28) is read unless it is stated.",
 )
 """Where reading differs from LinuxCNC 2.9, by design."""

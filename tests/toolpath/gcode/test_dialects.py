@@ -69,7 +69,7 @@ MEANS = [
     ("sinumerik", "G500 G0 X3 D1", "G54 G0 X3"),
     ("sinumerik", 'T="MILL_8" G0 X3', "G0 X3"),
     ("sinumerik", "G0 X3 ; X9", "G0 X3"),
-    ("sinumerik", "TRAORI\nFFWON\nCYCLE832(0.01,1)\nG0 X3", "\n\n\nG0 X3"),
+    ("sinumerik", "TRAORI\nFFWON\nCYCLE832(0.01,1)\nCYCLE800()\nG0 X3", "\n\n\n\nG0 X3"),
     ("sinumerik", "G4 F2\nG0 X1", "G4 P2\nG0 X1"),
 ]
 
