@@ -193,7 +193,9 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
         inputs.upload(
             "Measured profile (.csv): station_mm, offset_mm", "milling.profile.file", _take, most_MB=MAX_PROFILE_MB
         )
-        pieces.note("Station along the groove, offset of its middle, left of the feed positive; mm, um, m or in.")
+        pieces.note(
+            "Station along the groove, offset of its middle, left of the feed positive; the head of each column names its unit."
+        )
         if measured is not None:
             inputs.button("Remove the profile", "milling.profile.clear", "close", session.drop, MEASURED)
     if measured is None:
