@@ -9,12 +9,13 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.tool import Cutter
 from robomill.surface.section_law import has_floor, straight_part
-from robomill.surface.trace import AT_TOP, OWN, Line, Side, WallForm, first_above, wall_form
+from robomill.surface.trace import AT_TOP, OWN, SEVERAL, Line, Side, WallForm, first_above, wall_form
 
 REACH, SHOWN = 2.5, 3.25  # cutter radii to either side that a section measures, and shows
 LIKE = 0.25  # of the radius: walls that stand so close are one as told and as left
 ONE_HEIGHT = 1e-9  # m: heights that differ by less are one
 FLOOR_POINTS = 21
+MOST_LEAN = np.radians(5.0)  # against the cutter's own flank: what leans more is not the wall of one pass
 MOST_HEEL = 0.05  # tangent: on steeper ramps the floor is round across
 STEP = 5e-6  # m: a floor that is off its line across by more has steps, and no lean
 HEEL = 0.15  # of the radius times the slope of the path: how round its heel leaves half of a floor (1 - cos 30 degrees)
@@ -123,7 +124,10 @@ class Seen:
         part = straight_part(self.cutter, own, top)
         if part is None:
             return WallForm(why=ROUND_WALL)
-        return wall_form(self.left, self.at[1], side, (max(part[0], self.bottom), part[1]))
+        found = wall_form(self.left, self.at[1], side, (max(part[0], self.bottom), part[1]))
+        cone = self.cutter.half_angle if self.cutter.conical and part[0] == own else 0.0
+        lean = found.angle - (0.5 * np.pi + cone + np.arcsin(abs(self.leans)))
+        return WallForm(why=SEVERAL) if abs(lean) > MOST_LEAN else found
 
     def _beside(self, side: float, edge: float) -> float:
         """Where the floor ends beside a wall: a nose before an upright one, and at the end of a flat that leans."""

@@ -22,7 +22,7 @@ SHORTEST = 0.1e-3  # m: the lean and the form of a wall that is lower say nothin
 
 Ends = Literal["wall", "open", "lower", "crest", "slope"]
 SHORT = "the wall is too low for its lean to be measured"
-SEVERAL = "several passes here: the wall is stepped"
+SEVERAL = "several passes here: the wall is not one"
 
 
 @dataclass(frozen=True)

@@ -194,7 +194,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
             "Measured profile (.csv): station_mm, offset_mm", "milling.profile.file", _take, most_MB=MAX_PROFILE_MB
         )
         pieces.note(
-            "Station along the groove, offset of its middle, left of the feed positive; the head of each column names its unit."
+            "Station along the groove, offset of its middle, left of the feed positive; their heads name the unit."
         )
         if measured is not None:
             inputs.button("Remove the profile", "milling.profile.clear", "close", session.drop, MEASURED)
