@@ -28,10 +28,9 @@ def test_paper_and_assumed_numbers_are_marked(app: AppTest) -> None:
 
 
 def test_no_graphics_library_is_said_at_the_picture_with_the_command(app: AppTest) -> None:
-    for page in ("app", "6_Milling"):
-        assert words(go(app, page)).count("apt-get") == 1
-        assert not app.exception
-        assert app.get("plotly_chart")
+    assert words(go(app, "app")).count("apt-get") == 1
+    assert not app.exception
+    assert app.get("plotly_chart")
 
 
 def test_inch_changes_every_number_on_the_page(app: AppTest) -> None:
