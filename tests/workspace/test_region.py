@@ -140,3 +140,22 @@ def test_the_extent_is_one_cell_wider_than_what_is_reached(tilt: float, name: st
     for first, last, count in zip(found.min(axis=0), found.max(axis=0), map(len, lines), strict=True):
         assert first in (0, 1)
         assert last in (count - 1, count - 2)
+
+
+@pytest.mark.parametrize("corner", [0, 1, -1, -2])
+def test_the_extent_is_one_cell_more_than_what_is_reached_and_no_more_than_was_looked_at(corner, monkeypatch) -> None:
+    """One cell of the grid alone, at a corner or one off it, or all of them."""
+    looked = []
+
+    def one(robot, grid, tilts):
+        looked[:] = [grid.x, grid.y, grid.z]
+        found = np.zeros(tuple(map(len, looked)), dtype=bool)
+        found[corner, corner, corner] = True
+        return found
+
+    monkeypatch.setattr("robomill.workspace.region.reach", one)
+    extent = reach_extent(rm.load_robot("slavkovic_5r"))
+    for axis, low, high in zip(looked, extent.lower, extent.upper, strict=True):
+        at = corner % len(axis)
+        beside = [axis[k] for k in (at - 1, at, at + 1) if 0 <= k < len(axis)]
+        assert (low, high) == (min(beside), max(beside))
