@@ -82,3 +82,17 @@ def test_as_many_lines_are_executed_in_loops_as_are_said(
     else:
         with pytest.raises(GCodeError, match=f"more than {most} lines were executed in loops"):
             interpret(text)
+
+
+@pytest.mark.parametrize(
+    "before", ["", "O1 if [1 GT 0]\nO1 endif\n", "O1 repeat [2]\nO3 if [#1 EQ 5]\nO3 endif\nO1 endrepeat\n"]
+)
+@pytest.mark.parametrize(("opens", "junk"), [("repeat [2]", "junk"), ("if [1]", "7junk"), ("while [1 GT 0]", "5x")])
+def test_what_stands_behind_an_o_word_is_quoted_wherever_in_the_program_it_is(
+    before: str, opens: str, junk: str
+) -> None:
+    word = opens.split()[0]
+    line = 2 + before.count("\n")
+    with pytest.raises(GCodeError) as refused:
+        interpret(f"G21\n{before}O2 {opens} {junk}\nG0 X1\nO2 end{word}\nM2\n")
+    assert str(refused.value) == f"Line {line}: found {junk!r} after O2 {word}; remove it."
