@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from robomill.compiled import part
-from robomill.cutting.profile_kernels import Shape, clip, contact_lag, profile
+from robomill.cutting.profile_kernels import Shape, clip, contact_lag, profile, upright_part
 
 POINT = 1e-12  # m: a move shorter than this in plan goes straight up or down
 
@@ -56,6 +56,23 @@ def swept_height(shape: Shape, move: Move, x: float, y: float) -> float:
     v = Y * move.ux - X * move.uy
     t = clip(s - contact_lag(shape, move.m, v * v), 0.0, move.length)
     return move.az + move.m * t + profile(shape, math.sqrt((s - t) ** 2 + v * v))
+
+
+@part
+def swept_upright(shape: Shape, move: Move, x: float, y: float) -> float:
+    """Upward part of the normal of what an upright cutter leaves on ``move`` at (x, y), where its track passes.
+
+    A surface ruled along the move rises with it; across it, as the profile does where it touches, whose slope there
+    lets the height be stationary along the move (``contact_lag``). At the ends the cutter's own shape is left.
+    """
+    X, Y = x - move.ax, y - move.ay
+    s = X * move.ux + Y * move.uy
+    v = Y * move.ux - X * move.uy
+    lag = contact_lag(shape, move.m, v * v)
+    t = clip(s - lag, 0.0, move.length)
+    if move.m == 0.0 or lag <= 0.0 or t != s - lag:
+        return upright_part(shape, math.sqrt((s - t) ** 2 + v * v))
+    return 1.0 / math.sqrt(1.0 + move.m * move.m * (1.0 + (v / lag) ** 2))
 
 
 @part

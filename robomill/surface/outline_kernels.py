@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 from robomill.compiled import In1, In2, Out1, Out2, OutInt1, kernel, part
-from robomill.cutting.profile_kernels import clip, radius_at, shape_of, upright_part
+from robomill.cutting.profile_kernels import clip, radius_at, shape_of
 from robomill.surface.block_kernels import NOTHING, Blocks, depth_in, seen_box, span
-from robomill.surface.envelope_kernels import move_between, nearest, swept_height
+from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height, swept_upright
 
 ROUNDS = 6  # of growing the union along a line: a wall seldom stands behind more than two tracks
 TOUCH = 1e-7  # m: tracks this close are one
@@ -215,14 +215,18 @@ class Floor(NamedTuple):
 
 
 @part
-def track_over(tracks: Tracks, n: int, place: In1, offset: float) -> tuple[float, float]:
-    """(height above the tip at c + offset u, distance from the middle of the tool there) of a move; (inf, 0) if it does
-    not pass over the point."""
+def move_seen(seen: Seen) -> Move:
+    """A move as an upright cutter makes it in the axes of a place."""
+    return move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
+
+
+@part
+def track_over(tracks: Tracks, n: int, place: In1, offset: float) -> float:
+    """Height of a move above the tip at c + offset u; inf if it does not pass over the point."""
     seen, shape = seen_from(place, tracks.ends[n]), shape_of(tracks.shapes[tracks.cutter[n]])
-    move = move_between(seen.u, seen.v, seen.z, seen.u + seen.du, seen.v + seen.dv, seen.z + seen.dz)
+    move = move_seen(seen)
     ex, ey = nearest(move, offset, 0.0)
-    r = math.hypot(ex, ey)
-    return (swept_height(shape, move, offset, 0.0), r) if r <= shape.R else (math.inf, 0.0)
+    return swept_height(shape, move, offset, 0.0) if math.hypot(ex, ey) <= shape.R else math.inf
 
 
 @part
@@ -236,9 +240,9 @@ def upright_at(told: Tracks, blocks: Blocks, place: In1, offset: float, low: flo
             if box.low > low + NOTHING or depth_in(box, offset) < -NOTHING:
                 continue
             for n in range(blocks.first[b], blocks.first[b + 1]):
-                high, r = track_over(told, n, place, offset)
-                if high <= low < math.inf:
-                    return upright_part(shape_of(told.shapes[told.cutter[n]]), r)
+                if track_over(told, n, place, offset) <= low < math.inf:
+                    seen, shape = seen_from(place, told.ends[n]), shape_of(told.shapes[told.cutter[n]])
+                    return swept_upright(shape, move_seen(seen), offset, 0.0)
     return 1.0
 
 
@@ -265,7 +269,7 @@ def floor_at(told: Tracks, left: Tracks, blocks: Blocks, place: In1, offset: flo
                 if one.low >= told_both - NOTHING and other.low >= left_both - NOTHING:
                     continue
                 for n in range(blocks.first[b], blocks.first[b + 1]):
-                    high, moved = track_over(told, n, place, offset)[0], track_over(left, n, place, offset)[0]
+                    high, moved = track_over(told, n, place, offset), track_over(left, n, place, offset)
                     told_low, left_low = min(told_low, high), min(left_low, moved)
                     if high < math.inf and moved < math.inf:
                         told_both, left_both = min(told_both, high), min(left_both, moved)

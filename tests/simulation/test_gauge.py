@@ -239,7 +239,42 @@ def test_a_tilted_slot_is_judged_in_the_tools_own_axes():
     bent = pushed(run(*lines), left=0.2e-3, up=-0.05e-3)
     assert bent.path.k[-1] == pytest.approx([np.sin(np.radians(10)), 0, np.cos(np.radians(10))])
     assert bent.verdict.wall.value == pytest.approx(0.2e-3, abs=1e-7)
-    assert bent.verdict.floor.value == pytest.approx(-0.05e-3, abs=1e-6)
+    # Its heel leaves a floor that is round across the feed: moved aside, it stands a little higher over its middle.
+    lifted = np.sin(np.radians(10)) * (R - np.sqrt(R**2 - 0.2e-3**2))
+    assert bent.verdict.floor.value == pytest.approx(-0.05e-3 * np.cos(np.radians(10)) + lifted, abs=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["flat", "ball", "bull"])
+@pytest.mark.parametrize("rise", [5.0, 15.0, 30.0, 45.0])
+@pytest.mark.parametrize("down", [False, True])
+def test_a_slope_is_measured_along_its_normal(kind, rise, down):
+    """Whatever leaves it; the whole path is moved by one vector, so the plane moves by its part along the normal."""
+    b, heading = np.radians(rise), np.radians(35.0)
+    run_out = min(16e-3 / np.tan(b), 25e-3)
+    way = run_out * np.array([np.cos(heading), np.sin(heading)])
+    low, high = (
+        np.append(-way / 2, -0.006 - run_out * np.tan(b) / 2),
+        np.append(way / 2, -0.006 + run_out * np.tan(b) / 2),
+    )
+    ends = [" ".join(f"{a}{v * 1e3:.6f}" for a, v in zip("XYZ", end)) for end in ((high, low) if down else (low, high))]
+    cutter = Cutter(kind, 2 * R, corner_radius={"flat": 0.0, "ball": R, "bull": 1e-3}[kind])
+    stock = Stock((-0.04, -0.04, -0.05), (0.04, 0.04, 0.02))
+    made = run(
+        f"G0 {ends[0][: ends[0].index('Z')]} Z40",
+        f"G1 {ends[0]} F300",
+        f"G1 {ends[1]} F600",
+        cutter=cutter,
+        stock=stock,
+    )
+    shift = np.array([0.03e-3, 0.02e-3, 0.09e-3])
+    cut = np.where(made.path.cutting[:, None], shift, 0.0)
+    moved = dataclasses.replace(made, delta=cut @ made.setup.T_MW[:3, :3].T, F=np.nan_to_num(made.F), unjudged=())
+    normal = np.array([-np.sin(b) * np.cos(heading), -np.sin(b) * np.sin(heading), np.cos(b)])
+    middle = np.abs(
+        moved.path.s[moved.gauge.floors.sample] - moved.path.s[-1] + 0.5 * np.hypot(run_out, run_out * np.tan(b))
+    )
+    nearest = moved.gauge.floors.error[np.argmin(middle)]
+    assert nearest == pytest.approx(shift @ normal, abs=5e-7)
 
 
 def test_walls_count_by_their_length():

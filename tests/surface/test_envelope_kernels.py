@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.envelope_kernels import move_between, row_interval, swept_height
+from robomill.surface.envelope_kernels import move_between, row_interval, swept_height, swept_upright
 
 CUTTERS = {
     "flat": Cutter("flat", 0.008),
@@ -80,3 +80,25 @@ def test_row_interval_is_the_capsule():
         t = np.clip(((x - a[0]) * span[0] + (y - a[1]) * span[1]) / (span @ span), 0, 1)
         inside = np.hypot(x - a[0] - t * span[0], y - a[1] - t * span[1]) <= R
         np.testing.assert_array_equal((y >= low) & (y <= high), inside)
+
+
+@pytest.mark.parametrize("cutter", CUTTERS)
+@pytest.mark.parametrize("move", [name for name in MOVES if name != "point"])
+def test_what_is_left_is_as_upright_as_its_heights_say(cutter, move):
+    """Against the numeric gradient of the height, where it has one; a flat end on a ramp leaves the ramp."""
+    a, b = (np.array(end) for end in MOVES[move])
+    shape, moved = CUTTERS[cutter].solid, move_between(*a, *b)
+    rng = np.random.default_rng(5)
+    x, y = rng.uniform(-0.005, 0.026, 400), rng.uniform(-0.013, 0.015, 400)
+    inside = depth_in_track(a, b, CUTTERS[cutter].radius, x, y) > 2e-5
+    x, y, h = x[inside], y[inside], 1e-8
+    slopes = []
+    for dx, dy in ((h, 0.0), (0.0, h)):
+        ahead, behind = heights(shape, moved, x + dx, y + dy), heights(shape, moved, x - dx, y - dy)
+        here = heights(shape, moved, x, y)
+        slopes.append(((ahead - behind) / (2 * h), np.abs(ahead + behind - 2 * here) / h))
+    smooth = (slopes[0][1] < 1e-3) & (slopes[1][1] < 1e-3)  # not on a kink
+    expected = 1.0 / np.sqrt(1.0 + slopes[0][0] ** 2 + slopes[1][0] ** 2)
+    found = np.array([swept_upright(shape, moved, *point) for point in zip(x, y, strict=True)])
+    assert smooth.sum() > 10
+    np.testing.assert_allclose(found[smooth], expected[smooth], atol=2e-5)
