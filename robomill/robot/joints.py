@@ -33,7 +33,9 @@ def with_joints(robot: Robot, rows: Sequence[int]) -> Robot:
     Fewer joints, or the same ones in another order.
     """
     if len(rows) < MIN_JOINTS:
-        raise RobotError(f"Robot {robot.name!r}: an arm needs at least one joint; this is the last one.")
+        raise RobotError(
+            f"Robot {(robot.title or robot.name)!r}: an arm needs at least one joint; this is the last one."
+        )
     order = list(rows)
     sets = {name: values[order] for name, values in robot.compliance_sets.items()}
     kept = {name: getattr(robot, name)[order] for name in ROWS}
@@ -50,8 +52,8 @@ def with_new_joint(robot: Robot, at: int, slides: bool = False) -> Robot:
     """
     if robot.rows >= MAX_JOINTS:
         raise RobotError(
-            f"Robot {robot.name!r}: has {robot.rows} joints already; robomill computes arms of {MIN_JOINTS} to "
-            f"{MAX_JOINTS} joints."
+            f"Robot {(robot.title or robot.name)!r}: has {robot.rows} joints already; robomill computes "
+            f"arms of {MIN_JOINTS} to {MAX_JOINTS} joints."
         )
     new: dict[str, Any] = {
         **NEW_ROW,

@@ -58,7 +58,7 @@ class Robot:
 
     def __post_init__(self) -> None:
         put = lambda key, value: object.__setattr__(self, key, value)  # noqa: E731
-        where = f"Robot {self.name!r}"
+        where = f"Robot {(self.title or self.name)!r}"
         if not isinstance(self.name, str) or not self.name.strip():
             raise RobotError("Robot: the name is empty; give it a short name.")
         if self.convention not in ("standard", "modified"):
