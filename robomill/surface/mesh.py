@@ -17,7 +17,10 @@ NEAREST = 2e-3  # share of a side: a wall point keeps this far from its ends, so
 PLACES = ((0.5, 0), (0.51, 0), (1.5, -1), (1.5, 1))
 """Where a cell's wall may cross a side, best first: within the cell, beyond it by rounding, or (along the rim, where
 sides are drawn out) in the side next to it; in cells from the centre, and in sides from the one met."""
-LEVEL = 1e-9  # m: ends of a side this close in height have no wall between them
+STEP = 0.01
+"""Of a cell: ends of a side closer in height have a slope between them, no wall. Where the tool sinks on its way, the
+rear edge of each move crosses a floor that has no step there."""
+ALIKE = 0.5  # of the highest of four walls that meet in a square: others that high are no lesser ones
 
 
 class Mesh(NamedTuple):
@@ -67,10 +70,10 @@ def to_mesh(zmap: ZMap, *, max_faces: int = 2_000_000) -> Mesh:
     checkpoint(0.0, "Solid")
     sides, walls, owner = _wall_points(skin, *_crossings(zmap, skin, i, j))
     checkpoint(0.3, "Solid")
-    faces, middles, of_middle = _skin_faces(skin, sides, len(top) + len(walls))
+    vertices = np.concatenate([top, walls])
+    owners = np.concatenate([skin.number.ravel(), owner])
+    faces = _skin_faces(skin.number, sides, vertices[:, 2])
     checkpoint(0.8, "Solid")
-    vertices = np.concatenate([top, walls, middles])
-    owners = np.concatenate([skin.number.ravel(), owner, of_middle])
     around, feet = _around(skin, sides)
     low = len(vertices) + feet
     foot = np.zeros((feet[-1] + 1, 3))
@@ -109,8 +112,8 @@ def _crossings(zmap: ZMap, skin: _Skin, i: IntArray, j: IntArray) -> tuple[Float
     centre = np.column_stack([zmap.x[row], zmap.y[column]])
     centre, wall = np.repeat(centre, 2, axis=0), zmap.edge.wall.reshape(-1, 3)
     row, column = np.repeat(row, 2), np.repeat(column, 2)
-    along_x = _crossed((skin.x, skin.y, skin.z), (j, column), centre, wall, zmap.dx)
-    along_y = _crossed((skin.y, skin.x, skin.z.T), (i, row), centre[:, ::-1], wall[:, [1, 0, 2]], zmap.dy)
+    along_x = _crossed((skin.x, skin.y, skin.z), (j, column), centre, wall, (zmap.dx, zmap.dy))
+    along_y = _crossed((skin.y, skin.x, skin.z.T), (i, row), centre[:, ::-1], wall[:, [1, 0, 2]], (zmap.dy, zmap.dx))
     return along_x, along_y.T
 
 
@@ -119,13 +122,13 @@ def _crossed(
     lines: tuple[IntArray, IntArray],
     centre: FloatArray,
     wall: FloatArray,
-    step: float,
+    size: tuple[float, float],
 ) -> FloatArray:
     """Where walls cross the sides along the first axis of ``grid`` (places u, v and heights), as shares of them.
 
     ``lines``: the kept ones among the lines v, and the line that each wall's cell lies in. ``centre`` (e, 2) and
-    ``wall`` (e, 3) are those of the walls, ``step`` the size of a cell along u. Of two walls that cross one side the
-    one that leaves less material holds.
+    ``wall`` (e, 3) are those of the walls, ``size`` that of a cell along u and v. Of two walls that cross one side
+    the one that leaves less material holds.
     """
     u, v, z = grid
     kept, line = lines
@@ -135,12 +138,12 @@ def _crossed(
     found = np.full((len(u) - 1, len(v)), np.nan)
     for reach, shift in PLACES:
         checkpoint()
-        rows = np.flatnonzero((kept[at] == line) & (np.abs(off) <= reach * step))
+        rows = np.flatnonzero((kept[at] == line) & (np.abs(off) <= reach * size[0]))
         place = centre[rows, 0] + off[rows]
         side = np.clip(np.searchsorted(u, place) - 1 + shift, 0, len(u) - 2)
         column = at[rows]
         rise = z[side + 1, column] - z[side, column]
-        good = (np.abs(rise) > LEVEL) & (rise * wall[rows, 0] > 0.0) & np.isnan(found[side, column])
+        good = (np.abs(rise) > STEP * min(size)) & (rise * wall[rows, 0] > 0.0) & np.isnan(found[side, column])
         side, column, up = side[good], column[good], rise[good] > 0.0
         width = u[side + 1] - u[side]
         share = np.clip((place[good] - u[side]) / np.where(width > 0.0, width, 1.0), NEAREST, 1.0 - NEAREST)
@@ -170,13 +173,12 @@ def _wall_points(skin: _Skin, x_share: FloatArray, y_share: FloatArray) -> tuple
     return _Sides(*sides), np.concatenate(points), np.concatenate(owners)
 
 
-def _skin_faces(skin: _Skin, sides: _Sides, count: int) -> tuple[IntArray, FloatArray, IntArray]:
-    """Triangles of the skin, and further vertices (numbered from ``count``) with their owners, where walls end or meet.
+def _skin_faces(n: IntArray, sides: _Sides, height: FloatArray) -> IntArray:
+    """Triangles of the skin, from the numbers ``n`` (nx, ny) of the centres and the ``height`` (v,) m of all vertices.
 
     The corners of a square run a b c d seen from above; ``near`` and ``far`` are the wall's points on the side that
     leaves a corner, at the height of this corner and of the next one (-1: no wall there).
     """
-    n = skin.number
     corner = np.stack([q.ravel() for q in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:])], axis=1)
     x_side, y_side = sides
     first = np.stack([q.ravel() for q in (x_side[:, :-1], y_side[1:], x_side[:, 1:], y_side[:-1])], axis=1)
@@ -198,18 +200,37 @@ def _skin_faces(skin: _Skin, sides: _Sides, count: int) -> tuple[IntArray, Float
         q, p, f = (np.take_along_axis(part[square], turned, axis=1).T for part in (corner, near, far))
         faces += _two_sided(q, p, f, apart)
     odd = np.flatnonzero((how_many == 1) | (how_many > 2))
-    middles = 0.5 * (_place(skin, corner[odd, 0]) + _place(skin, corner[odd, 2]))
+    rise = np.where(crossed[odd], np.abs(height[near[odd]] - height[far[odd]]), -1.0)
+    around = np.stack([corner[odd], near[odd], far[odd]], axis=2).reshape(-1, 12)
     for some in slices(len(odd), "Corners of walls"):
-        for middle, index in enumerate(odd[some], count + some.start):
-            loop = np.column_stack([corner[index], near[index], far[index]]).ravel()
-            loop = loop[loop >= 0]
-            faces.append(np.column_stack([loop, np.roll(loop, -1), np.full(len(loop), middle)]))
-    return np.concatenate(faces), middles, corner[odd, 0]
+        for row in zip(around[some], rise[some], height[corner[odd[some]]], strict=True):
+            faces += [np.column_stack([np.full(len(q) - 2, q[0]), q[1:-1], q[2:]]) for q in _parted(*row)]
+    return np.concatenate(faces)
 
 
-def _place(skin: _Skin, number: IntArray) -> FloatArray:
-    i, j = np.divmod(number, len(skin.y))
-    return np.column_stack([skin.x[i], skin.y[j], skin.z[i, j]])
+def _parted(around: IntArray, rise: FloatArray, height: FloatArray) -> list[IntArray]:
+    """Floors, tops and upright walls, as loops of vertices, of a square that walls meet on one, three or four sides.
+
+    ``around`` (12,) are its corners, each with the near and the far point on the side that leaves it, ``rise`` (4,) m
+    how high the wall on that side is, below 0 without one, ``height`` (4,) m of the corners. The two highest are one
+    wall, which goes through; lower ones, and one alone, run out. Of four alike two are a wall each, with a rib between.
+    """
+
+    def part(first: int, last: int) -> IntArray:
+        loop = np.roll(around, -first)[: (last - first) % 12 + 1]
+        return loop[loop >= 0]
+
+    first, second, _, least = np.argsort(-rise, kind="stable")
+    if rise[second] < 0.0:
+        return [part(3 * first + 1, 3 * first)]
+    through = [(first, second)]
+    if rise[least] >= ALIKE * rise[first]:  # around the two lower corners: from the side that leads there to the next
+        low = int(height[1] + height[3] < height[0] + height[2])
+        through = [((low + 3) % 4, low), (low + 1, low + 2)]
+    walls = [around[[3 * p + 1, 3 * p + 2, 3 * q + 1, 3 * q + 2]] for p, q in through]
+    beyond = [part(3 * p + 2, 3 * q + 1) for p, q in through]
+    rest = [part(3 * q + 2, 3 * p + 1) for (_, q), (p, _) in zip(through, through[::-1], strict=True)]
+    return [*walls, *beyond, np.concatenate(rest)]
 
 
 def _two_sided(q: IntArray, near: IntArray, far: IntArray, apart: int) -> list[IntArray]:
