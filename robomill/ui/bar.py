@@ -10,7 +10,7 @@ import streamlit as st
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import TIGHT_FROM, Reading, Verdict
+from robomill.simulation.verdict_words import TIGHT_FROM, Verdict
 from robomill.ui import job, pieces, running, session, verdict
 from robomill.ui.job import Underway
 from robomill.ui.markup import Html
@@ -50,17 +50,17 @@ def _to_worst(result: SimulationResult) -> None:
         icon=":material/my_location:",
         type="tertiary",
         width="content",
-        on_click=stand_at_worst,
-        args=(result,),
+        on_click=stand_at,
+        args=(result, result.worst),
     ):
         st.switch_page(MILLING)
 
 
-def stand_at_worst(result: SimulationResult) -> None:
-    """Move the position along the cut to where the tip is off most."""
+def stand_at(result: SimulationResult, i: int) -> None:
+    """Move the position along the cut to sample ``i``."""
     total = float(result.path.s[-1])
-    if result.worst >= 0 and total > 0:
-        session.look(station=min(max(float(result.path.s[result.worst]) / total, 0.0), 1.0))
+    if i >= 0 and total > 0:
+        session.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
 
 
 def words(setup: SimulationSetup, result: SimulationResult | None, unit: str, why: str = "") -> Html:
@@ -112,15 +112,9 @@ def _force(result: SimulationResult) -> Html:
     return Html(f'<div class="rm-cell" title="{html.escape(said.source, quote=True)}">{inner}</div>')
 
 
-def deciding(found: Verdict) -> Reading | None:
-    """The reading on which the verdict rests: the one that uses most of its tolerance; None where nothing is read."""
-    read = [each for each in (found.wall, found.floor, found.end, found.feed) if each.decides]
-    return max(read, key=lambda each: each.share, default=None)
-
-
 def _gauge(found: Verdict | None, unit: str) -> Html:
     """A track from nothing to beyond the tolerance, and how far the worst reading comes on it."""
-    rests = None if found is None else deciding(found)
+    rests = None if found is None or found.deciding is None else found.deciding[1]
     if found is None or rests is None or not np.isfinite(found.share):
         return Html(
             '<div class="rm-gauge" role="img" aria-label="Nothing is measured against the tolerance">'

@@ -51,7 +51,8 @@ def in_groups(make: Callable[..., Any]) -> Callable[..., Any]:
 def group_pages() -> bool:
     """Have the menus of this server made so. True where they were not yet: the page in hand was made with the other
     one."""
-    if hasattr(navigation._navigation, "__wrapped__"):
+    make = getattr(navigation, "_navigation", None)  # another Streamlit may not have it: its own menu is as good
+    if make is None or hasattr(make, "__wrapped__"):
         return False
-    navigation._navigation = in_groups(navigation._navigation)
+    navigation._navigation = in_groups(make)
     return True

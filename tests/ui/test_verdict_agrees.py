@@ -14,7 +14,7 @@ from robomill.report.simulation_record import simulation_record
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.verdict_words import WORDS as JUDGED
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import bar, verdict
+from robomill.ui import verdict
 from robomill.ui.milling.metrology import share_out_words
 from robomill.units import format_share
 
@@ -90,9 +90,8 @@ def agrees(run: SimulationResult) -> None:
         assert f"({format_share(found.share)} of it used" in found.sentence
         assert verdict.share_words(found).startswith(format_share(found.share))
         assert (found.share > 1.0) == bool(out)
-        deciding = bar.deciding(found)
-        assert deciding is not None
-        assert deciding.share == found.share
+        assert found.deciding is not None
+        assert found.deciding[1].share == found.share
     for name in ("wall", "floor"):
         reading = getattr(found, name)
         assert (record[name]["length_out_of_tolerance_share"] > 0.0) == (reading.share > 1.0)

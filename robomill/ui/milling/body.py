@@ -12,6 +12,7 @@ from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cached, inputs, pieces, running, session
 from robomill.ui import evidence as evidence_panel
 from robomill.ui.arm import arm_at
+from robomill.ui.bar import stand_at
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view, live_cut
 from robomill.ui.milling import force as force_panel
@@ -74,7 +75,7 @@ def _mean_and_peak(result: SimulationResult) -> str:
 
 
 def _land(result: SimulationResult) -> None:
-    linked.go_to(result, result.worst)
+    stand_at(result, result.worst)
     session.keep(QUESTION, "tip")
 
 

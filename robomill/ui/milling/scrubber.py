@@ -26,13 +26,6 @@ def station_m(result: SimulationResult) -> float:
     return session.project().view.station * float(result.path.s[-1])
 
 
-def go_to(result: SimulationResult, i: int) -> None:
-    """Move the scrubber to sample ``i``."""
-    total = float(result.path.s[-1])
-    if i >= 0 and total > 0:
-        session.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
-
-
 def index(result: SimulationResult) -> int:
     """The sample that the scrubber points at; -1 where none counts for the verdict."""
     return nearest_judged(result, station_m(result))

@@ -6,7 +6,6 @@ import pytest
 from PIL import Image
 
 from robomill.simulation.run import simulate
-from robomill.ui.bar import deciding
 from robomill.ui.project import preset_setup, presets
 from robomill.ui.start.carved import Carved, carved
 
@@ -17,8 +16,8 @@ TIMES, ROWS = carved()
 def test_the_number_is_that_of_a_run_of_the_sample(row: Carved) -> None:
     assert row.sample in presets()
     verdict = simulate(preset_setup(row.sample)).verdict
-    rests = deciding(verdict)
-    assert rests is not None
+    assert verdict.deciding is not None
+    rests = verdict.deciding[1]
     assert row.value == pytest.approx(abs(rests.value), abs=0.6e-7)
     assert row.tolerance == rests.tolerance
     assert row.level == verdict.level
