@@ -118,8 +118,9 @@ def test_the_surface_comes_as_ply_and_a_film_as_gif(milling: Any, tmp_path: Path
         page.get_by_role("button", name="Surface PLY").click()
     waiting.value.save_as(tmp_path / "surface.ply")
     assert (tmp_path / "surface.ply").read_bytes().startswith(b"ply")
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name="Picture PNG").click()
+    page.get_by_role("button", name="Picture PNG").click()  # drawn when it is asked for
+    with page.expect_download(timeout=60_000) as waiting:
+        page.get_by_role("button", name="Save part.png").click(timeout=60_000)
     waiting.value.save_as(tmp_path / "groove.png")
     data = (tmp_path / "groove.png").read_bytes()
     if not data:

@@ -22,7 +22,7 @@ def open_page(page: Any, name: str) -> None:
 
 
 def type_into_cell(page: Any, row: int, rows: int, text: str, sign: str) -> None:
-    """Type into the last column of the first table until ``sign`` is on the page.
+    """Type into the middle column of the first table until ``sign`` is on the page.
 
     The grid is a canvas, so a cell is found by its place, and a click that comes before the grid listens is lost.
     """
@@ -41,7 +41,7 @@ def _type(page: Any, row: int, rows: int, text: str) -> None:
     page.wait_for_timeout(1000)
     box = grid.bounding_box()
     for _ in range(6):
-        page.mouse.click(box["x"] + 0.7 * box["width"], box["y"] + box["height"] * (row + 0.5) / (rows + 1))
+        page.mouse.click(box["x"] + 0.45 * box["width"], box["y"] + box["height"] * (row + 0.5) / (rows + 1))
         page.wait_for_timeout(300)
         page.keyboard.press("Enter")
         page.wait_for_timeout(500)
@@ -103,7 +103,7 @@ def test_a_broken_project_is_refused_and_the_current_one_stays(page: Any, tmp_pa
     broken = tmp_path / "broken.toml"
     broken.write_text('format = "http://foreign.example/x www.foreign.example a@foreign.example"\n')
     page.locator(".st-key-open button").first.click()
-    page.locator("input[type=file]").first.set_input_files(str(broken))
+    page.get_by_test_id("stPopoverBody").locator("input[type=file]").set_input_files(str(broken))
     page.wait_for_selector("text=was not opened")
     assert page.locator("a[href*='foreign']").count() == 0, "addresses in a file lead nowhere"
     assert page.locator(".rm-title").inner_text().startswith("The groove is 0.23 mm")
@@ -117,14 +117,14 @@ def test_saving_and_opening_gives_the_same_project(page: Any, tmp_path: Path) ->
     page.wait_for_selector(".rm-was")
     idle(page)
     with page.expect_download() as waiting:
-        page.get_by_role("button", name="Save").click()
+        page.get_by_test_id("stSidebar").get_by_role("button", name="Save").click()
     saved = tmp_path / "mine.robomill.toml"
     waiting.value.save_as(saved)
     page.get_by_role("button", name="Undo").click()
     idle(page)
     page.locator(".st-key-open button").first.click()
     page.wait_for_selector("text=moves the tip 0.230 mm in Y")
-    page.locator("input[type=file]").first.set_input_files(str(saved))
+    page.get_by_test_id("stPopoverBody").locator("input[type=file]").set_input_files(str(saved))
     page.wait_for_selector("text=moves the tip 0.264 mm in Y")
     page.get_by_test_id("stSidebarNavLink").first.click()
     page.wait_for_selector("text=The groove is 0.26 mm off in Y")

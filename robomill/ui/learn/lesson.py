@@ -28,7 +28,7 @@ KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
 ALIGHT = 5e-9  # m/N: what is less reads 0.00 um/N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
-HEIGHT, ASPECT = 420, 0.85  # of the picture: whole, too, in the column of a window of 900 px
+HEIGHT, ASPECT = 380, 0.85  # of the picture: whole, too, in the column of a window of 900 px
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
     "center": {"x": 0, "y": -0.13, "z": -0.04},
