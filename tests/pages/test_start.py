@@ -86,7 +86,7 @@ def test_what_is_no_program_is_refused_on_the_first_screen(app: AppTest) -> None
 
 def test_the_first_screen_says_what_this_is_and_counts_what_the_result_rests_on(app: AppTest) -> None:
     assert "predicts how far a milling robot is pushed off its path" in words(app)
-    assert app.expander[0].label == "Why believe this? It rests on 11 inputs: 5 assumed, 5 published, 1 measured"
+    assert app.expander[0].label == "Why believe this? It rests on 11 inputs: 5 published, 5 assumed, 1 measured"
     assert words(app).count("<h1") == 1
 
 

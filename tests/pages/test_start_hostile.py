@@ -21,7 +21,7 @@ HOSTILE = (
 )
 PAGES = ("app", "1_Robot", "3_Compliance", "4_Identification", "5_Toolpath", "6_Milling", "7_Improve", "8_Learn")
 OURS = re.compile(
-    r"</?(?:style|h1|i|b|p|div|span|small|sub|sup|table|tr|td|th|br|details|summary|svg|g|path|circle|text)\b[^<>]*>"
+    r"</?(?:style|h1|h2|i|b|p|div|span|small|sub|sup|table|tr|td|th|br|details|summary|svg|g|path|circle|text)\b[^<>]*>"
 )
 
 

@@ -270,14 +270,18 @@ class SinumerikWords(MacroB):
 
 
 def _value_end(code: str, at: int) -> int:
-    """Where an expression ends that begins at ``at``: at a blank outside of brackets that no operator stands beside."""
-    depth = 0
-    while at < len(code):
-        sign = code[at]
-        depth += (sign == "(") - (sign == ")")
-        if sign in " \t" and depth == 0 and code[:at].rstrip()[-1:] not in ("+-*/=", *"+-*/="):
-            rest = code[at:].lstrip()
-            if rest[:1] not in tuple("+-*/"):
+    """Where an expression ends that begins at ``at``: at a blank outside of brackets that no operator stands beside, or
+    at a sign of another value."""
+    depth, last = 0, "="
+    while at < len(code) and code[at] != "=":
+        sign, ahead = code[at], at + 1
+        if sign in " \t":
+            while code[ahead : ahead + 1] in (" ", "\t"):
+                ahead += 1
+            if depth == 0 and last not in "+-*/=" and code[ahead : ahead + 1] not in ("+", "-", "*", "/"):
                 return at
-        at += 1
+        else:
+            depth += (sign == "(") - (sign == ")")
+            last = sign
+        at = ahead
     return at

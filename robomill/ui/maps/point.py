@@ -107,8 +107,9 @@ def _arm(pose: PoseReport, component: str, unit: str) -> None:
 
 def bars(found: InHand, old: PoseReport, unit: str) -> None:
     """Which joint contributes how much to each component at the selected point."""
+    pieces.strong("At the selected point")
     where = place(found.point, unit)
-    st.markdown(f"**At the selected point**<br>{where}", unsafe_allow_html=True)
+    pieces.note(where)
     colours = joint_colours(7, shell.dark())
     numbers = found.pose.robot.joint_numbers
     key = (

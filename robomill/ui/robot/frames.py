@@ -50,6 +50,9 @@ def frames(project: Project) -> None:
 
 def _turns(name: str, T: FloatArray, key: str, write: Callable[[FloatArray], None]) -> None:
     shown = np.round(turns_from_rotation(T[:3, :3]), 12) + 0.0  # without the last bits, which would read -0.000
+    typed = session.kept(f"{key}.typed")  # at B = 90 degrees many turns are one rotation: what was typed is shown
+    if typed is not None and np.allclose(rotation_from_turns(typed), T[:3, :3], rtol=0.0, atol=1e-12):
+        shown = np.array(typed)
     declared.draw(replace(TURNS, label=name), key, shown, write)
 
 
@@ -60,6 +63,8 @@ def _put(name: str, label: str, *, point: bool) -> Callable[[FloatArray], None]:
         robot = session.project().setup.robot
         T = getattr(robot, name)
         made = transform(T[:3, :3], new) if point else transform(rotation_from_turns(new), T[:3, 3])
+        if not point:
+            session.keep(f"{label}.typed", tuple(new))
         session.change(label=label, robot=robot.replace(**{name: made}))
 
     return write

@@ -117,7 +117,7 @@ def beside_the_paper(project: Project) -> None:
 def why(setup: SimulationSetup, length: str) -> str:
     """On how many numbers the result rests, by who says them: "11 inputs: 5 published, 5 assumed, 1 measured"."""
     kinds = [source.provenance.kind for source in sources(setup, length)]
-    order = sorted(set(kinds), key=lambda kind: -kinds.count(kind))
+    order = sorted(dict.fromkeys(kinds), key=lambda kind: -kinds.count(kind))
     counted = ", ".join(f"{kinds.count(kind)} {KINDS.get(kind, kind)}" for kind in order)
     return f"Why believe this? It rests on {format_count(len(kinds), 'input')}: {counted}"
 
@@ -126,7 +126,7 @@ def doors(take: Callable[[bytes, str], None]) -> None:
     """A card for each kind of visitor; the one who mills drops a program there, which ``take`` gets."""
     with st.container(key="doors"):
         with st.container(border=True, key="door-mill"):
-            _door("I mill parts", "Will my part be within tolerance? Drop its G-code.")
+            _door("I mill parts", "Will my part come out true? Drop its G-code.")
             inputs.upload("Check my program", "start.program", _then(take), most_MB=PROGRAM.most_MB)
         for title, text, page, label in DOORS:
             with st.container(border=True, key=f"door-{label.split()[-1]}"):
