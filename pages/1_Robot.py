@@ -61,7 +61,6 @@ with right:
             frames=now.frames,
             joints=now.robot.joint_numbers,
             ghost=pose.ghost(now, old),
-            unit=view.of("m"),
             aspect=0.9,
         )
         arm(scene, "robot-arm", (caption, f"The arm at the chosen joint angles, its tip at {tip} {view.length}."), 500)

@@ -8,8 +8,9 @@ from robomill.arrays import IntArray
 from robomill.provenance import Finding, named
 from robomill.simulation.assumed import far_share
 from robomill.simulation.gauge import Gauge, Readings
+from robomill.simulation.premise import premise
 from robomill.simulation.seen import Run
-from robomill.simulation.verdict_words import Level, Reading, Verdict, premise, said
+from robomill.simulation.verdict_words import Level, Reading, Verdict, said
 
 
 def judge(result: Run, gauge: Gauge) -> Verdict:
@@ -22,7 +23,7 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
     gone = tuple(result.path.block[gauge.gone].tolist())
-    found = Verdict("ok", share, "", *readings, far, gone, premise(result, bool(deciding)))
+    found = Verdict("ok", share, "", *readings, far, gone, *premise(result, bool(deciding)))
     found = replace(found, level=_level(result, found))
     return replace(found, sentence=" ".join(words for words in said(result, found) if words))
 

@@ -5,11 +5,9 @@ from typing import Literal
 
 import numpy as np
 
-from robomill.cutting.tool_table import TableTool
 from robomill.provenance import named
 from robomill.simulation.seen import Run
-from robomill.surface.stock_unit import OUTSIDE, unit_doubt
-from robomill.units import format_beside, format_count, format_percent, format_share, format_si
+from robomill.units import format_beside, format_count, format_percent, format_share
 
 TIGHT_FROM = 0.8
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
@@ -23,7 +21,6 @@ NOTHING: dict[Level, str] = {
     "unreached": "No point of the cut can be reached: move the part zero.",
 }
 WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep"), "end": ("along the feed",) * 2}
-UNSAID = "Nobody has said yet what this path cuts: not judged."
 RAPID = "a rapid runs through material that no cut removes"
 
 
@@ -63,7 +60,7 @@ class Verdict:
             (``feed`` and ``end`` decide only where the feed has a tolerance of its own)
     gone    source lines that cut away a wall that should stand
     premise what the readings rest on where nobody has said what is cut, or with how many flutes: ``"if the tool is
-            pushed with 100 N"``; else ""
+            pushed with 100 N"``; else "". ``asked`` is the sentence that says so
     far     the share of the tolerance used at the worse end of what is assumed of the force; NaN where nothing is
     """
 
@@ -77,6 +74,7 @@ class Verdict:
     far: float = float("nan")
     gone: tuple[int, ...] = ()
     premise: str = ""
+    asked: str = ""
 
     @property
     def grade(self) -> Level:
@@ -113,60 +111,11 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
     if verdict.premise and level == "unjudged":
-        return _sentence(
-            f"{_measured(result, verdict, unit)}, {verdict.premise}"
-        ), f"{_unsaid(result, verdict.decides)} {beside}".rstrip()
+        return _sentence(f"{_measured(result, verdict, unit)}, {verdict.premise}"), f"{verdict.asked} {beside}".rstrip()
     judged = f"{_measured(result, verdict, unit)}: {WORDS[verdict.grade]} ({_used(verdict)})"
     if level == "unreached":
         judged = f"{_missed(result)}; of the rest: {judged}"
     return _sentence(f"{judged}, where it is judged" if level == "unjudged" else judged), beside
-
-
-def premise(result: Run, left: bool) -> str:
-    """What the numbers rest on that nobody has said of this path: what pushes the tool, flutes that nobody has counted,
-    the unit of a stock that hardly holds the path and of which nothing is ``left`` to measure; "" where all is said."""
-    force, i = result.setup.force, result.worst
-    if i < 0:
-        return ""
-    if not result.setup.carried_from:
-        if not left and _outside(result):
-            return "if the unit of the stock is right"
-        tools = _uncounted(result)
-        return "if " + " and ".join(f"tool {t.number} has {_flutes(t)}" for t in tools) if tools else ""
-    if force.follows_cut:
-        return f"if it cuts {force.numbers}"
-    return f"if the tool is pushed with {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}"
-
-
-def _uncounted(result: Run) -> tuple[TableTool, ...]:
-    """Tools that cut, whose flutes the force follows and nobody has counted."""
-    setup = result.setup
-    if not setup.force.follows_cut:
-        return ()
-    return setup.tools.unstated(result.path.tool[result.path.cutting].tolist())
-
-
-def _outside(result: Run) -> bool:
-    """Whether most of the path lies outside of a stock that would hold it in another unit."""
-    setup = result.setup
-    if setup.stock is None:
-        return False
-    found = unit_doubt(setup.stock, setup.toolpath.p, setup.toolpath.cutting)
-    return any(finding.code == OUTSIDE for finding in found)
-
-
-def _flutes(tool: TableTool) -> str:
-    return "" if tool.cutter is None else format_count(tool.cutter.flutes, "flute")
-
-
-def _unsaid(result: Run, left: bool) -> str:
-    """What is asked before anything is judged."""
-    if result.setup.carried_from:
-        return UNSAID
-    if not left and _outside(result):
-        return "The path hardly touches the stock, which would hold it in another unit: not judged."
-    numbers = " and ".join(str(tool.number) for tool in _uncounted(result))
-    return f"Nobody has said how many flutes tool {numbers} has, and its force grows with them: not judged."
 
 
 def way(name: str, reading: Reading) -> str:

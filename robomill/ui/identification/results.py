@@ -12,7 +12,7 @@ from robomill.ui.bench import Bench
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import decide, decided
 from robomill.ui.markup import Html, as_html
-from robomill.units import format_number, format_si, from_si, in_lengths, unit_label
+from robomill.units import format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
     correlation_figure,
     intervals_figure,
@@ -79,9 +79,7 @@ def unseen(result: IdentificationResult) -> None:
 def _noise(result: IdentificationResult) -> str:
     if not np.isfinite(result.noise):
         return "an unknown spread"
-    length = session.project().view.length
-    unit = "urad" if result.single else in_lengths("um", length)
-    return format_si(result.noise, unit, 1 if length == "mm" else None)
+    return format_si(result.noise, "urad" if result.single else session.project().view.of("um"))
 
 
 def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:

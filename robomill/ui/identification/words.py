@@ -182,7 +182,7 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str], l
     """Cross-validated error, the weakest joint, residual, and what it means for the cut."""
     cv, inside = result.cv_relative_error, result.in_sample
     single = result.single
-    rms = format_si(result.residual_rms, "urad" if single else in_lengths("um", length), 1 if length == "mm" else None)
+    rms = format_si(result.residual_rms, "urad" if single else in_lengths("um", length))
     least = Tile("Least certain joint", "none", "this model has no joints")
     if result.has_joints:
         label, half = weakest(result)

@@ -6,6 +6,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
+from robomill.provenance import named
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import Verdict
@@ -148,8 +149,7 @@ def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
             hint = "Halves this joint's compliance in the project; undo leads back."
             inputs.button("Use it", f"improve.use.{joints[i]}", "check", _use, i, width="stretch", help=hint)
     if idle:
-        named = " and ".join(filter(None, (", ".join(map(str, sorted(idle)[:-1])), str(max(idle)))))
-        pieces.note(f"Joint{'s' * (len(idle) > 1)} {named}: twice as stiff, nothing that counts becomes smaller.")
+        pieces.note(f"Joint{'s' * (len(idle) > 1)} {named(idle)}: twice as stiff, nothing that counts becomes smaller.")
 
 
 def _use(joint: int) -> None:

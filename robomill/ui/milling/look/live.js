@@ -54,8 +54,10 @@ class Look {
     told.hidden = false;
     told.textContent = this.data.words.without;
     this.root.dataset.drawn = "none";
-    if (!this.told_without) this.tell("look", { ...this.state, webgl: false, seq: (this.seq += 1) });
-    this.told_without = true;
+    // Said again until the server has taken it: what comes while a page is being made may be lost.
+    if (this.data.seq >= this.told_without) return;
+    this.told_without = this.seq += 1;
+    this.tell("look", { ...this.state, webgl: false, seq: this.seq });
   }
 
   write() {
