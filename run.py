@@ -32,7 +32,7 @@ def main() -> int:
         return 2
     words = sys.argv[1:]
     testing = words[:1] == ["test"]
-    set_up(extra="test" if testing else "")
+    set_up(["all", "test"] if testing else ["all"])
     offer_graphics()
     if testing:
         workers = [] if any(w.startswith(("-n", "-m", "-k", "--pdb")) for w in words[1:]) else ["-n", "2"]
@@ -40,11 +40,11 @@ def main() -> int:
     return subprocess.call([str(PYTHON), "-m", "robomill", *words])
 
 
-def set_up(extra: str) -> None:
-    """Make .venv and install robomill into it, unless a marker says that it stands."""
+def set_up(extras: list[str]) -> None:
+    """Make .venv and install robomill with these extras into it, unless a marker says that it stands."""
     wanted = fingerprint()
     done = MARKER.read_text().split() if MARKER.is_file() else []
-    if done[:1] == [wanted] and (not extra or extra in done[1:]) and PYTHON.exists():
+    if done[:1] == [wanted] and set(extras) <= set(done[1:]) and PYTHON.exists():
         return
     began = time.monotonic()
     print("Setting up robomill in .venv (about a minute, once) ...", flush=True)
@@ -55,8 +55,8 @@ def set_up(extra: str) -> None:
     if subprocess.run([*installer, "--version"], capture_output=True).returncode:
         run([sys.executable, "-m", "venv", str(VENV)])
         installer = [str(PYTHON), "-m", "pip"]
-    extras = sorted({extra, *done[1:]} - {""})
-    target = f"{ROOT}[{','.join(extras)}]" if extras else str(ROOT)
+    extras = sorted({*extras, *done[1:]})
+    target = f"{ROOT}[{','.join(extras)}]"
     quiet = ["install", "--quiet", "--disable-pip-version-check", "--no-warn-script-location"]
     run([*installer, *quiet, "-c", str(ROOT / "constraints.txt"), "-e", target])
     # Compiled once here, so that no screen waits for it; a failure only means that the first use compiles.

@@ -79,3 +79,11 @@ class RenderError(RobomillError):
     def __init__(self, message: str, *, again_s: float | None = None) -> None:
         super().__init__(message)
         self.again_s = again_s
+
+
+class MissingExtraError(RobomillError):
+    """Something that is installed with an ``extra`` only (``pip install "robomill[extra]"``), and is not here."""
+
+    def __init__(self, message: str, *, extra: str) -> None:
+        super().__init__(message)
+        self.extra = extra

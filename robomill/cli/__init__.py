@@ -15,7 +15,7 @@ from robomill.cli.options import whole
 from robomill.cli.progress_line import ProgressLine
 from robomill.cli.serve import run_serve, serve_options, start_app
 from robomill.cli.verbs import run_gcode, run_identify, run_ik, run_map, run_pose, run_robots, run_simulate
-from robomill.errors import RobomillError
+from robomill.errors import MissingExtraError, RobomillError
 from robomill.progress import Progress, watched
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
@@ -26,7 +26,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; without one, open the app."""
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0].startswith("--") and words[0] not in ("--help", "--version")):
-        return start_app(words)
+        try:
+            return start_app(words)
+        except MissingExtraError as exc:
+            print(f"robomill: {exc}", file=sys.stderr)
+            return 2
     arguments = parser().parse_args(_joined(words))
     compiled.announce(lambda word: print(f"{word} ...", file=sys.stderr, flush=True))
     line = ProgressLine(sys.stderr)

@@ -11,6 +11,7 @@ from typing import Any
 
 from robomill.cli.options import whole
 from robomill.errors import RobomillError
+from robomill.extras import missing
 
 LOOPBACK = "127.0.0.1"
 # What a server for others has: no file or line of the code is shown to visitors (its owner's log has them), forms and
@@ -31,6 +32,7 @@ ALLOCATOR = {"MALLOC_ARENA_MAX": "2", "MALLOC_MMAP_THRESHOLD_": "1048576", "MALL
 
 def start_app(words: Sequence[str] = ()) -> int:
     """Serve the app on this machine only and open it; further words go to Streamlit."""
+    _must_be_installed()
     own = () if any(word.startswith("--server.address") for word in words) else (f"--server.address={LOOPBACK}",)
     try:
         return subprocess.call(_command(*own, "--browser.gatherUsageStats=false", *words))
@@ -55,6 +57,7 @@ def serve_options(serve: argparse.ArgumentParser) -> None:
 
 def run_serve(arguments: Any) -> int:
     """Serve until told to stop. Raises RobomillError where a bound of what is kept is none."""
+    _must_be_installed()
     from robomill.ui.keeping.settings import PREFIX, Settings
     from robomill.ui.keeping.shelf import Shelf, StoreError
 
@@ -80,6 +83,12 @@ def run_serve(arguments: Any) -> int:
     if arguments.base_path:
         words.append(f"--server.baseUrlPath={arguments.base_path.strip('/')}")
     return _become(_command(*SHARED, *words), environment)
+
+
+def _must_be_installed() -> None:
+    refusal = missing("The app", "app", "streamlit", "plotly", "pandas", "pyarrow")
+    if refusal is not None:
+        raise refusal
 
 
 def _command(*words: str) -> list[str]:

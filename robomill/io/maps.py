@@ -7,6 +7,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
+from robomill.extras import needed
 from robomill.files import written
 from robomill.units import from_si
 from robomill.workspace.fields import Field
@@ -58,14 +59,16 @@ def map_csv(fields: Sequence[Field]) -> str:
 
 
 def _write_parquet(path: Path, columns: Mapping[str, FloatArray]) -> None:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
+    with needed("A map as Parquet"):
+        import pyarrow as pa
+        import pyarrow.parquet as pq
 
     pq.write_table(pa.table({name: pa.array(values) for name, values in columns.items()}), path)
 
 
 def _write_vti(path: Path, fields: Sequence[Field]) -> None:
-    import pyvista as pv
+    with needed("A map as VTI"):
+        import pyvista as pv
 
     grid = fields[0].grid
     image = pv.ImageData(

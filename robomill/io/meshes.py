@@ -7,6 +7,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import SurfaceError
+from robomill.extras import needed
 from robomill.files import STL, check_size, read_file
 from robomill.progress import slices
 from robomill.provenance import Finding
@@ -59,7 +60,8 @@ def _stl(mesh: Mesh) -> bytes:
 def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> bytes:
     import tempfile
 
-    import pyvista
+    with needed("A surface as VTP"):
+        import pyvista
 
     faces = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
     surface = pyvista.PolyData(from_si(mesh.vertices, "mm"), faces)

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from robomill.arrays import IntArray
+from robomill.extras import missing, needed
 from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
@@ -37,19 +38,47 @@ def film_frame(result: SimulationResult, shown: Enlarged, picture: SurfacePictur
     )
 
 
+def check(kind: Kind) -> None:
+    """Raise MissingExtraError where a film of this kind cannot be written here."""
+    for refusal in (
+        missing("A film of the cut", "render", "pyvista", "matplotlib", "PIL"),
+        missing("A film as MP4", "film", "imageio_ffmpeg") if kind == "mp4" else None,
+    ):
+        if refusal is not None:
+            raise refusal
+
+
 def encode(pictures: Sequence[bytes], kind: Kind, frames_per_s: float) -> bytes:
     """Pictures (PNG) as the bytes of a GIF (looping) or an MP4; the last one is held for a second."""
+    import io
+
+    with needed("A film of the cut"):
+        from PIL import Image
+    frames = [Image.open(io.BytesIO(png)).convert("RGB") for png in pictures]
+    return (_gif if kind == "gif" else _mp4)(frames, frames_per_s)
+
+
+def _gif(frames: Sequence[Any], frames_per_s: float) -> bytes:
+    import io
+
+    stream = io.BytesIO()
+    each = 1000.0 / frames_per_s
+    durations = [*[each] * (len(frames) - 1), each + 1000.0]
+    frames[0].save(stream, "GIF", save_all=True, append_images=frames[1:], duration=durations, loop=0)
+    return stream.getvalue()
+
+
+def _mp4(frames: Sequence[Any], frames_per_s: float) -> bytes:
     import tempfile
     from pathlib import Path
 
-    import imageio.v2 as imageio
-
-    frames = [imageio.imread(png, format="PNG") for png in pictures]  # type: ignore[arg-type]
-    held = [*frames, *([frames[-1]] * max(1, round(frames_per_s)))]
+    with needed("A film as MP4"):
+        import imageio_ffmpeg
     with tempfile.TemporaryDirectory() as folder:
-        target = Path(folder) / f"cut.{kind}"
-        if kind == "gif":
-            imageio.mimwrite(target, held, format="GIF", duration=1000.0 / frames_per_s, loop=0)  # type: ignore[arg-type]
-        else:
-            imageio.mimwrite(target, held, format="FFMPEG", fps=frames_per_s, quality=8, macro_block_size=16)  # type: ignore[arg-type]
+        target = Path(folder) / "cut.mp4"
+        writer = imageio_ffmpeg.write_frames(str(target), frames[0].size, fps=frames_per_s, quality=8)
+        writer.send(None)
+        for frame in [*frames, *([frames[-1]] * max(1, round(frames_per_s)))]:
+            writer.send(frame.tobytes())
+        writer.close()
         return target.read_bytes()

@@ -10,6 +10,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from robomill.extras import needed
+
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
@@ -76,8 +78,8 @@ class Chart:
     @property
     def figure(self) -> go.Figure:
         """What plotly draws."""
-        import plotly.graph_objects as go
-
+        with needed("A figure"):
+            import plotly.graph_objects as go
         return go.Figure(data=list(self.traces), layout=self.layout, _validate=False)
 
 

@@ -21,6 +21,7 @@ STOREYS = [
         "arrays",
         "vectors",
         "errors",
+        "extras",
         "lazy",
         "files",
         "compiled",

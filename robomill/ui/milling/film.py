@@ -12,7 +12,7 @@ from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
-from robomill.viz.animation import FRAMES, Kind, encode, film_frame, film_samples
+from robomill.viz.animation import FRAMES, Kind, check, encode, film_frame, film_samples
 from robomill.viz.views import headroom, surface_picture
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
@@ -33,6 +33,7 @@ class Film:
 
     def make(self) -> bytes:
         """The film's bytes; its pictures wait their turn with those of the pages."""
+        check(self.kind)
         pictures: list[bytes] = []
         shown = cached.pictured(self.result.setup, self.times)
         how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
