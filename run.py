@@ -23,7 +23,6 @@ ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 MARKER = VENV / ".robomill-ready"
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-APT_PACKAGES = ["libegl1", "libgl1-mesa-dri"]
 
 
 def main() -> int:
@@ -85,20 +84,17 @@ def offer_graphics() -> None:
     """VTK draws off screen through EGL or OSMesa, which pip does not carry; Debian does."""
     if sys.platform != "linux" or loads("libEGL.so.1") or loads("libOSMesa.so.8"):
         return
-    command = ["apt-get", "install", "-y", "--no-install-recommends", *APT_PACKAGES]
+    from robomill.viz.graphics import INSTALL, no_opengl  # needs the standard library only
+
     root = hasattr(os, "geteuid") and os.geteuid() == 0
     if root and shutil.which("apt-get"):
-        print("Installing the off-screen graphics libraries: " + " ".join(APT_PACKAGES), flush=True)
-        for step in (["apt-get", "update"], command):
-            if subprocess.run(step, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
+        print(f"Installing the off-screen graphics libraries: {INSTALL['debian']}", flush=True)
+        for step in ("apt-get update", f"{INSTALL['debian']} --no-install-recommends"):
+            if subprocess.run(step.split(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
                 break
         else:
             return
-    print(
-        "Rendered pictures need off-screen graphics libraries that are missing here; everything else works.\n"
-        f"To get them: sudo {' '.join(command)}",
-        file=sys.stderr,
-    )
+    print(no_opengl(), file=sys.stderr)
 
 
 def loads(library: str) -> bool:

@@ -14,7 +14,7 @@ BROUGHT_BY = {
     "xarray": ("xarray", "data"),
     "pyarrow": ("pyarrow", "data"),
     "pyvista": ("pyvista", "render"),
-    "matplotlib": ("matplotlib", "render"),
+    "matplotlib": ("matplotlib", "plot"),
     "PIL": ("pillow", "render"),
     "imageio_ffmpeg": ("imageio-ffmpeg", "film"),
 }

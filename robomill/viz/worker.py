@@ -1,43 +1,42 @@
 """Rendering out of process: one long-lived worker, one picture at a time, a crash costs one second.
 
 VTK without a usable OpenGL library ends its process without an exception, and it is not safe to use from several
-threads. So pictures are drawn by a child process that is spoken to over its stdin and stdout in length-prefixed
-messages. It draws a small picture first and says when that worked: an end before it is the test for OpenGL, a later
-one has another reason. One worker, not two: a second takes half a gigabyte, and two drawing on two cores were no
-faster than one (software OpenGL uses all cores by itself).
+threads. So pictures are drawn by a child process that is spoken to in pickles over its stdin and stdout. It draws a
+small picture first and says when that worked: an end before it is the test for OpenGL, a later one has another reason.
+Whoever waits for it waits in plain reads and writes, which every system has; time is up when an alarm ends the
+process, and with it the wait. One worker, not two: a second takes half a gigabyte, and two drawing on two cores were
+no faster than one (software OpenGL uses all cores by itself).
 """
 
 import contextlib
 import hashlib
 import os
 import pickle
-import select
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from robomill.errors import RenderError
+from robomill.errors import RenderError, RobomillError
+from robomill.extras import missing
+from robomill.viz import graphics
 
 TIMEOUT_S = 40.0
-MEND = "apt-get install -y libegl1 libgl1-mesa-dri"
-NO_OPENGL = (
-    f"Rendered pictures need an OpenGL library that this machine lacks; as root, run: {MEND}. "
-    "Everything else works without it."
-)
+NO_OPENGL = graphics.no_opengl()
 NICE = 10  # by so much the drawing process gives way
 FREE_DEATHS = 2  # in a row, after which the next attempt has to wait
 LONGEST_PAUSE_S = 60.0
 REMEMBERED = 64  # pictures that ended the process
 OUT_OF_MEMORY = 12  # exit code of a drawing process that could not have the memory it asked for
 LOADED, READY = "loaded", "ready"  # what the process says: libraries are in, a first picture is drawn
-_LENGTH = struct.Struct("<Q")
+SIGKILL = 9  # Windows has no name for it
+WINDOWS_FAULT = 0xC0000000  # exit codes from here on are faults there: memory that is not its own, a missing part ...
 
 
 @dataclass
@@ -90,12 +89,16 @@ class RenderWorker:
         return self._starts.deaths >= FREE_DEATHS
 
     @property
-    def refusal(self) -> RenderError | None:
+    def refusal(self) -> RobomillError | None:
         """Why nothing can be drawn just now; None where a picture may be asked for."""
-        return self._starts.refusal() if self._starts.left_s > 0.0 else None
+        absent = missing("A rendered picture", "render", "pyvista", "matplotlib", "PIL")
+        return absent or (self._starts.refusal() if self._starts.left_s > 0.0 else None)
 
     def render(self, picture: Any) -> bytes:
         """PNG bytes of ``picture``; where the process ends, a second attempt is made at once."""
+        absent = missing("A rendered picture", "render", "pyvista", "matplotlib", "PIL")
+        if absent is not None:
+            raise absent
         message = pickle.dumps(picture, protocol=5)
         name = hashlib.blake2b(message).digest()
         while True:
@@ -118,23 +121,23 @@ class RenderWorker:
 
     def _attempt(self, message: bytes, failures: Failures) -> tuple[str, Any] | None:
         """The answer of the process, or None where it ended and ``failures``, or those of its start, say why."""
-        deadline = time.monotonic() + self._timeout_s
+        late = threading.Event()
         try:
-            self._wait_until_ready(deadline)
-            write_message(_pipe(self._process, "stdin"), message, deadline)
-            answer = pickle.loads(self._read(deadline))
-        except (OSError, EOFError) as exc:  # TimeoutError is an OSError
-            late = isinstance(exc, TimeoutError)
-            reason = f"drawing took longer than {self._timeout_s:g} s and was stopped" if late else self._why_ended()
+            process = self._running()
+            with _ended_in(process, self._timeout_s, late):
+                answer = self._exchange(process, message)
+        except (OSError, EOFError, pickle.UnpicklingError):  # it is not there, or its end cut a message off
+            slow = f"drawing took longer than {self._timeout_s:g} s and was stopped"
+            reason = slow if late.is_set() else self._why_ended()
             if self._stage == READY:
                 failures.note(f"Picture: {reason}.")
-                if late:
+                if late.is_set():
                     failures.note(f"Picture: {reason}.")  # no second attempt at once: it would take as long again
             else:
                 self._starts.note(reason if reason == NO_OPENGL else f"Pictures: {reason}.")
             self._stop()
             return None
-        return answer[0], answer[1]
+        return answer
 
     def start(self) -> None:
         """Start the process without waiting for it, so that the first picture comes sooner."""
@@ -152,18 +155,24 @@ class RenderWorker:
         with self._lock:
             self._stop()
 
-    def _wait_until_ready(self, deadline: float) -> None:
+    def _running(self) -> subprocess.Popen[bytes]:
+        """The process, started if there is none. Raises OSError where that fails."""
         if self._process is not None and self._process.poll() is not None and self._stage == READY:
             self._stop()  # ended while nobody asked for anything
-        if self._process is None:
-            self._start()
-        while self._stage != READY:
-            self._stage = pickle.loads(self._read(deadline))[0]
-        self._starts = Failures()
+        return self._process or self._start()
 
-    def _start(self) -> None:
-        # EGL first, software as its fallback; VTK's own choice would go through X11 and end the process.
-        environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow", "PYVISTA_OFF_SCREEN": "true"}
+    def _exchange(self, process: subprocess.Popen[bytes], message: bytes) -> tuple[str, Any]:
+        """What the process answers, once it is ready. Raises OSError, EOFError or UnpicklingError where it ends."""
+        stdin, stdout = _pipes(process)
+        while self._stage != READY:
+            self._stage = pickle.load(stdout)[0]
+        self._starts = Failures()
+        stdin.write(message)
+        stdin.flush()
+        kind, value = pickle.load(stdout)
+        return kind, value
+
+    def _start(self) -> subprocess.Popen[bytes]:
         self._stage, self._killed = "", _ended_for_memory()
         self._said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
         self._process = subprocess.Popen(
@@ -171,10 +180,9 @@ class RenderWorker:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._said,
-            env=environment,
-            bufsize=0,
+            env={**os.environ, **graphics.environment()},
         )
-        os.set_blocking(_pipe(self._process, "stdin").fileno(), False)
+        return self._process
 
     def _stop(self) -> None:
         process, self._process = self._process, None
@@ -185,13 +193,9 @@ class RenderWorker:
             return
         process.kill()
         process.wait()
-        for pipe in (process.stdin, process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-
-    def _read(self, deadline: float) -> bytes:
-        return _read_until(_pipe(self._process, "stdout"), deadline)
+        for pipe in _pipes(process):
+            with contextlib.suppress(OSError):
+                pipe.close()
 
     def _why_ended(self) -> str:
         """Why the process ended, in words."""
@@ -203,13 +207,16 @@ class RenderWorker:
             return "the drawing process closed its pipe"
         if code == OUT_OF_MEMORY:
             return "the drawing process ran out of memory"
+        graphic = self._stage == LOADED  # its first picture is what tries the graphics library
+        if code >= WINDOWS_FAULT:
+            return NO_OPENGL if graphic else f"the drawing process crashed (code {code:#x}){self._last_words()}"
         if code >= 0:
             return f"the drawing process ended with code {code}{self._last_words()}"
-        if -code == signal.SIGKILL:
+        if -code == SIGKILL:
             if _ended_for_memory() > self._killed:
                 return "the drawing process ran out of memory and was killed by the system (signal 9)"
             return "the drawing process was killed (signal 9)"
-        if self._stage == LOADED and -code in (signal.SIGSEGV, signal.SIGABRT):
+        if graphic and -code in (signal.SIGSEGV, signal.SIGABRT):
             return NO_OPENGL
         name = signal.Signals(-code).name if -code in set(signal.Signals) else "unknown"
         return f"the drawing process crashed (signal {-code}, {name}){self._last_words()}"
@@ -233,43 +240,27 @@ def _ended_for_memory() -> int:
     return count
 
 
-def _pipe(process: subprocess.Popen[bytes] | None, name: str) -> IO[bytes]:
-    """A pipe of the process. Raises EOFError where it is not there."""
-    pipe: IO[bytes] | None = getattr(process, name, None)
-    if pipe is None:
-        raise EOFError(f"no {name}")
-    return pipe
+def _pipes(process: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
+    """What it reads, and what it writes."""
+    assert process.stdin is not None and process.stdout is not None  # noqa: PT018 - both were asked for
+    return process.stdin, process.stdout
 
 
-def write_message(stream: IO[bytes], message: bytes, deadline: float = float("inf")) -> None:
-    """Length as 8 bytes little endian, then the message. Raises TimeoutError where nobody takes it by ``deadline``."""
-    data = memoryview(_LENGTH.pack(len(message)) + message)
-    while data:
-        left = deadline - time.monotonic()
-        if left <= 0 or not select.select([], [stream], [], min(left, 60.0))[1]:
-            if left <= 0:
-                raise TimeoutError
-            continue
-        written = stream.write(data)
-        data = data[written or 0 :]
-    stream.flush()
+@contextlib.contextmanager
+def _ended_in(process: subprocess.Popen[bytes], seconds: float, late: threading.Event) -> Iterator[None]:
+    """End the process after so many seconds, unless what is done with it is done by then; ``late`` says that it was."""
 
+    def end() -> None:
+        late.set()
+        process.kill()
 
-def _read_until(stream: IO[bytes], deadline: float) -> bytes:
-    def exactly(count: int) -> bytes:
-        parts: list[bytes] = []
-        while count:
-            left = deadline - time.monotonic()
-            if left <= 0 or not select.select([stream], [], [], left)[0]:
-                raise TimeoutError
-            part = os.read(stream.fileno(), min(count, 1 << 20))
-            if not part:
-                raise EOFError("the drawing process ended")
-            parts.append(part)
-            count -= len(part)
-        return b"".join(parts)
-
-    return exactly(_LENGTH.unpack(exactly(_LENGTH.size))[0])
+    alarm = threading.Timer(seconds, end)
+    alarm.daemon = True
+    alarm.start()
+    try:
+        yield
+    finally:
+        alarm.cancel()
 
 
 def main() -> None:
@@ -277,25 +268,37 @@ def main() -> None:
     # The pipe is taken away from file descriptor 1, so that whatever VTK prints cannot break a message.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    stdin = sys.stdin.buffer
+
+    def say(kind: str, value: Any = None) -> None:
+        pickle.dump((kind, value), out, protocol=5)
+        out.flush()
+
     with contextlib.suppress(AttributeError, OSError):  # pages go first: they are complete before their pictures come
         os.nice(NICE)
     from robomill.viz import scene
 
     scene.load()
-    write_message(out, pickle.dumps((LOADED, None)))
+    say(LOADED)
     scene.first()
-    write_message(out, pickle.dumps((READY, None)))
-    while header := stdin.read(_LENGTH.size):
-        message = stdin.read(_LENGTH.unpack(header)[0])
-        answer: tuple[str, Any]
-        try:
-            answer = ("png", scene.draw(pickle.loads(message)))
-        except MemoryError:
-            os._exit(OUT_OF_MEMORY)
-        except Exception as exc:  # a drawing error is answered, it must not end the loop
-            answer = ("error", f"{type(exc).__name__}: {exc}")
-        write_message(out, pickle.dumps(answer, protocol=5))
+    say(READY)
+    try:
+        with contextlib.suppress(EOFError):  # whoever asked is gone
+            while True:
+                say(*_answer(pickle.load(sys.stdin.buffer)))
+    except MemoryError:
+        os._exit(OUT_OF_MEMORY)
+
+
+def _answer(picture: Any) -> tuple[str, Any]:
+    """PNG bytes, or what went wrong: a drawing error is answered, it must not end the loop."""
+    from robomill.viz import scene
+
+    try:
+        return "png", scene.draw(picture)
+    except MemoryError:
+        raise
+    except Exception as exc:
+        return "error", f"{type(exc).__name__}: {exc}"
 
 
 if __name__ == "__main__":

@@ -4,32 +4,33 @@ from __future__ import annotations
 
 import io
 import os
+import select
 import signal
 import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from robomill.errors import RenderError
+from robomill import extras
+from robomill.errors import MissingExtraError, RenderError
 from robomill.viz import worker as worker_module
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.worker import RenderWorker
 
 ECHO = """
-import os, pickle, struct, sys, time
+import os, pickle, sys, time
 out = os.fdopen(os.dup(1), "wb"); os.dup2(2, 1)
-def say(answer):
-    answer = pickle.dumps(answer)
-    out.write(struct.pack("<Q", len(answer)) + answer); out.flush()
+def say(answer): pickle.dump(answer, out); out.flush()
 BEFORE_LOADING
 say(("loaded", None))
 BEFORE_READY
 say(("ready", None))
-while header := sys.stdin.buffer.read(8):
-    wish = pickle.loads(sys.stdin.buffer.read(struct.unpack("<Q", header)[0]))
+while True:
+    wish = pickle.load(sys.stdin.buffer)
     if wish == "die": os.abort()
     if wish == "killed": os.kill(os.getpid(), 9)
     if wish == "memory": os._exit(12)
@@ -217,6 +218,57 @@ def test_a_hang_is_ended_and_the_next_picture_comes() -> None:
         worker.render("hang")
     assert worker.render("next") == b"got next"
     worker.close()
+
+
+def test_a_process_that_takes_no_picture_is_ended_in_time() -> None:
+    """More than a pipe holds, so that the writing waits, not the reading."""
+    worker = fake(timeout_s=1.5, ready="say(('ready', None)); time.sleep(60)")
+    began = time.monotonic()
+    with pytest.raises(RenderError, match="longer than 1.5 s"):
+        worker.render("x" * 5_000_000)
+    assert time.monotonic() - began < 6.0
+    worker.close()
+
+
+def test_it_needs_nothing_that_windows_lacks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "set_blocking")
+    monkeypatch.delattr(os, "nice")
+    there = SimpleNamespace(SIGSEGV=signal.SIGSEGV, SIGABRT=signal.SIGABRT, Signals=signal.Signals)
+    monkeypatch.setattr(worker_module, "signal", there)  # no SIGKILL
+    monkeypatch.setattr(select, "select", lambda *_: pytest.fail("a pipe cannot be waited for there"))
+    worker = fake(timeout_s=1.5)
+    assert worker.render("a") == b"got a"
+    with pytest.raises(RenderError, match="longer than 1.5 s"):
+        worker.render("hang")
+    with pytest.raises(RenderError, match="signal 9"):
+        worker.render("killed")
+    assert worker.render("b") == b"got b"
+    worker.close()
+
+
+@pytest.mark.parametrize(
+    ("stage", "said"), [("loaded", "Rendered pictures need an OpenGL library"), ("ready", "crashed (code 0xc0000005)")]
+)
+def test_a_fault_on_windows_is_told_by_when_it_came(stage: str, said: str) -> None:
+    """Where Windows ends a process for a fault, its exit code is a number of 32 bits from 0xC0000000 on."""
+
+    class Ended:
+        def wait(self, timeout: float) -> int:
+            return 0xC0000005
+
+    worker = fake()
+    worker._process, worker._stage = Ended(), stage  # type: ignore[assignment]
+    assert said in worker._why_ended()
+
+
+def test_without_the_extra_it_is_named_and_nothing_is_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda name: None if name == "pyvista" else object())
+    worker = fake()
+    with pytest.raises(MissingExtraError, match=r'needs pyvista, .* pip install "robomill\[render\]"'):
+        worker.render("a")
+    assert isinstance(worker.refusal, MissingExtraError)
+    worker.start()
+    assert worker._process is None
 
 
 def test_without_a_graphics_driver_the_real_process_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
