@@ -1,0 +1,227 @@
+"""What each key of a file means, in one sentence, where its declaration does not say it.
+
+Keys come from the readers (``traced``); a key without a sentence here or in its declaration, and a sentence for a key
+that no reader knows, stop the build.
+"""
+
+WORDS: dict[str, dict[str, str]] = {
+    # ---- set-up ---------------------------------------------------------------------------------------------------
+    "setup": {
+        "format": "Always `\"robomill-setup\"`.",
+        "version": "Always `1`.",
+        "name": "What the set-up is called on screen and in reports.",
+        "description": "A sentence for people; nothing depends on it.",
+        "tolerance_mm": "The largest deviation that is accepted: one number, or a table of `wall`, `floor` and `feed`.",
+        "tools_unit": "Unit of a LinuxCNC tool table named by `tools`, which does not say it: `\"mm\"` or `\"in\"`.",
+        "spin": "Turn about the tool axis of arms with six axes or more: `\"least_motion\"` of the joints (where it is "
+        "left out), or `\"least_deviation\"`; one for the whole path.",
+        "spin_deg": "The same turn as an angle, in place of `spin`.",
+        "spin_rad": "The same in radians; written where no number of degrees reads back to it.",
+        "robot": "The arm: table `[robot]`.",
+        "path": "Where the tool is told to go: table `[path]`.",
+        "part": "Where the part lies: table `[part]`. Left out: {W} is {M}.",
+        "cutter": "What cuts: table `[cutter]`. May be left out where `[[tools]]` are given: the first of them is it.",
+        "tools": "The tools of a program by number: entries `[[tools]]`, or the name of a tool table's file.",
+        "stock": "The block before the cut: table `[stock]`. Left out: a block around what the path cuts.",
+        "force": "What pushes: table `[force]`.",
+        "springs": "What gives besides the joints: entries `[[springs]]`.",
+        "measured_map": "Compliance measured on a grid, used in place of joints and springs: table `[measured_map]`.",
+        "links": "Masses of the links, for the sag under the arm's own weight: table `[links]`.",
+        "numerics": "Steps, cells and switches of the computation: table `[numerics]`.",
+        "provenance": "Where the numbers come from, block by block: table `[provenance]`.",
+        "view": "How the app looks at a project; no run depends on it.",
+        "maps": "What the app's maps look at; no run depends on it.",
+        "experiments": "Load tests kept in the app's project; no run depends on them.",
+        "uncertainty": "What load tests let know of the compliances, kept in the app's project.",
+    },
+    "tolerance_mm": {
+        "wall": "Of walls, mm.",
+        "floor": "Of floors, along the tool axis, mm. Left out: as `wall`.",
+        "feed": "Along the feed, mm. Left out: told, not judged.",
+    },
+    "robot": {
+        "name": "A robot that comes with robomill, or a file (`.toml`, `.urdf`) beside the set-up or below.",
+        "definition": "The robot's whole file as text, in place of `name`.",
+        "compliance_set": "The set of joint compliances in force. Left out: the one that the robot's file uses.",
+    },
+    "path": {
+        "program": "A program's file (G-code or APT) beside the set-up or below. One of `program`, `program_text`, "
+        "`lines_mm` and `sketch` is given.",
+        "program_text": "The program itself, as text.",
+        "program_name": "What a program given as text is called in messages.",
+        "dialect": "How the program is read: `\"auto\"` (guessed and said), `\"linuxcnc\"`, `\"fanuc\"`, `\"grbl\"`, "
+        "`\"sinumerik\"`.",
+        "rotary_axis": "The rotary axis of the program that turns the part (`\"A\"`, `\"-A\"`, `\"B\"` ...), or "
+        "`\"tool\"` where it leans the tool.",
+        "lines_mm": "Straight cuts: rows of six numbers, X, Y, Z of the start and X, Y, Z of the end, in {W}.",
+        "feed_mm_min": "The feed of each row of `lines_mm`.",
+        "sketch": "A path drawn by hand: table `[path.sketch]`.",
+    },
+    "path.sketch": {"elements": "The shapes in the order in which they are cut: entries `[[path.sketch.elements]]`."},
+    "path.sketch.elements": {},
+    "part": {
+        "frame": "In place of both: three rows of four numbers, the axes of {W} in {M} and its origin in mm in the "
+        "last column. For a part that is tilted.",
+    },
+    "stock": {
+        "stl": "An STL file beside the set-up or below, in place of the corners.",
+        "unit": "The unit of the STL file: `\"mm\"`, `\"in\"`, `\"m\"` or what else a length may have.",
+        "triangles": "The mesh of a solid as the app saves it: packed.",
+        "triangles_count": "How many triangles are packed there.",
+    },
+    "cutter": {},
+    "tools": {
+        "name": "What people call the tool.",
+        "assumed": "Fields of the cutter that nobody has stated; results name them.",
+    },
+    "force": {
+        "kind": "Which law of force: it decides which other keys there are.",
+        "notes": "Sentences that go with the result.",
+        "source": "Where the numbers come from, as in `[provenance]`.",
+        "material": "A material row that comes with robomill, or a `.toml` file beside the set-up or below.",
+        "material_definition": "The row's whole file as text, in place of `material`.",
+        "file": "A CSV file of measured force beside the set-up or below; its columns stand below.",
+        "force_on": "What the sensor felt: `\"tool\"`, or `\"part\"` for a dynamometer below the part, whose force is "
+        "turned round.",
+        "force_axes": "Whose axes x, y and z of the record are: `\"robot\"`, or `\"part\"` where the sensor sits on it.",
+        "record": "The record itself, in place of `file`: table `[force.record]`.",
+    },
+    "force.record": {
+        "axis": "`\"time\"` in s, or `\"path\"` in m of path length.",
+        "frame": "`\"path\"`: feed, feed-normal, axial; `\"M\"`: of the robot; `\"W\"`: of the part.",
+        "x": "The instants or path lengths, each as a list of one number, rising.",
+        "F_N": "Rows of three numbers: the force on the tool.",
+        "source": "What the record is called.",
+        "notes": "Sentences that go with the result.",
+    },
+    "springs": {
+        "kind": "Which spring: it decides which other keys there are.",
+        "name": "What the result calls its line.",
+        "source": "Where its stiffness comes from, as in `[provenance]`.",
+    },
+    "measured_map": {
+        "file": "A file of load tests (see below) measured on a grid, beside the set-up or below. Or, in its place:",
+        "p_m": "The measured points, rows of three numbers in {M}. `p_mm` is read, too.",
+        "C_m_N": "The compliance at each point, rows of nine numbers, the matrix row by row.",
+        "tilt_rad": "A and B of the tool at each point. `tilt_deg` is read, too.",
+        "reach_m": "How far from its points the map is trusted.",
+        "stderr_m_N": "Standard errors of the nine numbers of each point.",
+        "provenance": "Where the map comes from, as in `[provenance]`.",
+    },
+    "links": {"source": "Where the masses come from, as in `[provenance]`."},
+    "numerics": {},
+    "provenance": {
+        "kind": "One of `paper`, `measured`, `assumed`, `user`, `computed`, `synthetic`.",
+        "source": "Where from, in words.",
+        "carried_from": "The set-up for which the numbers were stated, where nobody has said yet that they hold here.",
+    },
+    # ---- robot ----------------------------------------------------------------------------------------------------
+    "robot file": {
+        "format": "Always `\"robomill robot\"`.",
+        "version": "Always `1`.",
+        "name": "Its short name. Left out: the file's name.",
+        "title": "What people call it.",
+        "convention": "`\"standard\"` (Denavit-Hartenberg as in the paper, where it is left out) or `\"modified\"` "
+        "(Craig).",
+        "joint": "One `[[joint]]` for each of 1 to 7 axes, from the base to the tool.",
+        "base": "The first frame of the table in {M}: table `[base]`. Left out: {M} itself.",
+        "tool": "The tool frame {T} in the last frame of the table: table `[tool]`. Left out: that frame itself.",
+        "compliance": "What the joints give: table `[compliance]`.",
+        "provenance": "Where the numbers come from: `geometry`, `lengths`, `limits`, `base`, `tool`, "
+        "`\"compliance.SET\"`.",
+    },
+    "joint": {
+        "type": "`\"revolute\"` (where it is left out) or `\"prismatic\"`.",
+        "sign": "+1 (where it is left out), or −1 where the joint counts against the table's sense: "
+        "θ of the table = sign · θ + θ₀.",
+        "name": "What people call the joint; not used.",
+    },
+    "base": {
+        "xyz": "The origin, three numbers. Left out: 0, 0, 0.",
+        "rotation": "Three rows of three numbers, a rotation. Left out: the unit matrix.",
+    },
+    "tool": {
+        "xyz": "The tool tip in the last frame of the table, three numbers. Left out: 0, 0, 0.",
+        "rotation": "Three rows of three numbers; the third column is z_T, out of the part and towards the spindle.",
+    },
+    "compliance": {
+        "use": "The set in force. Left out: the first. Numbers in `[compliance]` itself are the user's own set.",
+        "C_theta_1e-7_rad_per_Nm": "One compliance for each joint in 10⁻⁷ rad/(N m), as in the paper's tables "
+        "(10⁻⁷ m/N for a joint that slides).",
+        "C_theta_SI": "The same in rad/(N m) (m/N for a joint that slides). One of the three is given in a set.",
+        "k_theta_Nm_per_rad": "Stiffnesses in their place, in N m/rad (N/m for a joint that slides).",
+    },
+    # ---- material -------------------------------------------------------------------------------------------------
+    "material": {
+        "name": "Its short name, under which a set-up finds it.",
+        "title": "What people call it.",
+        "alloy": "Rows of one alloy are its alternatives; their spread is shown.",
+        "coefficients": "The coefficients, all of one law: table `[coefficients]`.",
+        "provenance": "Where they come from: `kind` and `source`, which must not be empty.",
+    },
+    "coefficients": {},
+}
+
+# Labels that are symbols on screen, said in words here.
+LABELS = {
+    "alpha": "α of the table's row: turn about x.",
+    "a": "a of the table's row: shift along x.",
+    "d": "d of the table's row: shift along z; where the joint slides, at coordinate 0.",
+    "theta_offset": "θ₀ of the table's row: turn about z at coordinate 0; where the joint slides, its fixed angle.",
+    "limits": "Least and greatest coordinate, a list of two numbers.",
+    "Ktc": "Tangential force per area of the chip.",
+    "Krc": "Radial force per area of the chip.",
+    "Kac": "Axial force per area of the chip; left out where the source gives none.",
+    "Kte": "Tangential force per length of edge.",
+    "Kre": "Radial force per length of edge.",
+    "Kae": "Axial force per length of edge; left out where the source gives none.",
+    "kc11": "Kienzle's specific force k_c1.1 at a chip of 1 mm by 1 mm.",
+    "mc": "Kienzle's exponent m_c.",
+    "radial_ratio": "Radial force over tangential force.",
+    "axial_ratio": "Axial force over tangential force.",
+    "blocked_at": "The coordinate at which the axis is held: it then neither moves nor gives. Left out: it is free.",
+    "number": "Its number, as T and H words call it.",
+    "length_mm": "What G43 H counts along Z.",
+    "offset_x_mm": "What G43 H counts along X.",
+    "offset_y_mm": "What G43 H counts along Y.",
+    "orientation": "Orientation of the nose, as a lathe's table has it; not used.",
+    "compensates_mm": "The diameter that G41 and G42 count with where it is not the cutter's.",
+    "lateral_um_N": "Compliance across the tool axis.",
+    "axial_um_N": "Compliance along the tool axis.",
+    "diameter": "Diameter where it is widest.",
+    "joint": "Number of the joint among those that are free.",
+    "C_x_1e-7_rad_per_Nm": "Compliance about the x axis of its frame.",
+    "C_y_1e-7_rad_per_Nm": "Compliance about the y axis of its frame.",
+    "turned": "Whether the axes turn with the joint.",
+    "E_N_mm2": "Young's modulus; solid carbide where it is left out.",
+    "core": "Bending diameter over diameter: flutes weaken the shank.",
+    "tip_angle_deg": "Full angle of the cone of a chamfer mill or a drill's point.",
+    "tip_diameter_mm": "Diameter of the flat at the end of a chamfer mill.",
+    "corner_radius_mm": "Corner radius of a bull-nose mill; a ball nose has half its diameter.",
+    "flutes": "Number of flutes.",
+    "kind": "Shape of the cutter.",
+    "hand": "Direction of cut: a right-hand cutter turns clockwise seen from the spindle (M3).",
+    "helix": "Hand of the flutes. A right-hand helix on a right-hand cutter pulls the tool towards the part.",
+    "helix_angle_deg": "Angle of the flutes against the axis; 0 are straight flutes, which pull nowhere.",
+    "mass_kg": "What moves with each free joint; spindle and tool belong to the last.",
+    "centre_mm": "Its centre of mass in the frame after the joint; {T} for the last.",
+    "feed_N": "Along the feed.",
+    "feed_normal_N": "To the left of the feed.",
+    "axial_N": "Along the tool axis, positive out of the part.",
+    "vector_N": "The force on the tool in {M}.",
+    "lower_mm": "Lower corner of the block in {W}.",
+    "upper_mm": "Upper corner of the block in {W}.",
+    "spindle_1_min": "How fast the spindle turns, where a program never says it; for lines and sketches always.",
+    "plunge_mm_min": "Feed of plunges.",
+    "clearance_mm": "Height of rapids above the top face.",
+    "feed_mm_min": "Feed of the shape; of a sketch, that of the next shape that is drawn.",
+    "depth_mm": "Depth below the top face; of a sketch, that of the next shape that is drawn.",
+    "snap_mm": "What points snap to while one draws; 0 for none.",
+    "shape": "What is drawn: it says what the points are.",
+    "points_mm": "line: start, end. polyline: two or more. polygon: three or more, closed. rectangle: two opposite "
+    "corners. arc: start, a point on the way, end. circle: centre, a point on it.",
+    "zero_mm": "Where the part zero {W} lies in {M}.",
+    "rotation_z_deg": "By how much the part is turned about Z.",
+    "axial": "Whether the axial pull of the helix counts; off names what the other components do alone.",
+    "start": "Instant (s) or path length (m) of the record at which the first cut begins.",
+}
