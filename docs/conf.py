@@ -13,7 +13,14 @@ author = "robomill contributors"
 project_copyright = "robomill contributors, MIT licence"
 version = release = robomill.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "generators.mathml", "generators.pages"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "generators.docstrings",
+    "generators.mathml",
+    "generators.pages",
+]
 exclude_patterns = ["_build", "_generated", "scripts"]
 nitpicky = False  # shapes and units in docstrings are words, not names to be linked
 

@@ -25,8 +25,11 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 ROOT = DOCS.parent
-PAGES = (ROOT / "README.md", *sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("how_to/*.md")))
-_FENCE = re.compile(r"^(?P<mark>`{3,})(?P<language>[\w+-]*)[^\n]*\n(?P<text>.*?)^(?P=mark)[ \t]*$", re.MULTILINE | re.DOTALL)
+PAGES = (*sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("how_to/*.md")))
+_FENCE = re.compile(
+    r"^(?P<mark>`{3,})(?P<language>[\w+-]*)[^\n]*\n(?P<text>.*?)^(?P=mark)[ \t]*$", re.MULTILINE | re.DOTALL
+)
+_BETWEEN = re.compile(r"`{3,}\s*`{3,}text[^\n]*\n")  # a block that ends, and right behind it one of text that begins
 _PROMPT = "$ "
 
 
@@ -78,8 +81,7 @@ def outputs(page: Path) -> Iterator[Shown]:
     for block, following in zip(found, [*found[1:], None]):
         if block.language == "python":
             printed = _captured(lambda block=block: _run(block, page, session))
-            behind = following is not None and not text[block.end : following.start].strip("`text \n")
-            if behind and following is not None and following.language == "text":
+            if following is not None and _BETWEEN.fullmatch(text[block.end : following.start]):
                 yield Shown(block.text, following.text, printed, following.start, following.end, following.line)
             elif printed:
                 end = block.end + len("```\n")
@@ -112,10 +114,8 @@ def _console(block: Block) -> Iterator[Shown]:
 def _verb(words: list[str]) -> None:
     from robomill.cli import main
 
-    try:
+    with contextlib.suppress(SystemExit):  # argparse has said why
         main(words)
-    except SystemExit:
-        pass  # argparse has said why
 
 
 def _captured(work: Callable[[], None]) -> str:

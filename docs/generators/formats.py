@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from generators import traced
 from generators.words import LABELS, WORDS
-
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs import SPRINGS
 from robomill.cutting.forces import FORCES
@@ -85,7 +84,7 @@ def _setup() -> str:
 
 
 _PROVENANCE = (
-    "One entry a block, `cutter = { kind = \"paper\", source = \"section 5.2\" }`; the blocks of a set-up are `path`, "
+    'One entry a block, `cutter = { kind = "paper", source = "section 5.2" }`; the blocks of a set-up are `path`, '
     "`part`, `cutter`, `force`, `stock`, `tolerance`, `measured_map`, those of a robot stand with its file."
 )
 
@@ -162,7 +161,10 @@ def _tools() -> str:
 
 def _tbl() -> str:
     declared = _by_key(TableTool)
-    rows = [f"| `{letter}` | {declared[key].label if key in declared else key} |" for letter, key in tool_tables._OF_TBL.items()]
+    rows = [
+        f"| `{letter}` | {declared[key].label if key in declared else key} |"
+        for letter, key in tool_tables._OF_TBL.items()
+    ]
     rows.append("| `D` | Diameter; below 0: compensation to the other side |")
     silent = ", ".join(f"`{letter}`" for letter in sorted(tool_tables._SILENT))
     rows.append(f"| {silent} | passed over |")
@@ -178,7 +180,9 @@ def _table(keys: set[str], words: Mapping[str, str], declared: Mapping[str, Quan
     unsaid = sorted(keys - set(words) - set(declared))
     idle = sorted(set(words) - keys)
     if unsaid or idle:
-        raise UnsaidKeyError(f"Keys without a sentence: {unsaid}; sentences without a key: {idle}. See generators/words.py.")
+        raise UnsaidKeyError(
+            f"Keys without a sentence: {unsaid}; sentences without a key: {idle}. See generators/words.py."
+        )
     in_order = [key for key in words if key in keys] + [key for key in declared if key in keys and key not in words]
     rows: Rows = []
     for key in in_order:
@@ -266,7 +270,7 @@ _FORCE = (
     ("time", ("t",), "from the first cut on, rapids and dwells included; rising, without gaps"),
     ("path length", ("s",), "from the start of the path, in place of time"),
     ("along the path", forces.COMPONENTS["path"], "feed, left of the feed, out of the part"),
-    ("in axes", forces.COMPONENTS["M"], "of the robot, or of the part with `force_axes = \"part\"`"),
+    ("in axes", forces.COMPONENTS["M"], 'of the robot, or of the part with `force_axes = "part"`'),
 )
 _PROFILE = (
     ("station", ("station",), "along the groove"),

@@ -6,18 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
 
 import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
 from robomill.viz.theme import DIVERGING, DIVERGING_DARK, JOINT_COLOURS, JOINT_COLOURS_DARK
-
-matplotlib.use("Agg")
-from matplotlib.colors import LinearSegmentedColormap  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
 
 SAMPLES = ("paper_flute", "heart", "spiral", "word", "pocket_arcs", "two_tools")
 
@@ -86,7 +83,9 @@ def _surface(fig: Any, result: SimulationResult, look: Look) -> None:
     colours = LinearSegmentedColormap.from_list("signed", [(at, colour) for at, colour in look.signed])
     edges = [float(from_si(v, "mm")) for v in (error.x[0], error.x[-1], error.y[0], error.y[-1])]
     values = np.where(error.cut, from_si(error.error, "mm"), np.nan).T
-    image = axes.imshow(values, origin="lower", extent=edges, cmap=colours, vmin=-limit, vmax=limit, interpolation="nearest")
+    image = axes.imshow(
+        values, origin="lower", extent=edges, cmap=colours, vmin=-limit, vmax=limit, interpolation="nearest"
+    )
     bar = fig.colorbar(image, ax=axes, location="bottom", shrink=0.8, aspect=32)
     bar.set_label("error of the surface, mm: + material left, − cut too deep", color=look.text, fontsize=9)
     bar.ax.tick_params(colors=look.muted, labelsize=8)

@@ -115,7 +115,10 @@ def _setups(folder: Path) -> Iterator[tuple[str, Beside]]:
     (folder / "blank.stl").write_text(_stl(), encoding="utf-8")
     (folder / "force.csv").write_text("t_s,F_feed_normal_N\n0,90\n1,100\n2,100\n3,100\n", encoding="utf-8")
     yield re.sub(r"\[stock\]\n(?:[\w#].*\n)+", '[stock]\nstl = "blank.stl"\nunit = "mm"\n', plain), Beside(folder)
-    yield re.sub(r"\[force\]\n(?:[\w#].*\n)+", '[force]\nkind = "measured"\nfile = "force.csv"\n', plain), Beside(folder)
+    yield (
+        re.sub(r"\[force\]\n(?:[\w#].*\n)+", '[force]\nkind = "measured"\nfile = "force.csv"\n', plain),
+        Beside(folder),
+    )
 
 
 def _variants(base: SimulationSetup, process: SimulationSetup) -> Iterator[SimulationSetup]:
@@ -125,7 +128,9 @@ def _variants(base: SimulationSetup, process: SimulationSetup) -> Iterator[Simul
     yield base.replace(links=LinkMasses(np.ones(5), np.zeros((5, 3))))
     yield base.replace(spin=0.1)
     yield load_setup(samples_dir() / "paper_flute" / "setup_measured_map.toml")  # written with the map in it
-    yield base.replace(springs=(*(cls(joint=1) if cls.each_joint else cls.first(base.cutter) for cls in SPRINGS.values()),))
+    yield base.replace(
+        springs=(*(cls(joint=1) if cls.each_joint else cls.first(base.cutter) for cls in SPRINGS.values()),)
+    )
     record = ForceRecord(np.arange(6.0), np.full((6, 3), 50.0))
     yield base.replace(force=MeasuredForce(record))
     rows = {type(row): row for row in sample_materials()}

@@ -7,14 +7,14 @@ that no reader knows, stop the build.
 WORDS: dict[str, dict[str, str]] = {
     # ---- set-up ---------------------------------------------------------------------------------------------------
     "setup": {
-        "format": "Always `\"robomill-setup\"`.",
+        "format": 'Always `"robomill-setup"`.',
         "version": "Always `1`.",
         "name": "What the set-up is called on screen and in reports.",
         "description": "A sentence for people; nothing depends on it.",
         "tolerance_mm": "The largest deviation that is accepted: one number, or a table of `wall`, `floor` and `feed`.",
-        "tools_unit": "Unit of a LinuxCNC tool table named by `tools`, which does not say it: `\"mm\"` or `\"in\"`.",
-        "spin": "Turn about the tool axis of arms with six axes or more: `\"least_motion\"` of the joints (where it is "
-        "left out), or `\"least_deviation\"`; one for the whole path.",
+        "tools_unit": 'Unit of a LinuxCNC tool table named by `tools`, which does not say it: `"mm"` or `"in"`.',
+        "spin": 'Turn about the tool axis of arms with six axes or more: `"least_motion"` of the joints (where it is '
+        'left out), or `"least_deviation"`; one for the whole path.',
         "spin_deg": "The same turn as an angle, in place of `spin`.",
         "spin_rad": "The same in radians; written where no number of degrees reads back to it.",
         "robot": "The arm: table `[robot]`.",
@@ -49,10 +49,10 @@ WORDS: dict[str, dict[str, str]] = {
         "`lines_mm` and `sketch` is given.",
         "program_text": "The program itself, as text.",
         "program_name": "What a program given as text is called in messages.",
-        "dialect": "How the program is read: `\"auto\"` (guessed and said), `\"linuxcnc\"`, `\"fanuc\"`, `\"grbl\"`, "
-        "`\"sinumerik\"`.",
-        "rotary_axis": "The rotary axis of the program that turns the part (`\"A\"`, `\"-A\"`, `\"B\"` ...), or "
-        "`\"tool\"` where it leans the tool.",
+        "dialect": 'How the program is read: `"auto"` (guessed and said), `"linuxcnc"`, `"fanuc"`, `"grbl"`, '
+        '`"sinumerik"`.',
+        "rotary_axis": 'The rotary axis of the program that turns the part (`"A"`, `"-A"`, `"B"` ...), or '
+        '`"tool"` where it leans the tool.',
         "lines_mm": "Straight cuts: rows of six numbers, X, Y, Z of the start and X, Y, Z of the end, in {W}.",
         "feed_mm_min": "The feed of each row of `lines_mm`.",
         "sketch": "A path drawn by hand: table `[path.sketch]`.",
@@ -65,7 +65,7 @@ WORDS: dict[str, dict[str, str]] = {
     },
     "stock": {
         "stl": "An STL file beside the set-up or below, in place of the corners.",
-        "unit": "The unit of the STL file: `\"mm\"`, `\"in\"`, `\"m\"` or what else a length may have.",
+        "unit": 'The unit of the STL file: `"mm"`, `"in"`, `"m"` or what else a length may have.',
         "triangles": "The mesh of a solid as the app saves it: packed.",
         "triangles_count": "How many triangles are packed there.",
     },
@@ -81,14 +81,14 @@ WORDS: dict[str, dict[str, str]] = {
         "material": "A material row that comes with robomill, or a `.toml` file beside the set-up or below.",
         "material_definition": "The row's whole file as text, in place of `material`.",
         "file": "A CSV file of measured force beside the set-up or below; its columns stand below.",
-        "force_on": "What the sensor felt: `\"tool\"`, or `\"part\"` for a dynamometer below the part, whose force is "
+        "force_on": 'What the sensor felt: `"tool"`, or `"part"` for a dynamometer below the part, whose force is '
         "turned round.",
-        "force_axes": "Whose axes x, y and z of the record are: `\"robot\"`, or `\"part\"` where the sensor sits on it.",
+        "force_axes": 'Whose axes x, y and z of the record are: `"robot"`, or `"part"` where the sensor sits on it.',
         "record": "The record itself, in place of `file`: table `[force.record]`.",
     },
     "force.record": {
-        "axis": "`\"time\"` in s, or `\"path\"` in m of path length.",
-        "frame": "`\"path\"`: feed, feed-normal, axial; `\"M\"`: of the robot; `\"W\"`: of the part.",
+        "axis": '`"time"` in s, or `"path"` in m of path length.',
+        "frame": '`"path"`: feed, feed-normal, axial; `"M"`: of the robot; `"W"`: of the part.',
         "x": "The instants or path lengths, each as a list of one number, rising.",
         "F_N": "Rows of three numbers: the force on the tool.",
         "source": "What the record is called.",
@@ -117,21 +117,21 @@ WORDS: dict[str, dict[str, str]] = {
     },
     # ---- robot ----------------------------------------------------------------------------------------------------
     "robot file": {
-        "format": "Always `\"robomill robot\"`.",
+        "format": 'Always `"robomill robot"`.',
         "version": "Always `1`.",
         "name": "Its short name. Left out: the file's name.",
         "title": "What people call it.",
-        "convention": "`\"standard\"` (Denavit-Hartenberg as in the paper, where it is left out) or `\"modified\"` "
+        "convention": '`"standard"` (Denavit-Hartenberg as in the paper, where it is left out) or `"modified"` '
         "(Craig).",
         "joint": "One `[[joint]]` for each of 1 to 7 axes, from the base to the tool.",
         "base": "The first frame of the table in {M}: table `[base]`. Left out: {M} itself.",
         "tool": "The tool frame {T} in the last frame of the table: table `[tool]`. Left out: that frame itself.",
         "compliance": "What the joints give: table `[compliance]`.",
         "provenance": "Where the numbers come from: `geometry`, `lengths`, `limits`, `base`, `tool`, "
-        "`\"compliance.SET\"`.",
+        '`"compliance.SET"`.',
     },
     "joint": {
-        "type": "`\"revolute\"` (where it is left out) or `\"prismatic\"`.",
+        "type": '`"revolute"` (where it is left out) or `"prismatic"`.',
         "sign": "+1 (where it is left out), or −1 where the joint counts against the table's sense: "
         "θ of the table = sign · θ + θ₀.",
         "name": "What people call the joint; not used.",

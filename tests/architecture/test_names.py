@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 # What is no room of the package: tests of everything at once, by what they are about.
-SUBJECTS = ("architecture", "benchmarks", "cli", "convergence", "packaging", "paper", "properties", "samples")
+SUBJECTS = ("architecture", "benchmarks", "cli", "convergence", "docs", "packaging", "paper", "properties", "samples")
 SCREEN = ("pages", "browser")
 FILES = sorted(p for p in (ROOT / "tests").rglob("test_*.py") if p.relative_to(ROOT / "tests").parts[0] not in SUBJECTS)
 

@@ -1,0 +1,53 @@
+"""Every public name of ``import robomill as rm``, by the room of the package that it lives in."""
+
+from __future__ import annotations
+
+import inspect
+
+import robomill as rm
+
+ROOMS = {
+    "io": "Files in and out",
+    "robot": "Robots",
+    "kinematics": "Where the tool is",
+    "compliance": "How much it gives",
+    "workspace": "Maps",
+    "toolpath": "Toolpaths",
+    "cutting": "Cutters, materials and forces",
+    "surface": "The part",
+    "simulation": "A run",
+    "identification": "Load tests and identification",
+    "improve": "What would fix it",
+    "report": "Tables and reports",
+}
+REST = "Further names"
+ERRORS = "Errors"
+
+
+def pages() -> dict[str, str]:
+    """The generated piece by name."""
+    by_room: dict[str, list[str]] = {title: [] for title in (*ROOMS.values(), REST, ERRORS)}
+    for name in rm.__all__:
+        by_room[_title(getattr(rm, name))].append(name)
+    said = []
+    for title, names in by_room.items():
+        if names:
+            listed = sorted(names, key=lambda name: (not inspect.isclass(getattr(rm, name)), name.lower()))
+            said += [f"## {title}", *(_directive(name) for name in listed)]
+    return {"names.md": "\n\n".join(said)}
+
+
+def _title(value: object) -> str:
+    if inspect.isclass(value) and issubclass(value, Exception):
+        return ERRORS
+    parts = str(getattr(value, "__module__", "")).split(".")
+    return ROOMS.get(parts[1], REST) if len(parts) > 1 else REST
+
+
+def _directive(name: str) -> str:
+    value = getattr(rm, name)
+    if inspect.isclass(value):
+        return f"```{{eval-rst}}\n.. autoclass:: robomill.{name}\n   :members:\n```"
+    if inspect.isroutine(value):
+        return f"```{{eval-rst}}\n.. autofunction:: robomill.{name}\n```"
+    return f"```{{eval-rst}}\n.. autodata:: robomill.{name}\n```"

@@ -1,0 +1,98 @@
+"""The documents are built without a warning, fetch nothing from anywhere, and have every key, name and verb."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import html
+import re
+import subprocess
+import sys
+
+import pytest
+
+import robomill as rm
+from robomill.cli import parser
+from tests.docs.documents import DOCS, ROOT
+
+# What a page would fetch when it is opened, as against what it links to.
+FETCHED = re.compile(
+    r"<(?:script|img|iframe|source|video|audio|embed)\b[^>]*\bsrc=\"([^\"]+)|<link\b([^>]*)>|url\(([^)]+)\)"
+)
+KEY = re.compile(r"[A-Za-z][\w-]*")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The pages by name, built with warnings as errors."""
+    folder = tmp_path_factory.mktemp("docs")
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-E", "-b", "html", str(DOCS), str(folder)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr[-4000:]
+    return folder
+
+
+def text_of(built, page):
+    return html.unescape(re.sub(r"<[^>]+>", "", (built / f"{page}.html").read_text(encoding="utf-8")))
+
+
+def test_no_page_fetches_anything_from_another_host(built):
+    for page in [*built.rglob("*.html"), *built.rglob("*.css")]:
+        for src, link, url in FETCHED.findall(page.read_text(encoding="utf-8")):
+            if link and not re.search(r"rel=\"(?:stylesheet|preload|icon|shortcut icon|preconnect)", link):
+                continue
+            target = src or url.strip("'\"") or "".join(re.findall(r"href=\"([^\"]+)", link))
+            assert not re.match(r"(?:https?:)?//", target), f"{page.name} fetches {target}"
+
+
+def test_mathematics_is_in_the_page(built):
+    page = (built / "theory.html").read_text(encoding="utf-8")
+    assert page.count("<math ") > 15
+    assert "\\begin{" not in page
+
+
+def test_every_public_name_stands_in_the_api(built):
+    page = (built / "api.html").read_text(encoding="utf-8")
+    for name in rm.__all__:
+        assert re.search(rf'id="robomill\.{name}"', page), name
+
+
+def test_every_verb_and_option_stands_in_the_command_line(built):
+    page = text_of(built, "command_line")
+    verbs = next(each for each in parser()._actions if isinstance(each, argparse._SubParsersAction))
+    for name, verb in verbs.choices.items():
+        assert f"robomill {name}" in page
+        for action in verb._actions:
+            for option in [] if isinstance(action, argparse._HelpAction) else action.option_strings:
+                assert option in page, f"{name} {option}"
+
+
+def test_every_key_that_a_reader_names_in_the_source_stands_in_the_file_formats(built):
+    """Another way to the keys than the documents' own: the calls in the readers' source."""
+    page = text_of(built, "file_formats")
+    readers = (
+        "text",
+        "words",
+        "choice",
+        "flag",
+        "whole",
+        "wholes",
+        "number",
+        "numbers",
+        "rows",
+        "table",
+        "tables",
+        "read",
+    )
+    for file in ("projects", "robot_reader", "materials", "force_models", "measured_maps", "workpiece", "tool_tables"):
+        tree = ast.parse((ROOT / "robomill" / "io" / f"{file}.py").read_text(encoding="utf-8"))
+        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+            if not (isinstance(call.func, ast.Attribute) and call.func.attr in readers):
+                continue
+            for key in (arg.value for arg in call.args[:2] if isinstance(arg, ast.Constant)):
+                if (
+                    isinstance(key, str)
+                    and KEY.fullmatch(key)
+                    and not (call.func.attr != "read" and key == call.args[-1])
+                ):
+                    assert re.search(rf"\b{re.escape(key)}\b", page), f"{file}: {key}"
