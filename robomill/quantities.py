@@ -19,7 +19,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
-from typing import Any, Literal, Self, get_type_hints
+from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
@@ -46,6 +46,7 @@ class Quantity:
     options   of a choice: code -> title
     boxed     whether the page offers a box for it
     sliding   the unit of what belongs to a joint that slides, where it is another than that of one that turns
+    slip      in SI: a plain number beyond it was meant in ``unit`` (mm given as m), see ``spelled``
     name, key   of the field, and in files (with the unit in it)
     default     where nothing is given, unless it is ``needed``
     """
@@ -66,6 +67,7 @@ class Quantity:
     options: Mapping[str, str] = field(default_factory=dict)
     boxed: bool = True
     sliding: str | None = None
+    slip: float | None = None
     name: str = ""
     key: str = ""
     default: Any = None
@@ -227,14 +229,6 @@ def settle(value: Any, error: type[RobomillError], who: str = "") -> None:
     """
     for name, declared in quantities(type(value)).items():
         object.__setattr__(value, name, declared.settled(getattr(value, name), error, who))
-
-
-class Replaceable:
-    """A frozen dataclass of which changed copies are made; each is checked as a new one."""
-
-    def replace(self, **changes: Any) -> Self:
-        """A copy with fields changed."""
-        return replace(self, **changes)  # type: ignore[type-var]
 
 
 def described(value: Any) -> str:

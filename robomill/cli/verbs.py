@@ -80,13 +80,13 @@ def run_map(arguments: Any) -> int:
     from robomill.report.plain import map_lines
     from robomill.report.records import map_record
     from robomill.units import to_si
-    from robomill.workspace.fields import compliance_field
+    from robomill.workspace.fields import compliance_map
     from robomill.workspace.grid import Grid
 
     robot = _robot(arguments)
     grid = Grid(*(options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
-    everything = compliance_field(robot, grid, A, B)
+    everything = compliance_map(robot, grid, A, B)
     fields = [everything.field(name) for name in ",".join(arguments.quantity).split(",")]
     if arguments.out:
         write_map(arguments.out, fields)

@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
-from robomill.quantities import Replaceable, quantities, quantity, settle
+from robomill.quantities import quantities, quantity, settle
+from robomill.spelled import Replaceable
 from robomill.units import to_si
 
 PUBLISHED = {"radial": (0.2, 0.95), "axial": (0.04, 0.42)}

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,12 +14,15 @@ from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
-from robomill.quantities import choice, quantity, settle, whole
+from robomill.quantities import Quantity, choice, quantities, quantity, settle, whole
+from robomill.spelled import in_si, in_units, made, state
 from robomill.units import format_count, format_si, to_si
 
 #: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
+WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
+ASKED = ("flutes", "helix_angle")  # of a cutter made in code; where nobody states them, they are assumed
 MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time
 
 Hand = Literal["right", "left"]
@@ -51,21 +55,32 @@ FAMILIES: dict[str, Family] = {
 }
 
 
+def _stated(given: Mapping[str, Any]) -> dict[str, Any]:
+    """A new cutter: ``assumed`` are the fields that the force grows with and nobody has stated."""
+    found = dict(given)
+    return {"assumed": tuple(name for name in ASKED if name not in found)} | found
+
+
+@in_units(CuttingError, "Cutter", new=_stated)
 @dataclass(frozen=True)
 class Cutter:
     """A rotating cutter; its tip is the origin of {T} and its axis is z_T.
+
+    ``Cutter("flat", diameter=0.008, flutes=3)`` in SI (m, rad), or ``Cutter("flat", diameter_mm=8, flutes=3)``.
+    ``kind`` is "flat", "ball", "bull", "chamfer" or "drill".
 
     ``hand`` is the direction of cut: a right-hand cutter turns clockwise seen from the spindle (M3).
     ``helix`` is the hand of the flutes. ``corner_radius`` belongs to bull-nose mills (a ball nose has R).
     ``tip_angle`` is the full angle of a chamfer mill's cone or a drill's point, ``tip_diameter`` the flat at its end.
     ``flute_length`` and ``stick_out`` may be None (not given): depth is then not checked, bending not computed.
+    ``assumed`` are names of fields that nobody has stated.
     ``helix_angle`` enters the peak force (lag along the edge); 0 means straight flutes, which pull nowhere.
     Raises CuttingError for a cutter that cannot be.
     """
 
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
-    diameter: float = quantity("Diameter", "mm", least=1e-6)
-    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0)
+    diameter: float = quantity("Diameter", "mm", least=1e-6, slip=WIDEST)
+    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, slip=WIDEST)
     flutes: int = whole("Flutes", default=2, least=1, most=MOST_FLUTES)
     helix: Hand = choice(
         "Helix",
@@ -74,13 +89,14 @@ class Cutter:
         hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
     )
     helix_angle: float = quantity(
-        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), digits=1
+        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), digits=1, slip=math.tau
     )
     flute_length: float | None = quantity(
         "Flute length",
         "mm",
         optional=True,
         above=0.0,
+        slip=LONGEST,
         digits=1,
         hint="Deeper cuts are warned of: the shank would rub.",
     )
@@ -89,12 +105,41 @@ class Cutter:
         "mm",
         optional=True,
         above=0.0,
+        slip=LONGEST,
         digits=1,
         hint="Free length from the holder; tool bending grows with its cube.",
     )
-    tip_angle: float | None = quantity("Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"))
-    tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0)
+    tip_angle: float | None = quantity(
+        "Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"), slip=math.tau
+    )
+    tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, slip=WIDEST)
     hand: Hand = choice("Hand", HANDS, default="right")
+    assumed: tuple[str, ...] = field(default=(), compare=False, repr=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            kind: str,
+            diameter: float = ...,
+            corner_radius: float = ...,
+            flutes: int = ...,
+            helix: Hand = ...,
+            helix_angle: float = ...,
+            flute_length: float | None = ...,
+            stick_out: float | None = ...,
+            tip_angle: float | None = ...,
+            tip_diameter: float = ...,
+            hand: Hand = ...,
+            *,
+            diameter_mm: float = ...,
+            corner_radius_mm: float = ...,
+            helix_angle_deg: float = ...,
+            flute_length_mm: float | None = ...,
+            stick_out_mm: float | None = ...,
+            tip_angle_deg: float | None = ...,
+            tip_diameter_mm: float = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         settle(self, CuttingError, "Cutter")
@@ -154,6 +199,11 @@ class Cutter:
                 f"{format_si(self.diameter, 'mm')}.",
                 where="tip_diameter",
             )
+
+    @property
+    def assumed_numbers(self) -> tuple[Quantity, ...]:
+        """What of it nobody has stated."""
+        return tuple(quantities(Cutter)[name] for name in self.assumed)
 
     @property
     def family(self) -> Family:
@@ -232,10 +282,12 @@ class Cutter:
         return np.where(z >= 0.0, radius.reshape(z.shape), np.nan)
 
     def replace(self, **changes: Any) -> Cutter:
-        """A checked copy with fields changed."""
+        """A checked copy with fields changed: ``diameter=0.01``, or ``diameter_mm=10``."""
+        changes = in_si(Cutter, changes)
         if self.kind == "ball" and "corner_radius" not in changes:
             changes["corner_radius"] = 0.0
-        return replace(self, **changes)
+        known = {"assumed": tuple(name for name in self.assumed if name not in changes)}
+        return made(Cutter, state(self) | known | changes)
 
     def reshaped(self, kind: str) -> Cutter:
         """The same cutter of another shape, with a first value for each number that one needs."""

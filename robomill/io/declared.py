@@ -15,6 +15,7 @@ from robomill.io.beside import ALONE, Beside
 from robomill.io.tables import Table, shown
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, declared_types, quantities
+from robomill.spelled import made
 
 T = TypeVar("T")
 
@@ -82,7 +83,7 @@ def from_table(
         table.asked.update(keys)
     table.finish()
     try:
-        return cls(**known)
+        return made(cls, known)
     except RobomillError as refused:
         raise _placed(refused, table, cls) from None
 

@@ -1,13 +1,16 @@
 """Force models to and from the [force] table of a set-up: each by its declared fields, a field's type by its codec."""
 
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from robomill.cutting.force import ForceModel
-from robomill.cutting.forces import FORCES
+from robomill.cutting.forces import FORCES, model_of
 from robomill.cutting.forces.measured import ForceRecord
 from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.process import ProcessForce
 from robomill.cutting.tool import Cutter
 from robomill.files import MATERIAL, TABLE
 from robomill.io.beside import ALONE, Beside
@@ -16,6 +19,7 @@ from robomill.io.forces import read_forces
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
 from robomill.io.tables import Table
 from robomill.io.texts import read_text
+from robomill.provenance import KINDS
 from robomill.quantities import declared_types
 
 
@@ -29,6 +33,25 @@ def force_from_table(table: Table, cutter: Cutter, beside: Beside = ALONE) -> Fo
 def force_to_table(force: ForceModel) -> dict[str, Any]:
     """The model as a table that ``force_from_table`` reads back to an equal one."""
     return kind_to_table(force, FORCE_CODECS)
+
+
+def process_force(
+    material: str | Path | Material,
+    cutter: Cutter,
+    *,
+    axial: bool = True,
+    radial_share: float | None = None,
+    axial_share: float | None = None,
+) -> ProcessForce:
+    """The cutting force of a ``cutter`` in a material: a sample's name (``material_names``), a .toml file, or a row.
+
+    The law is the one whose coefficients the row holds; the other sample rows of its alloy come along for the range of
+    the result. ``axial`` and the shares as in ``ProcessForce``. Raises CuttingError for a material that is not known.
+    """
+    row = material if isinstance(material, Material) else load_material(material)
+    others = alternatives(row, sample_materials())
+    model: type[ProcessForce] = model_of(row)  # type: ignore[assignment]
+    return model(cutter, row, others, axial, radial_share, axial_share)
 
 
 def _read_material(table: Table, name: str, around: Around) -> Material:
@@ -68,12 +91,14 @@ def _read_record(table: Table, name: str, around: Around) -> ForceRecord:
         source=inner.text("source"),
         notes=tuple(inner.words("notes")),
     )
+    kind: Any = inner.choice("kind", KINDS, "measured")
     inner.finish()
-    return record
+    return replace(record, kind=kind)
 
 
 def _write_record(name: str, record: ForceRecord) -> dict[str, Any]:
-    words = {"axis": record.axis, "frame": record.frame, "source": record.source, "notes": list(record.notes)}
+    words: dict[str, Any] = {name: getattr(record, name) for name in ("axis", "frame", "source")}
+    words |= {"notes": list(record.notes)} | ({"kind": record.kind} if record.kind != "measured" else {})
     return {"record": {**words, "x": record.x[:, None].tolist(), "F_N": record.F.tolist()}}
 
 

@@ -16,7 +16,7 @@ _FEED_DECIMALS = 4
 _ANGLE_DECIMALS = 6
 
 
-def write_gcode(path: Toolpath, *, units: str = "mm", title: str = "") -> str:
+def toolpath_to_gcode(path: Toolpath, *, units: str = "mm", title: str = "") -> str:
     """The program of a path in {W}, in ``units`` ``"mm"`` (G21) or ``"in"`` (G20).
 
     Read again, it gives the same points, feeds and cutting moves; a start other than zero becomes a first rapid.

@@ -11,6 +11,7 @@ from robomill.extras import needed
 from robomill.files import STL, check_size, read_file
 from robomill.progress import slices
 from robomill.provenance import Finding
+from robomill.spelled import made
 from robomill.surface.mesh import Mesh, kept_cells, to_mesh
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import ZMap
@@ -75,6 +76,14 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
         return target.read_bytes()
 
 
+def read_stock(path: str | Path, *, unit: str = "mm") -> Stock:
+    """The stock of an STL file, whose numbers are ``unit``: "mm", "in", "cm" or "m". Raises SurfaceError.
+
+    A size that makes the unit doubtful is said by ``Stock.warnings``, and among the findings of a run.
+    """
+    return read_stl_stock(path, unit=unit)[0]
+
+
 def read_stl_stock(
     source: str | Path | bytes, *, unit: str = "mm", name: str = ""
 ) -> tuple[Stock, tuple[Finding, ...]]:
@@ -109,7 +118,8 @@ def read_stl_stock(
         )
     triangles = to_si(np.asarray(solid.triangles, dtype=float), unit)
     corners = triangles.reshape(-1, 3)
-    return Stock(corners.min(axis=0), corners.max(axis=0), triangles), _size_findings(label, solid.extents, unit)
+    known = {"lower": corners.min(axis=0), "upper": corners.max(axis=0), "triangles": triangles}
+    return made(Stock, known), _size_findings(label, solid.extents, unit)
 
 
 def _size_findings(label: str, extents: FloatArray, unit: str) -> tuple[Finding, ...]:

@@ -17,6 +17,7 @@ from robomill.io.beside import ALONE, Beside
 from robomill.io.declared import from_table, kind_from_table, kind_to_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
+from robomill.io.points import POINTS, points_from_table, points_to_table
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot_reader import ANGLE
 from robomill.io.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
@@ -34,6 +35,7 @@ from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import TOLERANCES, SimulationSetup
+from robomill.spelled import made
 from robomill.toolpath.path import TABLES
 from robomill.toolpath.source import LEANS, GCodeSource, LinesSource, PathSource, SketchSource
 from robomill.toolpath.text import SUFFIXES
@@ -42,6 +44,7 @@ FORMAT = "robomill-setup"
 OF_THE_APP = ("view", "maps", "experiments", "uncertainty")  # tables of a saved project that no run depends on
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
+SOURCES = ("program", "program_text", "lines_mm", "sketch", *POINTS)
 ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as tolerance_mm: one number, or three
 NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numerics]
 
@@ -80,7 +83,7 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
     robot = _robot(top.table("robot"), beside)
     tools = tools_from_table(top, beside)
     cutter = _cutter(top, tools)
-    setup = SimulationSetup(
+    known: dict[str, Any] = dict(
         name=top.text("name"),
         description=top.text("description", ""),
         **_tolerances(top),
@@ -98,6 +101,7 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
+    setup = made(SimulationSetup, known)
     top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit", *OF_THE_APP))
     top.finish()
     return setup
@@ -137,12 +141,12 @@ def _robot(table: Table, beside: Beside) -> Robot:
 
 
 def _source(table: Table, beside: Beside) -> PathSource:
-    kinds = [key for key in ("program", "program_text", "lines_mm", "sketch") if table.has(key)]
+    kinds = [key for key in SOURCES if table.has(key)]
     if len(kinds) != 1:
-        raise table.refuse(
-            "program", f"expected one of program, program_text, lines_mm or sketch, found {kinds or 'none'}."
-        )
+        raise table.refuse("program", f"expected one of {', '.join(SOURCES)}; found {kinds or 'none'}.")
     source: PathSource
+    if kinds[0] in POINTS:
+        return points_from_table(table)
     if kinds == ["lines_mm"]:
         rows = table.rows("lines_mm", 6, "mm")
         feeds = table.numbers("feed_mm_min", len(rows), "mm/min")
@@ -251,6 +255,8 @@ def _source_table(source: PathSource) -> dict[str, Any]:
         return told | ({"spindle_1_min": shown(source.n_s, "1/min")} if source.n_s else {})
     if source.kind == "sketch":
         return {"sketch": sketch_to_table(source.sketch)}
+    if source.kind == "points":
+        return points_to_table(source)
     rows = np.hstack([source.start, source.end])
     return {
         "lines_mm": [[shown(v, "mm") for v in row] for row in rows],

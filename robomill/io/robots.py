@@ -42,14 +42,22 @@ def robot_titles() -> Mapping[str, str]:
     return {name: load_robot(name).title or name for name in robot_names()}
 
 
-def load_robot(name_or_path: str | Path) -> Robot:
-    """A robot by the name of a preset, or from a ``.toml`` or ``.urdf`` file. Raises RobotError."""
+def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
+    """A robot by the name of a preset, or from a ``.toml`` or ``.urdf`` file.
+
+    ``tip`` is the link of a URDF at which the arm ends (default: its only end link). Raises RobotError.
+    """
     text = str(name_or_path)
     path = robot_folder() / f"{text}.toml" if text in robot_names() else Path(name_or_path)
     if not path.exists():
         presets = ", ".join(robot_names())
         raise RobotError(f"Robot {text!r:.80}: no such preset or file; the presets are {presets}.", where=text)
-    return read_robot(read_file(path, ROBOT, RobotError), path.name)
+    data = read_file(path, ROBOT, RobotError)
+    if tip is None:
+        return read_robot(data, path.name)
+    if not is_urdf(path.name):
+        raise RobotError(f"Robot {path.name!r:.80}: only a URDF has links; leave tip={tip!r:.40} out.", where="tip")
+    return read_urdf(data, tip=tip, where=path.name)
 
 
 def is_urdf(name: str) -> bool:

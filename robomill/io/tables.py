@@ -127,6 +127,13 @@ class Table:
             raise self.refuse(key, f"expected true or false, found {value!r:.40}.")
         return value
 
+    def flags(self, key: str) -> list[bool]:
+        """A list of true and false."""
+        value = self._get(key, MISSING)
+        if not isinstance(value, list) or not all(isinstance(item, bool) for item in value):
+            raise self.refuse(key, f"expected a list of true and false, found {value!r:.40}.")
+        return value
+
     def whole(self, key: str, default: Any = MISSING) -> int:
         value = self._get(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or not -LARGEST <= value < LARGEST:

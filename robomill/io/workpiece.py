@@ -12,7 +12,7 @@ from robomill.files import STL
 from robomill.io.beside import Beside
 from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
-from robomill.simulation.setup import PART_TURN, PART_ZERO
+from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.surface.stock import Stock
 from robomill.units import to_si
 
@@ -34,15 +34,6 @@ def part_from_table(table: Table) -> FloatArray:
             table.number(PART_TURN.key, PART_TURN.unit, 0.0),
         )
     table.finish()
-    return T_MW
-
-
-def part_frame(zero: Any, rotation_z: float = 0.0) -> FloatArray:
-    """T_MW from the part zero (3,) m in {M} and the part's turn about z_M in rad."""
-    c, s = np.cos(rotation_z), np.sin(rotation_z)
-    T_MW = np.eye(4)
-    T_MW[:2, :2] = [[c, -s], [s, c]]
-    T_MW[:3, 3] = zero
     return T_MW
 
 

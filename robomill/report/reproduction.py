@@ -17,7 +17,7 @@ from robomill.report import reproduction_experiments as experiments
 from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction_row import STEP, Evidence, Found, Row
 from robomill.units import format_many, format_percent, format_si, format_significant, format_value, from_si
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid
 from robomill.workspace.lines import border_and_middle_lines
 from robomill.workspace.reach import ReachBox
@@ -72,7 +72,7 @@ def _jacobian(evidence: Evidence) -> Found:
 
 
 def _workspace(evidence: Evidence) -> Found:
-    field = compliance_field(evidence.robot, box_grid(*PAPER_BOX, STEP))
+    field = compliance_map(evidence.robot, box_grid(*PAPER_BOX, STEP))
     share, size = float(field.reached.mean()), ReachBox(*PAPER_BOX).size
     return Found(
         f"{format_percent(share)} of the {format_many(size, 'mm', 0, ' × ')} box is in reach",
@@ -82,7 +82,7 @@ def _workspace(evidence: Evidence) -> Found:
 
 
 def _determinant(evidence: Evidence) -> Found:
-    field = compliance_field(evidence.robot, box_grid(*PAPER_BOX, 0.05))
+    field = compliance_map(evidence.robot, box_grid(*PAPER_BOX, 0.05))
     det = field.det_J
     low, high = (np.abs(det[:, :, k]) for k in (0, -1))
     same = bool((np.sign(det) == np.sign(det.flat[0])).all())

@@ -11,7 +11,7 @@ from robomill.report.reproduction_row import Evidence, Found
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import nearest_feed
 from robomill.units import format_si, from_si
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 
 
 def measured_maps(_: Evidence) -> Found:
@@ -37,7 +37,7 @@ def table_3(evidence: Evidence) -> Found:
 
 def figure_13(evidence: Evidence) -> Found:
     """Fig. 13 and claim 6: maps from Table 3 are a little higher."""
-    other = compliance_field(evidence.robot.with_compliance_set("table_3"), evidence.plane.grid)
+    other = compliance_map(evidence.robot.with_compliance_set("table_3"), evidence.plane.grid)
     ratio = (other.total[..., :3] / evidence.plane.total[..., :3]).reshape(-1, 3)
     text = f"direct compliances {ratio.min():.2f} to {ratio.max():.2f} times those of Table 2"
     holds = bool((ratio > 1.0).all() and (ratio < 1.4).all())

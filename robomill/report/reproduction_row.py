@@ -10,7 +10,7 @@ from robomill.lazy import cached_property
 from robomill.report.paper import Statement, Status
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import PAPER_BOX, plane_grid
 
 STEP = 0.1  # m: grid of the checks
@@ -42,9 +42,9 @@ class Evidence:
         return self.given.with_compliance_set("table_2")
 
     @cached_property
-    def plane(self) -> ComplianceField:
+    def plane(self) -> ComplianceMap:
         """Its compliances over the plane Z_M = 0 of the paper's box."""
-        return compliance_field(self.robot, plane_grid("z", 0.0, *PAPER_BOX, STEP))
+        return compliance_map(self.robot, plane_grid("z", 0.0, *PAPER_BOX, STEP))
 
 
 class Found(NamedTuple):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.errors import RobotError
@@ -18,6 +20,8 @@ from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
 
 USER_SET = "user"
+LONGEST = 20.0  # m: hardly a link is longer: was it meant in mm?
+Limits = ArrayLike | Sequence[Sequence[float] | None]
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
 TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
 
@@ -38,10 +42,10 @@ class Robot:
 
     name: str
     convention: Literal["standard", "modified"]
-    alpha: FloatArray = quantity("α", "deg", shape=(None,))
-    a: FloatArray = quantity("a", "mm", shape=(None,))
-    d: FloatArray = quantity("d", "mm", shape=(None,))
-    theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,))
+    alpha: FloatArray = quantity("α", "deg", shape=(None,), slip=math.tau)
+    a: FloatArray = quantity("a", "mm", shape=(None,), slip=LONGEST)
+    d: FloatArray = quantity("d", "mm", shape=(None,), slip=LONGEST)
+    theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,), slip=2.0 * math.tau)
     limits_all: FloatArray = quantity("limit", "deg", shape=(None, 2), axes=("lower", "upper"), sliding="mm")
     C_theta_all: FloatArray = quantity(
         "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N"
@@ -117,6 +121,51 @@ class Robot:
         if self.compliance_set != USER_SET and self.compliance_set not in sets:
             known = ", ".join(sets) or "none"
             raise RobotError(f"{where}: compliance set {self.compliance_set!r} is not among its sets ({known}).")
+
+    @classmethod
+    def from_dh(
+        cls,
+        *,
+        a: ArrayLike | None = None,
+        a_mm: ArrayLike | None = None,
+        alpha: ArrayLike | None = None,
+        alpha_deg: ArrayLike | None = None,
+        d: ArrayLike | None = None,
+        d_mm: ArrayLike | None = None,
+        theta_offset: ArrayLike | None = None,
+        theta_offset_deg: ArrayLike | None = None,
+        limits: Limits | None = None,
+        limits_deg: Limits | None = None,
+        limits_mm: Limits | None = None,
+        C_theta: ArrayLike | None = None,
+        C_theta_1e_7_rad_per_Nm: ArrayLike | None = None,
+        k_theta_Nm_per_rad: ArrayLike | None = None,
+        k_theta_kNm_per_rad: ArrayLike | None = None,
+        convention: Literal["standard", "modified"] = "standard",
+        sign: ArrayLike | None = None,
+        prismatic: ArrayLike | None = None,
+        T_base: ArrayLike | None = None,
+        base_xyz: ArrayLike | None = None,
+        base_xyz_mm: ArrayLike | None = None,
+        T_tool: ArrayLike | None = None,
+        tool_xyz: ArrayLike | None = None,
+        tool_xyz_mm: ArrayLike | None = None,
+        name: str = "robot",
+        title: str = "",
+    ) -> Robot:
+        """A robot from its Denavit-Hartenberg table; see ``robot.table.robot_fields`` for what each number is.
+
+        Examples
+        --------
+        >>> import robomill as rm
+        >>> arm = rm.Robot.from_dh(a_mm=[500, 400], limits_deg=(-170, 170), k_theta_kNm_per_rad=[800, 500])
+        >>> rm.tool_pose(arm, [0.0, 0.0])[:3, 3].round(6).tolist()
+        [0.9, 0.0, 0.0]
+        """
+        from robomill.robot.table import robot_fields
+
+        given = {key: value for key, value in locals().items() if key not in ("cls", "robot_fields")}
+        return cls(**robot_fields(given, quantities(cls)))
 
     # ---- views --------------------------------------------------------------------------------------------------
     @property

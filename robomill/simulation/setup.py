@@ -1,10 +1,11 @@
 """One simulation as a value: robot, path, part zero, cutter, force, stock, tolerance, numerics."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, check_place, digest, frozen
 from robomill.compliance.gravity import LinkMasses
@@ -17,8 +18,10 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.lazy import cached_property
 from robomill.provenance import Provenance
-from robomill.quantities import Quantity, Replaceable, quantity, settle, switch
+from robomill.quantities import quantity, settle, switch
 from robomill.robot.model import Robot
+from robomill.simulation import given
+from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
@@ -26,19 +29,16 @@ from robomill.toolpath.source import PathSource
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
-# What people type of T_MW, of a part that stands upright, and of the spin.
-PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), digits=2, key="zero_mm")
-PART_TURN = Quantity("Turn about Z", "deg", key="rotation_z_deg")
-SPIN = Quantity("Turn about z_T", "deg", digits=1)
 
-
-@dataclass(frozen=True, eq=False)
+@in_units(SetupError, "Set-up", more=given.OTHERS, new=given.stated)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SimulationSetup(Replaceable):
     """Everything ``simulate`` needs, SI units.
 
     robot       the machine; its C_theta is the one in force
-    source      the program or table the path is read from
-    T_MW        (4, 4) where the part zero {W} lies in {M}
+    source      the program, table, sketch or points the path is read from; a Toolpath is taken as it is
+    T_MW        (4, 4) where the part zero {W} lies in {M}; instead of it ``part_zero`` (3,) m or ``part_zero_mm``, and
+                ``part_rotation_z`` or ``part_rotation_z_deg``, the part's turn about z_M
     cutter, force, stock   stock None: the path's bounds with a margin
     spin        of arms with six axes or more, about the tool axis: an angle in rad by which R_x(A) R_y(B) is turned, or
                 "least_motion" of the joints, or "least_deviation"; one for the whole path
@@ -58,18 +58,19 @@ class SimulationSetup(Replaceable):
     provenance  block name -> where its numbers come from
     """
 
-    name: str
+    name: str = "set-up"
     robot: Robot
     source: PathSource
     T_MW: FloatArray
     cutter: Cutter
     force: ForceModel
     stock: Stock | None = None
-    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0)
+    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, slip=0.05)
     floor_tolerance: float | None = quantity(
         "Tolerance of floors",
         "mm",
         optional=True,
+        slip=0.05,
         above=0.0,
         hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
     )
@@ -77,11 +78,12 @@ class SimulationSetup(Replaceable):
         "Tolerance along the feed",
         "mm",
         optional=True,
+        slip=0.05,
         above=0.0,
         hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
-    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0)
-    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, digits=4)
+    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5)
+    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, digits=4, slip=0.04)
     engagement: bool = switch(
         "Engagement from the part",
         default=False,
@@ -100,6 +102,7 @@ class SimulationSetup(Replaceable):
         "Rapid rate",
         "mm/min",
         optional=True,
+        slip=20.0,
         above=0.0,
         digits=0,
         hint="How fast the machine goes on rapids: a force recorded over time runs on meanwhile.",
@@ -115,6 +118,47 @@ class SimulationSetup(Replaceable):
     description: str = field(default="", compare=False)
     provenance: Mapping[str, Provenance] = field(default_factory=dict, compare=False)
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            robot: Robot,
+            source: PathSource | Toolpath,
+            cutter: Cutter,
+            force: ForceModel,
+            name: str = ...,
+            T_MW: ArrayLike = ...,
+            part_zero: ArrayLike = ...,
+            part_zero_mm: ArrayLike = ...,
+            part_rotation_z: float = ...,
+            part_rotation_z_deg: float = ...,
+            stock: Stock | None = ...,
+            tolerance: float | Sequence[float | None] | Mapping[str, float] = ...,
+            tolerance_mm: float | Sequence[float | None] | Mapping[str, float] = ...,
+            floor_tolerance: float | None = ...,
+            floor_tolerance_mm: float | None = ...,
+            feed_tolerance: float | None = ...,
+            feed_tolerance_mm: float | None = ...,
+            step: float = ...,
+            step_mm: float = ...,
+            cell: float = ...,
+            cell_mm: float = ...,
+            engagement: bool = ...,
+            coupling: bool = ...,
+            spin: float | str = ...,
+            spin_deg: float = ...,
+            tools: ToolTable = ...,
+            rapid_rate: float | None = ...,
+            rapid_rate_mm_min: float | None = ...,
+            springs: Sequence[Spring] = ...,
+            measured_map: MeasuredField | None = ...,
+            links: LinkMasses | None = ...,
+            add_sag: bool = ...,
+            description: str = ...,
+            provenance: Mapping[str, Provenance] = ...,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         T_MW = as_floats(self.T_MW, "part zero T_MW", (4, 4), error=SetupError)
         R = T_MW[:3, :3]
@@ -124,6 +168,7 @@ class SimulationSetup(Replaceable):
         object.__setattr__(self, "T_MW", frozen(T_MW))
         self._take_tolerances()
         self._take_spin()
+        object.__setattr__(self, "springs", tuple(self.springs))
         settle(self, SetupError)
         # A process force is computed for the cutter that cuts; a changed cutter changes it too.
         object.__setattr__(self, "force", self.force.cut_by(self.cutter).placed(self.T_MW[:3, :3]))
@@ -137,6 +182,9 @@ class SimulationSetup(Replaceable):
             raise SetupError("Sag: no link masses are given; add them or leave the sag out.")
         if self.coupling and not self.engagement:
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
+
+    def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
+        return given.taken(changes, self.T_MW)
 
     def _take_spin(self) -> None:
         """An angle, or one of the rules."""
@@ -176,7 +224,7 @@ class SimulationSetup(Replaceable):
         path = self.toolpath
         used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
-        return Stock.around(*path.extents, widest)
+        return Stock.around(path, widest)
 
     @property
     def carried_from(self) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, digest, frozen
@@ -13,24 +14,40 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
+from robomill.spelled import in_units
+from robomill.toolpath.path import Toolpath
 from robomill.units import format_si
 
 AXES = "XYZ"
 BESIDE, BENEATH, ABOVE = 2e-3, 5e-3, 1e-3  # m: what a block round a path has beyond what is cut
 SMALLEST, LARGEST = 2e-3, 5.0  # m: a part outside these was probably given in another unit
+WIDEST = 20.0  # m: hardly a part goes as far from its zero: was it meant in mm?
 
 
+@in_units(SurfaceError, "Stock")
 @dataclass(frozen=True, eq=False)
 class Stock:
-    """A block in {W}: ``lower`` and ``upper`` corner, (3,) m.
+    """A block in {W}: ``lower`` and ``upper`` corner, (3,) m, or ``lower_mm`` and ``upper_mm``.
 
     ``triangles`` (t, 3, 3) m, if given, is a closed mesh inside those corners; its upper skin is the stock's top.
     Raises SurfaceError for corners the wrong way round or a block without extent.
     """
 
-    lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, digits=2)
-    upper: FloatArray = quantity("to", "mm", shape=(3,), axes=AXES, digits=2)
+    lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, digits=2, slip=WIDEST)
+    upper: FloatArray = quantity("to", "mm", shape=(3,), axes=AXES, digits=2, slip=WIDEST)
     triangles: FloatArray | None = None
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            lower: ArrayLike = ...,
+            upper: ArrayLike = ...,
+            triangles: ArrayLike | None = ...,
+            *,
+            lower_mm: ArrayLike = ...,
+            upper_mm: ArrayLike = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         settle(self, SurfaceError, "Stock")
@@ -43,11 +60,12 @@ class Stock:
             object.__setattr__(self, "triangles", frozen(triangles))
 
     @classmethod
-    def around(cls, low: FloatArray, high: FloatArray, cutter: Cutter) -> Stock:
-        """The block around what a path cuts, whose tip stays between the corners ``low`` and ``high`` (3,) m.
+    def around(cls, path: Toolpath, cutter: Cutter) -> Stock:
+        """The block around what ``path`` cuts, with a margin beside and beneath.
 
         Its top is z = 0 if the path goes below (part zero on the top face), else above the highest point.
         """
+        low, high = path.extents
         reach = cutter.radius + BESIDE
         top = 0.0 if low[2] < -1e-9 else float(high[2]) + ABOVE
         return cls(np.array([*(low[:2] - reach), low[2] - BENEATH]), np.array([*(high[:2] + reach), top]))

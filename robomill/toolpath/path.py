@@ -10,6 +10,8 @@ from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import ToolpathError
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
+from robomill.quantities import Quantity
+from robomill.spelled import one_of
 from robomill.units import format_si, format_significant
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
@@ -29,6 +31,9 @@ PER_MOVE: dict[str, type] = {
     "dwell": float,
 }
 """Arrays of a path with one value a move, and their types."""
+POINTS = Quantity("Points", "mm", "array", name="p", key="p_mm", slip=20.0)
+FEED = Quantity("Feed", "mm/min", "array", name="v_f", key="feed_mm_min", slip=1.0)
+SPINDLE = Quantity("Spindle speed", "1/min", "array", name="n_s", key="spindle_1_min", slip=1000.0)
 
 
 def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
@@ -93,6 +98,63 @@ class Toolpath:
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
+    @classmethod
+    def from_points(
+        cls,
+        p: ArrayLike | None = None,
+        v_f: ArrayLike | None = None,
+        *,
+        p_mm: ArrayLike | None = None,
+        feed_mm_min: ArrayLike | None = None,
+        n_s: ArrayLike | None = None,
+        spindle_1_min: ArrayLike | None = None,
+        k: ArrayLike = (0.0, 0.0, 1.0),
+        cutting: ArrayLike | None = None,
+        tool: ArrayLike = 0,
+    ) -> "Toolpath":
+        """A path through points of the part frame {W}, the first one its start; ``block`` counts the points from 1.
+
+        Parameters
+        ----------
+        p, p_mm : (m, 3) points of the tool tip, in m or in mm
+        v_f, feed_mm_min : feed of every move, one or (m,) (entry i is of the move that ends at point i), m/s or mm/min
+        n_s, spindle_1_min : spindle speed, one or (m,), in 1/s or 1/min; not stated unless given
+        k : (3,) or (m, 3) tool axis, out of the part towards the spindle, of any length
+        cutting : (m,) bool, False on rapids; every move cuts unless it has no feed
+        tool : tool number, one or (m,)
+
+        Raises
+        ------
+        ToolpathError
+            for points, feeds or axes that cannot be, and for numbers that were meant in another unit
+
+        Examples
+        --------
+        >>> import robomill as rm
+        >>> path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [100, 0, -2]], feed_mm_min=1800)
+        >>> len(path), float(path.s[-1]), float(path.v_f[-1])
+        (2, 0.1, 0.03)
+        """
+        points = as_floats(one_of(POINTS, p, p_mm, ToolpathError, "Toolpath"), "Points", (None, 3), error=ToolpathError)
+        m = len(np.atleast_2d(points))
+        feed = _each(FEED, one_of(FEED, v_f, feed_mm_min, ToolpathError, "Toolpath"), m)
+        speed = one_of(SPINDLE, n_s, spindle_1_min, ToolpathError, "Toolpath", 0.0)
+        axis = as_floats(k, "Tool axis", (3,), error=ToolpathError)
+        length = np.linalg.norm(axis, axis=-1, keepdims=True)
+        if not (length > 0.0).all():
+            raise ToolpathError("Tool axis: found one without length; expected the way out of the part, e.g. 0, 0, 1.")
+        cuts = feed > 0.0 if cutting is None else np.array(np.broadcast_to(np.asarray(cutting, dtype=bool), (m,)))
+        cuts[:1] = False
+        return cls(
+            p=points,
+            k=axis / length,
+            v_f=np.where(cuts, feed, 0.0),
+            cutting=cuts,
+            block=np.arange(1, m + 1),
+            n_s=_each(SPINDLE, speed, m),
+            tool=np.asarray(tool),
+        )
+
     def __len__(self) -> int:
         return len(self.p)
 
@@ -152,6 +214,16 @@ class Toolpath:
     def digest(self) -> str:
         """SHA-256 of the motion (findings do not count)."""
         return digest((self.p, self.k, *(getattr(self, name) for name in PER_MOVE)))
+
+
+def _each(declared: Quantity, value: Any, m: int) -> FloatArray:
+    """One number or one a point, as (m,)."""
+    found = as_floats(value, declared.label, (), error=ToolpathError)
+    if found.ndim and found.shape != (m,):
+        raise ToolpathError(f"{declared.label}: expected one number, or {m}, one a point; found shape {found.shape}.")
+    if (found < 0.0).any():
+        raise ToolpathError(f"{declared.label}: found {declared.short(found.min())}; expected 0 or more.")
+    return np.array(np.broadcast_to(found, (m,)))
 
 
 def toolpath_from_lines(

@@ -14,7 +14,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import ToolpathError
-from robomill.quantities import Replaceable, choice, quantities, quantity, settle
+from robomill.quantities import choice, quantities, quantity, settle
+from robomill.spelled import Replaceable
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, from_si, to_si
 

@@ -1,4 +1,4 @@
-"""Where a toolpath comes from: a program, a table of lines or a sketch. Sources are values; ``read`` gives the path.
+"""Where a toolpath comes from: a program, a table of lines, a sketch or points. Sources are values; ``read`` reads.
 
 Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``block_name``), and what stands there
 (``block_texts``).
@@ -168,8 +168,32 @@ class SketchSource:
         ]
 
 
+@dataclass(frozen=True)
+class PointsSource:
+    """A path that is given as it is, point by point."""
+
+    path: Toolpath
+    name: str = field(default="points", compare=False)
+    kind: ClassVar[Literal["points"]] = "points"
+    block_name: ClassVar[str] = "point"
+
+    def __post_init__(self) -> None:
+        if self.path.units != "mm":  # which only says how a program was written
+            object.__setattr__(self, "path", replace(self.path, units="mm"))
+
+    def read(self, tools: Tools | None = None) -> Toolpath:
+        """The path itself."""
+        return self.path
+
+    def block_texts(self) -> list[str]:
+        """Where each move ends (mm) and how fast; of a path that was read from somewhere, by its last move."""
+        ends = zip(self.path.block.tolist(), from_si(self.path.p, "mm"), self.path.v_f, strict=True)
+        said = {row: f"({_point(p)})  {format_si(v, 'mm/min') if v else 'rapid'}" for row, p, v in ends}
+        return [said.get(row, "") for row in range(1, max(said) + 1)]
+
+
 def _point(p: FloatArray) -> str:
     return ", ".join(format_significant(v) for v in np.round(p, 3))
 
 
-PathSource = GCodeSource | LinesSource | SketchSource
+PathSource = GCodeSource | LinesSource | SketchSource | PointsSource

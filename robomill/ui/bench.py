@@ -17,7 +17,8 @@ from robomill.identification.models import MODELS
 from robomill.identification.treatment import AUTO, BENDING_JOINTS, WEIGHTS, Treatment
 from robomill.io.samples import samples_dir
 from robomill.lazy import cached_property
-from robomill.quantities import Replaceable, choice, quantity, settle, switch, whole
+from robomill.quantities import choice, quantity, settle, switch, whole
+from robomill.spelled import Replaceable
 from robomill.units import to_si
 
 OWN = "own"

@@ -25,7 +25,7 @@ from robomill.ui.project import MapView
 from robomill.units import format_si, from_si, to_si
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, coded
-from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid, box_grid
 from robomill.workspace.lines import LineDeviation, border_and_middle_lines
 from robomill.workspace.quantities import map_quantity
@@ -185,7 +185,7 @@ def values_of(
     w, u, v = axes[normal], *(axes[axis] for axis in "xyz" if axis != normal)
     found = {name: np.empty((len(w), len(v), len(u)), np.float32) for name in names}
     for some in slices(len(w), "Maps", max(1, SOLVED_CELLS // (len(u) * len(v)))):
-        known = compliance_field(robot, Grid(**{**axes, normal: w[some]}), A, B)
+        known = compliance_map(robot, Grid(**{**axes, normal: w[some]}), A, B)
         for name in names:
             what = map_quantity(robot, name)
             values = what.law(known)
@@ -201,18 +201,18 @@ def solid(robot: Robot, box: ReachBox, cells: int | None = None) -> Grid:
 
 
 @shared(lambda robot, grid, A, B: (robot.digest(), grid.x, grid.y, grid.z, A, B), "Map")
-def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceField:
+def field(robot: Robot, grid: Grid, A: float, B: float) -> ComplianceMap:
     """Compliance, shares and determinant over ``grid``, from the cache."""
-    return compliance_field(robot, grid, A, B)
+    return compliance_map(robot, grid, A, B)
 
 
-def overview(robot: Robot, view: MapView, box: ReachBox) -> ComplianceField:
+def overview(robot: Robot, view: MapView, box: ReachBox) -> ComplianceMap:
     """A coarse field over the whole region, for scales that stay while the plane moves."""
     grid = solid(robot, box, 700 if decoupled(robot) is not None else 150)
     return field(robot, grid, view.A, view.B)
 
 
-def stiffer(known: ComplianceField, factors: FloatArray) -> ComplianceField:
+def stiffer(known: ComplianceMap, factors: FloatArray) -> ComplianceMap:
     """The same field with stiffer joints: exact, nothing is solved again."""
     if (factors == 1.0).all():
         return known

@@ -13,7 +13,7 @@ from robomill.robot.model import Robot
 from robomill.ui import pieces, session
 from robomill.ui.project import MapView
 from robomill.units import format_si, unit_label
-from robomill.workspace.fields import ComplianceField
+from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.reach import ReachBox
 
 FORCE = SLOT.force  # N
@@ -48,7 +48,7 @@ def middle(box: ReachBox) -> Point:
     return x, y, z
 
 
-def default_point(view: MapView, box: ReachBox, known: ComplianceField, cut: Point | None = None) -> Point:
+def default_point(view: MapView, box: ReachBox, known: ComplianceMap, cut: Point | None = None) -> Point:
     """The selected point: as clicked, else the middle of the project's ``cut`` where the region holds it and the arm
     gets there, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:

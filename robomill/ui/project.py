@@ -25,11 +25,12 @@ from robomill.io.projects import OF_THE_APP, load_setup, open_project, setup_to_
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.paper import BOX
-from robomill.quantities import Replaceable, choice, quantities, settle, switch
+from robomill.quantities import choice, quantities, settle, switch
 from robomill.quantities import quantity as number
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
 from robomill.simulation.setup import SimulationSetup
+from robomill.spelled import Replaceable
 from robomill.ui.bench import Bench
 from robomill.units import in_lengths, unit_label
 from robomill.viz.picture import CAMERAS

@@ -27,7 +27,7 @@ class Field:
 
 
 @dataclass(frozen=True, eq=False)
-class ComplianceField(SolvedGrid):
+class ComplianceMap(SolvedGrid):
     """The cells of a grid, asked for any quantity by its name."""
 
     def values(self, name: str) -> FloatArray:
@@ -40,7 +40,7 @@ class ComplianceField(SolvedGrid):
         return Field(self.robot, self.grid, self.A, self.B, what, what.law(self), int(self.reached.sum()))
 
 
-def compliance_field(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ComplianceField:
+def compliance_map(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ComplianceMap:
     """Reach, joints, Jacobian, joint shares and det(J) over ``grid`` with the tool tilted by A, B (rad), in one pass.
 
     Raises WorkspaceError where the grid needs more memory than the budget, naming the step that fits.
@@ -50,7 +50,7 @@ def compliance_field(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -
     theta, reached, laws = solve_grid(robot, grid, A, B)
     J, shares, det_J = (array.reshape(*grid.shape, *array.shape[1:]) for array in laws)
     theta, reached = theta.reshape(*grid.shape, robot.n), reached.reshape(grid.shape)
-    return ComplianceField(robot, grid, A, B, theta, reached, J, shares, det_J)
+    return ComplianceMap(robot, grid, A, B, theta, reached, J, shares, det_J)
 
 
 def _finite_tilt(A: float, B: float) -> None:

@@ -1,6 +1,7 @@
 """Grids of points in {M}: planes and boxes, with a budget that refuses what memory cannot hold."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,6 +10,8 @@ from robomill import budgets
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import WorkspaceError
 from robomill.paper import BOX, BOX_SIZE
+from robomill.quantities import quantity
+from robomill.spelled import in_units
 from robomill.units import format_si
 
 PAPER_BOX = (frozen(BOX[0]), frozen(BOX[1]))
@@ -16,13 +19,33 @@ PAPER_BOX_SIZE = frozen(BOX_SIZE)
 LARGEST_AXIS = 100_000
 
 
+FARTHEST = 200.0  # m: no robot reaches as far: was it meant in mm?
+
+
+@in_units(WorkspaceError, "Grid")
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Points x (nx,), y (ny,), z (nz,) m in {M}; fields over it are (nx, ny, nz). A plane has one axis of one."""
+    """Points x (nx,), y (ny,), z (nz,) m in {M}, or x_mm, y_mm, z_mm; fields over it are (nx, ny, nz).
 
-    x: FloatArray
-    y: FloatArray
-    z: FloatArray
+    A plane has one axis of one number: ``Grid(x_mm=range(-600, 601, 50), y_mm=range(-1600, -999, 50), z_mm=0)``.
+    """
+
+    x: FloatArray = quantity("axis x", "mm", shape=(None,), slip=FARTHEST)
+    y: FloatArray = quantity("axis y", "mm", shape=(None,), slip=FARTHEST)
+    z: FloatArray = quantity("axis z", "mm", shape=(None,), slip=FARTHEST)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            x: ArrayLike = ...,
+            y: ArrayLike = ...,
+            z: ArrayLike = ...,
+            *,
+            x_mm: ArrayLike = ...,
+            y_mm: ArrayLike = ...,
+            z_mm: ArrayLike = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name in ("x", "y", "z"):

@@ -27,6 +27,7 @@ STOREYS = [
         "compiled",
         "provenance",
         "quantities",
+        "spelled",
         "paper",
         "seals",
         "budgets",

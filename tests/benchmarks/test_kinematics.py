@@ -17,7 +17,7 @@ from robomill.compliance.cartesian import pose_jacobian_compliance
 from robomill.kinematics.choice import every
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.forward import joint_frames
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid, plane_grid
 from tests.benchmarks.clock import fastest
 
@@ -119,10 +119,10 @@ def test_maps_of_the_paper_box_and_plane():
     robot = rm.load_robot("slavkovic_5r")
     box, plane = box_grid(*PAPER_BOX, 0.010), plane_grid("z", 0.0, *PAPER_BOX, 0.010)
     assert (box.cells, plane.cells) == (376_431, 121 * 61)
-    of_box = fastest(lambda: compliance_field(robot, box), 5)
-    of_plane = fastest(lambda: compliance_field(robot, plane), 9)
+    of_box = fastest(lambda: compliance_map(robot, box), 5)
+    of_plane = fastest(lambda: compliance_map(robot, plane), 9)
     peer = eaik_robot(robot)
-    field = compliance_field(robot, plane)
+    field = compliance_map(robot, plane)
     theta = field.theta.reshape(-1, 5)[:3000]
     poses = [np.array(T) for T in rm.tool_pose(robot, theta)]
     loop = pinocchio_loop(robot, theta)
@@ -146,9 +146,9 @@ def test_maps_of_the_paper_box_and_plane():
 def test_memory_of_the_paper_box():
     code = (
         "import resource, robomill as rm\n"
-        "from robomill.workspace.fields import compliance_field\n"
+        "from robomill.workspace.fields import compliance_map\n"
         "from robomill.workspace.grid import PAPER_BOX, box_grid\n"
-        "compliance_field(rm.load_robot('slavkovic_5r'), box_grid(*PAPER_BOX, 0.010))\n"
+        "compliance_map(rm.load_robot('slavkovic_5r'), box_grid(*PAPER_BOX, 0.010))\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)\n"
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
-from robomill.io.gcode_out import write_gcode
+from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 
 
 def unnumbered(path: Toolpath) -> list[str]:
     """The lines of the program without their N."""
-    return [line.partition(" ")[2] for line in write_gcode(path).splitlines()]
+    return [line.partition(" ")[2] for line in toolpath_to_gcode(path).splitlines()]
 
 
 def test_words_are_written_where_something_changes() -> None:
@@ -29,12 +29,12 @@ def test_words_are_written_where_something_changes() -> None:
         "M5",
         "M2",
     ]
-    assert write_gcode(path).splitlines()[1].startswith("N20 ")
+    assert toolpath_to_gcode(path).splitlines()[1].startswith("N20 ")
 
 
 def test_a_start_away_from_zero_becomes_a_rapid() -> None:
     path = toolpath_from_lines([[0.01, 0, 0]], [[0.02, 0, 0]], [0.01])
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     assert again.p[1:] == pytest.approx(path.p)
     assert not again.cutting[1]
 
@@ -45,7 +45,7 @@ def test_tilted_axes_come_back() -> None:
     k = np.stack([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)], axis=1)
     p = np.stack([t, t * 0, t * 0], axis=1) * 0.1
     path = Toolpath(p=p, k=k, v_f=np.full(200, 0.01), cutting=t > 0, block=np.arange(200), n_s=np.zeros(200), tool=0)  # type: ignore[arg-type]
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     index = np.searchsorted(again.p[:, 0], p[1:, 0] - 1e-9)
     assert abs(again.k[index] - k[1:]).max() < 1e-6
 
@@ -53,12 +53,12 @@ def test_tilted_axes_come_back() -> None:
 def test_refusals() -> None:
     path = toolpath_from_lines([[0, 0, 0]], [[1, 0, 0]], [0.01])
     with pytest.raises(ToolpathError, match="expected 'mm' or 'in'"):
-        write_gcode(path, units="furlong")
+        toolpath_to_gcode(path, units="furlong")
     stuck = Toolpath(
         p=path.p, k=path.k, v_f=np.zeros(2), cutting=path.cutting, block=path.block, n_s=path.n_s, tool=path.tool
     )
     with pytest.raises(ToolpathError, match="feed of 0"):
-        write_gcode(stuck)
+        toolpath_to_gcode(stuck)
 
 
 WORDS = [
@@ -69,18 +69,18 @@ WORDS = [
 
 def test_written_and_read_again() -> None:
     path = read_gcode("\n".join(word.replace("S0", "S1") for word in WORDS))
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     assert again.ccw.tolist() == path.ccw.tolist()
     assert again.dwell == pytest.approx(path.dwell)
 
 
 def test_titles_hold_no_brackets_and_unknown_speeds_are_refused() -> None:
     path = read_gcode("G21 S600 M3\nG0 Z5\nG1 Z-1 F300\nM2\n")
-    assert write_gcode(path, title="a (b) ; c\td").splitlines()[0] == "(a b  cd)"
-    assert write_gcode(path).splitlines()[0].startswith("N10 ")
+    assert toolpath_to_gcode(path, title="a (b) ; c\td").splitlines()[0] == "(a b  cd)"
+    assert toolpath_to_gcode(path).splitlines()[0].startswith("N10 ")
     turning = read_gcode("G21 G96 S100 D2000 M3\nG0 X5\nG1 Z-1 F300\nM2\n")
     with pytest.raises(ToolpathError, match="the spindle speed of point"):
-        write_gcode(turning)
+        toolpath_to_gcode(turning)
 
 
 def test_an_axis_along_x_keeps_the_turn_it_had() -> None:
@@ -93,7 +93,7 @@ def test_an_axis_along_x_keeps_the_turn_it_had() -> None:
     path = Toolpath(
         p=p, k=k, v_f=np.full(m, 0.01), cutting=np.arange(m) > 0, block=np.arange(m), n_s=np.zeros(m), tool=0
     )  # type: ignore[arg-type]
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     index = np.searchsorted(again.p[:, 0], p[1:, 0] - 1e-9)
     assert abs(again.k[index] - k[1:]).max() < 1e-6
 

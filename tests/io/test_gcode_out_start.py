@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.io.gcode_out import write_gcode
+from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import toolpath_from_lines
 
@@ -14,7 +14,7 @@ from robomill.toolpath.path import toolpath_from_lines
 def test_a_path_is_begun_where_it_begins(start: tuple[float, float, float]) -> None:
     start_m = np.array(start) * 1e-3
     path = toolpath_from_lines([start_m], [start_m + np.array([0.01, 0.0, 0.0])], 0.01)
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     cut = np.flatnonzero(again.cutting)
     np.testing.assert_allclose(again.p[cut[0] - 1], start_m, atol=1e-12)
     assert len(again) == (2 if not any(start) else 3)
@@ -23,6 +23,6 @@ def test_a_path_is_begun_where_it_begins(start: tuple[float, float, float]) -> N
 @pytest.mark.parametrize("axis", [(0.6, 0.0, 0.8), (0.0, 0.6, 0.8)])
 def test_a_first_axis_that_leans_is_written_from_the_start(axis: tuple[float, float, float]) -> None:
     path = toolpath_from_lines([[0, 0, 0]], [[0.01, 0, 0]], 0.01, k=axis)
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     cut = np.flatnonzero(again.cutting)
     np.testing.assert_allclose(again.k[cut[0] - 1 :], np.tile(axis, (len(again) - cut[0] + 1, 1)), atol=1e-7)

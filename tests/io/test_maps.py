@@ -6,13 +6,13 @@ import pytest
 import robomill as rm
 from robomill.errors import WorkspaceError
 from robomill.io.maps import map_columns, write_map
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import Grid, box_grid
 
 
 @pytest.fixture(scope="module")
 def field():
-    return compliance_field(rm.load_robot("slavkovic_5r"), box_grid([-0.2, -2.4, 0], [0.2, -1.2, 0.1], 0.1))
+    return compliance_map(rm.load_robot("slavkovic_5r"), box_grid([-0.2, -2.4, 0], [0.2, -1.2, 0.1], 0.1))
 
 
 def test_csv(field, tmp_path):
@@ -49,7 +49,7 @@ def test_refusals(field, tmp_path):
         write_map(tmp_path / "map.csv", [])
     with pytest.raises(WorkspaceError, match="cannot be written"):
         write_map(tmp_path / "missing" / "map.csv", [field.field("C_yy")])
-    uneven = compliance_field(field.robot, Grid(x=[0, 0.1, 0.3], y=[-1.3], z=[0]))
+    uneven = compliance_map(field.robot, Grid(x=[0, 0.1, 0.3], y=[-1.3], z=[0]))
     with pytest.raises(WorkspaceError, match="evenly"):
         write_map(tmp_path / "map.vti", [uneven.field("C_yy")])
 
@@ -73,19 +73,19 @@ def test_a_column_without_a_unit_has_the_bare_name(field):
 
 
 def test_quantities_of_one_file_share_one_grid(field, tmp_path):
-    other = compliance_field(field.robot, Grid(x=[0], y=[-1.3], z=[0]))
+    other = compliance_map(field.robot, Grid(x=[0], y=[-1.3], z=[0]))
     with pytest.raises(WorkspaceError, match="must share one grid"):
         write_map(tmp_path / "map.csv", [field.field("C_yy"), other.field("C_yy")])
 
 
 def test_an_image_may_be_flat_and_stands_where_the_grid_does(field, tmp_path):
     pv = pytest.importorskip("pyvista")
-    flat = compliance_field(field.robot, Grid(x=[0.05, 0.1, 0.15], y=[-1.4, -1.2], z=[0.02]))
+    flat = compliance_map(field.robot, Grid(x=[0.05, 0.1, 0.15], y=[-1.4, -1.2], z=[0.02]))
     image = pv.read(write_map(tmp_path / "flat.vti", [flat.field("C_yy")]))
     np.testing.assert_allclose(image.origin, [0.05, -1.4, 0.02])
     np.testing.assert_allclose(image.spacing, [0.05, 0.2, 1.0])
-    odd = compliance_field(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 2e-9], z=[0]))
+    odd = compliance_map(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 2e-9], z=[0]))
     with pytest.raises(WorkspaceError, match=r"evenly spaced points, and axis y is not; write .csv or .parquet"):
         write_map(tmp_path / "map.vti", [odd.field("C_yy")])
-    nearly = compliance_field(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 1e-10], z=[0]))
+    nearly = compliance_map(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 1e-10], z=[0]))
     assert write_map(tmp_path / "map.vti", [nearly.field("C_yy")]).is_file()

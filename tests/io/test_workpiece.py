@@ -12,7 +12,8 @@ import pytest
 
 from robomill.errors import ProjectError
 from robomill.io.tables import Table
-from robomill.io.workpiece import part_frame, part_from_table, part_to_table, stock_from_table, stock_to_table
+from robomill.io.workpiece import part_from_table, part_to_table, stock_from_table, stock_to_table
+from robomill.simulation.given import part_frame
 from robomill.surface.stock import Stock
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.kinematics import dexterity
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import box_grid
 
 SCARA = {
@@ -29,7 +29,7 @@ def test_scara():
     result = rm.inverse_kinematics(robot, T_MT)
     assert result.reached.all()
     np.testing.assert_allclose(rm.tool_pose(robot, result.theta)[:, :3, 3], T_MT[:, :3, 3], atol=1e-9)
-    field = compliance_field(robot, box_grid([-0.6, -0.6, 0.1], [0.6, 0.6, 0.3], 0.3))
+    field = compliance_map(robot, box_grid([-0.6, -0.6, 0.1], [0.6, 0.6, 0.3], 0.3))
     # Only the slide gives in Z, by its compliance in m/N.
     np.testing.assert_allclose(field.values("C_zz")[field.reached], 1e-9)
 

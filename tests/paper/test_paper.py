@@ -17,7 +17,7 @@ from robomill.paper import BOX_SIZE, SLOT
 from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
 from robomill.report.reproduction import CHECKS, reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, columns, summary
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid, plane_grid
 from robomill.workspace.lines import border_and_middle_lines
 from tests.paper import arm
@@ -102,7 +102,7 @@ def determinant(found, evidence):
     Z = np.linspace(-0.4, 0.1, 11)
     every = arm.determinant(X[..., None], Y[..., None], Z)
     assert (every.min(), every.max()) == (pytest.approx(0.25, abs=0.01), pytest.approx(1.96, abs=0.01))
-    field = compliance_field(evidence.robot, box_grid(*PAPER_BOX, 0.05))
+    field = compliance_map(evidence.robot, box_grid(*PAPER_BOX, 0.05))
     np.testing.assert_allclose(np.abs(field.det_J), every, rtol=1e-9)
     assert (np.sign(field.det_J) == np.sign(field.det_J.flat[0])).all()
 
@@ -117,7 +117,7 @@ def table_2(found, evidence):
 
 
 def figure_5(found, evidence):
-    field = compliance_field(evidence.robot, plane_grid("z", 0.0, *PAPER_BOX, 0.05))
+    field = compliance_map(evidence.robot, plane_grid("z", 0.0, *PAPER_BOX, 0.05))
     for name in ("xx", "yy", "zz"):
         np.testing.assert_allclose(field.values(f"C_{name}")[:, :, 0], component(name), rtol=1e-9)
     right, inner = X[:, 0] > -1e-9, np.abs(X[:, 0]) < 0.4 + 1e-9
@@ -148,7 +148,7 @@ def figure_7(found, evidence):
     assert part_of("xy", JOINTS_1_3_5) >= MOSTLY
     for name in ("xz", "yz"):
         assert part_of(name, [2]) == pytest.approx(1.0, abs=ROUNDING)
-    field = compliance_field(evidence.robot, plane_grid("z", 0.0, *PAPER_BOX, 0.05))
+    field = compliance_map(evidence.robot, plane_grid("z", 0.0, *PAPER_BOX, 0.05))
     for name in ("xy", "xz", "yz"):
         np.testing.assert_allclose(field.values(f"C_{name}")[:, :, 0], component(name), atol=1e-15)
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robomill.errors import GCodeError
-from robomill.io.gcode_out import write_gcode
+from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.toolpath.gcode import interpret, read_gcode
 
 coordinate = st.decimals(-500, 500, places=4).map(lambda d: f"{d:f}")
@@ -150,6 +150,6 @@ def test_kept_modes_come_back(changes: list[str]) -> None:
 def test_writing_and_reading_is_the_identity(points: list[tuple[str, str, str, bool]]) -> None:
     lines = [f"G{int(cut)} X{x} Y{y} Z{z}" for x, y, z, cut in points]
     path = read_gcode("G21 F250\n" + "\n".join(lines))
-    again = read_gcode(write_gcode(path))
+    again = read_gcode(toolpath_to_gcode(path))
     assert np.array_equal(again.cutting, path.cutting)
     assert np.abs(again.p - path.p).max() < 1e-12

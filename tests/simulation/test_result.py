@@ -13,8 +13,8 @@ from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
-from robomill.io.workpiece import part_frame
 from robomill.report.simulation_record import simulation_record
+from robomill.simulation.given import part_frame
 from robomill.surface.deviation import deviation
 from robomill.toolpath.source import GCodeSource
 

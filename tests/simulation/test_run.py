@@ -11,8 +11,8 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.errors import SurfaceError, ToolpathError
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
-from robomill.io.workpiece import part_frame
 from robomill.kinematics.forward import tool_pose
+from robomill.simulation.given import part_frame
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource, LinesSource
 

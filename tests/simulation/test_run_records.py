@@ -11,7 +11,7 @@ from robomill.errors import SetupError
 from robomill.io.forces import read_forces
 from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
-from robomill.io.workpiece import part_frame
+from robomill.simulation.given import part_frame
 from robomill.toolpath.source import GCodeSource
 
 SETUP = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=1e-3)

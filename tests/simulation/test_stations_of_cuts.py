@@ -9,8 +9,8 @@ import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.io.workpiece import part_frame
 from robomill.simulation import stations
+from robomill.simulation.given import part_frame
 from robomill.simulation.spread import alloy_spread
 from robomill.toolpath.source import GCodeSource, LinesSource
 

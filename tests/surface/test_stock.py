@@ -13,6 +13,7 @@ from robomill.errors import SurfaceError
 from robomill.quantities import quantities
 from robomill.surface.stock import Stock, fitting_cell, stock_grid, stock_span
 from robomill.surface.zmap import cut
+from robomill.toolpath.path import Toolpath
 
 STOCK = Stock((0.0, 0.0, -0.02), (0.03, 0.02, 0.0))
 CUTTER = Cutter("flat", 0.008)
@@ -65,7 +66,7 @@ def test_a_line_along_the_border_is_over_the_stock(side):
 
 def test_a_stock_round_a_path():
     """The cutter's radius and 2 mm beside it, 5 mm beneath and, above zero, 1 mm on top."""
-    stock = Stock.around(np.array([0.0, -0.02, 0.002]), np.array([0.05, 0.0, 0.01]), CUTTER)
+    stock = Stock.around(Toolpath.from_points([[0.0, -0.02, 0.002], [0.05, 0.0, 0.01]], 0.01), CUTTER)
     np.testing.assert_allclose(stock.lower, [-0.006, -0.026, -0.003], atol=1e-15)
     np.testing.assert_allclose(stock.upper, [0.056, 0.006, 0.011], atol=1e-15)
     np.testing.assert_allclose(stock.size, [0.062, 0.032, 0.014], atol=1e-15)
@@ -125,7 +126,7 @@ def test_odd_sizes_are_said_from_two_millimetres_and_five_metres_on():
 def test_part_zero_is_on_top_where_the_path_cuts_below_zero():
     """By more than a nanometre; else the top is a millimetre above the highest point."""
     for z, top in ((-1e-3, 0.0), (-2e-9, 0.0), (-0.5e-9, 1e-3), (0.0, 1e-3), (2e-3, 3e-3)):
-        stock = Stock.around(np.array([0.0, 0.0, z]), np.array([0.01, 0.0, z]), CUTTER)
+        stock = Stock.around(Toolpath.from_points([[0.0, 0.0, z], [0.01, 0.0, z]], 0.01), CUTTER)
         assert stock.upper[2] == pytest.approx(top, abs=2e-6)
         assert stock.lower[2] == pytest.approx(z - 5e-3)
         np.testing.assert_allclose(stock.lower[:2], [-6e-3, -6e-3])

@@ -9,7 +9,7 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.improve.sensitivity import stiffened
 from robomill.ui import fields
 from robomill.ui.project import MapView
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid
 
 POINT = (0.2, -1.2, -0.1)
@@ -17,15 +17,15 @@ POINT = (0.2, -1.2, -0.1)
 
 def test_the_report_is_the_field_at_its_cell(found: PoseReport) -> None:
     """Click and map agree: one pose solved alone gives what the plane shows."""
-    field = compliance_field(found.robot, box_grid(POINT, POINT, 1.0))
+    field = compliance_map(found.robot, box_grid(POINT, POINT, 1.0))
     np.testing.assert_allclose(found.C, field.C()[0, 0, 0], rtol=1e-12)
 
 
 def test_stiffer_fields_are_those_of_the_stiffer_robot(found: PoseReport) -> None:
     factors = np.array([1.0, 2.0, 0.5, 1.0, 3.0])
     grid = box_grid(*PAPER_BOX, 0.3)
-    quick = fields.stiffer(compliance_field(found.robot, grid), factors)
-    slow = compliance_field(stiffened(found.robot, factors), grid)
+    quick = fields.stiffer(compliance_map(found.robot, grid), factors)
+    slow = compliance_map(stiffened(found.robot, factors), grid)
     np.testing.assert_allclose(quick.total, slow.total, rtol=1e-12, atol=1e-22)
 
 

@@ -10,7 +10,7 @@ import pytest
 import robomill as rm
 from robomill.ui.point import default_point, in_hand, middle
 from robomill.ui.project import MapView
-from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import box_grid
 from robomill.workspace.reach import ReachBox
 
@@ -18,8 +18,8 @@ ROBOT = rm.load_robot("slavkovic_5r")
 OWN = MapView(ROBOT.name, "own")
 
 
-def over(lower: tuple[float, ...], upper: tuple[float, ...], step: float = 0.2) -> tuple[ReachBox, ComplianceField]:
-    return ReachBox(np.array(lower), np.array(upper)), compliance_field(ROBOT, box_grid(lower, upper, step))
+def over(lower: tuple[float, ...], upper: tuple[float, ...], step: float = 0.2) -> tuple[ReachBox, ComplianceMap]:
+    return ReachBox(np.array(lower), np.array(upper)), compliance_map(ROBOT, box_grid(lower, upper, step))
 
 
 def test_the_tool_stands_where_it_is_said_to_stand() -> None:

@@ -8,7 +8,7 @@ import pytest
 import robomill as rm
 from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, Grid, axis_points, box_grid, plane_grid
 from robomill.workspace.quantities import map_quantities, map_quantity
 from robomill.workspace.reach import reach
@@ -35,7 +35,7 @@ def test_every_quantity_is_the_law_at_its_configuration(name, A, B):
     grid = (
         box_grid([-0.5, -2.4, -0.2], [0.5, -1.0, 0.0], 0.2) if robot.n == 5 else box_grid([1, -1, 0], [3, 1, 0.4], 0.4)
     )
-    field = compliance_field(robot, grid, A, B)
+    field = compliance_map(robot, grid, A, B)
     assert 0 < (~field.reached).sum() < grid.cells
     for index in np.argwhere(field.reached)[::5]:
         cell = tuple(index)
@@ -60,7 +60,7 @@ def test_every_quantity_is_the_law_at_its_configuration(name, A, B):
 def test_unreachable_is_nan_and_counted_for_every_name():
     robot = rm.load_robot("slavkovic_5r")
     grid = plane_grid("z", 0.0, [-1, -3, 0], [1, -1, 0], 0.25)
-    field = compliance_field(robot, grid)
+    field = compliance_map(robot, grid)
     for name in map_quantities(robot):
         values = field.values(name)
         assert values.shape == grid.shape
@@ -74,21 +74,21 @@ def test_unreachable_is_nan_and_counted_for_every_name():
 
 def test_a_grid_out_of_reach_is_all_nan():
     robot = rm.load_robot("slavkovic_5r")
-    field = compliance_field(robot, plane_grid("z", 9.0, *PAPER_BOX, 0.3)).field("smallest_singular_value")
+    field = compliance_map(robot, plane_grid("z", 9.0, *PAPER_BOX, 0.3)).field("smallest_singular_value")
     assert field.reached == 0
     assert np.isnan(field.values).all()
 
 
 def test_a_singular_arm_gives_zero_not_an_error():
     robot = rm.load_robot("planar_3r").replace(C_theta=np.zeros(3))
-    field = compliance_field(robot, plane_grid("z", 0.0, [0.3, 0, 0], [0.9, 0.4, 0], 0.2))
+    field = compliance_map(robot, plane_grid("z", 0.0, [0.3, 0, 0], [0.9, 0.4, 0], 0.2))
     assert field.reached.all()
     np.testing.assert_array_equal(field.values("C_xx"), 0.0)
     np.testing.assert_array_equal(field.values("share_C_xx_1"), 0.0)
 
 
 def test_a_field_is_a_value_of_its_own():
-    field = compliance_field(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, 0.0], [0.1, -1.2, 0.0], 0.1))
+    field = compliance_map(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, 0.0], [0.1, -1.2, 0.0], 0.1))
     for value, name in ((field, "theta"), (field.field("C_yy"), "values")):
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(value, name, None)
@@ -100,7 +100,7 @@ def test_the_budget_counts_what_a_field_holds_and_one_quantity_of_it(monkeypatch
     asked = []
     monkeypatch.setattr(Grid, "check_budget", lambda grid, bytes_per_cell, *more: asked.append(bytes_per_cell))
     for name in ("slavkovic_5r", "fanuc_r2000ic"):
-        field = compliance_field(rm.load_robot(name), box_grid([1.0, -1.2, 0.0], [1.2, -1.0, 0.0], 0.1))
+        field = compliance_map(rm.load_robot(name), box_grid([1.0, -1.2, 0.0], [1.2, -1.0, 0.0], 0.1))
         held = (field.theta, field.reached, field.J, field.shares, field.det_J, field.total, field.values("C_xx"))
         assert asked.pop() == sum(array.nbytes for array in held) / field.grid.cells
 
@@ -108,7 +108,7 @@ def test_the_budget_counts_what_a_field_holds_and_one_quantity_of_it(monkeypatch
 def test_budget_names_the_step_that_fits():
     robot = rm.load_robot("slavkovic_5r")
     with pytest.raises(WorkspaceError, match="GiB.*step of") as error:
-        compliance_field(robot, box_grid(*PAPER_BOX, 0.001))
+        compliance_map(robot, box_grid(*PAPER_BOX, 0.001))
     step = float(str(error.value).split("step of ")[1].split(" mm")[0]) * 1e-3
     box_grid(*PAPER_BOX, step).check_budget(8 * (13 * 5 + 8) + 1)
 
@@ -128,7 +128,7 @@ def test_grids():
 
 def test_a_planar_arm_keeps_its_elbow_side_over_a_map():
     robot = rm.load_robot("planar_2r")
-    field = compliance_field(robot, plane_grid("z", 0.0, [-0.8, -0.8, 0], [0.8, 0.8, 0], 0.1))
+    field = compliance_map(robot, plane_grid("z", 0.0, [-0.8, -0.8, 0], [0.8, 0.8, 0], 0.1))
     theta = field.theta[field.reached]
     other = theta[theta[:, 1] < 0]
     # Where the elbow is on the other side, the first joint would be past its limit with it on this one.
@@ -142,10 +142,10 @@ def test_a_grid_in_blocks_is_the_grid_at_once(monkeypatch, block):
     """48 points in blocks that end with it and blocks that do not."""
     robot, grid = rm.load_robot("slavkovic_5r"), box_grid([-0.5, -2.4, -0.2], [0.4, -1.5, 0.4], 0.3)
     assert grid.shape == (4, 4, 3)
-    whole, mask = compliance_field(robot, grid, 0.1, -0.2), reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)])
+    whole, mask = compliance_map(robot, grid, 0.1, -0.2), reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)])
     for module in ("solve", "reach"):
         monkeypatch.setattr(f"robomill.workspace.{module}.BLOCK", block)
-    parts = compliance_field(robot, grid, 0.1, -0.2)
+    parts = compliance_map(robot, grid, 0.1, -0.2)
     for name in ("theta", "reached", "J", "shares", "det_J"):
         np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name))
     np.testing.assert_array_equal(reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)]), mask)

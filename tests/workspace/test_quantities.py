@@ -6,7 +6,7 @@ import pytest
 import robomill as rm
 from robomill.errors import WorkspaceError
 from robomill.units import UNITS
-from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import box_grid
 from robomill.workspace.quantities import COMPONENTS, map_quantities, map_quantity
 
@@ -14,7 +14,7 @@ AXES = "xyz"
 
 
 @pytest.fixture(scope="module", params=["slavkovic_5r", "fanuc_r2000ic", "planar_3r"])
-def field(request) -> ComplianceField:
+def field(request) -> ComplianceMap:
     low, high = {
         "slavkovic_5r": ([-0.5, -2.2, -0.2], [0.7, -1.0, 0.1]),
         "fanuc_r2000ic": ([1.2, -1, 0], [3.4, 1, 0.4]),
@@ -22,12 +22,12 @@ def field(request) -> ComplianceField:
     }[request.param]
     robot = rm.load_robot(request.param)
     tilt = (0.0, 0.0) if robot.n != 5 else (0.1, -0.2)
-    found = compliance_field(robot, box_grid(low, high, 0.3), *tilt)
+    found = compliance_map(robot, box_grid(low, high, 0.3), *tilt)
     assert 0 < found.reached.sum() < found.grid.cells
     return found
 
 
-def six(field: ComplianceField) -> np.ndarray:
+def six(field: ComplianceMap) -> np.ndarray:
     """(nx, ny, nz, n, 6): C_theta J_a J_b for every joint, from the Jacobian at each cell's own joints."""
     out = np.full((*field.reached.shape, field.robot.n, 6), np.nan)
     for cell in map(tuple, np.argwhere(field.reached)):
@@ -37,7 +37,7 @@ def six(field: ComplianceField) -> np.ndarray:
     return out
 
 
-def by_cell(field: ComplianceField, law) -> np.ndarray:
+def by_cell(field: ComplianceMap, law) -> np.ndarray:
     """(nx, ny, nz) from a law of one cell's joints, NaN where not reached."""
     out = np.full(field.reached.shape, np.nan)
     for cell in map(tuple, np.argwhere(field.reached)):
@@ -73,7 +73,7 @@ def test_who_gives_most(field):
 
 def test_joints_keep_their_numbers_where_one_is_blocked():
     robot = rm.load_robot("slavkovic_5r")
-    whole = compliance_field(robot, box_grid([0.0, -1.4, 0.0], [0.2, -1.2, 0.0], 0.2))
+    whole = compliance_map(robot, box_grid([0.0, -1.4, 0.0], [0.2, -1.2, 0.0], 0.2))
     names = [f"C_yy_{j}" for j in (1, 2, 3, 4, 5)]
     assert [map_quantity(robot, n).title for n in names] == [f"joint {j} in C_yy" for j in (1, 2, 3, 4, 5)]
     largest = np.argmax([whole.values(n) for n in names], axis=0) + 1
@@ -143,7 +143,7 @@ def test_every_quantity_says_what_it_is(field):
 
 def test_what_rests_on_compliance_changes_with_it_and_the_rest_does_not(field):
     stiff = field.robot.replace(C_theta=field.robot.C_theta * np.linspace(0.2, 3.0, field.robot.n))
-    other = compliance_field(stiff, field.grid, field.A, field.B)
+    other = compliance_map(stiff, field.grid, field.A, field.B)
     for name, what in map_quantities(field.robot).items():
         same = np.array_equal(field.values(name), other.values(name), equal_nan=True)
         if what.rests_on == "geometry":
@@ -200,11 +200,11 @@ def test_what_a_rigid_joint_does_to_direct_and_to_cross_terms():
     """A direct share is what vanishes with the joint; a cross-compliance may grow instead, where parts cancel."""
     robot = rm.load_robot("slavkovic_5r")
     grid = box_grid([-0.5, -1.5, 0.0], [0.5, -1.1, 0.0], 0.1)
-    known = compliance_field(robot, grid)
+    known = compliance_map(robot, grid)
     larger = 0
     for joint in range(5):
         C_theta = np.where(np.arange(5) == joint, 0.0, robot.C_theta)
-        rigid = compliance_field(robot.replace(C_theta=C_theta), grid)
+        rigid = compliance_map(robot.replace(C_theta=C_theta), grid)
         for c in ("xx", "yy", "zz"):
             vanished = 1 - rigid.values(f"C_{c}") / known.values(f"C_{c}")
             np.testing.assert_allclose(known.values(f"share_C_{c}_{joint + 1}"), vanished, atol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import WorkspaceError
-from robomill.workspace.fields import compliance_field
+from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
 from robomill.workspace.reach import ReachBox, against_paper, largest_box, reach
@@ -160,7 +160,7 @@ def test_a_long_search_says_how_far_it_is(monkeypatch):
     mask = reach(robot, grid)
     assert mask.all()
     assert mask.size == 84
-    for work, stage in ((lambda: reach(robot, grid), "Reach"), (lambda: compliance_field(robot, grid), "Map")):
+    for work, stage in ((lambda: reach(robot, grid), "Reach"), (lambda: compliance_map(robot, grid), "Map")):
         assert told(work)[stage] == pytest.approx([0.0, 30 / 84, 60 / 84])
     boxes = told(lambda: largest_box(mask, *corners(grid)))["Boxes"]
     assert set(boxes) == {1 / 3, 2 / 3}  # boxes of one height have none

@@ -6,12 +6,13 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import ForceModel, Frame
 from robomill.errors import CuttingError
-from robomill.provenance import Finding, Provenance
+from robomill.provenance import Finding, Kind, Provenance
 from robomill.quantities import quantity
 from robomill.units import format_si
 
@@ -23,6 +24,7 @@ PAPER_CUTOFF = 50.0
 #: Order of the Butterworth filter; run forwards and backwards it has twice that and no phase.
 ORDER = 2
 FEWEST = 4
+FROM_ARRAYS = "force from arrays"
 ROUNDING = 1e-6  # of a rate: instants written with a few digits are not spaced alike
 LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspected
 
@@ -42,6 +44,7 @@ class ForceRecord:
     frame: RecordFrame = "path"
     source: str = "measured force"
     notes: tuple[str, ...] = ()
+    kind: Kind = field(default="measured", compare=False)
 
     def __post_init__(self) -> None:
         for name, known in (("axis", get_args(Axis)), ("frame", get_args(RecordFrame))):
@@ -116,6 +119,34 @@ class MeasuredForce(ForceModel):
     start: float = quantity("Path starts at", default=0.0, digits=3, boxed=False)
     R_MW: FloatArray = field(default_factory=lambda: np.eye(3))
 
+    @classmethod
+    def over_time(
+        cls,
+        t: ArrayLike,
+        F: ArrayLike,
+        *,
+        frame: RecordFrame = "path",
+        cutoff: float | None = None,
+        start: float = 0.0,
+        source: str = FROM_ARRAYS,
+    ) -> MeasuredForce:
+        """Forces ON the tool F (k, 3) N at the times t (k,) s, which count from the first cut on.
+
+        ``frame`` is "path" (feed, feed-normal, axial), "M" (x, y, z of the robot) or "W" (of the part); ``cutoff`` Hz
+        of a low-pass, None for none; ``start`` s of the record at which the first cut begins. Raises CuttingError.
+        """
+        return cls(ForceRecord(t, F, "time", frame, source, kind="user"), cutoff, start)  # type: ignore[arg-type]
+
+    @classmethod
+    def along_path(
+        cls, s: ArrayLike, F: ArrayLike, *, frame: RecordFrame = "path", start: float = 0.0, source: str = FROM_ARRAYS
+    ) -> MeasuredForce:
+        """Forces ON the tool F (k, 3) N at the lengths s (k,) m of path at feed; ``start`` m of it at the first cut.
+
+        ``frame`` as in ``over_time``. Raises CuttingError.
+        """
+        return cls(ForceRecord(s, F, "path", frame, source, kind="user"), None, start)  # type: ignore[arg-type]
+
     @property
     def numbers(self) -> str:
         """The record and its filter."""
@@ -149,7 +180,7 @@ class MeasuredForce(ForceModel):
     def provenance(self) -> Provenance:
         """Measured, from the record's source."""
         filtered = f", low-pass {self.cutoff:g} Hz, zero phase" if self.cutoff is not None else ", unfiltered"
-        return Provenance("measured", self.record.source + filtered)
+        return Provenance(self.record.kind, self.record.source + filtered)
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from robomill.units import NOT_REACHED, format_many, format_percent, format_si, 
 from robomill.viz.deviation import both_figure
 from robomill.viz.maps import Map, MapSheet, Scale
 from robomill.viz.measured_maps import level_figure
-from robomill.workspace.fields import ComplianceField, compliance_field
+from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import Grid
 from robomill.workspace.quantities import one_sign
 
@@ -100,7 +100,7 @@ class Level:
     """Both methods over one level of the map: C (nx, ny, 3, 3) m/N as measured, and the joint model's field."""
 
     measured: FloatArray
-    model: ComplianceField
+    model: ComplianceMap
 
 
 def level_of(bench: Bench, field: MeasuredField, robot: Robot, z: float) -> Level:
@@ -109,7 +109,7 @@ def level_of(bench: Bench, field: MeasuredField, robot: Robot, z: float) -> Leve
     def make() -> Level:
         grid = level_grid(field, z)
         measured = field.symmetric().compliance(grid.points())[:, :, 0]
-        return Level(measured, compliance_field(robot, grid, *(float(v) for v in field.AB.mean(axis=0))))
+        return Level(measured, compliance_map(robot, grid, *(float(v) for v in field.AB.mean(axis=0))))
 
     return remembered(("level", bench.map_text, robot.digest(), z), make, "Maps of this level")
 

@@ -22,7 +22,7 @@ from robomill.ui.maps.plane import Region
 from robomill.units import from_si
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, PlaneMap, PlaneSheet, sheet_data
-from robomill.workspace.fields import ComplianceField
+from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.grid import Grid
 
 _component = component("robomill_maps", __file__)
@@ -60,7 +60,7 @@ class Planes:
         view = self.region.view
         return fields.coded_maps(robot or self.region.robot, self.grid, self.normal, view.A, view.B, tuple(names))
 
-    def known(self, robot: Robot | None = None, at: float | None = None) -> ComplianceField:
+    def known(self, robot: Robot | None = None, at: float | None = None) -> ComplianceMap:
         """All that is known over one plane: the one in force, or that next to ``at``."""
         view = self.region.view
         w = self.w[[self.nearest(self.region.at()[1] if at is None else at)]]

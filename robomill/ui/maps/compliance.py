@@ -26,7 +26,7 @@ from robomill.ui.point import InHand
 from robomill.ui.project import MapView, Project
 from robomill.units import format_many, format_si, format_significant, from_si, unit_label
 from robomill.viz.shares import gain_bars
-from robomill.workspace.fields import ComplianceField
+from robomill.workspace.fields import ComplianceMap
 
 UM = "um/N"
 
@@ -67,8 +67,8 @@ def saved_by(found: InHand, result: SimulationResult | None, view: MapView) -> S
 def tiles(
     found: InHand,
     old: PoseReport,
-    now: ComplianceField,
-    before: ComplianceField,
+    now: ComplianceMap,
+    before: ComplianceMap,
     saved: Saved | None,
     view: MapView,
 ) -> list[pieces.Tile]:

@@ -13,7 +13,7 @@ from robomill.ui import declared, fields, inputs, pieces, session
 from robomill.ui.project import MapView
 from robomill.units import decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach
-from robomill.workspace.fields import ComplianceField
+from robomill.workspace.fields import ComplianceMap
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Region:
         """(normal, coordinate m) of the plane in force, after its slider was moved."""
         return fields.plane_at(self.robot, session.maps(), self.box)
 
-    def overview(self) -> ComplianceField:
+    def overview(self) -> ComplianceMap:
         """A coarse field over the whole region."""
         return fields.overview(self.robot, self.view, self.box)
 

@@ -35,13 +35,13 @@ from robomill.viz.maps import Scale
 from robomill.viz.planes import PlaneMap, ends, extremes
 from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
-from robomill.workspace.fields import ComplianceField
+from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
 from robomill.workspace.quantities import MapQuantity, map_quantities, map_quantity
 from robomill.workspace.reach import ReachBox, against_paper
 
 
-def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceField, unit: str) -> list[pieces.Tile]:
+def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit: str) -> list[pieces.Tile]:
     """Share in reach, least determinant, nearest limit, largest box."""
     share = float(known.reached.mean())
     det = np.abs(known.det_J[known.reached])
@@ -90,7 +90,7 @@ def _against(box: ReachBox, robot: Robot, unit: str) -> str:
     return f"{words} the reference box {box_size(PAPER_BOX_SIZE, unit)} · {times} × its volume"
 
 
-def sentence(robot: Robot, known: ComplianceField | None) -> str:
+def sentence(robot: Robot, known: ComplianceMap | None) -> str:
     """What can be said of the region in one line."""
     if known is None:
         return "There is no map of this region yet."
@@ -105,7 +105,7 @@ def sentence(robot: Robot, known: ComplianceField | None) -> str:
     return f"The arm reaches {where} and {fit} there."
 
 
-def _why(known: ComplianceField) -> str:
+def _why(known: ComplianceMap) -> str:
     """Why the middle of the region is not reached."""
     x, y, z = (float(axis[len(axis) // 2]) for axis in (known.grid.x, known.grid.y, known.grid.z))
     reason = in_hand(known.robot, (x, y, z), known.A, known.B).reason
@@ -221,7 +221,7 @@ def _selected(region: Region, what: MapQuantity) -> None:
     pieces.note(f"Selected point {where}: {what.title} {said}. The page Compliance shows what it gives there.")
 
 
-def _columns(known: ComplianceField, what: MapQuantity) -> dict[str, FloatArray]:
+def _columns(known: ComplianceMap, what: MapQuantity) -> dict[str, FloatArray]:
     """The table twin of a plane."""
     from robomill.io.maps import map_columns
 

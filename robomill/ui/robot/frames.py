@@ -11,7 +11,7 @@ from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
 from robomill.kinematics.transforms import rotation_from_turns, transform, turns_from_rotation
 from robomill.quantities import Quantity
 from robomill.robot.model import TOOL_TIP, Robot
-from robomill.simulation.setup import SPIN
+from robomill.simulation.given import SPIN
 from robomill.ui import cached, declared, inputs, pieces, session
 from robomill.ui.project import Project
 from robomill.ui.robot import tables

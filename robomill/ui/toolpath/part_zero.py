@@ -6,9 +6,8 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
-from robomill.io.workpiece import part_frame
 from robomill.kinematics.transforms import transform
-from robomill.simulation.setup import PART_TURN, PART_ZERO
+from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
 from robomill.ui import declared, grid, inputs, pieces, session
 from robomill.ui.cells import Cells

@@ -111,8 +111,8 @@ def _export() -> None:
     setup, unit = session.project().setup, session.project().view.length
 
     def text() -> str:
-        from robomill.io.gcode_out import write_gcode
+        from robomill.io.gcode_out import toolpath_to_gcode
 
-        return write_gcode(setup.toolpath, units=unit, title=f"sketch, {setup.name}")
+        return toolpath_to_gcode(setup.toolpath, units=unit, title=f"sketch, {setup.name}")
 
     pieces.download("G-code of this sketch", text, pieces.named("sketch.nc"), "toolpath.export")

@@ -72,10 +72,10 @@ def _convert(kind: str) -> None:
     if kind == "lines":
         put(lines_of_path(setup.toolpath), "converted to a table of lines")
     elif kind == "program":
-        from robomill.io.gcode_out import write_gcode
+        from robomill.io.gcode_out import toolpath_to_gcode
 
         name = f"{setup.source.kind}.nc"
-        put(GCodeSource(write_gcode(setup.toolpath), name), f"written from a {setup.source.name}")
+        put(GCodeSource(toolpath_to_gcode(setup.toolpath), name), f"written from a {setup.source.name}")
     else:
         try:
             traced = sketch_of_path(setup.toolpath)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from robomill.io.gcode_out import write_gcode
+from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.toolpath.gcode import Tool, interpret, read_gcode
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import KINDS, PLANES
@@ -40,7 +40,7 @@ def test_moves_agree_with_the_reference(file: Path) -> None:
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.stem)
 def test_written_programs_read_back_to_the_same_path(file: Path, units: str) -> None:
     path = read_gcode(file, tools=TOOLS, chord_error=1e-4)
-    again = read_gcode(write_gcode(path, units=units, title=file.stem))
+    again = read_gcode(toolpath_to_gcode(path, units=units, title=file.stem))
     assert len(again) == len(path)
     assert abs(again.p - path.p).max() < 2e-9
     assert abs(again.k - path.k).max() < 1e-7

@@ -1,0 +1,89 @@
+"""What may be given of a set-up in other words: the part zero as point and turn, a path as it is, a spin in degrees."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray, as_floats
+from robomill.cutting.tool import Cutter
+from robomill.errors import SetupError
+from robomill.provenance import Provenance
+from robomill.quantities import Quantity
+from robomill.spelled import one_of
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import PointsSource
+
+# What people type of T_MW, of a part that stands upright, and of the spin.
+PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), digits=2, key="zero_mm", slip=200.0)
+PART_TURN = Quantity("Turn about Z", "deg", key="rotation_z_deg", slip=2.0 * np.pi)
+SPIN = Quantity("Turn about z_T", "deg", name="spin", key="spin_deg", digits=1, slip=4.0 * np.pi)
+PART = ("part_zero", "part_zero_mm", "part_rotation_z", "part_rotation_z_deg")
+OTHERS = (*PART, "spin_deg")
+"""The names beside those of the fields."""
+_ZERO = replace(PART_ZERO, name="part_zero", key="part_zero_mm")
+_TURN = replace(PART_TURN, name="part_rotation_z", key="part_rotation_z_deg")
+
+
+def part_frame(zero: Any, rotation_z: float = 0.0) -> FloatArray:
+    """T_MW from the part zero (3,) m in {M} and the part's turn about z_M in rad."""
+    c, s = np.cos(rotation_z), np.sin(rotation_z)
+    T_MW = np.eye(4)
+    T_MW[:2, :2] = [[c, -s], [s, c]]
+    T_MW[:3, 3] = zero
+    return T_MW
+
+
+def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None) -> dict[str, Any]:
+    """``given`` by the names of the fields; ``T_MW`` is the part's place so far. Raises SetupError."""
+    found = {name: value for name, value in given.items() if name not in OTHERS}
+    if isinstance(found.get("source"), Toolpath):
+        found["source"] = PointsSource(found["source"])
+    if any(given.get(name) is not None for name in PART):
+        if "T_MW" in found:
+            raise SetupError("Part zero: T_MW and part_zero are both given; keep one of them.", where="T_MW")
+        found["T_MW"] = _placed(given, T_MW)
+    if "spin" in given and isinstance(given["spin"], str) and "spin_deg" not in given:
+        return found
+    if "spin" in given or "spin_deg" in given:
+        found["spin"] = one_of(SPIN, given.get("spin"), given.get("spin_deg"), SetupError, "Set-up")
+    return found
+
+
+def _placed(given: Mapping[str, Any], before: FloatArray | None) -> FloatArray:
+    """T_MW of a part zero and a turn about Z; what of both is not given is as ``before``."""
+    zero, zero_mm, turn, turn_deg = (given.get(name) for name in PART)
+    T_MW = part_frame([0.0, 0.0, 0.0]) if before is None else np.array(before)
+    if before is None or zero is not None or zero_mm is not None:
+        p = one_of(_ZERO, zero, zero_mm, SetupError, "Part zero")
+        T_MW[:3, 3] = as_floats(p, "Part zero", (3,), error=SetupError)
+    if turn is not None or turn_deg is not None:
+        angle = one_of(_TURN, turn, turn_deg, SetupError, "Part zero")
+        T_MW = part_frame(T_MW[:3, 3], float(as_floats(angle, "Part zero, turn", (), error=SetupError)))
+    return T_MW
+
+
+def stated(given: Mapping[str, Any]) -> dict[str, Any]:
+    """A new set-up: where nobody has said a number that the result rests on, ``provenance`` says that it is assumed.
+
+    Raises SetupError where nobody has said where the part lies.
+    """
+    found = taken(given)
+    if found.get("T_MW") is None:
+        raise SetupError(
+            "Set-up: it is not said where the part zero lies in the robot's frame; give part_zero_mm=(X, Y, Z), with "
+            "part_rotation_z_deg where the part is turned, or T_MW (4, 4).",
+            where="T_MW",
+        )
+    said: dict[str, Provenance] = {}
+    if "tolerance" not in found:
+        said["tolerance"] = Provenance("assumed", "nobody has stated one")
+    if found.get("stock") is None:
+        said["stock"] = Provenance("computed", "a block around what the path cuts")
+    cutter = found.get("cutter")
+    if isinstance(cutter, Cutter) and cutter.assumed:
+        numbers = (f"{each.label.lower()} {each.short(getattr(cutter, each.name))}" for each in cutter.assumed_numbers)
+        said["cutter"] = Provenance("assumed", f"nobody has stated {' and '.join(numbers)}")
+    found["provenance"] = {**said, **(found.get("provenance") or {})}
+    return found

@@ -1,0 +1,165 @@
+"""Numbers given in code: a name alone is SI, a name that ends in its unit is in that unit.
+
+    Cutter("flat", diameter=0.008)        Cutter("flat", diameter_mm=8.0)
+
+The second name is the number's key in files, so that whoever knows one knows the other. A plain number that is too
+large to be SI is refused with how it is written; one whose unit is said is never doubted.
+"""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from functools import wraps
+from typing import Any, Self, TypeVar
+
+import numpy as np
+
+from robomill.errors import RobomillError
+from robomill.quantities import Quantity, quantities
+from robomill.units import SI_NAMES, UNITS, format_plain, to_si, unit_label
+
+T = TypeVar("T")
+C = TypeVar("C", bound=type)
+
+
+def in_units(
+    error: type[RobomillError],
+    who: str,
+    more: tuple[str, ...] = (),
+    new: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
+) -> Callable[[C], C]:
+    """A dataclass that takes its declared numbers under their other name, too; ``error`` and ``who`` as in ``settle``.
+
+    ``new`` makes fields of what a person gives for a new one, of which ``more`` are the names that are no fields.
+    """
+
+    def of(cls: C) -> C:
+        make: Callable[..., None] = cls.__init__  # type: ignore[misc]
+        own = inspect.signature(make).parameters
+        others = [
+            inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=None) for key in (*spelled(cls), *more)
+        ]
+
+        @wraps(make)
+        def init(self: Any, *args: Any, **given: Any) -> None:
+            first = dict(zip(list(own)[1:], args))
+            twice = sorted({*first} & {*given})
+            if twice or len(args) >= len(own):
+                make(self, *args, **given)  # which says so
+            found = in_si(cls, first | given, error, who)
+            make(self, **(found if new is None else new(found)))
+
+        init.__signature__ = inspect.Signature([*own.values(), *others])  # type: ignore[attr-defined]
+        cls.__init__ = init  # type: ignore[misc]
+        return cls
+
+    return of
+
+
+def made(cls: type[T], known: Mapping[str, Any]) -> T:
+    """A value of a class of numbers that are known to be SI (read from a file in their units), whatever their size."""
+    one = cls.__new__(cls)
+    getattr(cls.__init__, "__wrapped__", cls.__init__)(one, **known)
+    return one
+
+
+def spelled(cls: type) -> dict[str, Quantity]:
+    """The numbers of a class by their other name, which ends in the unit; those that have none are not in it."""
+    return {each.key: each for each in quantities(cls).values() if UNITS[each.unit].factor != 1.0}
+
+
+def in_si(
+    cls: type, given: Mapping[str, Any], error: type[RobomillError] = RobomillError, who: str = ""
+) -> dict[str, Any]:
+    """``given`` with every number under its own name and in SI. Raises ``error`` for one that is there twice, or that
+    was hardly meant in SI."""
+    other, own, found = spelled(cls), quantities(cls), {}
+    who = who or cls.__name__
+    for key, value in given.items():
+        if key not in other:
+            if key in own:
+                refuse_slip(own[key], value, error, who)
+            found[key] = value
+            continue
+        name = other[key].name
+        if name in given:
+            raise error(f"{who}: {name} and {key} are the same number; give one of them.", where=name)
+        found[name] = converted(value, other[key].unit, error, f"{who}, {key}")
+    return found
+
+
+def one_of(
+    declared: Quantity, plain: Any, in_unit: Any, error: type[RobomillError], who: str, default: Any = None
+) -> Any:
+    """A number in SI that was given plainly or ``in_unit``. Raises ``error`` where both are given, or neither and there
+    is no ``default``."""
+    if plain is None and in_unit is None and default is None:
+        raise error(f"{declared.said_of(who)}: give {declared.name} or {declared.key}.", where=declared.name)
+    if plain is not None and in_unit is not None:
+        raise error(f"{who}: {declared.name} and {declared.key} are the same; give one of them.", where=declared.name)
+    if in_unit is not None:
+        return converted(in_unit, declared.unit, error, f"{who}, {declared.key}")
+    if plain is not None:
+        refuse_slip(declared, plain, error, who)
+    return default if plain is None else plain
+
+
+def converted(value: Any, unit: str, error: type[RobomillError], name: str) -> Any:
+    """A number, numbers in lists or an array, or None, in SI."""
+    if value is None:
+        return None
+    if isinstance(value, Mapping):
+        return {key: converted(one, unit, error, name) for key, one in value.items()}
+    try:
+        numbers = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise error(f"{name}: expected a number, found {value!r:.40}.", where=name) from None
+    return to_si(float(numbers), unit) if numbers.ndim == 0 else to_si(numbers, unit)
+
+
+def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> None:
+    """Raises ``error`` where a number that should be SI is so large that it was meant in its unit of the edge."""
+    if declared.slip is None:
+        return
+    try:
+        found = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return  # what is no number is refused where it is settled
+    size = np.where(np.isfinite(found), np.abs(found), 0.0)
+    if size.max(initial=0.0) > declared.slip:
+        worst = float(found.ravel()[np.argmax(size)])
+        raise error(f"{declared.said_of(who)}: {slip_words(declared, worst, found.ndim == 0)}", where=declared.name)
+
+
+def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:
+    """What to say of a plain number that is too large: what it says, and how what was meant is written."""
+    si, unit = SI_NAMES[declared.unit], declared.unit
+    meant, plain, most = format_plain(worst, 6), f"{to_si(worst, unit):.5g}", format_plain(declared.slip or 0.0, 3)
+    give = f"{declared.name}={plain} or {declared.key}={meant}"
+    if not alone:
+        give = f"{declared.name} in {si}, or {declared.key}"
+    label = unit_label(unit)
+    found = f"{meant}{label}" if label == "°" else f"{meant} {label}"
+    return f"found {meant} {si}, expected at most {most}: a name alone is in {si}. If {found} is meant, give {give}."
+
+
+def state(value: Any) -> dict[str, Any]:
+    """The fields of a dataclass by their names."""
+    return {each.name: getattr(value, each.name) for each in fields(value)}
+
+
+class Replaceable:
+    """A frozen dataclass of which changed copies are made; each is checked as a new one."""
+
+    def replace(self, **changes: Any) -> Self:
+        """A checked copy with fields changed: ``tolerance=2e-4``, or ``tolerance_mm=0.2``."""
+        known = {each.name for each in fields(self)}  # type: ignore[arg-type]
+        taken = self._taken(in_si(type(self), changes))
+        unknown = sorted({*taken} - known)
+        if unknown:
+            raise TypeError(f"{type(self).__name__} has no field {unknown[0]!r}; it has {', '.join(sorted(known))}")
+        return made(type(self), state(self) | taken)
+
+    def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Changes by the names of the fields."""
+        return changes
