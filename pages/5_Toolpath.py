@@ -35,7 +35,7 @@ with left:
         program_inputs(source, path, dark)
     elif source.kind == "sketch":
         sketch_inputs()
-    else:
+    elif source.kind == "lines":
         lines_inputs(source, project.view)
     with st.container(border=True):
         part_zero()

@@ -25,12 +25,14 @@ C = TypeVar("C", bound=type)
 def in_units(
     error: type[RobomillError],
     who: str,
+    asked: tuple[str, ...] = (),
     more: tuple[str, ...] = (),
     new: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
 ) -> Callable[[C], C]:
     """A dataclass that takes its declared numbers under their other name, too; ``error`` and ``who`` as in ``settle``.
 
-    ``new`` makes fields of what a person gives for a new one, of which ``more`` are the names that are no fields.
+    Of a new one ``unstated`` are those of ``asked`` that nobody has given. ``new`` makes fields of what a person gives,
+    of which ``more`` are the names that are no fields.
     """
 
     def of(cls: C) -> C:
@@ -46,11 +48,14 @@ def in_units(
             twice = sorted({*first} & {*given})
             if twice or len(args) >= len(own):
                 make(self, *args, **given)  # which says so
-            found = in_si(cls, first | given, error, who)
+            found = in_si(cls, first | given)
             make(self, **(found if new is None else new(found)))
+            if asked:
+                object.__setattr__(self, "unstated", tuple(name for name in asked if name not in found))
 
         init.__signature__ = inspect.Signature([*own.values(), *others])  # type: ignore[attr-defined]
         cls.__init__ = init  # type: ignore[misc]
+        cls.door = error, who  # type: ignore[attr-defined]
         return cls
 
     return of
@@ -68,13 +73,11 @@ def spelled(cls: type) -> dict[str, Quantity]:
     return {each.key: each for each in quantities(cls).values() if UNITS[each.unit].factor != 1.0}
 
 
-def in_si(
-    cls: type, given: Mapping[str, Any], error: type[RobomillError] = RobomillError, who: str = ""
-) -> dict[str, Any]:
-    """``given`` with every number under its own name and in SI. Raises ``error`` for one that is there twice, or that
-    was hardly meant in SI."""
+def in_si(cls: type, given: Mapping[str, Any]) -> dict[str, Any]:
+    """``given`` with every number under its own name and in SI. Raises the error of the class for one that is there
+    twice, or that was hardly meant in SI."""
     other, own, found = spelled(cls), quantities(cls), {}
-    who = who or cls.__name__
+    error, who = getattr(cls, "door", (RobomillError, cls.__name__))
     for key, value in given.items():
         if key not in other:
             if key in own:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
-from robomill.quantities import Quantity, choice, quantities, quantity, settle, whole
+from robomill.quantities import choice, quantity, settle, whole
 from robomill.spelled import in_si, in_units, made, state
 from robomill.units import format_count, format_si, to_si
 
@@ -22,7 +21,6 @@ from robomill.units import format_count, format_si, to_si
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
 WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
-ASKED = ("flutes", "helix_angle")  # of a cutter made in code; where nobody states them, they are assumed
 MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time
 
 Hand = Literal["right", "left"]
@@ -55,13 +53,7 @@ FAMILIES: dict[str, Family] = {
 }
 
 
-def _stated(given: Mapping[str, Any]) -> dict[str, Any]:
-    """A new cutter: ``assumed`` are the fields that the force grows with and nobody has stated."""
-    found = dict(given)
-    return {"assumed": tuple(name for name in ASKED if name not in found)} | found
-
-
-@in_units(CuttingError, "Cutter", new=_stated)
+@in_units(CuttingError, "Cutter", asked=("flutes", "helix_angle"))
 @dataclass(frozen=True)
 class Cutter:
     """A rotating cutter; its tip is the origin of {T} and its axis is z_T.
@@ -73,7 +65,7 @@ class Cutter:
     ``helix`` is the hand of the flutes. ``corner_radius`` belongs to bull-nose mills (a ball nose has R).
     ``tip_angle`` is the full angle of a chamfer mill's cone or a drill's point, ``tip_diameter`` the flat at its end.
     ``flute_length`` and ``stick_out`` may be None (not given): depth is then not checked, bending not computed.
-    ``assumed`` are names of fields that nobody has stated.
+    ``unstated`` are the numbers the force grows with that were left out where it was made in code.
     ``helix_angle`` enters the peak force (lag along the edge); 0 means straight flutes, which pull nowhere.
     Raises CuttingError for a cutter that cannot be.
     """
@@ -114,7 +106,7 @@ class Cutter:
     )
     tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, slip=WIDEST)
     hand: Hand = choice("Hand", HANDS, default="right")
-    assumed: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    unstated: ClassVar[tuple[str, ...]] = ()
 
     if TYPE_CHECKING:
 
@@ -201,11 +193,6 @@ class Cutter:
             )
 
     @property
-    def assumed_numbers(self) -> tuple[Quantity, ...]:
-        """What of it nobody has stated."""
-        return tuple(quantities(Cutter)[name] for name in self.assumed)
-
-    @property
     def family(self) -> Family:
         return FAMILIES[self.kind]
 
@@ -286,8 +273,9 @@ class Cutter:
         changes = in_si(Cutter, changes)
         if self.kind == "ball" and "corner_radius" not in changes:
             changes["corner_radius"] = 0.0
-        known = {"assumed": tuple(name for name in self.assumed if name not in changes)}
-        return made(Cutter, state(self) | known | changes)
+        other = made(Cutter, state(self) | changes)
+        object.__setattr__(other, "unstated", tuple(name for name in self.unstated if name not in changes))
+        return other
 
     def reshaped(self, kind: str) -> Cutter:
         """The same cutter of another shape, with a first value for each number that one needs."""

@@ -10,7 +10,7 @@ from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.provenance import Provenance
-from robomill.quantities import Quantity
+from robomill.quantities import Quantity, quantities
 from robomill.spelled import one_of
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
@@ -82,8 +82,9 @@ def stated(given: Mapping[str, Any]) -> dict[str, Any]:
     if found.get("stock") is None:
         said["stock"] = Provenance("computed", "a block around what the path cuts")
     cutter = found.get("cutter")
-    if isinstance(cutter, Cutter) and cutter.assumed:
-        numbers = (f"{each.label.lower()} {each.short(getattr(cutter, each.name))}" for each in cutter.assumed_numbers)
+    if isinstance(cutter, Cutter) and cutter.unstated:
+        unstated = (quantities(Cutter)[name] for name in cutter.unstated)
+        numbers = [f"{each.label.lower()} {each.short(getattr(cutter, each.name))}" for each in unstated]
         said["cutter"] = Provenance("assumed", f"nobody has stated {' and '.join(numbers)}")
     found["provenance"] = {**said, **(found.get("provenance") or {})}
     return found

@@ -173,7 +173,7 @@ def test_three_tolerances_are_read_by_name():
     ):
         with pytest.raises(RobomillError, match=word):
             setup_from_toml(text.replace("tolerance_mm = 0.3\n", f"tolerance_mm = {wrong}\n"))
-    for wrong in ((0.1, 0.2), (None, 1.0, 1.0), {"floor": 0.1}):
+    for wrong in ((1e-3, 2e-3), (None, 1e-3, 1e-3), {"floor": 1e-3}):
         with pytest.raises(RobomillError, match="one number, or three"):
             found.replace(tolerance=wrong)
 
@@ -199,7 +199,11 @@ def test_what_is_no_set_up_is_told_from_one(tmp_path: Path) -> None:
     [
         ("tolerance_mm = 0.3", 'tolerance_mm = 0.3\nspin = "least_motion"\nspin_deg = 5', "given twice"),
         ("tolerance_mm = 0.3", 'tolerance_mm = 0.3\nspin = "backwards"', "spin: expected one of"),
-        ('program = "path.nc"', "", "expected one of program, program_text, lines_mm or sketch, found none"),
+        (
+            'program = "path.nc"',
+            "",
+            "expected one of program, program_text, lines_mm, sketch, points_mm, points_m; found none",
+        ),
         ('program = "path.nc"', 'program = "path.nc"\nprogram_text = "M2"', "found ['program', 'program_text']"),
     ],
 )

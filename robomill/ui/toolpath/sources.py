@@ -13,18 +13,24 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
-from robomill.ui import inputs, running, session
+from robomill.ui import inputs, pieces, running, session
 from robomill.ui.toolpath import program_view, question
+from robomill.units import format_count
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
+POINTS = {"points": "Points"}  # what a file brings and nobody can choose: it can be made one of the others
 MAX_ROWS = 200
 STATED = ("force", "cutter", "tolerance")  # blocks of a set-up that are of one cut
 
 
 def kind_switch() -> None:
-    """The choice between the three."""
+    """The choice between the three; points that a file has brought stand before them."""
     source = session.project().setup.source
-    inputs.choice("Path from", "toolpath.kind", KINDS, source.kind, _convert)
+    kinds = POINTS | KINDS if source.kind == "points" else KINDS
+    inputs.choice("Path from", "toolpath.kind", kinds, source.kind, _convert)
+    if source.kind == "points":
+        count = format_count(len(source.path), "point")
+        pieces.note(f"{count} from a file. To edit the path, turn it into a program, a table of lines or a sketch.")
 
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
@@ -66,7 +72,7 @@ def _holds(stock: Stock, path: Toolpath) -> bool:
 def _convert(kind: str) -> None:
     """The same path by other means, as far as that goes; undo leads back."""
     setup = session.project().setup
-    if kind == setup.source.kind:
+    if kind in (setup.source.kind, *POINTS):
         return
     running.wait_for_path(setup)
     if kind == "lines":

@@ -27,7 +27,7 @@ from robomill.units import (
     format_value,
 )
 
-NOUNS = {"program": "cut", "lines": "cut", "sketch": "shape"}
+NOUNS = {"program": "cut", "lines": "cut", "sketch": "shape", "points": "move"}
 
 
 def headline(
@@ -94,7 +94,11 @@ def tiles(
     )
     if source.kind != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
-        found.append(pieces.Tile({"sketch": "Shapes", "lines": "Rows"}[source.kind], f"{summary.blocks:,}", words))
+        found.append(
+            pieces.Tile(
+                {"sketch": "Shapes", "lines": "Rows", "points": "Moves"}[source.kind], f"{summary.blocks:,}", words
+            )
+        )
         pieces.tiles(found)
         return
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
