@@ -84,6 +84,6 @@ class RenderError(RobomillError):
 class MissingExtraError(RobomillError):
     """Something that is installed with an ``extra`` only (``pip install "robomill[extra]"``), and is not here."""
 
-    def __init__(self, message: str, *, extra: str) -> None:
+    def __init__(self, message: str, *, extra: str = "") -> None:
         super().__init__(message)
         self.extra = extra
