@@ -9,7 +9,9 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-ENTRY = re.compile(r"(?P<names>[\w.]+(?:, [\w.]+)*)(?P<gap>\s{2,})(?P<text>\S.*)")
+NAMES = re.compile(r"\w[\w.]*(?:,? \w[\w.]*)*")
+ENTRY = re.compile(rf"(?P<names>{NAMES.pattern})\s{{2,}}(?P<text>\S.*)")
+BAR = re.compile(r"(``.*?``)|\|")
 SECOND = re.compile(r"\S\s{3,}\S")
 
 
@@ -24,20 +26,32 @@ def _process(app: Sphinx, what: str, name: str, value: object, options: object, 
 
 def _shown(is_text: bool, paragraph: list[str]) -> Iterator[str]:
     """A paragraph as reStructuredText: lists of fields as a list, two columns of them as they stand."""
-    if not is_text or not _lists_fields(paragraph):
-        yield from paragraph
-    elif any(SECOND.search(line[ENTRY.match(line).start("text") :]) for line in paragraph if ENTRY.match(line)):
+    entries = [_entry(line, paragraph) for line in paragraph] if is_text else []
+    if (
+        len(entries) < 2
+        or not entries[0]
+        or any(not e and not line.startswith("  ") for e, line in zip(entries, paragraph))
+    ):
+        yield from (_plain(line) for line in paragraph)
+    elif any(SECOND.search(each[1]) for each in entries if each):
         yield from ("::", "", *(f"    {line}" for line in paragraph))
     else:
-        for line in paragraph:
-            entry = ENTRY.match(line)
-            names = "" if entry is None else ", ".join(f"``{each}``" for each in entry["names"].split(", "))
-            yield f"  {line.strip()}" if entry is None else f"- {names}: {entry['text']}"
+        for each, line in zip(entries, paragraph):
+            names = ", ".join(f"``{name}``" for name in each[0].split(", ")) if each else ""
+            yield f"- {names}: {_plain(each[1])}" if each else f"  {_plain(line.strip())}"
 
 
-def _lists_fields(paragraph: list[str]) -> bool:
-    """Whether it is a list of fields: entries, and deep lines that carry one on."""
-    first = ENTRY.match(paragraph[0])
-    if first is None or len(paragraph) < 2:
-        return False
-    return all(ENTRY.match(line) or line.startswith("  ") for line in paragraph)
+def _entry(line: str, paragraph: list[str]) -> tuple[str, str] | None:
+    """Names and text of a line that begins an entry: the text two blanks behind, or where that of the first is."""
+    found, first = ENTRY.fullmatch(line), ENTRY.fullmatch(paragraph[0])
+    if found is not None:
+        return found["names"], found["text"]
+    column = 0 if first is None else first.start("text")
+    names, text = line[:column], line[column:]
+    aligned = NAMES.fullmatch(names.rstrip()) and names.endswith(" ") and text[:1].strip()
+    return (names.rstrip(), text) if aligned else None
+
+
+def _plain(line: str) -> str:
+    """A size such as |F| is no substitution."""
+    return BAR.sub(lambda m: m[1] or r"\|", line)

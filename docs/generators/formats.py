@@ -19,7 +19,8 @@ from robomill.io.robot_reader import SPELLED, STEMS
 from robomill.io.robots import load_robot
 from robomill.quantities import Quantity, quantities
 from robomill.robot.model import Robot
-from robomill.simulation.setup import PART_TURN, PART_ZERO, SimulationSetup
+from robomill.simulation.given import PART_TURN, PART_ZERO
+from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.source import GCodeSource

@@ -18,6 +18,7 @@ from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs import SPRINGS
 from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.io import points
 from robomill.io.beside import Beside
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
 from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
@@ -107,9 +108,11 @@ def _setups(folder: Path) -> Iterator[tuple[str, Beside]]:
     base = load_setup(samples / "paper_flute" / "setup.toml")
     for file in sorted(samples.glob("*/setup*.toml")):
         yield file.read_text(encoding="utf-8"), Beside(file.parent)
+    for path in _point_tables():
+        yield re.sub(r"\[path\]\n(?:[\w#].*\n)+", f"[path]\n{path}\n", _text_of(samples)), Beside()
     for changed in _variants(base, load_setup(samples / "paper_flute" / "setup_process.toml")):
         yield setup_to_toml(changed), Beside()
-    plain = (samples / "paper_flute" / "setup.toml").read_text(encoding="utf-8")
+    plain = _text_of(samples)
     (folder / "path.nc").write_bytes((samples / "paper_flute" / "path.nc").read_bytes())
     yield re.sub(r"\[part\]\n(?:[\w#].*\n)+", FRAMED, plain), Beside(folder)
     (folder / "blank.stl").write_text(_stl(), encoding="utf-8")
@@ -119,6 +122,21 @@ def _setups(folder: Path) -> Iterator[tuple[str, Beside]]:
         re.sub(r"\[force\]\n(?:[\w#].*\n)+", '[force]\nkind = "measured"\nfile = "force.csv"\n', plain),
         Beside(folder),
     )
+
+
+def _text_of(samples: Path) -> str:
+    return (samples / "paper_flute" / "setup.toml").read_text(encoding="utf-8")
+
+
+def _point_tables() -> Iterator[str]:
+    """A path of two points under every key that its reader has, in each of the units."""
+    for k in (0, 1):
+        lengths = [*points.POINTS][k]
+        rows = [f"{lengths} = [[0.0, 0.0, -0.002], [0.05, 0.0, -0.002]]", "axis = [[0, 0, 1], [0, 0, 1]]"]
+        rows += [f"{[*keys][min(k, len(keys) - 1)]} = [0.0, 0.5]" for keys in points.NUMBERS.values()]
+        rows += [f"{key} = [1, 1]" for key in points.WHOLES]
+        rows += [f"{key} = [false, {str(key == 'cutting').lower()}]" for key in points.FLAGS]
+        yield "\n".join(rows)
 
 
 def _variants(base: SimulationSetup, process: SimulationSetup) -> Iterator[SimulationSetup]:

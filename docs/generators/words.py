@@ -46,7 +46,7 @@ WORDS: dict[str, dict[str, str]] = {
     },
     "path": {
         "program": "A program's file (G-code or APT) beside the set-up or below. One of `program`, `program_text`, "
-        "`lines_mm` and `sketch` is given.",
+        "`lines_mm`, `points_mm` and `sketch` is given.",
         "program_text": "The program itself, as text.",
         "program_name": "What a program given as text is called in messages.",
         "dialect": 'How the program is read: `"auto"` (guessed and said), `"linuxcnc"`, `"fanuc"`, `"grbl"`, '
@@ -54,8 +54,20 @@ WORDS: dict[str, dict[str, str]] = {
         "rotary_axis": 'The rotary axis of the program that turns the part (`"A"`, `"-A"`, `"B"` ...), or '
         '`"tool"` where it leans the tool.',
         "lines_mm": "Straight cuts: rows of six numbers, X, Y, Z of the start and X, Y, Z of the end, in {W}.",
-        "feed_mm_min": "The feed of each row of `lines_mm`.",
+        "feed_mm_min": "The feed of each row of `lines_mm`, or of the move to each of `points_mm`, where 0 is a rapid.",
         "sketch": "A path drawn by hand: table `[path.sketch]`.",
+        "points_mm": "A path point by point: rows of three numbers, the tool tip in {W}. The keys below belong to it.",
+        "points_m": "The same in m; written where no number of millimetres reads back to it, as the next two.",
+        "feed_m_s": "The feed of the move to each point, in place of `feed_mm_min`; 0 where it is a rapid.",
+        "spindle_1_s": "The spindle speed at each point, in place of `spindle_1_min`; below 0 where it is not known.",
+        "dwell_s": "How long the tool stands at each point.",
+        "axis": "The tool axis at each point, rows of three numbers. Left out: 0, 0, 1.",
+        "block": "What each point counts as in results. Left out: 1, 2, 3 ...",
+        "tool": "The tool of each point.",
+        "cutting": "Whether the move to each point cuts. Left out: wherever it has a feed.",
+        "ccw": "Whether the spindle runs counter-clockwise (M4) there.",
+        "thread": "Whether the move cuts a thread.",
+        "points_name": "What the points are called in messages.",
     },
     "path.sketch": {"elements": "The shapes in the order in which they are cut: entries `[[path.sketch.elements]]`."},
     "path.sketch.elements": {},
@@ -92,6 +104,7 @@ WORDS: dict[str, dict[str, str]] = {
         "x": "The instants or path lengths, each as a list of one number, rising.",
         "F_N": "Rows of three numbers: the force on the tool.",
         "source": "What the record is called.",
+        "kind": 'Whether it is `"measured"` (where it is left out), `"synthetic"` ..., as in `[provenance]`.',
         "notes": "Sentences that go with the result.",
     },
     "springs": {
