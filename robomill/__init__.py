@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from robomill.cutting.tool_table import TableTool as TableTool
     from robomill.cutting.tool_table import ToolTable as ToolTable
     from robomill.errors import RobomillError as RobomillError
-    from robomill.identification.estimate import identify as identify
     from robomill.identification.load_test import JointTests as JointTests
     from robomill.identification.load_test import LoadTests as LoadTests
     from robomill.identification.result import IdentificationResult as IdentificationResult
     from robomill.io.force_models import process_force as process_force
     from robomill.io.forces import read_forces as read_forces
+    from robomill.io.identified import identify as identify
     from robomill.io.load_tests import read_load_tests as read_load_tests
     from robomill.io.maps import write_map as write_map
     from robomill.io.materials import load_material as load_material
@@ -113,7 +113,7 @@ _PUBLIC = {
     "TableTool": "robomill.cutting.tool_table",
     "ToolTable": "robomill.cutting.tool_table",
     "RobomillError": "robomill.errors",
-    "identify": "robomill.identification.estimate",
+    "identify": "robomill.io.identified",
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
     "IdentificationResult": "robomill.identification.result",

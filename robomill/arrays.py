@@ -3,13 +3,14 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robomill.errors import RobomillError
 
+T = TypeVar("T")
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -55,6 +56,26 @@ def frozen(array: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     copy = np.array(array, dtype=dtype, order="C")
     copy.flags.writeable = False
     return copy
+
+
+def sealed(value: T) -> T:
+    """The same value, read-only from now on: an array, or every array that a dataclass or a sequence holds.
+
+    Dataclasses that see to it themselves say so by ``seals_itself``.
+    """
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    elif getattr(value, "seals_itself", False):
+        pass
+    elif is_dataclass(value) and not isinstance(value, type):
+        for field in fields(value):
+            sealed(getattr(value, field.name))
+    elif isinstance(value, Mapping):
+        sealed(tuple(value.values()))
+    elif isinstance(value, tuple | list):
+        for item in value:
+            sealed(item)
+    return value
 
 
 def _is_frozen(array: NDArray[Any]) -> bool:

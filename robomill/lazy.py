@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Generic, Self, TypeVar, overload
 
+import numpy as np
+
 T = TypeVar("T")
 
 
@@ -12,7 +14,8 @@ class cached_property(Generic[T]):  # noqa: N801 - the field's name for it
     """``functools.cached_property`` as it is from Python 3.12 on: without a lock.
 
     Before that one lock serves all objects of a class, and work that waits for its turn under it stops everyone else's
-    for ever. Two threads that ask at once both make the value; the one that is kept last stays.
+    for ever. Two threads that ask at once both make the value; the one that is kept last stays. An array
+    (or a tuple of them) that the public asks for is read-only: what is kept is everybody's.
     """
 
     def __init__(self, make: Callable[[Any], T]) -> None:
@@ -28,5 +31,10 @@ class cached_property(Generic[T]):  # noqa: N801 - the field's name for it
     def __get__(self, one: Any, owner: type) -> Any:
         if one is None:
             return self
-        value = vars(one)[self._name] = self._make(one)
+        value = self._make(one)
+        if not self._name.startswith("_"):
+            for array in value if isinstance(value, tuple) else (value,):
+                if isinstance(array, np.ndarray):
+                    array.flags.writeable = False
+        vars(one)[self._name] = value
         return value

@@ -244,6 +244,12 @@ def described(value: Any) -> str:
     return ", ".join(said)
 
 
+def told(value: Any) -> list[tuple[str, str]]:
+    """The declared numbers of a value by their labels, in words; what is absent is left out."""
+    found = ((declared, getattr(value, name)) for name, declared in quantities(type(value)).items())
+    return [(declared.label, declared.short(each)) for declared, each in found if each is not None]
+
+
 def file_suffix(unit: str) -> str:
     """How a unit ends a key in files: ``"_mm"``, ``"_N_mm2"``, nothing for a plain number."""
     return "" if unit == "1" else "_" + unit.replace("/", "_").replace(" ", "_")

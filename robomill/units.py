@@ -90,7 +90,7 @@ UNITS: dict[str, Unit] = {
     "in2": Unit("in²", 25.4e-3**2, 5, 3),
 }
 
-SI_NAMES = {"mm": "m", "deg": "rad", "mm/min": "m/s", "mm/s": "m/s", "1/min": "1/s", "1": ""}
+SI_NAMES = {"mm": "m", "deg": "rad", "mm/min": "m/s", "mm/s": "m/s", "1/min": "1/s", "1": "", "%": "1", "um/N": "m/N"}
 """The SI unit in which a plain number is given that people know in another."""
 
 # What stands in the place of a unit where lengths are read in inches. MPa is N/mm² by another name.
@@ -129,6 +129,11 @@ def to_si(value: Number, unit: str) -> Number:
 def from_si(value: Number, unit: str) -> Number:
     """SI value in ``unit`` (a key of ``UNITS``)."""
     return value / UNITS[unit].factor  # type: ignore[return-value]
+
+
+def si_unit(unit: str) -> str:
+    """The unit in which a quantity of ``unit`` is inside: ``si_unit("um/N") == "m/N"``."""
+    return unit if UNITS[unit].factor == 1.0 else SI_NAMES[unit]
 
 
 def unit_label(unit: str) -> str:

@@ -150,7 +150,7 @@ def run_simulate(arguments: Any) -> int:
     from robomill.report.plain import simulation_lines
     from robomill.report.records import jsonable
     from robomill.report.simulation_record import simulation_record
-    from robomill.report.tables import csv_text, deviation_columns, section_columns
+    from robomill.report.tables import csv_text
     from robomill.simulation.run import simulate
     from robomill.units import to_si
 
@@ -167,8 +167,8 @@ def run_simulate(arguments: Any) -> int:
 
         files: dict[str, str | bytes] = {
             "result.json": json_text(jsonable(record)),
-            "deviation.csv": csv_text(deviation_columns(result)),
-            "sections.csv": csv_text(section_columns(result)),
+            "deviation.csv": csv_text(result.columns()),
+            "sections.csv": csv_text(result.sections.columns()),
             "machined.stl": mesh_bytes(result.machined, "stl"),
         }
         write_files(Path(arguments.out), files)

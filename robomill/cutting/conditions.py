@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen, sealed
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
@@ -114,9 +114,9 @@ class CutConditions:
     def engaged(self) -> BoolArray:
         """(m,) True where the cutter cuts material; not where it only stands in it or is drawn out of it."""
         if self.part is not None:
-            return np.asarray(self.cutting & self.part.touches)
+            return sealed(np.asarray(self.cutting & self.part.touches))
         down = (self.across > PLUNGE) | (self.along < 0.0)
-        return np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down)
+        return sealed(np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down))
 
     def f_z(self, flutes: ArrayLike) -> FloatArray:
         """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material, NaN where the speed is not known.

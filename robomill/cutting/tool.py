@@ -13,9 +13,10 @@ from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
-from robomill.quantities import choice, quantity, settle, whole
+from robomill.quantities import choice, quantity, settle, told, whole
 from robomill.spelled import in_si, in_units, made, state
 from robomill.units import format_count, format_si, to_si
+from robomill.values import Value
 
 #: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
@@ -54,8 +55,8 @@ FAMILIES: dict[str, Family] = {
 
 
 @in_units(CuttingError, "Cutter", asked=("flutes", "helix_angle"))
-@dataclass(frozen=True)
-class Cutter:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cutter(Value):
     """A rotating cutter; its tip is the origin of {T} and its axis is z_T.
 
     ``Cutter("flat", diameter=0.008, flutes=3)`` in SI (m, rad), or ``Cutter("flat", diameter_mm=8, flutes=3)``.
@@ -107,6 +108,7 @@ class Cutter:
     tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, slip=WIDEST)
     hand: Hand = choice("Hand", HANDS, default="right")
     unstated: ClassVar[tuple[str, ...]] = ()
+    carried: ClassVar[tuple[str, ...]] = ("unstated",)
 
     if TYPE_CHECKING:
 
@@ -244,6 +246,12 @@ class Cutter:
         if self.helix_angle == 0.0:
             return 0
         return 1 if self.helix == self.hand else -1
+
+    def _said(self) -> str:
+        return self.title
+
+    def _facts(self) -> list[tuple[str, str]]:
+        return told(self)
 
     @property
     def title(self) -> str:

@@ -8,7 +8,7 @@ from typing import Self
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, frozen, sealed
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 
@@ -56,7 +56,7 @@ class Tooling:
     @property
     def drills(self) -> BoolArray:
         """(m,) bool: steps that a drill makes."""
-        return np.array([cutter.family.drills for cutter in self.cutters])[self.of_step]
+        return sealed(np.array([cutter.family.drills for cutter in self.cutters])[self.of_step])
 
     def steps_of_each(self) -> Iterator[tuple[Cutter, BoolArray]]:
         """Every cutter with the steps (m,) bool that it makes."""

@@ -15,21 +15,42 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen
 from robomill.errors import LoadTestError
+from robomill.frames import Columns
 from robomill.identification.configurations import checked, solved, ways
 from robomill.kinematics.forward import tool_pose
+from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
+from robomill.units import format_count, format_si, from_si
+from robomill.values import Tabled
 
 POSE_DIGITS = 9  # configurations equal to 1e-9 rad (m) are one pose
 MEASURED = Provenance("measured", "")
 
 
-class _Rows:
+class _Rows(Tabled):
     """What both kinds do with their rows: every array of theirs holds one entry a test."""
 
     row: IntArray
+    provenance: Provenance
+    protocol: str
+    noise: FloatArray
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest((self._arrays(), self.provenance.kind, self.protocol))  # not where they were read, nor how
+
+    def _about(self) -> dict[str, str]:
+        return {"provenance": self.provenance.kind}
+
+    def _rows(self) -> IntArray:
+        return self.row
+
+    def _noise(self, unit: str) -> Columns:
+        """The standard deviation of one reading, where any is stated."""
+        return {f"noise_{unit}": from_si(self.noise, unit)} if np.isfinite(self.noise).any() else {}
 
     def __len__(self) -> int:
         return len(self.row)
@@ -55,7 +76,7 @@ class _Rows:
         return replace(self, **changed)  # type: ignore[type-var]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LoadTests(_Rows):
     """Loads on the tool and the displacements they caused, one entry a test.
 
@@ -125,6 +146,51 @@ class LoadTests(_Rows):
         object.__setattr__(self, "row", frozen(row, np.int64))
         _refuse_empty(wrench, displacement, row)
 
+    def columns(self) -> Columns:
+        """One row a test, as a file of load tests has it: poses, forces, readings, and whatever else is stated."""
+        F, M = self.wrench[:, :3], self.wrench[:, 3:]
+        if self.aimed.all():
+            found = self._poses() | {"load_N": np.linalg.norm(F, axis=1)} | _vector("pulley_", self.pulley, "mm")
+        else:
+            found = self._poses() | _vector("F", F, "N")
+        if M.any():
+            found |= _vector("M", M, "N m")
+        found |= self._readings()
+        if np.isfinite(self.displacement[:, 3:]).any():
+            found |= _vector("r", self.displacement[:, 3:], "mrad")
+        for name, points in (("FP", self.force_point), ("MP", self.measuring_point)):
+            if points.any():
+                found |= _vector(name, points, "mm")
+        return found | self._noise("um")
+
+    def _poses(self) -> Columns:
+        if self.theta is not None:
+            return {f"theta{i}_deg": from_si(q, "deg") for i, q in enumerate(self.theta.T, 1)}
+        assert self.x_M is not None
+        units = ("mm",) * 3 + ("deg",) * 3
+        return {f"{name}_{unit}": from_si(q, unit) for name, unit, q in zip("XYZABC", units, self.x_M.T, strict=False)}
+
+    def _readings(self) -> Columns:
+        if self.gauges is None:
+            return _vector("d", self.displacement[:, :3], "mm")
+        found: Columns = {}
+        for k in np.flatnonzero(np.isfinite(self.displacement[:, :3]).any(axis=0)):
+            found |= {f"gauge{k + 1}_{axis}": self.gauges[:, k, i] for i, axis in enumerate("xyz")}
+            found[f"reading{k + 1}_mm"] = from_si(self.displacement[:, k], "mm")
+        return found
+
+    def _about(self) -> dict[str, str]:
+        six = self.x_M is not None and self.x_M.shape[1] == 6
+        return super()._about() | ({"frame": "tool", "angles": "robomill"} if six else {})
+
+    def _said(self) -> str:
+        force, moved = (np.linalg.norm(np.nan_to_num(v[:, :3]), axis=1).max() for v in (self.wrench, self.displacement))
+        poses = format_count(int(self.pose_index().max()) + 1, "pose")
+        return (
+            f"{format_count(len(self), 'test')} at {poses}, up to {format_si(force, 'N', 0)} and "
+            f"{format_si(moved, 'mm')}, {self.provenance.kind}"
+        )
+
     def joined(self, other: LoadTests) -> LoadTests:
         """These tests, then ``other``'s, given the same way (poses, gauges). Rows are renumbered."""
         mine, others = self._arrays(), other._arrays()
@@ -146,7 +212,7 @@ class LoadTests(_Rows):
             tests = replace(self, theta=theta, x_M=None, findings=(*self.findings, said))
         return tests.moved(robot, np.zeros(3)) if self.aimed.any() else tests
 
-    @property
+    @cached_property
     def aimed(self) -> BoolArray:
         """(m,) rows whose force points from the force point to a pulley, by calculation."""
         return np.asarray(np.isfinite(self.pulley).all(axis=1))
@@ -159,7 +225,7 @@ class LoadTests(_Rows):
         wrench[aimed, :3] = way * size[:, None]
         return replace(self, wrench=wrench, force_point=point)
 
-    @property
+    @cached_property
     def vectors(self) -> FloatArray:
         """(m, 3) m, the displacement of the measuring point in {M}; NaN where gauges do not give (all of) it."""
         read = self.displacement[:, :3]
@@ -175,7 +241,7 @@ class LoadTests(_Rows):
         """What the three readings of a test are called."""
         return ("x", "y", "z") if self.gauges is None else ("gauge 1", "gauge 2", "gauge 3")
 
-    @property
+    @cached_property
     def directions(self) -> FloatArray:
         """(m, 3, 3) unit vectors in {M} along which displacement[:, :3] is read."""
         return np.broadcast_to(np.eye(3), (len(self), 3, 3)) if self.gauges is None else self.gauges
@@ -198,7 +264,7 @@ class LoadTests(_Rows):
         return tool_pose(robot, self.theta)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class JointTests(_Rows):
     """One joint loaded at a time, the joints below it blocked: the paper's Table 2.
 
@@ -235,6 +301,20 @@ class JointTests(_Rows):
             object.__setattr__(self, name, frozen(value))
         object.__setattr__(self, "joint", frozen(self.joint, np.int64))
         object.__setattr__(self, "row", frozen(row, np.int64))
+
+    def columns(self) -> Columns:
+        """One row a test, as a file has it; of a joint that slides these are N and mm."""
+        found: Columns = {"joint": self.joint, "torque_Nm": self.torque, "angle_mrad": from_si(self.angle, "mrad")}
+        return found | self._noise("mrad")
+
+    def _said(self) -> str:
+        joints = ", ".join(str(joint) for joint in np.unique(self.joint))
+        return f"{format_count(len(self), 'test')} of single joints ({joints}), {self.provenance.kind}"
+
+
+def _vector(name: str, values: FloatArray, unit: str) -> Columns:
+    """A column for each component of values (m, 3): ``F`` in N gives Fx_N, Fy_N, Fz_N."""
+    return {f"{name}{axis}_{unit.replace(' ', '')}": from_si(values[:, i], unit) for i, axis in enumerate("xyz")}
 
 
 def _six(value: ArrayLike, name: str) -> FloatArray:

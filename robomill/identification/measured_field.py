@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, IntArray, as_floats, frozen
 from robomill.errors import LoadTestError
+from robomill.frames import Columns
 from robomill.identification.load_test import MEASURED, LoadTests
 from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
@@ -23,15 +24,16 @@ from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_percent, format_si
+from robomill.units import format_count, format_percent, format_si, from_si
+from robomill.values import Tabled
 from robomill.vectors import angle_between
 
 GRID = 1e-6  # m: coordinates closer than this are one grid line
 ASYMMETRY = 0.15  # |C - C^T| / |C| from which a point is named
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredField:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredField(Tabled):
     """Compliance matrices C (k, 3, 3) m/N measured with the tip at p (k, 3) m in {M}, tool orientation AB (k, 2) rad.
 
     reach (m): points further than this from every measured one are masked; chosen from the spacing unless given.
@@ -88,6 +90,16 @@ class MeasuredField:
             where[k] = x_M[here[0]]
         stderr = noise_of_tests(C, spread, tests.noise) * np.repeat(spread[:, None, :], 3, axis=1)
         return cls(where[:, :3], C, where[:, 3:], reach, tests.provenance, stderr)
+
+    def columns(self) -> Columns:
+        """One row a measured point, as a file of measured compliances has it."""
+        found: Columns = {f"{name}_mm": from_si(self.p[:, i], "mm") for i, name in enumerate("XYZ")}
+        found |= {f"{name}_deg": from_si(self.AB[:, i], "deg") for i, name in enumerate("AB")}
+        entries = ((f"C{a}{b}_um_N", self.C[:, i, j]) for i, a in enumerate("xyz") for j, b in enumerate("xyz"))
+        return found | {name: from_si(values, "um/N") for name, values in entries}
+
+    def _said(self) -> str:
+        return f"{format_count(len(self.p), 'measured point')}, {self.provenance.kind}"
 
     # ---- between the points ----------------------------------------------------------------------------------------
     def compliance(self, p: ArrayLike) -> FloatArray:

@@ -83,6 +83,13 @@ class Parameter:
         return self.kind == "bending" or (self.kind == "joint" and not self.slides)
 
     @property
+    def unit(self) -> str:
+        """What it is told in, a key of ``UNITS``."""
+        if self.turns:
+            return "1e-7 rad/(N m)"
+        return "um/N" if self.joint is None else "1e-9 m/N"
+
+    @property
     def label(self) -> str:
         """Its name in tables and sentences; no two parameters of a model share it."""
         side = "after" if self.turned else "at"

@@ -11,12 +11,16 @@ from robomill.compliance.spring import Spring
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
+from robomill.frames import Columns
 from robomill.identification.found_points import FoundPoint, Offer
 from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model, Parameter
 from robomill.identification.treatment import STANDARD, Treatment
+from robomill.lazy import cached_property
 from robomill.provenance import Finding, Kind, Provenance
 from robomill.robot.model import Robot
+from robomill.units import format_count, format_percent, format_value, from_si
+from robomill.values import Tabled
 
 IDENTIFIED = "compliance.identified"  # the block of a robot's provenance
 
@@ -56,8 +60,8 @@ class Band:
     components: int
 
 
-@dataclass(frozen=True, eq=False)
-class IdentificationResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class IdentificationResult(Tabled):
     """Fitted compliances with their uncertainty. n joints, p parameters (the joints first, then extra springs).
 
     C_theta (n,) rad/(N m) (m/N if prismatic), NaN where not seen; stderr (n,), infinite where not seen;
@@ -134,29 +138,54 @@ class IdentificationResult:
         """Whether the model has the joints' compliances at all."""
         return self.choice.has("joint")
 
-    @property
+    @cached_property
     def C_theta(self) -> FloatArray:
         """(n,) joint compliances; NaN for a joint that is not seen (or not in the model)."""
         if not self.has_joints:
             return np.full(self.n, np.nan)
         return np.where(np.isfinite(self.parameter_stderr[: self.n]), self.parameters[: self.n], np.nan)
 
-    @property
+    @cached_property
     def stderr(self) -> FloatArray:
         """(n,) standard errors of C_theta."""
         return np.full(self.n, np.inf) if not self.has_joints else self.parameter_stderr[: self.n]
 
-    @property
+    @cached_property
     def ci95(self) -> FloatArray:
         """(n, 2) 95 % intervals of C_theta, cut at zero."""
         return np.full((self.n, 2), np.nan) if not self.has_joints else self.parameter_ci95[: self.n]
 
-    @property
+    @cached_property
     def relative_half(self) -> FloatArray:
         """(p,) half the 95 % interval as a share of the value; infinite where that is not known or zero."""
         known = np.isfinite(self.parameter_stderr) & (self.parameters > 0)
         half = np.ptp(np.where(known[:, None], self.parameter_ci95, 0.0), axis=1) / 2
         return np.where(known, half / np.where(known, self.parameters, 1.0), np.inf)
+
+    def columns(self) -> Columns:
+        """One row a parameter: what it is, its value with standard error and 95 % interval in the unit that the row
+        names (NaN and infinite where it is not seen), and the part of the displacements that it explains."""
+        seen = np.isfinite(self.parameter_stderr)
+        numbers = {
+            "value": np.where(seen, self.parameters, np.nan),
+            "stderr": self.parameter_stderr,
+            "ci95_low": self.parameter_ci95[:, 0],
+            "ci95_high": self.parameter_ci95[:, 1],
+        }
+        factor = np.array([from_si(1.0, p.unit) for p in self.labels])
+        return {
+            "parameter": np.array([p.label for p in self.labels]),
+            **{name: values * factor for name, values in numbers.items()},
+            "unit": np.array([p.unit for p in self.labels]),
+            "share_percent": from_si(self.share, "%"),
+        }
+
+    def _said(self) -> str:
+        found = self.columns()
+        told = zip(found["parameter"], found["value"], found["unit"], strict=True)
+        values = ", ".join(f"{name} {format_value(value, unit, missing='not seen')}" for name, value, unit in told)
+        missed = format_percent(self.cv_relative_error, 1)
+        return f"{values}; {format_count(len(self.row), 'test')}, error at poses left out {missed}"
 
     @property
     def weakest(self) -> int:

@@ -14,6 +14,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from robomill.io.texts import read_text
 from robomill.quantities import GREATEST
 from robomill.typed_numbers import either_way
 from robomill.units import to_si
+
+if TYPE_CHECKING:
+    from robomill.frames import DataFrame, Series
 
 MOST_COLUMNS = 300
 LONGEST_NAME = 100  # characters of a column's name; a longer one is none that is known
@@ -83,17 +87,25 @@ class Columns:
 
 @dataclass(frozen=True)
 class Place:
-    """Which file, and its header's row: what every refusal starts with."""
+    """Which file, and its header's row (0: a DataFrame's columns): what every refusal starts with."""
 
     name: str
     head: int
     error: type[RobomillError]
 
-    def refuse(self, message: str, row: int = 0, column: str = "") -> RobomillError:
+    def refuse(self, message: str, row: int | None = None, column: str = "") -> RobomillError:
         """A refusal of a row (the header's, unless another is given) and, if named, a column."""
-        at = f"row {row or self.head}" + (f", column {column}" if column else "")
+        head = f"row {self.head}" if self.head else "columns"
+        at = (head if row is None else f"row {row}") + (f", column {column}" if column else "")
         where = f"{self.name}, {at}" if self.name else at[0].upper() + at[1:]
         return self.error(f"{where}: {message}", where=at)
+
+    def declared(self, line: str) -> str:
+        """How a remark ``key: value`` is declared there, in the imperative."""
+        if self.head:
+            return f"add a line '# {line}' above the header"
+        key, _, value = line.partition(": ")
+        return f"set attrs[{key!r}] = {value!r} of the DataFrame"
 
 
 def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> tuple[Columns, str]:
@@ -114,6 +126,42 @@ def read_columns(given: str | Path | bytes, layout: Layout, name: str = "") -> t
     values = _numbers(body, list(known.values()), layout.open_cells)
     in_si = {column.quantity: to_si(values[:, i], column.unit) for i, column in enumerate(known.values())}
     return Columns(in_si, known, body.row, passed_over, remarks, body.place), name
+
+
+def frame_columns(frame: DataFrame, layout: Layout) -> tuple[Columns, str]:
+    """The columns of a pandas DataFrame, by the same headers; its ``attrs`` stand for the remarks of a file.
+
+    Rows are numbered by the index where it holds whole numbers, each once, else from 0. Raises the layout's error
+    with row and column.
+    """
+    place = Place("", 0, layout.error)
+    named = [str(name) for name in frame.columns]
+    if not named:
+        raise place.refuse(f"found none; expected columns such as {layout.example}.")
+    known, passed_over = _known(named, layout, place)
+    if len(frame) < layout.fewest:
+        raise layout.error(f"{layout.subject}: found no row in the DataFrame; expected at least {layout.fewest}.")
+    row = np.arange(len(frame))
+    if frame.index.is_unique and frame.index.dtype.kind in "iu":
+        row = frame.index.to_numpy(dtype=np.int64)
+    body = _Body([], row, named, ",", place)
+    in_si = {
+        column.quantity: to_si(_of_series(body, frame.iloc[:, column.at], column, layout), column.unit)
+        for column in known.values()
+    }
+    remarks = "\n".join(f"{key}: {value}" for key, value in frame.attrs.items() if isinstance(value, str))
+    return Columns(in_si, known, row, passed_over, remarks, place), ""
+
+
+def _of_series(body: _Body, series: Series, column: Column, layout: Layout) -> FloatArray:
+    """(m,) finite numbers, NaN where an open cell is empty."""
+    is_open = column.quantity in layout.open_cells
+    if series.dtype.kind in "fiu":
+        values = series.to_numpy(dtype=np.float64, na_value=np.nan)
+        if (np.abs(values) <= GREATEST).all():
+            return values
+    texts = ["" if missing else str(cell) for cell, missing in zip(series, series.isna(), strict=True)]
+    return np.array([_cell(body, k, column, text, is_open) for k, text in enumerate(texts)])
 
 
 def read_cells(text: str, layout: Layout, name: str = "") -> list[tuple[str, dict[str, str]]]:

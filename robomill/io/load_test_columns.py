@@ -60,7 +60,7 @@ LAYOUT = Layout(
     _UNITS,
     "theta1_deg,...,Fx_N,...,dz_mm",
     aliases=_ALIASES,
-    open_cells=frozenset(f"reading{k}" for k in GAUGES),
+    open_cells=frozenset(("noise", *(f"reading{k}" for k in GAUGES))),
 )
 
 

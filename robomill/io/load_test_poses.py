@@ -71,9 +71,10 @@ def _turned(table: Columns) -> tuple[tuple[FloatArray, FloatArray], str] | None:
         return (given[:, :3], _about_fixed(given[:, :2:-1])), "R = Rz(A) Ry(B) Rx(C)"
     if meant == "robomill":
         return (given[:, :3], pose_of(given)[:, :3, :3]), "R = Rx(A) Ry(B) Rz(C)"
+    declared = table.place.declared
     raise table.place.refuse(
-        "A, B, C mean one thing on a KUKA and another beside X, Y, Z, A, B here; add a line '# angles: kuka' "
-        "(R = Rz(A) Ry(B) Rx(C)) or '# angles: robomill' (R = Rx(A) Ry(B) Rz(C)) above the header."
+        f"A, B, C mean one thing on a KUKA and another beside X, Y, Z, A, B here; {declared('angles: kuka')} for R = "
+        "Rz(A) Ry(B) Rx(C), or robomill instead of kuka for R = Rx(A) Ry(B) Rz(C)."
     )
 
 
@@ -88,8 +89,9 @@ def rotation_vector(table: Columns) -> tuple[str, str, str] | None:
         return axes("r")
     if "x" in table and "rx" in table and not any(key in table for key in (*ABC, *WPR)):
         raise table.place.refuse(
-            "X, Y, Z stand beside rx, ry, rz alone; if these are the pose's rotation vector, as on a UR, add a line "
-            "'# angles: ur' above the header; if they are rotations that were measured, add the pose's A_deg, B_deg."
+            "X, Y, Z stand beside rx, ry, rz alone; if these are the pose's rotation vector, as on a UR, "
+            f"{table.place.declared('angles: ur')}; if they are rotations that were measured, add the pose's A_deg, "
+            "B_deg."
         )
     return None
 
@@ -112,8 +114,8 @@ def _of_frame(table: Columns, robot: Robot | None, T: FloatArray, how: str) -> d
     frame = head_of(table).get("frame")
     if frame is None:
         raise table.place.refuse(
-            "poses with three angles are of the flange or of the tool; add a line '# frame: flange' or '# frame: tool' "
-            "(the frame {T} of the robot's file, z_T out of the part) above the header."
+            f"poses with three angles are of the flange or of the tool; {table.place.declared('frame: flange')}, or "
+            "tool instead of flange for the frame {T} of the robot's file, z_T out of the part."
         )
     if frame == "flange":
         T = T @ _needed(table, robot, "poses of the flange").T_tool

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.plan import Plan
-from robomill.units import format_many, format_plain, from_si
+from robomill.units import format_many, format_plain
 
 AXES = "xyz"
-Block = list[tuple[str, FloatArray, int]]  # columns: name, values, decimals
+READINGS = ("d", "reading")
+WORLD = ("X_mm", "Y_mm", "Z_mm")
 TEMPLATES = {
     "joints": "Poses as joint angles",
     "world": "Poses as X, Y, Z, A, B",
@@ -77,53 +77,24 @@ def load_tests_to_csv(tests: LoadTests, remarks: str = "", digits: int = 4, blan
         head.insert(0, f"provenance: {tests.provenance.kind}")
     if tests.x_M is not None and tests.x_M.shape[1] == 6:
         head += ["frame: tool", "angles: robomill"]
-    read = _readings(tests, digits)
-    columns = _poses(tests) + _forces(tests) + read
-    if np.isfinite(tests.displacement[:, 3:]).any():
-        columns += _block("r", tests.displacement[:, 3:], "mrad", digits)
-    for name, points in (("FP", tests.force_point), ("MP", tests.measuring_point)):
-        if points.any():
-            columns += _block(name, points, "mm", 3)
-    empty = {name for name, _, _ in read} if blank else set()
+    columns = tests.columns()
+    empty = {name for name in columns if blank and name.startswith(READINGS)}
     lines = [f"# {line}" for line in head]
-    lines.append(",".join(name for name, _, _ in columns))
+    lines.append(",".join(columns))
     lines += [
         ",".join(
-            "" if name in empty or np.isnan(values[k]) else format_plain(values[k], places)
-            for name, values, places in columns
+            "" if name in empty or np.isnan(values[k]) else format_plain(values[k], _decimals(name, digits))
+            for name, values in columns.items()
         )
         for k in range(len(tests))
     ]
     return "\n".join(lines) + "\n"
 
 
-def _poses(tests: LoadTests) -> Block:
-    if tests.theta is not None:
-        return [(f"theta{i + 1}_deg", from_si(q, "deg"), 6) for i, q in enumerate(tests.theta.T)]
-    assert tests.x_M is not None
-    units = zip("XYZABC", ("mm",) * 3 + ("deg",) * 3, tests.x_M.T, strict=False)
-    return [(f"{name}_{unit}", from_si(values, unit), 4 if unit == "mm" else 6) for name, unit, values in units]
-
-
-def _forces(tests: LoadTests) -> Block:
-    F, M = tests.wrench[:, :3], tests.wrench[:, 3:]
-    if tests.aimed.all():
-        columns = [("load_N", np.linalg.norm(F, axis=1), 3), *_block("pulley_", tests.pulley, "mm", 3)]
-    else:
-        columns = _block("F", F, "N", 3)
-    return columns + (_block("M", M, "N m", 4) if M.any() else [])
-
-
-def _readings(tests: LoadTests, digits: int) -> Block:
-    if tests.gauges is None:
-        return _block("d", tests.displacement[:, :3], "mm", digits)
-    columns: Block = []
-    for k in np.flatnonzero(np.isfinite(tests.displacement[:, :3]).any(axis=0)):
-        columns += [(f"gauge{k + 1}_{axis}", tests.gauges[:, k, i], 6) for i, axis in enumerate(AXES)]
-        columns.append((f"reading{k + 1}_mm", from_si(tests.displacement[:, k], "mm"), digits))
-    return columns
-
-
-def _block(name: str, values: FloatArray, unit: str, digits: int) -> Block:
-    suffix = unit.replace(" ", "")
-    return [(f"{name}{axis}_{suffix}", from_si(values[:, i], unit), digits) for i, axis in enumerate(AXES)]
+def _decimals(name: str, digits: int) -> int:
+    """Of a column: ``digits`` of what was read, and enough of what was set."""
+    if name.startswith((*READINGS, "r")):
+        return digits
+    if name.endswith("_deg") or name.startswith("gauge"):
+        return 6
+    return 4 if name in WORLD or name.endswith("_Nm") else 3

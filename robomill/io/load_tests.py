@@ -19,38 +19,76 @@ one joint at a time      joint,torque_Nm,angle_mrad
 measured compliances     a pose, and any of Cxx_um_N ... Czz_um_N, eq. (17): Cxy is dx by Fy; optional load_N
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robomill.errors import LoadTestError
+from robomill.frames import is_frame
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
-from robomill.io.columns import Columns, read_columns
+from robomill.io.columns import Columns, frame_columns, read_columns
 from robomill.io.load_test_columns import LAYOUT, POSTURE, XYZ, axes, group, head_of, kind_of
 from robomill.io.load_test_poses import ABC, WPR, force_and_points, gauges, poses, rotation_vector
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import from_si
 
+if TYPE_CHECKING:
+    from robomill.frames import DataFrame
+
 NOMINAL_LOAD = 250.0  # N, the paper's dead weight: residuals of measured compliances are stated for it
 JOINTS = tuple(f"theta{joint}" for joint in range(1, 10))
 COMPLIANCES = tuple(f"c{row}{column}" for row in XYZ for column in XYZ)
 
 
-def read_load_tests(path_or_text: str | Path, robot: Robot | None = None) -> LoadTests | JointTests:
-    """Read load tests of any protocol (see the module). With a robot, poses and sizes are checked against it too.
+def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot | None = None) -> LoadTests | JointTests:
+    """Read load tests of any protocol: poses, loads and displacements, with their units in the header.
 
-    Raises LoadTestError naming file, row and column. What only looks odd is in ``.findings``.
+    Parameters
+    ----------
+    path_or_text : str, Path, bytes or pandas.DataFrame
+        A CSV file, its text, or the same table as a DataFrame, whose ``attrs`` stand for the remarks ``# key: value``
+        of a file and whose index (where it holds whole numbers) numbers the rows.
+    robot : Robot, optional
+        The arm that was loaded. With it, poses are checked against its limits and those given in the world are solved.
+
+    Returns
+    -------
+    LoadTests or JointTests
+        In SI and in {M}; ``JointTests`` where one joint was loaded at a time. What only looks odd is in ``.findings``.
+
+    Raises
+    ------
+    LoadTestError
+        Naming file, row and column of what cannot be read, or the row of a pose that the robot cannot take.
+
+    Notes
+    -----
+    The columns of each protocol are listed in the module ``robomill.io.load_tests``. Forces and displacements are
+    differences between loaded and preloaded readings, so that gravity cancels (paper, Sec. 5.1).
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> tests = rm.read_load_tests("X_mm,Y_mm,Z_mm,A_deg,B_deg,Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm\\n"
+    ...                            "0,-1300,0,0,0,0,250,0,0.012,0.574,-0.256")
+    >>> tests
+    <LoadTests 1 test at 1 pose, up to 250 N and 0.629 mm, measured>
+    >>> tests.wrench[0, 1], float(tests.displacement[0, 1])
+    (np.float64(250.0), 0.000574)
     """
     tests = _read(path_or_text, robot)
     return tests if tests.single or robot is None else tests.with_joints(robot)
 
 
-def _read(given: str | Path | bytes, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
-    table, name = read_columns(given, LAYOUT, name)
+def _read(given: str | Path | bytes | DataFrame, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
+    table, name = frame_columns(given, LAYOUT) if is_frame(given) else read_columns(given, LAYOUT, name)
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)
     elif "torque" in table or "joint" in table:
@@ -67,7 +105,9 @@ def _read(given: str | Path | bytes, robot: Robot | None, name: str = "") -> Loa
     if postures:
         text = f"How the arm stood, said by {' and '.join(postures)}, is not read; give joints where it matters."
         ignored += (Finding("warning", text, head, count=len(postures), code="posture-not-read"),)
-    made = Provenance(kind_of(head_of(table)), f"{name or 'pasted cells'}\n{table.remarks}".strip())
+    made = Provenance(
+        kind_of(head_of(table)), f"{name or ('pasted cells' if head else 'DataFrame')}\n{table.remarks}".strip()
+    )
     return replace(tests, provenance=made, findings=ignored + tests.findings + _pose_suspicions(table))
 
 

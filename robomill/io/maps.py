@@ -9,8 +9,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
 from robomill.extras import needed
 from robomill.files import written
-from robomill.units import from_si
-from robomill.workspace.fields import Field
+from robomill.workspace.fields import Field, map_columns
 from robomill.workspace.grid import Grid
 
 SUFFIXES = (".csv", ".parquet", ".vti")
@@ -38,15 +37,6 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
         else:
             place.write_text(map_csv(fields), encoding="utf-8")
     return path
-
-
-def map_columns(fields: Sequence[Field]) -> dict[str, FloatArray]:
-    """Columns (cells,) in display units, x slowest, z fastest."""
-    points = fields[0].grid.points().reshape(-1, 3)
-    columns = {f"{axis}_mm": from_si(points[:, i], "mm") for i, axis in enumerate("XYZ")}
-    for field in fields:
-        columns[field.quantity.column] = from_si(field.values.ravel(), field.quantity.unit)
-    return columns
 
 
 def map_csv(fields: Sequence[Field]) -> str:

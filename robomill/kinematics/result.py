@@ -6,18 +6,22 @@ from typing import Any, Literal
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.frames import Columns
 from robomill.kinematics.choice import every, overshoot, spun, turn
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, decoupled, shortfall
 from robomill.kinematics.forward import rows
+from robomill.kinematics.transforms import world_from_pose
+from robomill.lazy import cached_property
 from robomill.progress import slices
 from robomill.robot.model import Robot
-from robomill.units import format_si, to_si
+from robomill.units import format_count, format_si, from_si, to_si
+from robomill.values import Tabled
 
 Mode = Literal["position", "axis", "pose"]
 
 
-@dataclass(frozen=True, eq=False)
-class IKResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class IKResult(Tabled):
     """Configurations for a batch of poses; every reached one has been checked by forward kinematics.
 
     theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m of the answer or of
@@ -37,11 +41,33 @@ class IKResult:
     free_spin: bool = False
     spin: FloatArray | None = None
 
-    @property
+    @cached_property
     def branch(self) -> Any:
         """Name of the solution taken, "" where not reached: a string for one pose, else an array of strings (...,)."""
         names = np.array([*self.branch_names, ""])[self.branch_index]
         return str(names) if names.ndim == 0 else names
+
+    def columns(self) -> Columns:
+        """One row a pose, in the batch's order: where it lies in {M}, the joints as load tests have them, what came of
+        it; NaN where it is not reached."""
+        x_M = world_from_pose(self.T_MT).reshape(-1, 5)
+        theta, number = self.theta.reshape(-1, self.robot.n), range(1, self.robot.n + 1)
+        found: Columns = {f"{axis}_mm": from_si(x_M[:, i], "mm") for i, axis in enumerate("XYZ")}
+        found |= {f"{axis}_deg": from_si(x_M[:, 3 + i], "deg") for i, axis in enumerate("AB")}
+        units = self.robot.joint_units
+        found |= {f"theta{j}_{unit}": from_si(q, unit) for j, unit, q in zip(number, units, theta.T, strict=True)}
+        found["reached"] = self.reached.ravel()
+        found["residual_mm"] = from_si(self.residual.ravel(), "mm")
+        found["branch"] = np.ravel(self.branch)
+        if self.spin is not None:
+            found["spin_deg"] = from_si(self.spin.ravel(), "deg")
+        return found
+
+    def _said(self) -> str:
+        count = self.reached.size
+        if count == 1:
+            return f"reached, branch {str(np.ravel(self.branch)[0])!r}" if self.reached.all() else "not reached"
+        return f"{format_count(int(self.reached.sum()))} of {format_count(count, 'pose')} reached"
 
     def reason(self, index: Any = ()) -> str:
         """Why the pose at ``index`` of the batch is not reached, in words; "" if it is."""

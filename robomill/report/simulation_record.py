@@ -7,12 +7,11 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.report.records import shown
-from robomill.report.tables import MEASURED
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import largest_deviations, nearest_feed
 from robomill.simulation.tooth import LEFT_OUT, tooth
-from robomill.surface.groove import GrooveSection
+from robomill.surface.groove import MEASURED, GrooveSection
 
 COMPONENTS = ("feed", "feed_normal", "axial")
 

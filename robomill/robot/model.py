@@ -11,13 +11,16 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, digest, frozen
+from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.errors import RobotError
+from robomill.frames import Columns
 from robomill.lazy import cached_property
 from robomill.provenance import UNSTATED, Provenance
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
+from robomill.units import format_count, from_si
+from robomill.values import Tabled
 
 USER_SET = "user"
 LONGEST = 20.0  # m: hardly a link is longer: was it meant in mm?
@@ -26,8 +29,8 @@ Limits = ArrayLike | Sequence[Sequence[float] | None]
 TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
 
 
-@dataclass(frozen=True, eq=False)
-class Robot:
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot(Tabled):
     """A serial arm of 1 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
 
     The table has one row a joint (``rows``): alpha, theta_offset in rad, a, d in m, sign +-1, prismatic. A joint turns
@@ -226,6 +229,40 @@ class Robot:
             self.blocked,
         )
 
+    # ---- for people ---------------------------------------------------------------------------------------------
+    def columns(self) -> Columns:
+        """The table, a row a joint; what depends on whether it turns or slides has its unit in a column beside it."""
+        declared = quantities(Robot)
+        limit, compliance = (
+            [declared[name].of_joint(bool(slides)).unit for slides in self.prismatic]
+            for name in ("limits_all", "C_theta_all")
+        )
+        per_row = zip(self.limits_all, self.C_theta_all, limit, compliance, strict=True)
+        found = [(*from_si(ends, a), from_si(float(C), c)) for ends, C, a, c in per_row]
+        lower, upper, C = np.array(found).T
+        return {
+            "joint": np.arange(1, self.rows + 1),
+            "alpha_deg": from_si(self.alpha, "deg"),
+            "a_mm": from_si(self.a, "mm"),
+            "d_mm": from_si(self.d, "mm"),
+            "theta_offset_deg": from_si(self.theta_offset, "deg"),
+            "sign": self.sign,
+            "free": self.free,
+            "lower": lower,
+            "upper": upper,
+            "limit_unit": np.array(limit),
+            "compliance": C,
+            "compliance_unit": np.array(compliance),
+        }
+
+    def _said(self) -> str:
+        held = f", {format_count(self.rows - self.n)} of them held" if self.n < self.rows else ""
+        slide = f", {int(self.prismatic.sum())} sliding" if self.prismatic.any() else ""
+        return (
+            f"{self.name}: {format_count(self.rows, 'joint')}{slide}{held}, {self.convention} D-H, compliance set "
+            f"{self.compliance_set!r}"
+        )
+
     # ---- change is replacement ------------------------------------------------------------------------------------
     def replace(self, **changes: Any) -> Robot:
         """A checked copy with fields changed.
@@ -257,20 +294,6 @@ class Robot:
             known = ", ".join(self.compliance_sets) or "none"
             raise RobotError(f"Robot {self.name!r}: has no compliance set {name!r}; it has: {known}.")
         return self.replace(C_theta_all=self.compliance_sets[name], compliance_set=name)
-
-    def digest(self) -> str:
-        """SHA-256 over every field: equal robots have equal digests on every machine."""
-        return self._digest
-
-    @cached_property
-    def _digest(self) -> str:
-        return digest({f.name: getattr(self, f.name) for f in fields(self)})
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Robot) and self._digest == other._digest
-
-    def __hash__(self) -> int:
-        return hash(self._digest)
 
     def __reduce__(self) -> Any:
         # MappingProxyType does not pickle; a plain rebuild does, and checks again.

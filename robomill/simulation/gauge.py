@@ -17,6 +17,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.simulation.places import Places, places
 from robomill.simulation.seen import Run
 from robomill.surface.outline import Walls
+from robomill.values import ReadOnly
 
 CORNER = np.radians(45.0)
 TURNS = np.radians(5.0)  # where the path turns more, walls ahead and behind are looked for too
@@ -35,7 +36,7 @@ SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
 
 
 @dataclass(frozen=True, eq=False)
-class Readings:
+class Readings(ReadOnly):
     """Places on the part: samples (q,) of the path that made them, signed errors (q,) m, lengths (q,) m along the path
     and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
     (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
@@ -74,7 +75,7 @@ class Readings:
 
 
 @dataclass(frozen=True, eq=False)
-class Gauge:
+class Gauge(ReadOnly):
     """All that a gauge would find on the part; samples (g,) beside which a wall should stand and does not, and samples
     (t,) beside which one is so ``thin`` that it gives way to the cut."""
 

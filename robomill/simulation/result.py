@@ -5,14 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
+from robomill.errors import RobomillError
+from robomill.frames import Columns
 from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
+from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.gauge import Gauge, gauge
@@ -26,14 +29,16 @@ from robomill.simulation.tools import tool_notes, tooling
 from robomill.simulation.verdict import judge, thin_wall_notes
 from robomill.simulation.verdict_words import Verdict
 from robomill.surface.deviation import Deviation, deviation
-from robomill.surface.groove import GrooveSection, groove_sections
+from robomill.surface.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath
+from robomill.units import format_si
+from robomill.values import Tabled
 
 
-@dataclass(frozen=True, eq=False)
-class SimulationResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class SimulationResult(Tabled):
     """Arrays over the m samples of the path, SI, in {M} unless said otherwise; NaN where not reached.
 
     path           the sampled Toolpath, in {W}
@@ -244,7 +249,7 @@ class SimulationResult:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
         return self.grooves([station])[0]
 
-    def grooves(self, stations: ArrayLike) -> tuple[GrooveSection, ...]:
+    def grooves(self, stations: ArrayLike) -> GrooveSections:
         """The groove's sections at ``stations`` (q,) m."""
         path = self.path
         moved = np.where(self.answered[:, None], self.p_machined, np.nan)
@@ -260,7 +265,7 @@ class SimulationResult:
         return np.linspace(0.1, 0.9, 9) * float(self.path.s[-1])
 
     @cached_property
-    def sections(self) -> tuple[GrooveSection, ...]:
+    def sections(self) -> GrooveSections:
         return self.grooves(self.stations)
 
     @cached_property
@@ -277,3 +282,28 @@ class SimulationResult:
     def verdict(self) -> Verdict:
         """Walls and floors against their tolerances, in one sentence."""
         return judge(self, self.gauge)
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest((self.setup.digest(), self.ik.theta, self.F, self.delta))
+
+    def columns(self) -> Columns:
+        """One row a sample of the path: see ``path_columns``."""
+        return path_columns(self)
+
+    def _said(self) -> str:
+        try:
+            level, sentence = self.verdict.level, self.verdict.sentence
+        except RobomillError as refusal:  # what cannot be judged says why
+            level, sentence = "unjudged", str(refusal)
+        largest = format_si(self.max_deviation, "mm", missing="no deviation")
+        return f"{self.setup.name}: {largest}, {level}: {sentence}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        shown = [("Largest deviation", self.max_deviation), ("Root mean square", self.rms_deviation)]
+        return [
+            ("Set-up", self.setup._said()),
+            *((name, format_si(value, "mm")) for name, value in shown),
+            ("Line of the largest", str(self.worst_block)),
+            ("Samples reached", f"{int(self.reached.sum())} of {len(self.path)}"),
+        ]

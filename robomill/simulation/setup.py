@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats, check_place, digest, frozen
+from robomill.arrays import FloatArray, as_floats, check_place, frozen
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
@@ -18,21 +18,23 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.lazy import cached_property
 from robomill.provenance import Provenance
-from robomill.quantities import quantity, settle, switch
+from robomill.quantities import quantity, settle, switch, told
 from robomill.robot.model import Robot
 from robomill.simulation import given
 from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
+from robomill.units import format_limit, format_many
+from robomill.values import Value
 
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
 
 @in_units(SetupError, "Set-up", more=given.OTHERS, new=given.stated)
-@dataclass(frozen=True, eq=False, kw_only=True)
-class SimulationSetup(Replaceable):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SimulationSetup(Replaceable, Value):
     """Everything ``simulate`` needs, SI units.
 
     robot       the machine; its C_theta is the one in force
@@ -236,10 +238,12 @@ class SimulationSetup(Replaceable):
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""
         return np.asarray(p @ self.T_MW[:3, :3].T + self.T_MW[:3, 3])
 
-    @cached_property
-    def _digest(self) -> str:
-        return digest(self)
+    def _said(self) -> str:
+        return f"{self.name}: {self.robot.name}, {self.cutter.title}, tolerance {format_limit(self.tolerance, 'mm')}"
 
-    def digest(self) -> str:
-        """SHA-256 over every number that the result depends on."""
-        return self._digest
+    def _facts(self) -> list[tuple[str, str]]:
+        place = format_many(self.T_MW[:3, 3], "mm", 1)
+        said = [("Robot", self.robot._said()), ("Path", self.source.name), ("Part zero in {M}", place)]
+        said += [("Cutter", self.cutter.title), ("Force", self.force.title)]
+        said += [] if self.stock is None else [("Stock", self.stock._said())]
+        return said + told(self)

@@ -9,10 +9,12 @@ from robomill.errors import SurfaceError
 from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.surface.zmap import ZMap
+from robomill.units import format_si
+from robomill.values import Value
 
 
-@dataclass(frozen=True, eq=False)
-class Deviation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deviation(Value):
     """Error of a machined surface against the ideal one on the same grid.
 
     error (nx, ny) m         signed distance to the ideal surface: machined minus ideal height, or the way sideways to
@@ -34,6 +36,10 @@ class Deviation:
     def values(self) -> FloatArray:
         """(q,) m: the error of every cell that was cut."""
         return frozen(self.error[self.cut])
+
+    def _said(self) -> str:
+        most, least = (format_si(each, "mm", sign=True) for each in self.worst)
+        return f"{least} to {most}, root mean square {format_si(self.rms, 'mm')}"
 
     @property
     def cut_area(self) -> float:

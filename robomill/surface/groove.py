@@ -14,6 +14,7 @@ from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
+from robomill.frames import Columns
 from robomill.progress import checkpoint
 from robomill.surface.passes import tool_axes
 from robomill.surface.raster import skin_on_line
@@ -22,17 +23,29 @@ from robomill.surface.section_law import MEASURES, Kind, kind_of
 from robomill.surface.stock import Stock, stock_span
 from robomill.surface.swept import CutPath, Station, SweptPath, station_at, swept_path
 from robomill.surface.trace import Line, Side, side_of
+from robomill.units import format_count, format_si, from_si
+from robomill.values import Table, Tabled, captioned, head_of, short
 
 NAN = float("nan")
 SIDES = {1.0: "left", -1.0: "right"}
 OWN_PATH = 1.5  # cutter diameters of the path, before and after a station, whose walls are its own
 SAME = 1e-7  # m: walls that stand so close are one
 ALONG = 0.02  # tangent: a flank that leans shows its lean where it runs along the feed
+# What is told of it whatever its kind, and in which unit.
+MEASURED = {
+    **dict.fromkeys(("station", "width", "depth", "centre_offset", "floor_error"), "mm"),
+    **dict.fromkeys(("wall_left_error", "wall_right_error"), "mm"),
+    **dict.fromkeys(("wall_left_angle", "wall_right_angle"), "deg"),
+    **dict.fromkeys(("wall_left_straightness", "wall_right_straightness", "flatness"), "mm"),
+    "floor_tilt": "deg",
+    **dict.fromkeys(("error_mean", "error_max", "error_rms"), "mm"),
+    "slope": "deg",
+}
 NEIGHBOUR = "another pass took away a wall that this one was told to leave, so the middle is not measured"
 
 
-@dataclass(frozen=True)
-class GrooveSection:
+@dataclass(frozen=True, eq=False, repr=False)
+class GrooveSection(Tabled):
     """One section across the commanded feed; lengths in m, angles in rad, NaN where there is nothing to measure.
 
     station        path length of the commanded feed path
@@ -95,10 +108,48 @@ class GrooveSection:
         names = [name for name in MEASURES[self.kind] if self.near or "_near_" not in name]
         return tuple(name.replace("_near_", f"_{self.near}_") for name in names)
 
+    def columns(self) -> Columns:
+        """The profile across the feed, to the left of it positive."""
+        return {f"{name}_mm": from_si(getattr(self, name), "mm") for name in ("w", "z_ideal", "z_machined")}
+
+    def _said(self) -> str:
+        read = [f"{name.replace('_', ' ')} {format_si(getattr(self, name), MEASURED[name])}" for name in self.measures]
+        told = ", ".join(read) or self.note
+        return f"at {format_si(self.station, 'mm', 1)}: {self.kind}{': ' if told else ''}{told}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        said = [(name.replace("_", " "), format_si(getattr(self, name), MEASURED[name])) for name in self.measures]
+        return [("kind", self.kind), ("line", str(self.block)), *said]
+
+
+class GrooveSections(Table, tuple[GrooveSection, ...]):
+    """Sections in the order of their stations: a tuple that is a table of what is measured on each."""
+
+    __slots__ = ()
+
+    def columns(self) -> Columns:
+        """One row a section; NaN where a kind has no such measure, or nothing can be measured there."""
+        kind = np.array([section.kind for section in self], dtype=str)
+        numbers = {
+            f"{name}_{unit}": from_si(np.array([getattr(section, name) for section in self], dtype=np.float64), unit)
+            for name, unit in MEASURED.items()
+        }
+        return {"station_mm": numbers.pop("station_mm"), "kind": kind, **numbers}
+
+    def _said(self) -> str:
+        kinds = ", ".join(dict.fromkeys(section.kind for section in self))
+        return f"{format_count(len(self), 'section')}{': ' if kinds else ''}{kinds}"
+
+    def __repr__(self) -> str:
+        return short(self)
+
+    def _repr_html_(self) -> str:
+        return captioned(self, head_of(self.columns()))
+
 
 def groove_sections(
     stock: Stock, cutter: Cutter | Tooling, path: CutPath, stations: ArrayLike, samples: int = 401
-) -> tuple[GrooveSection, ...]:
+) -> GrooveSections:
     """Sections of what is cut at path lengths ``stations`` (q,) m of the commanded path; see GrooveSection.
 
     A wall that the pass itself left is measured from the one it was told to leave; where another pass took away what
@@ -136,7 +187,7 @@ def groove_sections(
             own,
         )
         found.append(_section((told, left, sure), tool, samples))
-    return tuple(found)
+    return GrooveSections(found)
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill import budgets
-from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
+from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
 from robomill.spelled import in_units
 from robomill.toolpath.path import Toolpath
-from robomill.units import format_si
+from robomill.units import format_count, format_many, format_si
+from robomill.values import Value
 
 AXES = "XYZ"
 BESIDE, BENEATH, ABOVE = 2e-3, 5e-3, 1e-3  # m: what a block round a path has beyond what is cut
@@ -25,8 +27,8 @@ WIDEST = 20.0  # m: hardly a part goes as far from its zero: was it meant in mm?
 
 
 @in_units(SurfaceError, "Stock")
-@dataclass(frozen=True, eq=False)
-class Stock:
+@dataclass(frozen=True, eq=False, repr=False)
+class Stock(Value):
     """A block in {W}: ``lower`` and ``upper`` corner, (3,) m, or ``lower_mm`` and ``upper_mm``.
 
     ``triangles`` (t, 3, 3) m, if given, is a closed mesh inside those corners; its upper skin is the stock's top.
@@ -70,14 +72,19 @@ class Stock:
         top = 0.0 if low[2] < -1e-9 else float(high[2]) + ABOVE
         return cls(np.array([*(low[:2] - reach), low[2] - BENEATH]), np.array([*(high[:2] + reach), top]))
 
-    @property
+    @cached_property
     def size(self) -> FloatArray:
         """(3,) m."""
         return self.upper - self.lower
 
-    def digest(self) -> str:
-        """SHA-256 of corners and mesh."""
-        return digest((self.lower, self.upper, self.triangles))
+    def _said(self) -> str:
+        mesh = "" if self.triangles is None else f", solid of {format_count(len(self.triangles), 'triangle')}"
+        size, lower = format_many(self.size, "mm", 2, between=" × "), format_many(self.lower, "mm", 2)
+        return f"{size}, lower corner at {lower}{mesh}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        corners = (("Lower corner", self.lower), ("Upper corner", self.upper), ("Size", self.size))
+        return [(name, format_many(p, "mm", 2)) for name, p in corners]
 
     def warnings(self, cutter: Cutter) -> tuple[Finding, ...]:
         """What is odd about this stock with this cutter."""

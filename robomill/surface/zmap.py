@@ -15,14 +15,15 @@ from robomill.surface.passes import Passes, at_one_axis, feed_passes, leaning, m
 from robomill.surface.raster import crossings, stock_heights
 from robomill.surface.removal import EdgeCells, cut_tilted, cut_upright
 from robomill.surface.stock import AXES, Cells, Stock, stock_grid
-from robomill.units import format_si
+from robomill.units import format_many, format_si
+from robomill.values import Value
 
 JUST_ABOVE = 1e-12  # m: so far cells at walls are raised to see which a later cutter reaches, too
 NO_EDGE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 6)))
 
 
-@dataclass(frozen=True, eq=False)
-class ZMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class ZMap(Value):
     """Heights of the part over a grid in {W}.
 
     x (nx,), y (ny,) m    cell centres; ``cell`` m is the size asked for, ``dx``, ``dy`` the sizes that fill the stock
@@ -62,7 +63,7 @@ class ZMap:
         """Cell size along Y, m."""
         return float(self.y[1] - self.y[0]) if len(self.y) > 1 else self.cell
 
-    @property
+    @cached_property
     def mean(self) -> FloatArray:
         """(nx, ny) m: mean height of the material in each cell (differs from z at walls only)."""
         mean = self.z.copy()
@@ -76,14 +77,18 @@ class ZMap:
         before = float(self.z_stock) * self.z.size if self.z_stock.ndim == 0 else float(self.z_stock.sum())
         return (before - heights) * self.dx * self.dy - self.void
 
-    @property
+    @cached_property
     def cut_mask(self) -> BoolArray:
         """(nx, ny) bool: cells whose centre was cut."""
         return np.asarray(self.z < self.z_stock)
 
-    def digest(self) -> str:
-        """SHA-256 over every height."""
+    @cached_property
+    def _digest(self) -> str:
         return digest((self.x, self.y, self.z, self.edge.index, self.edge.mean, self.bottom))
+
+    def _said(self) -> str:
+        size = format_many((self.dx, self.dy), "mm", 3, between=" × ")
+        return f"{len(self.x)} × {len(self.y)} cells of {size}, {format_si(self.removed_volume, 'mm3', 0)} removed"
 
     def notes(self) -> tuple[Finding, ...]:
         """What a reader must know about this surface."""

@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, as_floats, digest, frozen
 from robomill.errors import ToolpathError
+from robomill.frames import Columns
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import Quantity
 from robomill.spelled import one_of
-from robomill.units import format_si, format_significant
+from robomill.units import format_count, format_many, format_si, format_significant, from_si
+from robomill.values import Tabled
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
 NO_SPINDLE = "no-spindle"  # the finding of a program that never turns its spindle
@@ -46,8 +48,8 @@ def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
     return int(np.broadcast_to(block, len(p))[far[0]]), why
 
 
-@dataclass(frozen=True, eq=False)
-class Toolpath:
+@dataclass(frozen=True, eq=False, repr=False)
+class Toolpath(Tabled):
     """Tool tip positions in {W}; entry i describes the move from point i - 1 to point i, entry 0 the start.
 
     p        (m, 3) m        tool tip
@@ -180,11 +182,11 @@ class Toolpath:
         """Whether the spindle is ever said to turn, however fast."""
         return bool(self.n_s.any())
 
-    @property
+    @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:
         """Smallest and largest corner (3,) m over all points of feed moves (of all points without any)."""
         ends = self._feed_ends if self.cutting.any() else self.p
-        return ends.min(axis=0), ends.max(axis=0)
+        return frozen(ends.min(axis=0)), frozen(ends.max(axis=0))
 
     @property
     def _feed_ends(self) -> FloatArray:
@@ -211,9 +213,25 @@ class Toolpath:
         x, y = points[np.argmax(length)] / length.max()
         return bool(np.abs(points @ np.array([-y, x])).max() <= ON_LINE)
 
-    def digest(self) -> str:
-        """SHA-256 of the motion (findings do not count)."""
-        return digest((self.p, self.k, *(getattr(self, name) for name in PER_MOVE)))
+    @cached_property
+    def _digest(self) -> str:
+        return digest((self.p, self.k, *(getattr(self, name) for name in PER_MOVE)))  # findings do not count
+
+    def columns(self) -> Columns:
+        """One row a point, with what is told of the move that ends there; the first is the start."""
+        found: Columns = {"line": self.block, "tool": self.tool, "cutting": self.cutting}
+        found["station_mm"] = from_si(self.s, "mm")
+        found |= {f"{axis}_mm": from_si(self.p[:, i], "mm") for i, axis in enumerate("XYZ")}
+        found |= {f"k_{axis}": self.k[:, i] for i, axis in enumerate("xyz")}
+        found["feed_mm_min"] = from_si(self.v_f, "mm/min")
+        found["spindle_1_min"] = from_si(self.n_s, "1/min")
+        return found
+
+    def _said(self) -> str:
+        low, high = self.extents
+        size = format_many(high - low, "mm", 1, between=" × ")
+        length = format_si(float(self.s[-1]), "mm", 1)
+        return f"{format_count(len(self), 'point')}, {length} at feed within {size}"
 
 
 def _each(declared: Quantity, value: Any, m: int) -> FloatArray:

@@ -13,7 +13,7 @@ from robomill.robot.model import Robot
 from robomill.workspace.grid import Grid
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SolvedGrid:
     """Every cell of a grid at the tool tilt A, B: joints, Jacobian, joint shares, determinant; NaN where not reached.
 

@@ -12,7 +12,8 @@ from robomill.errors import WorkspaceError
 from robomill.paper import BOX, BOX_SIZE
 from robomill.quantities import quantity
 from robomill.spelled import in_units
-from robomill.units import format_si
+from robomill.units import format_many, format_si
+from robomill.values import Value
 
 PAPER_BOX = (frozen(BOX[0]), frozen(BOX[1]))
 PAPER_BOX_SIZE = frozen(BOX_SIZE)
@@ -23,8 +24,8 @@ FARTHEST = 200.0  # m: no robot reaches as far: was it meant in mm?
 
 
 @in_units(WorkspaceError, "Grid")
-@dataclass(frozen=True, eq=False)
-class Grid:
+@dataclass(frozen=True, eq=False, repr=False)
+class Grid(Value):
     """Points x (nx,), y (ny,), z (nz,) m in {M}, or x_mm, y_mm, z_mm; fields over it are (nx, ny, nz).
 
     A plane has one axis of one number: ``Grid(x_mm=range(-600, 601, 50), y_mm=range(-1600, -999, 50), z_mm=0)``.
@@ -67,6 +68,10 @@ class Grid:
     def points(self) -> FloatArray:
         """(nx, ny, nz, 3) m."""
         return np.stack(np.meshgrid(self.x, self.y, self.z, indexing="ij"), axis=-1)
+
+    def _said(self) -> str:
+        ends = (format_many((axis[0], axis[-1]), "mm", 0, between=" to ") for axis in (self.x, self.y, self.z))
+        return f"{' × '.join(map(str, self.shape))} cells, X, Y, Z = {'; '.join(ends)}"
 
     @property
     def step(self) -> float:

@@ -44,6 +44,7 @@ UNUSED = {
     "from_dh": "public: robots in code",
     "from_points": "public: paths in code",
     "__signature__": "what completion and help ask a function for",
+    "to_dataframe": "public name",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",
     "error_*": "records and panels ask for a section's measures by their names",

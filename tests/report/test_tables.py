@@ -1,48 +1,12 @@
-"""Columns of a run: its arrays in display units, one name a column, and CSV that numpy reads back."""
+"""Columns as CSV that numpy reads back."""
 
 from __future__ import annotations
 
 import io
 
 import numpy as np
-import pytest
 
-import robomill as rm
-from robomill.io.samples import samples_dir
-from robomill.report.tables import csv_text, deviation_columns, section_columns
-
-
-@pytest.fixture(scope="module")
-def result():
-    return rm.simulate(rm.load_setup(samples_dir() / "paper_flute" / "setup.toml"))
-
-
-def test_columns_are_the_arrays_in_millimetres(result):
-    columns = deviation_columns(result)
-    p = result.path.p @ result.setup.T_MW[:3, :3].T + result.setup.T_MW[:3, 3]
-    for i, axis in enumerate("xyz"):
-        np.testing.assert_allclose(columns[f"{axis.upper()}_M_mm"], p[:, i] * 1e3)
-        np.testing.assert_allclose(columns[f"delta_{axis}_mm"], result.delta[:, i] * 1e3)
-        np.testing.assert_allclose(columns[f"F_{axis}_N"], result.F[:, i])
-        shares = sum(columns[f"joint{j}_{axis}_mm"] for j in range(1, 6))
-        np.testing.assert_allclose(shares, columns[f"delta_{axis}_mm"], atol=1e-12)
-        np.testing.assert_allclose(columns[f"joint3_{axis}_mm"], result.delta_joint[:, 2, i] * 1e3)
-    size = np.sqrt(sum(columns[f"delta_{axis}_mm"] ** 2 for axis in "xyz"))
-    np.testing.assert_allclose(columns["deviation_mm"], size)
-    np.testing.assert_allclose(columns["station_mm"], result.path.s * 1e3)
-    np.testing.assert_array_equal(columns["line"], result.path.block)
-    np.testing.assert_array_equal(columns["cutting"], result.path.cutting)
-    np.testing.assert_array_equal(columns["reached"], result.reached)
-
-
-def test_sections_are_in_millimetres(result):
-    columns = section_columns(result)
-    assert list(columns)[:6] == ["station_mm", "kind", "width_mm", "depth_mm", "centre_offset_mm", "floor_error_mm"]
-    assert columns["kind"].tolist() == ["groove"] * len(result.sections)
-    np.testing.assert_allclose(columns["wall_left_angle_deg"], 90.0)
-    assert np.isnan(columns["slope_deg"]).all()
-    np.testing.assert_allclose(columns["depth_mm"], [1e3 * s.depth for s in result.sections])
-    np.testing.assert_allclose(columns["centre_offset_mm"], [1e3 * s.centre_offset for s in result.sections])
+from robomill.report.tables import csv_text
 
 
 def test_csv_reads_back_with_empty_cells_for_what_is_not_known():
@@ -53,3 +17,8 @@ def test_csv_reads_back_with_empty_cells_for_what_is_not_known():
     assert text.endswith("\n")
     again = np.genfromtxt(io.StringIO(text), delimiter=",", skip_header=1)
     np.testing.assert_allclose(again, np.column_stack(list(columns.values())), rtol=1e-8)
+
+
+def test_a_flag_is_0_or_1_and_a_count_has_all_its_digits():
+    columns = {"flag": np.array([True, False]), "line": np.array([1234567890123, 2]), "kind": np.array(["a", "b"])}
+    assert csv_text(columns).splitlines()[1:] == ["1,1234567890123,a", "0,2,b"]

@@ -13,7 +13,6 @@ import shapely
 from scipy.spatial import cKDTree
 
 from robomill.report.simulation_record import judged_record
-from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import Stock
 from tests.simulation.test_gauge import BLOCK, R, pushed, run
@@ -105,7 +104,7 @@ def test_a_wall_between_two_slots_that_is_cut_away_is_never_green(thick):
     assert ("cut away (line 4, 8)" in bent.verdict.sentence) == gone
     assert abs(bent.verdict.wall.value) == pytest.approx(0.29e-3, abs=1e-8)
     assert judged_record(bent)["gone"] == ([4, 8] if gone else [])
-    assert set(np.flatnonzero(deviation_columns(bent)["gone"])) == set(bent.gauge.gone)
+    assert set(np.flatnonzero(bent.columns()["gone"])) == set(bent.gauge.gone)
 
 
 @pytest.mark.parametrize(("thick", "gone"), [(0.2, True), (0.28, True), (0.3, False), (1.0, False)])
@@ -158,9 +157,7 @@ def test_a_wall_that_bends_under_the_cut_is_said(thick, thin):
         assert ("thin-wall" in codes) == thin
         assert set(result.path.block[result.gauge.thin]) == (lines if thin else set())
         assert judged_record(result)["thin_wall"] == (sorted(lines) if thin else [])
-        assert set(deviation_columns(result)["line"][deviation_columns(result)["thin_wall"] == 1.0]) == (
-            lines if thin else set()
-        )
+        assert set(result.columns()["line"][result.columns()["thin_wall"] == 1.0]) == (lines if thin else set())
 
 
 @pytest.mark.parametrize("name", PARTS)

@@ -13,7 +13,6 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import joint_frames
 from robomill.report.simulation_record import simulation_record
-from robomill.report.tables import deviation_columns
 from robomill.surface.engagement import engage
 from robomill.surface.march import March
 
@@ -138,7 +137,7 @@ def test_joints_springs_and_an_added_sag_make_up_the_deviation_that_is_reported(
         sag = np.array(record["sag_mm"])
         assert np.linalg.norm(sag) > 0.1
         np.testing.assert_allclose(parts + record["sag_added"] * sag, record["deviation_mm"], atol=1e-9)
-        columns = deviation_columns(run)
+        columns = run.columns()
         assert columns["sag_z_mm"][run.worst] == pytest.approx(sag[2])
     assert [note.code for note in added.notes].count("sag") == 1
     assert "sag" not in [note.code for note in told.notes]

@@ -92,8 +92,9 @@ def test_a_field_is_a_value_of_its_own():
     for value, name in ((field, "theta"), (field.field("C_yy"), "values")):
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(value, name, None)
-    assert field != dataclasses.replace(field)  # told apart as they are: arrays have no one truth to compare
-    assert field.field("C_yy") != field.field("C_yy")
+        assert value == dataclasses.replace(value)
+    assert field != compliance_map(field.robot, field.grid, A=0.1)
+    assert field.field("C_yy") != field.field("C_xx")
 
 
 def test_the_budget_counts_what_a_field_holds_and_one_quantity_of_it(monkeypatch):

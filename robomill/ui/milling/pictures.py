@@ -7,7 +7,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.io.meshes import FORMATS, mesh_bytes
-from robomill.report.tables import csv_text, deviation_columns
+from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
@@ -106,7 +106,7 @@ def _spacing(result: SimulationResult, most: int) -> float:
 
 
 def _csv(result: SimulationResult) -> str:
-    return csv_text(deviation_columns(result))
+    return csv_text(result.columns())
 
 
 def _mesh_seconds(result: SimulationResult, kind: str) -> float:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.report.tables import deviation_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
@@ -86,7 +85,7 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
         fig,
         "linked-deviation",
         name="deviation",
-        table=lambda: deviation_columns(result),
+        table=lambda: result.columns(),
         caption=caption,
         alt="Deviation of the tool tip along the path, by component.",
         on_pick=partial(_station_at, result),

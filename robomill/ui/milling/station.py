@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.report.tables import deviation_columns, section_columns
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
@@ -119,7 +118,7 @@ def section(result: SimulationResult, i: int, dark: bool) -> Any:
         section_figure(section_drawing(found, unit), dark=dark),
         "linked-section",
         name="sections",
-        table=lambda: section_columns(result),
+        table=lambda: result.sections.columns(),
         caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale, in "
         f"{unit_label(unit)}. Dashed: the ideal surface."
         + (f" {found.note[0].upper()}{found.note[1:]}." if found.kind == "nothing" else ""),
@@ -152,7 +151,7 @@ def shares(result: SimulationResult, i: int, dark: bool) -> None:
         shares_figure(result, axis, unit, dark=dark, i=i),
         f"shares-{axis}",
         name=f"joint-shares-{axis}",
-        table=lambda: deviation_columns(result),
+        table=lambda: result.columns(),
         caption="Shares stack to the total line.",
         alt="Deviation along the path stacked by joint and spring.",
     )

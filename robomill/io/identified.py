@@ -1,0 +1,67 @@
+"""From load tests however they are given (read, a file, a DataFrame) to the compliances of the joints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robomill.identification import estimate
+from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.result import IdentificationResult
+from robomill.identification.treatment import STANDARD, Treatment
+from robomill.io.load_tests import read_load_tests
+from robomill.robot.model import Robot
+
+if TYPE_CHECKING:
+    from robomill.frames import DataFrame
+
+
+def identify(
+    robot: Robot,
+    tests: LoadTests | JointTests | DataFrame | str | Path,
+    model: str = "joints",
+    treatment: Treatment = STANDARD,
+    **choices: Any,
+) -> IdentificationResult:
+    """Joint compliances, and those of springs beside the joints, from load tests, with how sure they are.
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm that was loaded; its own compliances do not enter.
+    tests : LoadTests, JointTests, pandas.DataFrame, str or Path
+        Load tests, or what ``read_load_tests`` makes of a table or a file.
+    model : str
+        ``joints``, ``joints+bending``, ``joints+tool``, ``joints+bending+tool`` or ``constant``.
+    treatment : Treatment
+        How the tests are treated; its fields may be given by name instead, as ``choices``: ``bending``, ``fit_points``,
+        ``robust``, ``exclude``, ``weights``, ``leave_out``.
+
+    Returns
+    -------
+    IdentificationResult
+        ``C_theta`` (n,) rad/(N m), m/N where a joint slides, with ``stderr`` (n,) and ``ci95`` (n, 2); NaN for a joint
+        that the tests do not see.
+
+    Raises
+    ------
+    LoadTestError
+        Where the table cannot be read (row and column are named), or the tests cannot answer: too few equations, one
+        pose only, poses outside the limits.
+
+    Notes
+    -----
+    Eqs. (16) and (17) are linear in the compliances, which are not negative: non-negative least squares, no starting
+    guess (paper, Sec. 5.1).
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> from robomill.io.samples import samples_dir
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> found = rm.identify(robot, samples_dir() / "load_tests" / "one_joint_at_a_time.csv")
+    >>> (found.C_theta * 1e7).round(2).tolist()
+    [7.2, 10.13, 12.26, 17.34, 91.24]
+    """
+    given = tests if isinstance(tests, LoadTests | JointTests) else read_load_tests(tests, robot)
+    return estimate.identify(robot, given, model, treatment, **choices)
