@@ -20,7 +20,7 @@ COPY pages pages
 COPY samples samples
 COPY robomill robomill
 # Compiled here, as the files belong to root and the server may write only where people's work is kept.
-RUN pip install --no-cache-dir -c constraints.txt -e . \
+RUN pip install --no-cache-dir -c constraints.txt -e ".[all]" \
     && python -m robomill.compiled \
     && install -d -o robomill -m 700 /home/robomill/.local /home/robomill/.local/state /home/robomill/.local/state/robomill
 
