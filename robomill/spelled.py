@@ -139,7 +139,9 @@ def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:
     si, unit = SI_NAMES[declared.unit], declared.unit
     meant, plain, most = format_plain(worst, 6), f"{to_si(worst, unit):.5g}", format_plain(declared.slip or 0.0, 3)
     give = f"{declared.name}={plain} or {declared.key}={meant}"
-    if not alone:
+    if not declared.key.isidentifier():
+        give = f"{declared.name}={plain}"
+    elif not alone:
         give = f"{declared.name} in {si}, or {declared.key}"
     label = unit_label(unit)
     found = f"{meant}{label}" if label == "°" else f"{meant} {label}"

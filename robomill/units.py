@@ -90,7 +90,17 @@ UNITS: dict[str, Unit] = {
     "in2": Unit("in²", 25.4e-3**2, 5, 3),
 }
 
-SI_NAMES = {"mm": "m", "deg": "rad", "mm/min": "m/s", "mm/s": "m/s", "1/min": "1/s", "1": "", "%": "1", "um/N": "m/N"}
+SI_NAMES = {
+    "1e-7 rad/(N m)": "rad/(N m)",
+    "mm": "m",
+    "deg": "rad",
+    "mm/min": "m/s",
+    "mm/s": "m/s",
+    "1/min": "1/s",
+    "1": "",
+    "%": "1",
+    "um/N": "m/N",
+}
 """The SI unit in which a plain number is given that people know in another."""
 
 # What stands in the place of a unit where lengths are read in inches. MPa is N/mm² by another name.

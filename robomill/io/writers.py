@@ -50,7 +50,7 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
 def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_FACES) -> Path:
     """A part (``result.machined`` or ``result.ideal``) as a closed solid in millimetres, binary STL.
 
-    More than ``max_faces`` triangles are thinned out (50 bytes each). Raises SurfaceError.
+    About ``max_faces`` triangles at most, 50 bytes each: a finer surface is thinned out. Raises SurfaceError.
     """
     _check(path, surface, ZMap, SurfaceError)
     return _write(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)

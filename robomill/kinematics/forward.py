@@ -3,18 +3,46 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats
+from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.robot.model import Robot
+from robomill.units import to_si
 
 # Poses handled at a time where several arrays of them are needed: a block stays in the second-level cache.
 BLOCK = 4096
+# Turns (strokes, where a joint slides) beyond its limits at which an angle was meant in degrees; whole and half numbers
+# are suspected from one turn on: nobody has such angles in radians.
+SLIPPED = 5.0
 
 
 def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """``theta`` as (..., n) floats. NaN is allowed (a configuration that is not reached). Raises KinematicsError."""
-    return as_floats(
+    """``theta`` as (..., n) floats. NaN is allowed (a configuration that is not reached). Raises KinematicsError, also
+    for angles that were meant in degrees."""
+    found = as_floats(
         theta, f"theta of {robot.name!r} (one entry a free joint)", (robot.n,), error=KinematicsError, finite=False
+    )
+    low, high = robot.limits.T
+    turn = np.where(robot.chain.prismatic, np.maximum(high - low, 1.0), 2.0 * np.pi)
+    for turns in (SLIPPED, 1.0):
+        beyond = (found < low - turns * turn) | (found > high + turns * turn)
+        if not beyond.any():
+            continue
+        if turns == SLIPPED or not (2.0 * found % 1.0).any():
+            raise KinematicsError(_slipped(robot, found, beyond))
+    return found
+
+
+def _slipped(robot: Robot, theta: FloatArray, beyond: BoolArray) -> str:
+    """What to say of a coordinate that lies beyond its limits as one in degrees or mm does."""
+    joint = int(np.argwhere(beyond)[0][-1])
+    value, number = float(theta[beyond][0]), robot.joint_numbers[joint]
+    if robot.chain.prismatic[joint]:
+        is_m, meant = f"{value:g} m", f"{value:g} mm are {value * to_si(1.0, 'mm'):g}"
+    else:
+        is_m, meant = f"{value:g} rad", f"{value:g}° are {to_si(value, 'deg'):.5g} (numpy.deg2rad)"
+    return (
+        f"theta of {robot.name!r}: joint {number} is at {is_m}, far beyond its limits: theta is in rad (m where a "
+        f"joint slides); {meant}. Take whole turns off an angle that is meant so."
     )
 
 

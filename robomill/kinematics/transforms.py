@@ -9,7 +9,11 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.quantities import Quantity
+from robomill.spelled import refuse_slip
 from robomill.vectors import angle_between
+
+TILT = Quantity("tilt", "deg", name="A or B", key="", slip=2.0 * np.pi)
 
 
 def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
@@ -85,6 +89,7 @@ def turn_between(R: FloatArray, Q: FloatArray, whole: bool) -> FloatArray:
 def pose_from_world(x_M: ArrayLike) -> FloatArray:
     """T_MT (..., 4, 4) of world coordinates X, Y, Z (m), A, B (rad), shape (..., 5)."""
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
+    refuse_slip(TILT, x_M[..., 3:], KinematicsError, "x_M")
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
 

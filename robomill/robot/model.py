@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,11 +19,13 @@ from robomill.provenance import UNSTATED, Provenance
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
+from robomill.spelled import in_si, refuse_slip
 from robomill.units import format_count, from_si
 from robomill.values import Tabled
 
 USER_SET = "user"
-LONGEST = 20.0  # m: hardly a link is longer: was it meant in mm?
+SOFTEST = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
+LONGEST = 100.0  # m: no link is longer: was it meant in mm?
 Limits = ArrayLike | Sequence[Sequence[float] | None]
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
 TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
@@ -51,7 +53,7 @@ class Robot(Tabled):
     theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,), slip=2.0 * math.tau)
     limits_all: FloatArray = quantity("limit", "deg", shape=(None, 2), axes=("lower", "upper"), sliding="mm")
     C_theta_all: FloatArray = quantity(
-        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N"
+        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N", slip=SOFTEST
     )
     title: str = ""
     sign: FloatArray = quantity("sign", shape=(None,), default=None)
@@ -62,6 +64,8 @@ class Robot(Tabled):
     compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
     compliance_set: str = USER_SET
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
+
+    door: ClassVar[tuple[type[RobotError], str]] = (RobotError, "Robot")
 
     def __post_init__(self) -> None:
         put = lambda key, value: object.__setattr__(self, key, value)  # noqa: E731
@@ -270,7 +274,10 @@ class Robot(Tabled):
         ``C_theta`` and ``limits`` are accepted with n entries (free joints) or with all rows. New compliances that are
         not given with a ``compliance_set`` are the user's: the set in force becomes "user".
         """
+        changes = in_si(Robot, changes)
         for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
+            if short == "C_theta" and short in changes:
+                refuse_slip(replace(quantities(Robot)[full], name=short), changes[short], *Robot.door)
             if short in changes:
                 changes[full] = self._filled(np.asarray(changes.pop(short)), getattr(self, full))
         if "C_theta_all" in changes and "compliance_set" not in changes:

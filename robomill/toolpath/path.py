@@ -21,6 +21,7 @@ NO_SPINDLE = "no-spindle"  # the finding of a program that never turns its spind
 ROTARY_ASKED = "rotary-asked"  # the finding of a program that turns through more than a quarter, by table or by tool
 TABLES = ("", "A", "-A", "B", "-B", "C", "-C")
 """Rotary axes that turn the part: none, or one, whose positive sense turns the tool about the part (-: or the part)."""
+UNIT = 4.0 * float(np.finfo(np.float64).eps)  # rounding of a length that is 1
 ON_LINE = 1e-6  # m: cuts this close to a line lie on it
 PER_MOVE: dict[str, type] = {
     "v_f": float,
@@ -89,7 +90,7 @@ class Toolpath(Tabled):
         length = np.linalg.norm(k, axis=1, keepdims=True)
         if (np.abs(length - 1.0) > 1e-6).any():
             raise ToolpathError("Tool axis: expected unit vectors, found a length that is not 1.")
-        exact = np.array_equal(length, np.ones_like(length))
+        exact = (np.abs(length - 1.0) <= UNIT).all()  # what was made one stays as it is, so that files give it back
         values: dict[str, Any] = {"p": frozen(p), "k": frozen(k if exact else k / length)}
         for name, dtype in PER_MOVE.items():
             values[name] = frozen(np.broadcast_to(getattr(self, name), (m,)), dtype)

@@ -50,7 +50,7 @@ def test_the_best_comes_first() -> None:
 
 def test_a_floor_that_decides_is_what_is_ranked_not_the_tip() -> None:
     """Where nobody limits the walls, the floor alone ranks the joints."""
-    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(tolerance=0.1, floor_tolerance=1e-4)
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(tolerance=0.05, floor_tolerance=1e-4)
     ranked = stiffer_joints(setup)
     deciding = ranked.before.deciding
     assert deciding is not None

@@ -49,14 +49,14 @@ def test_what_counts_is_at_feed_and_within_the_block():
         for dz in (-2.0, -1e-3, 1e-3)
     ]
     lines = [f"G1 {mm(*place)} F1800" for place in places]
-    found = program("G0 X0 Y0 Z5", *lines, "G0 Z9", T_MW=part_frame([-0.0, -1.25, 0.0]), step=1.0)
+    found = program("G0 X0 Y0 Z5", *lines, "G0 Z9", T_MW=part_frame([-0.0, -1.25, 0.0]), step_mm=1000)
     block = shapely.box(*STOCK.lower[:2], *STOCK.upper[:2])
     for i, p in enumerate(found.path.p):
         over = shapely.distance(block, shapely.Point(p[:2])) < 0.004 - 1e-9 and p[2] < STOCK.upper[2] - 1e-9
         assert found.over_stock[i] == over, p
         assert found.judged[i] == (over and found.path.cutting[i] and found.reached[i])
     assert found.judged.sum() > 10
-    touching = program(f"G0 {mm(X + R, 0, 5)}", "G1 Z-2 F900", "G1 Y5", "G0 Z9", step=1.0)
+    touching = program(f"G0 {mm(X + R, 0, 5)}", "G1 Z-2 F900", "G1 Y5", "G0 Z9", step_mm=1000)
     assert not touching.judged.any()
 
 
@@ -164,22 +164,22 @@ def test_what_uses_the_whole_tolerance_is_tight_and_just_four_fifths_too(bent):
 def test_three_tolerances_judge_apart(bent):
     wall, floor = (abs(reading.value) for reading in (bent.verdict.wall, bent.verdict.floor))
     for tolerance, level, share in (
-        ((2 * wall, 4 * floor, 1.0), "ok", 0.5),
+        ((2 * wall, 4 * floor, 0.05), "ok", 0.5),
         ({"wall": 4 * wall, "floor": 0.5 * floor}, "out", 2.0),
-        ({"wall": 4 * wall, "floor": floor / 0.9, "feed": 1.0}, "tight", 0.9),
+        ({"wall": 4 * wall, "floor": floor / 0.9, "feed": 0.05}, "tight", 0.9),
     ):
         found = dataclasses.replace(bent, setup=bent.setup.replace(tolerance=tolerance)).verdict
         assert found.level == level
         assert found.share == pytest.approx(share)
     assert found.floor.tolerance == pytest.approx(floor / 0.9)
-    assert found.end.tolerance == 1.0
+    assert found.end.tolerance == 0.05
 
 
 def test_what_has_no_model_is_counted_and_never_green(bent):
     where = bent.path.block == 7
     reason = Unjudged("no-model", where, "The cutter has no model there.")
     lost = np.where(where[:, None], np.nan, bent.delta)
-    loose = bent.setup.replace(tolerance=1.0)
+    loose = bent.setup.replace(tolerance=0.05)
     partly = dataclasses.replace(bent, setup=loose, delta=lost, unjudged=(reason,))
     assert partly.verdict.level == "unjudged"
     assert partly.verdict.red

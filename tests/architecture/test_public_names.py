@@ -1,0 +1,66 @@
+"""Every public name is there twice, for the reader and for the type checker, and loads what it says."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import robomill as rm
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCE = ast.parse((ROOT / "robomill" / "__init__.py").read_text())
+# Classes whose constructor is written down for type checkers, beside the one that the dataclass makes.
+IN_UNITS = (rm.Cutter, rm.Stock, rm.Grid, rm.SimulationSetup)
+
+
+def static_names() -> dict[str, str]:
+    """Names and modules of what only type checkers import."""
+    (block,) = (node for node in SOURCE.body if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING")
+    found = {}
+    for node in block.body:
+        assert isinstance(node, ast.ImportFrom)
+        assert node.module is not None
+        for alias in node.names:
+            assert alias.asname == alias.name, f"{alias.name}: only 'import x as x' is passed on to users"
+            found[alias.name] = node.module
+    return found
+
+
+def test_type_checkers_and_readers_see_the_same_names() -> None:
+    assert static_names() == rm._PUBLIC
+
+
+@pytest.mark.parametrize("name", rm.__all__)
+def test_every_name_loads_and_says_what_it_is(name: str) -> None:
+    found = getattr(rm, name)
+    assert found.__name__ == name
+    assert found.__module__.startswith("robomill.")
+    assert inspect.getdoc(found)
+
+
+def test_completion_offers_every_name() -> None:
+    assert {*rm.__all__} <= {*dir(rm)}
+    fresh = "import robomill as rm; assert {*rm.__all__} <= {*dir(rm)}; assert 'numpy' not in __import__('sys').modules"
+    subprocess.run([sys.executable, "-c", fresh], check=True)
+
+
+def test_a_name_that_is_none_is_no_attribute() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'compensat'"):
+        rm.compensat  # noqa: B018
+
+
+def written_down(cls: type) -> set[str]:
+    """Parameters of the constructor that a class states for type checkers."""
+    (made,) = ast.parse(inspect.getsource(cls)).body
+    (stated,) = (f for f in ast.walk(made) if isinstance(f, ast.FunctionDef) and f.name == "__init__")
+    return {a.arg for a in (*stated.args.args, *stated.args.kwonlyargs)} - {"self"}
+
+
+@pytest.mark.parametrize("cls", IN_UNITS, ids=lambda cls: cls.__name__)
+def test_what_a_type_checker_is_told_is_what_the_constructor_takes(cls: type) -> None:
+    assert written_down(cls) == {*inspect.signature(cls).parameters}

@@ -1,0 +1,102 @@
+"""Numbers in code: SI by their name, another unit by the name that ends in it, and slips of unit refused."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import CuttingError, RobomillError, SetupError, SurfaceError, WorkspaceError
+from robomill.quantities import quantities
+from robomill.spelled import converted, made, spelled
+
+CLASSES = (rm.Cutter, rm.Stock, rm.Grid, rm.SimulationSetup)
+
+
+def test_a_number_is_the_same_by_either_name() -> None:
+    assert rm.Cutter("flat", diameter_mm=8, flutes=3) == rm.Cutter("flat", 0.008, flutes=3)
+    assert rm.Cutter("drill", 0.006, tip_angle_deg=118).tip_angle == math.radians(118)
+    assert np.array_equal(rm.Stock(lower_mm=[-1, -2, -3], upper_mm=(4, 5, 0)).upper, [0.004, 0.005, 0.0])
+    np.testing.assert_allclose(rm.Grid(x_mm=range(0, 101, 50), y_mm=-1300, z_mm=[0]).x, [0, 0.05, 0.1])
+
+
+def test_a_copy_takes_either_name() -> None:
+    cutter = rm.Cutter("flat", 0.008, stick_out=0.05)
+    assert cutter.replace(diameter_mm=10, stick_out_mm=None) == rm.Cutter("flat", 0.010)
+    setup = rm.load_setup("samples/paper_flute")
+    assert setup.replace(tolerance_mm=0.2).tolerance == 0.2e-3
+    assert setup.replace(tolerance_mm={"wall": 0.2, "feed": 1.0}).feed_tolerance == 1e-3
+    with pytest.raises(TypeError, match="no field 'tolerence'"):
+        setup.replace(tolerence=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: rm.Cutter("flat", diameter=8), CuttingError, "found 8 m, .* give diameter=0.008 or diameter_mm=8."),
+        (lambda: rm.Cutter("flat", 8), CuttingError, "found 8 m"),
+        (lambda: rm.Cutter("flat", 0.008, helix_angle=30), CuttingError, "helix_angle=0.5236 or helix_angle_deg=30"),
+        (lambda: rm.Cutter("flat", 0.008).replace(stick_out=40), CuttingError, "stick_out_mm=40"),
+        (lambda: rm.Stock([-50, -20, -10], [50, 20, 0]), SurfaceError, "found -50 m, .* give lower in m, or lower_mm"),
+        (lambda: rm.Grid([-600, 600], [-1.3], 0), WorkspaceError, "x_mm"),
+        (lambda: rm.load_setup("samples/paper_flute").replace(tolerance=0.3), SetupError, "tolerance_mm=0.3"),
+        (lambda: rm.load_setup("samples/paper_flute").replace(cell=0.1), SetupError, "cell_mm=0.1"),
+        (lambda: rm.Cutter("flat", 0.008, diameter_mm=8), CuttingError, "diameter and diameter_mm are the same"),
+        (lambda: rm.Cutter("flat", diameter_mm="8 mm"), CuttingError, "diameter_mm: expected a number, found '8 mm'"),
+    ],
+)
+def test_a_slip_is_refused_with_how_it_is_written(make, error: type[RobomillError], words: str) -> None:
+    with pytest.raises(error, match=words):
+        make()
+
+
+def test_a_number_whose_unit_is_said_is_never_doubted() -> None:
+    """A cutter of 0.7 m, a blade of 60 m: plainly refused, accepted by the name with the unit."""
+    assert rm.Cutter("flat", diameter_mm=700).radius == pytest.approx(0.35)
+    assert rm.Stock(lower_mm=[0, 0, -100], upper_mm=[60_000, 3000, 0]).size[0] == 60.0
+    with pytest.raises(SurfaceError):
+        rm.Stock([0, 0, -0.1], [60.0, 3.0, 0.0])
+    assert made(rm.Stock, {"lower": [0, 0, -0.1], "upper": [60.0, 3.0, 0.0]}).size[0] == 60.0
+    longer = rm.Cutter("flat", diameter_mm=700).replace(flutes=4)
+    assert (longer.diameter, longer.flutes) == (pytest.approx(0.7), 4)
+
+
+@pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
+def test_every_number_with_a_unit_has_the_key_of_files_as_its_other_name(cls: type) -> None:
+    shown = inspect.signature(cls).parameters
+    for key, declared in spelled(cls).items():
+        assert key == quantities(cls)[declared.name].key
+        assert shown[key].kind is inspect.Parameter.KEYWORD_ONLY
+    assert {each.name for each in quantities(cls).values()} <= {*shown}
+
+
+def test_what_is_no_argument_is_told_as_python_does() -> None:
+    for wrong in ({"diametre_mm": 8}, {}):
+        with pytest.raises(TypeError):
+            rm.Cutter("flat", **wrong)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="multiple values"):
+        rm.Cutter("flat", 0.008, diameter=0.008)  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        rm.Stock([0, 0, 0], [1, 1, 1], None, 5)  # type: ignore[misc]
+
+
+def test_what_nobody_has_stated_of_a_cutter_is_known() -> None:
+    cutter = rm.Cutter("flat", diameter_mm=8)
+    assert cutter.unstated == ("flutes", "helix_angle")
+    assert cutter.replace(flutes=3).unstated == ("helix_angle",)
+    assert rm.Cutter("flat", 0.008, flutes=2, helix_angle_deg=30).unstated == ()
+    assert cutter == rm.Cutter("flat", 0.008, flutes=2)
+    for again in (copy.copy(cutter), pickle.loads(pickle.dumps(cutter))):
+        assert (again, again.unstated) == (cutter, cutter.unstated)
+
+
+def test_numbers_are_converted_in_lists_arrays_and_tables() -> None:
+    assert converted(None, "mm", RobomillError, "it") is None
+    assert converted(8, "mm", RobomillError, "it") == 0.008
+    assert converted({"wall": 1.0}, "mm", RobomillError, "it") == {"wall": 1e-3}
+    assert converted([1, 2], "mm", RobomillError, "it").tolist() == [1e-3, 2e-3]

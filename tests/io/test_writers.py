@@ -1,0 +1,77 @@
+"""Files that are written are read back to what they were written of; what is given the wrong way round is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import ProjectError, RobotError, SurfaceError, ToolpathError
+
+SETUP = rm.load_setup("samples/paper_flute")
+
+
+def test_a_robot_comes_back_equal_as_toml_and_with_its_poses_as_urdf(tmp_path: Path) -> None:
+    robot = SETUP.robot
+    assert rm.load_robot(rm.write_robot(tmp_path / "arm.toml", robot)) == robot
+    again = rm.load_robot(rm.write_robot(str(tmp_path / "arm.urdf"), robot), tip="tool0")
+    theta = np.random.default_rng(0).uniform(-1, 1, (5, robot.n))
+    np.testing.assert_allclose(rm.tool_pose(again, theta), rm.tool_pose(robot, theta), atol=1e-12)
+
+
+def test_a_shorter_arm_is_read_up_to_another_link(tmp_path: Path) -> None:
+    path = rm.write_robot(tmp_path / "arm.urdf", SETUP.robot)
+    assert rm.load_robot(path, tip="link_3").n == 3
+    with pytest.raises(RobotError, match="has no link 'gripper'"):
+        rm.load_robot(path, tip="gripper")
+    with pytest.raises(RobotError, match="only a URDF has links"):
+        rm.load_robot(rm.write_robot(tmp_path / "arm.toml", SETUP.robot), tip="link_3")
+
+
+def test_a_setup_comes_back_to_the_same_digest(tmp_path: Path) -> None:
+    assert rm.load_setup(rm.write_setup(tmp_path / "mine.toml", SETUP)).digest() == SETUP.digest()
+
+
+def test_a_program_comes_back_as_the_same_path(tmp_path: Path) -> None:
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, 5], [0, 0, -2], [60, 0, -2]], feed_mm_min=[0, 300, 1800])
+    for units in ("mm", "in"):
+        text = rm.write_gcode(tmp_path / "path.nc", path, units=units, title="mine").read_text()
+        assert text.startswith("(mine)")
+        again = rm.read_gcode(text)
+        np.testing.assert_allclose(again.p[-3:], path.p, atol=1e-9)
+        np.testing.assert_allclose(again.v_f[-3:], path.v_f, atol=1e-7)
+
+
+def test_a_material_comes_back_equal(tmp_path: Path) -> None:
+    row = rm.load_material("al7075_t6_carbide_ref190")
+    assert rm.load_material(rm.write_material(tmp_path / "mine.toml", row)) == row
+
+
+def test_a_part_is_written_as_stl_in_mm_as_large_as_is_asked(tmp_path: Path) -> None:
+    part = rm.simulate(SETUP.replace(cell_mm=1.0)).machined
+    path = rm.write_stl(tmp_path / "part.stl", part, max_faces=5_000)
+    assert path.stat().st_size < 84 + 50 * 5_000 * 1.5
+    again = rm.read_stock(path)
+    np.testing.assert_allclose(again.size, SETUP.stock.size, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("write", "error"),
+    [
+        (lambda to: rm.write_robot(SETUP.robot, to), RobotError),
+        (lambda to: rm.write_setup(to, SETUP.robot), ProjectError),
+        (lambda to: rm.write_gcode(to, SETUP), ToolpathError),
+        (lambda to: rm.write_stl(to, SETUP), SurfaceError),
+    ],
+)
+def test_the_wrong_way_round_is_refused(write, error, tmp_path: Path) -> None:
+    with pytest.raises(error, match="expected a file's name and then a"):
+        write(tmp_path / "file")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_cannot_be_written_is_said(tmp_path: Path) -> None:
+    with pytest.raises(RobotError, match="cannot be written"):
+        rm.write_robot(tmp_path / "nowhere" / "arm.toml", SETUP.robot)

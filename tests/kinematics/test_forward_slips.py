@@ -1,0 +1,59 @@
+"""Angles that were meant in degrees, strokes in mm and places in mm are refused; what can be meant is not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import KinematicsError
+
+ARM = rm.load_robot("slavkovic_5r")
+GANTRY = rm.Robot.from_dh(
+    prismatic=[True, True, False],
+    alpha_deg=[90, 90, 0],
+    a_mm=[0, 0, 300],
+    limits_mm=[(0, 60_000), (0, 8000), None],
+    limits_deg=[None, None, (-180, 180)],
+)
+
+
+@pytest.mark.parametrize("theta", [[0, 45, 0, 0, 0], [0, -90, 30, 0, 0], [0, 0, 12, 0, 0], [0, 45.7, 3.1, 0, 0]])
+@pytest.mark.parametrize("of", [rm.tool_pose, rm.geometric_jacobian, rm.cartesian_compliance, rm.joint_frames])
+def test_degrees_are_no_radians(of, theta) -> None:
+    with pytest.raises(KinematicsError, match=r"theta is in rad .*numpy.deg2rad"):
+        of(ARM, [[0.0] * 5, theta])
+
+
+@pytest.mark.parametrize("turns", [1, -1, 3, -5])
+def test_an_angle_of_several_turns_is_one(turns: int) -> None:
+    theta = np.array([0.1, -0.2, 0.3, 0.4, 0.5])
+    found = rm.tool_pose(ARM, theta + 2 * np.pi * turns)
+    np.testing.assert_allclose(found, rm.tool_pose(ARM, theta), atol=1e-12)
+
+
+def test_whole_radians_near_the_limits_are_meant() -> None:
+    assert rm.tool_pose(ARM, [3, 2, -1, 4, 0]).shape == (4, 4)
+
+
+def test_a_stroke_is_in_metres() -> None:
+    assert rm.tool_pose(GANTRY, [59.0, 7.5, 0.0])[:3, 3] @ [0, 0, 1] == pytest.approx(59.0)
+    with pytest.raises(KinematicsError, match="joint 2 is at 7500 m, .*7500 mm are 7.5"):
+        rm.tool_pose(GANTRY, [1.0, 7500.0, 0.0])
+
+
+def test_what_is_not_reached_stays_unknown() -> None:
+    assert np.isnan(rm.tool_pose(ARM, [np.nan] * 5)[:3]).any()
+
+
+def test_places_are_in_metres_and_tilts_in_radians() -> None:
+    with pytest.raises(KinematicsError, match="1300 mm are 1.3"):
+        rm.inverse_kinematics(ARM, rm.pose_from_world([0, -1300, 0, 0, 0]))
+    with pytest.raises(KinematicsError, match="found 90 rad"):
+        rm.pose_from_world([0, -1.3, 0, 0, 90])
+
+
+def test_a_place_out_of_reach_is_not_reached_and_not_refused() -> None:
+    far = rm.inverse_kinematics(ARM, rm.pose_from_world([0, -60.0, 0, 0, 0]))
+    assert not far.reached
+    assert rm.inverse_kinematics(GANTRY, rm.pose_from_world([0, 100.0, 0, 0, 0])).reached.shape == ()

@@ -1,0 +1,105 @@
+"""Set-ups made in code: the same as their files, in other words, and what nobody has stated is said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import SetupError
+from robomill.simulation.given import part_frame
+
+FLUTE = rm.load_setup("samples/paper_flute")
+CUTTER = rm.Cutter("flat", diameter_mm=8, flutes=3)
+PATH = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [100, 0, -2]], feed_mm_min=1800)
+
+
+def made(**more) -> rm.SimulationSetup:
+    given = {"robot": FLUTE.robot, "source": PATH, "cutter": CUTTER, "force": rm.PathForce(feed_normal=100)}
+    return rm.SimulationSetup(**{**given, "part_zero_mm": (0, -1300, 0), **more})
+
+
+def test_the_paper_s_set_up_made_in_code_is_its_file() -> None:
+    """samples/paper_flute/setup.toml, number by number: the same digest, so the same run."""
+    setup = rm.SimulationSetup(
+        name="Reference groove (Slavkovic 2013)",
+        robot=rm.load_robot("slavkovic_5r").with_compliance_set("table_2"),
+        source=rm.read_program("samples/paper_flute/path.nc"),
+        cutter=rm.Cutter("flat", diameter_mm=8, flutes=3),
+        force=rm.PathForce(feed=0, feed_normal=100, axial=0),
+        stock=rm.Stock(lower_mm=[-46, -20, -10], upper_mm=[64, 20, 0]),
+        part_zero_mm=[0, -1300, 2],
+        tolerance_mm=0.3,
+        step_mm=1,
+        cell_mm=0.1,
+    )
+    assert setup.digest() == FLUTE.digest()
+
+
+def test_the_place_of_the_part_is_a_point_and_a_turn() -> None:
+    T_MW = part_frame([0.1, -1.3, 0.02], np.radians(30))
+    for given in (
+        {"part_zero_mm": [100, -1300, 20], "part_rotation_z_deg": 30},
+        {"part_zero": [0.1, -1.3, 0.02], "part_rotation_z": np.radians(30)},
+        {"part_zero_mm": None, "T_MW": T_MW},
+    ):
+        np.testing.assert_allclose(
+            made(**given, **({} if "part_zero_mm" in given else {"part_zero_mm": None})).T_MW, T_MW
+        )
+
+
+def test_a_copy_keeps_what_of_the_place_is_not_given() -> None:
+    setup = made(part_rotation_z_deg=30)
+    moved = setup.replace(part_zero_mm=(0, -1400, 0))
+    assert np.array_equal(moved.T_MW[:3, :3], setup.T_MW[:3, :3])
+    np.testing.assert_allclose(moved.T_MW[:3, 3], [0, -1.4, 0])
+    turned = moved.replace(part_rotation_z_deg=0)
+    np.testing.assert_allclose(turned.T_MW, part_frame([0, -1.4, 0]))
+
+
+def test_a_path_is_taken_as_it_is() -> None:
+    assert made().source == rm.PointsSource(PATH)
+    assert made().toolpath is PATH
+    assert made().source.block_texts()[1].startswith("(100, 0, −2)")
+    assert made().replace(source=PATH).digest() == made().digest()
+
+
+def test_what_nobody_has_stated_is_said() -> None:
+    said = made().provenance
+    assert {block: each.kind for block, each in said.items()} == {
+        "tolerance": "assumed",
+        "stock": "computed",
+        "cutter": "assumed",
+    }
+    assert "helix angle 30°" in said["cutter"].source
+    mine = rm.Provenance("paper", "section 5.2")
+    all_said = made(tolerance_mm=0.1, cutter=FLUTE.cutter, stock=FLUTE.stock, provenance={"force": mine})
+    assert dict(all_said.provenance) == {"force": mine}
+
+
+def test_angles_of_spin_are_in_either_unit() -> None:
+    assert made(spin_deg=90).spin == made(spin=np.pi / 2).spin == np.pi / 2
+    assert made(spin="least_deviation").spin == "least_deviation"
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"part_zero_mm": None}, "give part_zero_mm=\\(X, Y, Z\\)"),
+        ({"part_zero_mm": None, "part_zero": (0, -1300, 2)}, "found -1300 m, .*part_zero in m, or part_zero_mm"),
+        ({"part_rotation_z": 90}, "part_rotation_z=1.5708 or part_rotation_z_deg=90"),
+        ({"T_MW": np.eye(4)}, "T_MW and part_zero are both given"),
+        ({"part_zero": (0, -1.3, 0)}, "give one of them"),
+        ({"part_zero_mm": (0, -1300)}, "expected shape"),
+        ({"tolerance": 0.3}, "tolerance=0.0003 or tolerance_mm=0.3"),
+        ({"step": 1}, "step_mm=1"),
+        ({"cell": 0.1}, "cell_mm=0.1"),
+        ({"rapid_rate": 30_000}, "rapid_rate_mm_min=30000"),
+        ({"spin": 90}, "spin=1.5708 or spin_deg=90"),
+        ({"spin": "fast"}, "expected an angle or one of"),
+        ({"tolerance": 1e-3, "tolerance_mm": 1}, "are the same number"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(given, words: str) -> None:
+    with pytest.raises(SetupError, match=words):
+        made(**given)
