@@ -20,6 +20,7 @@ ROOMS = {
     "improve": "What would fix it",
     "report": "Tables and reports",
 }
+ELSEWHERE = {"process_force": "cutting", "identify": "identification", "read_load_tests": "identification"}
 REST = "Further names"
 ERRORS = "Errors"
 
@@ -28,7 +29,7 @@ def pages() -> dict[str, str]:
     """The generated piece by name."""
     by_room: dict[str, list[str]] = {title: [] for title in (*ROOMS.values(), REST, ERRORS)}
     for name in rm.__all__:
-        by_room[_title(getattr(rm, name))].append(name)
+        by_room[_title(name, getattr(rm, name))].append(name)
     said = []
     for title, names in by_room.items():
         if names:
@@ -37,11 +38,13 @@ def pages() -> dict[str, str]:
     return {"names.md": "\n\n".join(said)}
 
 
-def _title(value: object) -> str:
+def _title(name: str, value: object) -> str:
+    """The heading under which a name stands: by the room of its module, unless another is nearer to its subject."""
     if inspect.isclass(value) and issubclass(value, Exception):
         return ERRORS
     parts = str(getattr(value, "__module__", "")).split(".")
-    return ROOMS.get(parts[1], REST) if len(parts) > 1 else REST
+    room = ELSEWHERE.get(name, parts[1] if len(parts) > 1 else "")
+    return ROOMS.get(room, REST)
 
 
 def _directive(name: str) -> str:

@@ -31,6 +31,6 @@ def _write(app: Sphinx) -> None:
 
 def everything(pictures: Path) -> dict[str, str]:
     """All generated pieces by the name of their file."""
-    from generators import formats, gallery, names, validation, verbs  # here: they load all of robomill
+    from generators import extras, formats, gallery, names, validation, verbs  # here: they load all of robomill
 
-    return {**formats.pages(), **verbs.pages(), **names.pages(), **validation.pages(), **gallery.pages(pictures)}
+    return {**extras.pages(), **formats.pages(), **verbs.pages(), **names.pages(), **validation.pages(), **gallery.pages(pictures)}
