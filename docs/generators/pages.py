@@ -33,4 +33,11 @@ def everything(pictures: Path) -> dict[str, str]:
     """All generated pieces by the name of their file."""
     from generators import extras, formats, gallery, names, validation, verbs  # here: they load all of robomill
 
-    return {**extras.pages(), **formats.pages(), **verbs.pages(), **names.pages(), **validation.pages(), **gallery.pages(pictures)}
+    return {
+        **extras.pages(),
+        **formats.pages(),
+        **verbs.pages(),
+        **names.pages(),
+        **validation.pages(),
+        **gallery.pages(pictures),
+    }
