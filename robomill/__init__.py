@@ -51,9 +51,9 @@ if TYPE_CHECKING:
     from robomill.io.writers import write_robot as write_robot
     from robomill.io.writers import write_setup as write_setup
     from robomill.io.writers import write_stl as write_stl
+    from robomill.kinematics.asked import inverse_kinematics as inverse_kinematics
     from robomill.kinematics.forward import joint_frames as joint_frames
     from robomill.kinematics.forward import tool_pose as tool_pose
-    from robomill.kinematics.inverse import inverse_kinematics as inverse_kinematics
     from robomill.kinematics.jacobian import geometric_jacobian as geometric_jacobian
     from robomill.kinematics.jacobian import task_jacobian as task_jacobian
     from robomill.kinematics.result import IKResult as IKResult
@@ -136,7 +136,7 @@ _PUBLIC = {
     "write_stl": "robomill.io.writers",
     "joint_frames": "robomill.kinematics.forward",
     "tool_pose": "robomill.kinematics.forward",
-    "inverse_kinematics": "robomill.kinematics.inverse",
+    "inverse_kinematics": "robomill.kinematics.asked",
     "geometric_jacobian": "robomill.kinematics.jacobian",
     "task_jacobian": "robomill.kinematics.jacobian",
     "IKResult": "robomill.kinematics.result",

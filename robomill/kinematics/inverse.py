@@ -15,12 +15,10 @@ from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
 from robomill.progress import checkpoint
 from robomill.robot.model import Robot
-from robomill.units import to_si
 
 Spin = float | Literal["least_motion", "fixed"]
 LEAST_MOTION: Literal["least_motion"] = "least_motion"
 SPINS = (LEAST_MOTION, "fixed")
-SLIPPED = 100.0  # times as far as an arm reaches: such a place was meant in mm
 THINNED = 200  # poses of a path by which its spins are compared
 
 
@@ -113,7 +111,6 @@ def _wish(
     robot: Robot, T_MT: FloatArray, branch: str | None, near: ArrayLike | Literal["path"] | None, spin: Spin
 ) -> Wish:
     """The question checked; poses turned by the angle that is asked for."""
-    _check_places(robot, T_MT[..., :3, 3])
     lead, flat = T_MT.shape[:-2], T_MT.reshape(-1, 4, 4)
     along_path = isinstance(near, str)
     if along_path and (near != "path" or not lead):
@@ -128,19 +125,6 @@ def _wish(
     goal = None if along_path else robot.home[None] if near is None else _reference(robot, near, lead)
     length = max(lead[-1], 1) if along_path else 1
     return Wish(flat, length, mode, goal, near is None, branch, free_spin, given)
-
-
-def _check_places(robot: Robot, p: FloatArray) -> None:
-    """Refuse places (..., 3) m so many arms' lengths away that they were meant in mm."""
-    chain, slides = robot.chain, robot.chain.prismatic
-    span = np.linalg.norm(chain.T_0[:3, 3]) + np.linalg.norm(chain.E[:, :3, 3], axis=1).sum()
-    span += np.abs(robot.limits[slides]).max(axis=1).sum() + np.abs(chain.offset[slides]).sum()
-    farthest = float(np.abs(p).max(initial=0.0))
-    if farthest > SLIPPED * span:
-        raise KinematicsError(
-            f"T_MT: a place lies {farthest:g} m off, {robot.name!r} reaches {float(span):.3g} m at most: places are in "
-            f"m; {farthest:g} mm are {to_si(farthest, 'mm'):g}."
-        )
 
 
 def branch_mask(branch: str | None) -> BoolArray:
