@@ -106,8 +106,7 @@ class Normal(NamedTuple):
 
     def cost(self, shift: FloatArray) -> tuple[float, FloatArray]:
         """Squared residual and compliances (p,) of the bounded fit with the points there."""
-        V = np.asarray(np.kron(monomials(shift, self.freed)[0][:, None], np.eye(len(self.signed))), dtype=np.float64)
-        N, y = self._small(V)
+        N, y = self._small(_columns(monomials(shift, self.freed)[0], len(self.signed)))
         x = bounded_normal(N, y, self.signed)
         return float(self.M[-1, -1] - 2.0 * x @ y + x @ N @ x), x
 
@@ -116,8 +115,9 @@ class Normal(NamedTuple):
         value, change = monomials(shift, self.freed)
         p = len(self.signed)
         inside = self.signed | (x > 0.0)
-        A = np.kron(value[:, None], np.eye(p))[:, inside]
-        N, y = self._small(np.concatenate([A, np.kron(change, x[:, None])], axis=1))
+        A = _columns(value, p)[:, inside]
+        turned = (change[:, None, :] * x[None, :, None]).reshape(len(A), len(shift))
+        N, y = self._small(np.concatenate([A, turned], axis=1))
         size = np.sqrt(np.diag(N))
         size[size == 0.0] = 1.0
         return np.asarray(np.linalg.lstsq(N / np.outer(size, size), y / size, rcond=1e-12)[0] / size)[A.shape[1] :]
@@ -126,6 +126,11 @@ class Normal(NamedTuple):
         """Normal matrix and right side of the columns T V."""
         MV = self.M[:, :-1] @ V
         return V.T @ MV[:-1], MV[-1]
+
+
+def _columns(value: FloatArray, p: int) -> FloatArray:
+    """(k p, p) by which terms (..., k p) become equations (..., p): value (k,) of each monomial, once for each of them."""
+    return np.asarray(value[:, None, None] * np.eye(p)).reshape(-1, p)
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,25 +22,31 @@ from robomill.errors import RobomillError
 from robomill.identification.confidence import LEVEL, half_width
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 
+SOURCES = ("compliances", "model", "force", "lengths")
+"""What makes a deflection unsure, in the order of the terms above."""
 STEP = 1e-6  # m, for the derivative with respect to a length
 
 
 @dataclass(frozen=True, eq=False)
 class Uncertain:
-    """A displacement with its uncertainty: delta (..., 3) m, covariance (..., 3, 3) m^2, and the part of each source.
-
-    by_compliance, by_model, by_force, by_lengths (..., 3): standard deviations (m) each source alone would give.
-    """
+    """A displacement with its uncertainty: delta (..., 3) m, and the covariance that each of ``SOURCES`` alone would
+    give it, parts (..., sources, 3, 3) m^2."""
 
     delta: FloatArray
-    covariance: FloatArray
-    by_compliance: FloatArray
-    by_model: FloatArray
-    by_force: FloatArray
-    by_lengths: FloatArray
+    parts: FloatArray
     dof: int | None = None
+
+    @cached_property
+    def covariance(self) -> FloatArray:
+        """(..., 3, 3) m^2, of all sources together."""
+        return frozen(self.parts.sum(axis=-3))
+
+    def by(self, source: str) -> FloatArray:
+        """(..., 3) m, one standard deviation of each component by one of ``SOURCES`` alone."""
+        return _spread(self.parts[..., SOURCES.index(source), :, :])
 
     @property
     def std(self) -> FloatArray:
@@ -53,9 +59,11 @@ class Uncertain:
 
     def half_along(self, direction: ArrayLike, level: float = LEVEL) -> FloatArray:
         """(...) m: the same of the component along unit vectors (..., 3)."""
-        u = np.asarray(direction, dtype=np.float64)
-        variance = np.einsum("...i,...ij,...j->...", u, self.covariance, u)
-        return half_width(np.sqrt(variance), self.dof, level)
+        return half_width(_along(self.covariance, direction), self.dof, level)
+
+    def by_along(self, source: str, direction: ArrayLike) -> FloatArray:
+        """(...) m, one standard deviation of the component along unit vectors (..., 3) by one of ``SOURCES`` alone."""
+        return _along(self.parts[..., SOURCES.index(source), :, :], direction)
 
 
 def uncertain_deflection(robot: Robot, theta: ArrayLike, F: ArrayLike, known: Knowledge) -> Uncertain:
@@ -95,9 +103,8 @@ def uncertain_by_map(field: MeasuredField, p: ArrayLike, F: ArrayLike, force: Fl
 
 
 def _uncertain(delta: FloatArray, parts: list[FloatArray], dof: int | None) -> Uncertain:
-    """From the covariances by compliance, model, force and lengths."""
-    by_compliance, by_model, by_force, by_lengths = (frozen(_spread(part)) for part in parts)
-    return Uncertain(frozen(delta), frozen(sum(parts)), by_compliance, by_model, by_force, by_lengths, dof)
+    """From the covariances by each of ``SOURCES``."""
+    return Uncertain(frozen(delta), frozen(np.stack(parts, axis=-3)), dof)
 
 
 def length_derivative(robot: Robot, theta: FloatArray, F: FloatArray, known: Knowledge) -> FloatArray:
@@ -113,6 +120,12 @@ def length_derivative(robot: Robot, theta: FloatArray, F: FloatArray, known: Kno
                 moved.append(known.model.tip_regressor(arm, theta, F) @ known.parameters)
             columns.append((moved[0] - moved[1]) / (2.0 * STEP))
     return np.stack(columns, axis=-1)
+
+
+def _along(covariance: FloatArray, direction: ArrayLike) -> FloatArray:
+    """(...) standard deviation along unit vectors (..., 3)."""
+    u = np.asarray(direction, dtype=np.float64)
+    return np.asarray(np.sqrt(np.clip(np.einsum("...i,...ij,...j->...", u, covariance, u), 0.0, None)))
 
 
 def _spread(covariance: FloatArray) -> FloatArray:

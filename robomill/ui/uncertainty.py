@@ -8,11 +8,12 @@ import numpy as np
 
 from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
+from robomill.identification.propagation import SOURCES
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import session
-from robomill.units import format_many, format_si, from_si
+from robomill.units import format_many, format_si, from_si, in_lengths
 from robomill.viz.along import add_band
 
 if TYPE_CHECKING:
@@ -62,13 +63,13 @@ def sentence(result: SimulationResult, given: Knowledge, unit: str) -> str:
     half = float(size_band(result, band, i))
     if not np.isfinite(half):
         return "The band is not known: the tests leave no residuals to judge the noise by."
-    parts = (
-        ("compliances", band.by_compliance),
-        ("model", band.by_model),
-        ("force", band.by_force),
-        ("lengths", band.by_lengths),
-    )
-    shown = [f"{format_si(float(np.linalg.norm(v)), 'um', 1)} from the {name}" for name, v in parts if np.any(v > 0)]
+    along = result.delta[i] / np.linalg.norm(result.delta[i])
+    parts = {source: float(band.by_along(source, along)) for source in SOURCES}
+    shown = [
+        f"{format_si(part, in_lengths('um', unit), 1)} from the {source}"
+        for source, part in parts.items()
+        if part > 0.0
+    ]
     made = f" One standard deviation: {', '.join(shown)}." if shown else ""
     value = band_text(result.max_deviation, half, unit)
     return f"At line {result.worst_block} the tip is {value} off its path, with 95 % probability.{made}"

@@ -115,7 +115,7 @@ def test_what_a_band_is_made_of_is_said_and_saved():
     assert narrow.made_of != known.made_of
     assert knowledge_from_table(Table(knowledge_to_table(narrow), "here"), ROBOT, ()).error is None
     still = uncertain_deflection(ROBOT, theta[:1], [[0.0, 0.0, 0.0]], known)
-    np.testing.assert_array_equal(still.by_model, 0.0)
+    np.testing.assert_array_equal(still.by("model"), 0.0)
 
 
 def test_single_joints_cannot_check_the_tool():

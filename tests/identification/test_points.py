@@ -85,7 +85,7 @@ def test_points_and_stiffness_lie_within_their_intervals(name):
     """Over many data sets: 95 % intervals of points and compliances hold the truth in 95 % of the cases."""
     arm, robot = ARMS[name]
     inside_points, inside_joints, falls = [], [], []
-    for seed in range(24):
+    for seed in range(16):
         rig = Rig(bending={2: (4e-7, 4e-7)})
         tests = read(name, make(arm, rig, 43, seed), rig)
         plain = rm.identify(robot, tests)

@@ -85,8 +85,12 @@ def test_closed_form_at_the_milling_test():
 def test_sources_add_in_squares_and_batch_is_loop():
     known = guessed(ROBOT, compliance=0.1, force=[5.0, 10.0, 3.0], length=2e-3)
     found = uncertain_deflection(ROBOT, THETA, F, known)
-    total = found.by_compliance**2 + found.by_force**2 + found.by_lengths**2
+    total = sum(found.by(source) ** 2 for source in ("compliances", "force", "lengths"))
     np.testing.assert_allclose(found.std**2, total, rtol=1e-12)
+    assert (found.by("model") == 0.0).all()
+    u = F / np.linalg.norm(F, axis=-1, keepdims=True)
+    along = sum(found.by_along(source, u) ** 2 for source in ("compliances", "force", "lengths"))
+    np.testing.assert_allclose(found.half_along(u), 1.959964 * np.sqrt(along), rtol=1e-6)
     for k in range(5):
         one = uncertain_deflection(ROBOT, THETA[k], F[k], known)
         np.testing.assert_allclose(one.covariance, found.covariance[k], rtol=1e-9, atol=1e-20)
@@ -122,8 +126,8 @@ def test_what_was_identified_is_predicted_with_its_extra_springs():
     found = uncertain_deflection(ROBOT, theta, load, Knowledge.of(result, ROBOT).widened(ROBOT, force=2.0))
     gap = np.abs(found.delta - tests.displacement[::3, :3])
     assert gap.max() < 4 * result.noise
-    assert (found.by_compliance < result.noise).all()
-    assert (found.by_force > 0).all()
+    assert (found.by("compliances") < result.noise).all()
+    assert (found.by("force") > 0).all()
     assert found.dof == result.dof
 
 
@@ -154,6 +158,6 @@ def test_a_map_carries_the_forces_spread_through_its_own_matrices():
         expected = np.cov(C[k] @ drawn.T)
         got = both.covariance[k] - alone.covariance[k]
         np.testing.assert_allclose(got, expected, atol=0.03 * np.abs(expected).max())
-        np.testing.assert_allclose(both.by_force[k], np.sqrt(np.diag(C[k] @ A @ A.T @ C[k].T)), rtol=1e-9)
-    np.testing.assert_array_equal(alone.by_force, np.zeros((5, 3)))
+        np.testing.assert_allclose(both.by("force")[k], np.sqrt(np.diag(C[k] @ A @ A.T @ C[k].T)), rtol=1e-9)
+    np.testing.assert_array_equal(alone.by("force"), np.zeros((5, 3)))
     np.testing.assert_allclose(both.delta, np.einsum("mij,mj->mi", C, F), rtol=1e-9)
