@@ -129,7 +129,7 @@ class Normal(NamedTuple):
 
 
 def _columns(value: FloatArray, p: int) -> FloatArray:
-    """(k p, p) by which terms (..., k p) become equations (..., p): value (k,) of each monomial, once for each of them."""
+    """(k p, p) by which terms (..., k p) become equations (..., p): the value (k,) of each monomial for each of p."""
     return np.asarray(value[:, None, None] * np.eye(p)).reshape(-1, p)
 
 

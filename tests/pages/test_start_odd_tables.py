@@ -1,4 +1,4 @@
-"""Odd words and numbers in every column of every table that is edited: taken or refused in a sentence, never a crash."""
+"""Odd words and numbers in every column of every table that is edited: taken, or refused in a sentence; no crash."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def odd_things(column: pd.Series[Any], config: Any) -> tuple[Any, ...]:
 
 
 def crashes(app: AppTest, grid: Grid, way: str, each: bool) -> list[str]:
-    """What crashes where the tables are given odd things: one in each cell, or ``each`` in its column, first or last."""
+    """What crashes where the tables are given odd things: one in each cell, or ``each`` of them in its column."""
     go(app, put(app, way))
     assert not app.exception, [e.message for e in app.exception]
     held, crashed, turn = store(app), [], 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 
 import pytest
@@ -83,6 +84,43 @@ def test_program_to_table_and_back(app: AppTest) -> None:
     assert "0.251" in words(go(app, "app"))
     app.button(key="undo").click().run()
     assert isinstance(store(app).project.setup.source, GCodeSource)
+
+
+def test_whoever_only_looks_at_the_other_kinds_has_the_program_back(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    before = store(app).project
+    for kind in ("lines", "sketch", "program"):
+        app.button_group(key="toolpath.kind").set_value(kind).run()
+        assert store(app).project.setup.source.kind == kind
+    after = store(app).project
+    assert after.digest() == before.digest()
+    assert after.setup.provenance == before.setup.provenance
+
+
+def test_a_table_that_was_edited_is_not_thrown_away_for_the_program_it_came_from(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    app.button_group(key="toolpath.kind").set_value("lines").run()
+    setup = store(app).project.setup
+    assert isinstance(setup.source, LinesSource)
+    longer = dataclasses.replace(setup.source, end=setup.source.end + [0.01, 0.0, 0.0])
+    store(app).project = store(app).project.replace(setup=setup.replace(source=longer))
+    app.run()
+    app.button_group(key="toolpath.kind").set_value("program").run()
+    source = store(app).project.setup.source
+    assert isinstance(source, GCodeSource)
+    assert source.name == "lines.nc"
+    assert source.read().extents[1][0] == pytest.approx(0.06)
+
+
+def test_what_else_was_changed_meanwhile_stays_when_the_program_comes_back(app: AppTest) -> None:
+    go(app, "5_Toolpath")
+    given = store(app).project.setup
+    app.button_group(key="toolpath.kind").set_value("sketch").run()
+    box(app, "Zero Y, mm").set_value(-1250.0).run()
+    app.button_group(key="toolpath.kind").set_value("program").run()
+    now = store(app).project.setup
+    assert now.source == given.source
+    assert now.T_MW[1, 3] == pytest.approx(-1.25)
 
 
 def test_the_program_is_drawn_at_every_run(app: AppTest) -> None:

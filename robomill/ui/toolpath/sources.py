@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arrays import digest
 from robomill.errors import RobomillError, ToolpathError
 from robomill.provenance import Provenance
+from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
@@ -20,6 +22,7 @@ from robomill.units import format_count
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
 POINTS = {"points": "Points"}  # what a file brings and nobody can choose: it can be made one of the others
 MAX_ROWS = 200
+LEFT = "toolpath.left"  # set-ups whose path was turned into another kind, each with what it became, last ones last
 STATED = ("force", "cutter", "tolerance")  # blocks of a set-up that are of one cut
 
 
@@ -70,10 +73,47 @@ def _holds(stock: Stock, path: Toolpath) -> bool:
 
 
 def _convert(kind: str) -> None:
-    """The same path by other means, as far as that goes; undo leads back."""
+    """The same path by other means, as far as that goes. Undo leads back, and so does the way back as long as nothing
+    was done to what it became: who only looks loses nothing."""
     setup = session.project().setup
     if kind in (setup.source.kind, *POINTS):
         return
+    turned = _turned(setup)
+    earlier = next((before for before, _ in reversed(turned) if before.source.kind == kind), None)
+    if earlier is not None:
+        _put_back(earlier, turned[-1][1])
+        session.keep(LEFT, turned[: [before for before, _ in turned].index(earlier)])
+        return
+    _turn(kind, setup)
+    session.keep(LEFT, (*turned, (setup, session.project().setup)))
+
+
+def _turned(setup: SimulationSetup) -> tuple[tuple[SimulationSetup, SimulationSetup], ...]:
+    """The turns that led to the path of ``setup``, none of which was touched in between."""
+    turned: tuple[tuple[SimulationSetup, SimulationSetup], ...] = session.kept(LEFT, ())
+    now = setup.source
+    for before, became in reversed(turned):
+        if digest(became.source) != digest(now):
+            return ()
+        now = before.source
+    return turned
+
+
+def _put_back(earlier: SimulationSetup, became: SimulationSetup) -> None:
+    """The path of ``earlier``, with what went with it where that is still as ``became`` had it."""
+    setup = session.project().setup
+    blocks = ["path", *(name for name in ("force", "stock") if _same(name, setup, became))]
+    said = {name: earlier.provenance[name] for name in blocks if name in earlier.provenance}
+    stock = {"stock": earlier.stock} if "stock" in blocks else {}
+    session.change(source=earlier.source, name=earlier.name, provenance={**setup.provenance, **said}, **stock)
+    program_view.select_line(0)
+
+
+def _same(block: str, one: SimulationSetup, other: SimulationSetup) -> bool:
+    return digest(getattr(one, block)) == digest(getattr(other, block))
+
+
+def _turn(kind: str, setup: SimulationSetup) -> None:
     running.wait_for_path(setup)
     if kind == "lines":
         put(lines_of_path(setup.toolpath), "converted to a table of lines")
