@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import time
 
+import numpy as np
 import pytest
 from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
@@ -102,7 +103,7 @@ def test_a_table_that_was_edited_is_not_thrown_away_for_the_program_it_came_from
     app.button_group(key="toolpath.kind").set_value("lines").run()
     setup = store(app).project.setup
     assert isinstance(setup.source, LinesSource)
-    longer = dataclasses.replace(setup.source, end=setup.source.end + [0.01, 0.0, 0.0])
+    longer = dataclasses.replace(setup.source, end=setup.source.end + np.array([0.01, 0.0, 0.0]))
     store(app).project = store(app).project.replace(setup=setup.replace(source=longer))
     app.run()
     app.button_group(key="toolpath.kind").set_value("program").run()
