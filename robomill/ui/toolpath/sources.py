@@ -104,7 +104,7 @@ def _put_back(earlier: SimulationSetup, became: SimulationSetup) -> None:
     setup = session.project().setup
     blocks = ["path", *(name for name in ("force", "stock") if _same(name, setup, became))]
     said = {name: earlier.provenance[name] for name in blocks if name in earlier.provenance}
-    stock = {"stock": earlier.stock} if "stock" in blocks else {}
+    stock: dict[str, Any] = {"stock": earlier.stock} if "stock" in blocks else {}
     session.change(source=earlier.source, name=earlier.name, provenance={**setup.provenance, **said}, **stock)
     program_view.select_line(0)
 
